@@ -1,0 +1,62 @@
+# What every target of the project is compiled with.
+add_library(lodeline_options INTERFACE)
+target_compile_options(lodeline_options INTERFACE -Wall -Wextra -Wpedantic -Werror)
+target_include_directories(lodeline_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+if(LODELINE_SANITIZERS)
+  target_compile_options(lodeline_options INTERFACE -fsanitize=${LODELINE_SANITIZERS}
+                                                    -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(lodeline_options INTERFACE -fsanitize=${LODELINE_SANITIZERS})
+endif()
+
+# lodeline_layer(NAME [SOURCES ...] [DEPENDS layer-or-library ...] [TESTS ...] [REAL_TESTS ...])
+#
+# One layer of the library: target lodeline_NAME from SOURCES (an interface library when there are none), linked
+# against lower layers (by layer name) and outside libraries (by target name). TESTS are fast, need no data and
+# run under the sanitizers too; REAL_TESTS read recordings and skip themselves where these are missing.
+function(lodeline_layer name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;REAL_TESTS" ${ARGN})
+  set(links)
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    if(TARGET lodeline_${dependency})
+      list(APPEND links lodeline_${dependency})
+    elseif(dependency MATCHES "^[a-z]+$")
+      message(FATAL_ERROR "layer '${name}' depends on '${dependency}', which is not below it")
+    else()
+      list(APPEND links ${dependency})
+    endif()
+  endforeach()
+  if(ARG_SOURCES)
+    add_library(lodeline_${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(lodeline_${name} PUBLIC lodeline_options ${links})
+  else()
+    add_library(lodeline_${name} INTERFACE)
+    target_link_libraries(lodeline_${name} INTERFACE lodeline_options ${links})
+  endif()
+  if(NOT LODELINE_BUILD_TESTS)
+    return()
+  endif()
+  if(ARG_TESTS)
+    lodeline_test(${name}_test fast ${name} ${ARG_TESTS})
+  endif()
+  if(ARG_REAL_TESTS)
+    lodeline_test(${name}_real_test real ${name} ${ARG_REAL_TESTS})
+  endif()
+endfunction()
+
+function(lodeline_test target label layer)
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE lodeline_${layer} GTest::gtest GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS ${label} TIMEOUT 600)
+endfunction()
+
+# lodeline_benchmark(NAME SOURCE... DEPENDS layer...): an executable that `make bench` runs.
+function(lodeline_benchmark name)
+  if(NOT LODELINE_BUILD_BENCHMARKS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  list(TRANSFORM ARG_DEPENDS PREPEND lodeline_)
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} benchmark::benchmark_main)
+endfunction()

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04. Does nothing where all of it is present.
+set -euo pipefail
+
+packages=(
+  build-essential cmake ninja-build ccache clang-format
+  libeigen3-dev libceres-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+  libgeographiclib-dev libembree-dev libtbb-dev libopengv-dev
+  gnuplot-nox
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+sudo=
+[ "$(id -u)" -eq 0 ] || sudo=sudo
+echo "Installing: ${missing[*]}"
+$sudo apt-get update -qq
+$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"

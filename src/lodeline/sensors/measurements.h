@@ -1,0 +1,34 @@
+#pragma once
+
+#include "lodeline/base/time.h"
+#include "lodeline/geometry/types.h"
+
+namespace lodeline {
+
+/// One reading of gyroscope and accelerometer in the body frame B (= IMU frame).
+struct ImuSample {
+  Time time;
+  Vec3 angular_velocity_B = Vec3::Zero();  ///< rad/s, biased
+  Vec3 specific_force_B = Vec3::Zero();    ///< m/s^2, biased; +9.8 along up at rest
+};
+
+/// One magnetometer reading in the magnetometer frame M, as the sensor gave it.
+struct MagnetometerSample {
+  Time time;
+  Vec3 field_M = Vec3::Zero();  ///< T
+};
+
+/// One depth reading from a pressure sensor.
+struct DepthSample {
+  Time time;
+  double depth_m = 0.0;  ///< positive down
+};
+
+/// One echo of a scanning pencil-beam sonar.
+struct SonarSample {
+  Time time;
+  double range_m = 0.0;
+  double angle_rad = 0.0;  ///< of the beam about the sonar head's axis
+};
+
+}  // namespace lodeline

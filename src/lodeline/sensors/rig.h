@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+/// Noise of an IMU as continuous densities, Kalibr's convention (two-sided square root of power per hertz; a
+/// discrete sample at rate f has sigma = density * sqrt(f)). Figures stand as the datasheet or Allan analysis
+/// gave them.
+struct ImuNoise {
+  double gyroscope_density_rad_per_s_sqrtHz = 1.7e-4;
+  double gyroscope_random_walk_rad_per_s2_sqrtHz = 2.0e-5;
+  double accelerometer_density_m_per_s2_sqrtHz = 2.0e-3;
+  double accelerometer_random_walk_m_per_s3_sqrtHz = 3.0e-3;
+};
+
+/// The IMU defines the body frame B.
+struct ImuCalibration {
+  double rate_hz = 200.0;
+  ImuNoise noise;
+};
+
+enum class DistortionModel {
+  None,
+  RadialTangential,  ///< Brown-Conrady: k1 k2 p1 p2 [k3 [k4 k5 k6]] (OpenCV's order)
+  Equidistant,       ///< Kannala-Brandt: k1 k2 k3 k4
+};
+
+/// A camera as a calibration file describes it; `makeCamera` turns it into something that projects.
+struct CameraCalibration {
+  std::string name;  ///< e.g. "cam0"
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0.0;
+  double fy_px = 0.0;
+  double cx_px = 0.0;  ///< pixel centres at integers
+  double cy_px = 0.0;
+  DistortionModel distortion_model = DistortionModel::None;
+  std::vector<double> distortion;
+  double rate_hz = 20.0;
+  Rigid3 body_from_camera;
+  /// Camera stamps + this = IMU clock (Kalibr's timeshift_cam_imu).
+  double time_offset_to_imu_s = 0.0;
+  std::string mask_file;  ///< 8-bit image, zero where the camera sees its own rig; empty for none
+};
+
+struct MagnetometerCalibration {
+  double rate_hz = 100.0;
+  double noise_density_T_per_sqrtHz = 1.0e-8;
+  Rigid3 body_from_magnetometer;
+};
+
+struct PressureCalibration {
+  double rate_hz = 1.0;
+  double depth_noise_std_m = 0.02;
+  Rigid3 body_from_pressure;
+};
+
+struct SonarCalibration {
+  double rate_hz = 50.0;
+  double range_noise_std_m = 0.05;
+  Rigid3 body_from_sonar;
+};
+
+/// Everything that is rigidly mounted together, with extrinsics for every sensor.
+struct Rig {
+  ImuCalibration imu;
+  std::vector<CameraCalibration> cameras;
+  std::optional<MagnetometerCalibration> magnetometer;
+  std::optional<PressureCalibration> pressure;
+  std::optional<SonarCalibration> sonar;
+};
+
+}  // namespace lodeline
