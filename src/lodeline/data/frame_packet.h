@@ -1,0 +1,31 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "lodeline/base/time.h"
+#include "lodeline/sensors/measurements.h"
+
+namespace lodeline {
+
+/// Everything the sensors said between one moment of images and the next.
+struct FramePacket {
+  Time time;  ///< mid-exposure of the images, on the IMU's clock
+
+  /// One 8-bit grey image per camera of the rig; empty where the camera gave none.
+  std::vector<cv::Mat> images;
+
+  /// From the time of the packet before to `time`, readings at both ends interpolated, strictly increasing in
+  /// time. The first packet holds all readings kept from before the first image, so that the tilt can be
+  /// averaged.
+  std::vector<ImuSample> imu;
+  /// Longest stretch inside `imu` without a reading, s; more than a few nominal periods means data was lost.
+  double longest_imu_gap_s = 0.0;
+
+  /// Readings in (time of the packet before, time].
+  std::vector<MagnetometerSample> magnetometer;
+  std::vector<DepthSample> depth;
+  std::vector<SonarSample> sonar;
+};
+
+}  // namespace lodeline
