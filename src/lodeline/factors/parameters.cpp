@@ -9,8 +9,8 @@ Rigid3 poseFromBlock(const double* block) {
 }
 
 void poseToBlock(const Rigid3& world_from_body, double* block) {
-  Eigen::Map<Vec3>(block) = world_from_body.translation;
-  Eigen::Map<Eigen::Vector4d>(block + 3) = world_from_body.rotation.coeffs();
+  Eigen::Map<Eigen::Matrix<double, kPoseSize, 1>> pose(block);
+  pose << world_from_body.translation, world_from_body.rotation.coeffs();
 }
 
 Rigid3 perturbed(const Rigid3& world_from_body, const Eigen::Matrix<double, 6, 1>& perturbation) {
