@@ -46,6 +46,7 @@ endfunction()
 function(lodeline_test target label layer)
   add_executable(${target} ${ARGN})
   target_link_libraries(${target} PRIVATE lodeline_${layer} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${target} PRIVATE LODELINE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS ${label} TIMEOUT 600)
 endfunction()
