@@ -1,0 +1,47 @@
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lodeline/factors/parameters.h"
+
+namespace lodeline {
+
+/// What marginalisation leaves behind: a quadratic cost over some parameter blocks around their first
+/// estimates,
+///   cost(x) = 1/2 || J d + e ||^2,   d = x (-) first estimate, stacked over the blocks in order,
+/// with pose blocks differing by perturbationBetween() and others by subtraction. J is square and upper
+/// triangular.
+struct Prior {
+  struct Block {
+    double* value = nullptr;  ///< where the block lives; owned by the window
+    Eigen::VectorXd first_estimate;
+
+    bool isPose() const { return first_estimate.size() == kPoseSize; }
+    int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(first_estimate.size()); }
+  };
+  std::vector<Block> blocks;
+  Eigen::MatrixXd sqrt_information;  ///< J
+  Eigen::VectorXd offset;            ///< e
+
+  bool empty() const { return blocks.empty(); }
+  int tangentSize() const;
+
+  /// d at the given block values (one pointer per block).
+  Eigen::VectorXd difference(double const* const* values) const;
+};
+
+/// The prior as a term of the cost; its Jacobian is constant, being taken at the first estimates. The prior
+/// must outlive the factor.
+class PriorFactor final : public ceres::CostFunction {
+ public:
+  explicit PriorFactor(const Prior& prior);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const Prior& prior_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+/// What one image says about the direction of a point: the unit ray z of the pixel, a basis B (3x2) of the
+/// plane normal to it, and the weight that turns an offset in that plane into pixels over their standard
+/// deviation,
+///   sqrt_information = d(pixel) / d(tangent offset) / sigma_px      (2x2).
+/// To first order a residual whitened this way is the pixel error over sigma, for every camera model and
+/// without evaluating the distortion again.
+struct DirectionMeasurement {
+  Vec3 bearing_C = Vec3::UnitZ();
+  Mat32 tangent_C = Mat32::Identity();
+  Mat2 sqrt_information = Mat2::Identity();
+
+  /// From a pixel's ray. The camera must be able to project that ray.
+  static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
+};
+
+/// A point as seen from its host camera: the direction d = base + tangent * (a, b), not normalised, and the
+/// inverse distance rho (1/m) along `base`, so that the point lies at d / rho. The parameter block is (a, b,
+/// rho). Points behind or infinitely far away (rho = 0) need no special case.
+struct LandmarkBase {
+  Vec3 bearing_C = Vec3::UnitZ();
+  Mat32 tangent_C = Mat32::Identity();
+
+  explicit LandmarkBase(const Vec3& bearing_C);
+  LandmarkBase() : LandmarkBase(Vec3::UnitZ()) {}
+  Vec3 direction(const double* landmark) const {
+    return bearing_C + tangent_C * Vec2(landmark[0], landmark[1]);
+  }
+};
+
+constexpr int kLandmarkSize = 3;
+
+/// Reprojection error of a landmark in another frame than its host (paper section III-B, e_r).
+///
+/// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3). With body poses R_h, p_h,
+/// R_t, p_t and extrinsics R_BC, p_BC of host and target camera,
+///   P = R_h (R_BC d + rho p_BC) + rho p_h                  (rho times the point in the world)
+///   q = R_BC'^T (R_t^T (P - rho p_t) - rho p_BC')          (rho times the point in the target camera)
+///   e = sqrt_information * B^T q / (z^T q).
+/// A point that falls behind the target's image plane is a gross outlier: constant error, zero Jacobian.
+class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandmarkSize> {
+ public:
+  /// The first estimates may be null (see parameters.h) and must outlive the factor, as must nothing else.
+  ReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
+                     const Rigid3& body_from_host_camera, const Rigid3& body_from_target_camera,
+                     const double* host_first_estimate, const double* target_first_estimate);
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  struct Chain;
+  DirectionMeasurement measurement_;
+  LandmarkBase base_;
+  Rigid3 body_from_host_camera_;
+  Rigid3 body_from_target_camera_;
+  const double* host_first_estimate_;
+  const double* target_first_estimate_;
+};
+
+/// The same error in an image that was taken in the host frame itself, by the host camera or a camera beside
+/// it: it depends on the landmark alone.
+class HostReprojectionFactor final : public ceres::SizedCostFunction<2, kLandmarkSize> {
+ public:
+  HostReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
+                         const Rigid3& target_camera_from_host_camera);
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  DirectionMeasurement measurement_;
+  LandmarkBase base_;
+  Mat3 target_rotation_host_;
+  Vec3 target_translation_host_;
+};
+
+/// Residual of a DirectionMeasurement for the homogeneous point q (target camera frame, any positive scale),
+/// with the derivative d(residual)/dq where asked for.
+Vec2 directionResidual(const DirectionMeasurement& measurement, const Vec3& point_C, Mat23* by_point);
+
+}  // namespace lodeline

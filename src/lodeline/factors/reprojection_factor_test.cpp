@@ -1,0 +1,172 @@
+#include "lodeline/factors/reprojection_factor.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "lodeline/factors/numeric_jacobian.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+CameraCalibration testCalibration() {
+  CameraCalibration calibration;
+  calibration.name = "cam0";
+  calibration.width_px = 752;
+  calibration.height_px = 480;
+  calibration.fx_px = 458.0;
+  calibration.fy_px = 457.0;
+  calibration.cx_px = 367.0;
+  calibration.cy_px = 248.0;
+  calibration.distortion_model = DistortionModel::RadialTangential;
+  calibration.distortion = {-0.283, 0.074, 0.0002, 1.8e-5};
+  return calibration;
+}
+
+/// A landmark seen from two body poses with different extrinsics.
+struct Scene {
+  std::shared_ptr<const Camera> camera = makeCamera(testCalibration());
+  Rigid3 body_from_host_camera{so3::exp(Vec3(0.1, -1.5, 0.2)), Vec3(-0.02, -0.06, 0.01)};
+  Rigid3 body_from_target_camera{so3::exp(Vec3(0.12, -1.48, 0.22)), Vec3(-0.02, 0.05, 0.02)};
+  Rigid3 world_from_host{so3::exp(Vec3(0.3, 0.2, 1.0)), Vec3(1.0, -2.0, 0.5)};
+  Rigid3 world_from_target{so3::exp(Vec3(0.35, 0.15, 1.1)), Vec3(1.2, -1.8, 0.6)};
+  Vec3 point_host_C{0.4, -0.3, 2.5};
+
+  Vec3 pointInTarget() const {
+    const Vec3 point_W = world_from_host * (body_from_host_camera * point_host_C);
+    return body_from_target_camera.inverse() * (world_from_target.inverse() * point_W);
+  }
+  LandmarkBase base() const { return LandmarkBase((point_host_C + Vec3(0.02, 0.01, 0.0)).normalized()); }
+  Eigen::VectorXd landmark() const {
+    const LandmarkBase b = base();
+    const double depth = b.bearing_C.dot(point_host_C);
+    const Vec2 ab = b.tangent_C.transpose() * point_host_C / depth;
+    return Vec3(ab.x(), ab.y(), 1.0 / depth);
+  }
+  DirectionMeasurement measurement(const Vec3& point_C, double sigma_px = 0.7) const {
+    return DirectionMeasurement::fromBearing(*camera, point_C.normalized(), sigma_px);
+  }
+  ReprojectionFactor factor(const DirectionMeasurement& m, const double* host_first = nullptr,
+                            const double* target_first = nullptr) const {
+    return {m, base(), body_from_host_camera, body_from_target_camera, host_first, target_first};
+  }
+  std::vector<Eigen::VectorXd> parameters() const {
+    return {poseVector(world_from_host), poseVector(world_from_target), landmark()};
+  }
+};
+
+Vec2 evaluate(const ceres::CostFunction& factor, const std::vector<Eigen::VectorXd>& parameters) {
+  std::vector<const double*> pointers;
+  for (const auto& block : parameters) pointers.push_back(block.data());
+  Vec2 residual;
+  EXPECT_TRUE(factor.Evaluate(pointers.data(), residual.data(), nullptr));
+  return residual;
+}
+
+TEST(ReprojectionFactor, IsZeroAtTruth) {
+  const Scene scene;
+  EXPECT_LT(evaluate(scene.factor(scene.measurement(scene.pointInTarget())), scene.parameters()).norm(),
+            1e-10);
+}
+
+TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiation) {
+  Scene scene;
+  const DirectionMeasurement measurement = scene.measurement(scene.pointInTarget() + Vec3(0.01, -0.02, 0.0));
+  expectJacobiansMatch(scene.factor(measurement), scene.parameters());
+  auto at_infinity = scene.parameters();
+  at_infinity[2][2] = 0.0;
+  expectJacobiansMatch(scene.factor(measurement), at_infinity);
+}
+
+TEST(ReprojectionFactor, ResidualIsThePixelErrorOverSigma) {
+  const Scene scene;
+  const Vec3 point_C = scene.pointInTarget();
+  const Vec2 pixel = *scene.camera->project(point_C);
+  const Vec2 noise_px(0.31, -0.22);
+  const Vec3 seen = *scene.camera->unproject(pixel + noise_px);
+  const Vec2 residual = evaluate(scene.factor(scene.measurement(seen, 0.5)), scene.parameters());
+  EXPECT_LT((residual + noise_px / 0.5).norm(), 2e-3);
+}
+
+TEST(ReprojectionFactor, IsWhitened) {
+  const Scene scene;
+  const Vec2 pixel = *scene.camera->project(scene.pointInTarget());
+  std::mt19937 generator(7);
+  std::normal_distribution<double> normal(0.0, 0.5);
+  constexpr int kRuns = 2000;
+  double chi_squared = 0.0;
+  for (int i = 0; i < kRuns; ++i) {
+    const Vec3 seen = *scene.camera->unproject(pixel + Vec2(normal(generator), normal(generator)));
+    chi_squared += evaluate(scene.factor(scene.measurement(seen, 0.5)), scene.parameters()).squaredNorm();
+  }
+  // Mean of 2000 chi-squared variables of 2 degrees: 2 +- 0.045.
+  EXPECT_NEAR(chi_squared / kRuns, 2.0, 0.18);
+}
+
+TEST(ReprojectionFactor, IsInvariantUnderAnyMotionOfTheWorld) {
+  Scene scene;
+  const auto factor = scene.factor(scene.measurement(scene.pointInTarget() + Vec3(0.05, 0.0, 0.0)));
+  const Vec2 before = evaluate(factor, scene.parameters());
+  const Rigid3 moved(so3::exp(Vec3(0.5, -2.0, 0.7)), Vec3(30, -20, 10));
+  scene.world_from_host = moved * scene.world_from_host;
+  scene.world_from_target = moved * scene.world_from_target;
+  EXPECT_LT((evaluate(factor, scene.parameters()) - before).norm(), 1e-9);
+}
+
+TEST(ReprojectionFactor, FirstEstimatesKeepTranslationAndYawUnobservable) {
+  Scene scene;
+  // First estimates that differ from the current poses and from each other's error.
+  const Eigen::VectorXd host_first = poseVector(
+      perturbed(scene.world_from_host,
+                (Eigen::Matrix<double, 6, 1>() << 0.02, 0.01, -0.03, 0.01, 0.02, -0.01).finished()));
+  const Eigen::VectorXd target_first = poseVector(
+      perturbed(scene.world_from_target,
+                (Eigen::Matrix<double, 6, 1>() << -0.01, 0.03, 0.02, -0.02, 0.01, 0.015).finished()));
+  const auto factor =
+      scene.factor(scene.measurement(scene.pointInTarget()), host_first.data(), target_first.data());
+  using RowMajor = Eigen::Matrix<double, 2, 7, Eigen::RowMajor>;
+  RowMajor host;
+  RowMajor target;
+  double* jacobians[3] = {host.data(), target.data(), nullptr};
+  const auto parameters = scene.parameters();
+  const double* pointers[3] = {parameters[0].data(), parameters[1].data(), parameters[2].data()};
+  Vec2 residual;
+  ASSERT_TRUE(factor.Evaluate(pointers, residual.data(), jacobians));
+  EXPECT_LT((host.leftCols<3>() + target.leftCols<3>()).norm(), 1e-9);
+  const auto yaw = [](const Eigen::VectorXd& pose) {
+    Eigen::Matrix<double, 6, 1> direction;
+    direction << Vec3::UnitZ().cross(Vec3(pose.head<3>())), Vec3::UnitZ();
+    return direction;
+  };
+  EXPECT_LT((host.leftCols<6>() * yaw(host_first) + target.leftCols<6>() * yaw(target_first)).norm(), 1e-9);
+  EXPECT_GT((host.leftCols<6>() * yaw(parameters[0]) + target.leftCols<6>() * yaw(parameters[1])).norm(),
+            1e-2);
+}
+
+TEST(ReprojectionFactor, APointBehindTheCameraIsAConstantOutlier) {
+  Scene scene;
+  const auto factor = scene.factor(scene.measurement(-scene.pointInTarget()));
+  std::vector<Eigen::VectorXd> parameters = scene.parameters();
+  const double* pointers[3] = {parameters[0].data(), parameters[1].data(), parameters[2].data()};
+  Eigen::Matrix<double, 2, 7, Eigen::RowMajor> host;
+  double* jacobians[3] = {host.data(), nullptr, nullptr};
+  Vec2 residual;
+  ASSERT_TRUE(factor.Evaluate(pointers, residual.data(), jacobians));
+  EXPECT_GT(residual.norm(), 1e3);
+  EXPECT_EQ(host.norm(), 0.0);
+}
+
+TEST(HostReprojectionFactor, AgreesWithTheGeneralFactorAndItsNumericJacobian) {
+  Scene scene;
+  scene.world_from_target = scene.world_from_host;
+  const DirectionMeasurement measurement = scene.measurement(scene.pointInTarget() + Vec3(0.01, 0.01, 0.0));
+  const HostReprojectionFactor host_factor(
+      measurement, scene.base(), scene.body_from_target_camera.inverse() * scene.body_from_host_camera);
+  const Vec2 general = evaluate(scene.factor(measurement), scene.parameters());
+  EXPECT_LT((evaluate(host_factor, {scene.landmark()}) - general).norm(), 1e-10);
+  expectJacobiansMatch(host_factor, {scene.landmark()});
+}
+
+}  // namespace
+}  // namespace lodeline
