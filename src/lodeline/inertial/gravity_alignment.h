@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+
+#include "lodeline/geometry/types.h"
+#include "lodeline/sensors/measurements.h"
+
+namespace lodeline {
+
+struct GravityAlignmentOptions {
+  /// The rig counts as still when the readings scatter less than this about their means (root mean square
+  /// over the axes), and turn less than the rate below after the given bias or a plausible one is taken off.
+  double still_gyroscope_std_rad_per_s = 0.02;
+  double still_specific_force_std_m_per_s2 = 0.15;
+  double still_rate_rad_per_s = 0.15;
+
+  /// Accelerations of a moving rig are taken as independent after this time.
+  double motion_correlation_s = 0.5;
+  /// Accelerometer bias that nobody has estimated yet, one sigma per axis.
+  double accelerometer_bias_sigma_m_per_s2 = 0.1;
+};
+
+/// Which way is up, from the accelerometer.
+struct GravityAlignment {
+  /// At the last reading, with zero yaw: the horizontal projection of the body's x axis points along the
+  /// world's x axis; where x is steeper than 60 degrees, the z axis (then flatter than 30) takes its place.
+  Quat world_from_body = Quat::Identity();
+  /// One sigma of roll and of pitch, rad, from the scatter of the force over the time averaged and from the
+  /// unknown accelerometer bias (see the options).
+  double tilt_sigma_rad = 0.0;
+
+  bool still = false;
+  /// The mean gyroscope reading where the rig was still, else the given bias, rad/s.
+  Vec3 gyroscope_bias_B = Vec3::Zero();
+  double gyroscope_std_rad_per_s = 0.0;
+  double specific_force_std_m_per_s2 = 0.0;   ///< in the body frame
+  Vec3 mean_specific_force_B = Vec3::Zero();  ///< in the frame of the last reading, m/s^2
+};
+
+/// Averages the specific force of `samples`, each turned by the gyroscope into the frame of the last one.
+/// Throws InputError as Preintegration does for unusable samples, and EstimationError when the mean force is
+/// under half of gravity, as in free fall, so that it says nothing about up.
+GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3& gyroscope_bias_B,
+                                  const GravityAlignmentOptions& options = {});
+
+}  // namespace lodeline

@@ -1,0 +1,179 @@
+#include "lodeline/inertial/preintegration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "lodeline/base/error.h"
+#include "lodeline/geometry/so3.h"
+#include "lodeline/inertial/rotation_increment.h"
+#include "lodeline/inertial/sample_check.h"
+
+namespace lodeline {
+namespace {
+
+using namespace inertial_error;
+
+IntermediateRotation turned(const IntermediateRotation& rotation, const RotationIncrement& increment) {
+  IntermediateRotation result;
+  result.gamma = (rotation.gamma * so3::exp(increment.rotation_vector)).normalized();
+  result.theta_by_gyroscope_bias =
+      rotation.theta_by_gyroscope_bias +
+      rotation.gamma.toRotationMatrix() * so3::leftJacobian(increment.rotation_vector) * increment.by_bias;
+  return result;
+}
+
+void checkNoise(const ImuNoise& noise, double inflation) {
+  const double smallest = std::min(
+      {noise.gyroscope_density_rad_per_s_sqrtHz, noise.gyroscope_random_walk_rad_per_s2_sqrtHz,
+       noise.accelerometer_density_m_per_s2_sqrtHz, noise.accelerometer_random_walk_m_per_s3_sqrtHz});
+  // Written so that NaN fails too.
+  if (!(smallest * inflation > 0.0)) {
+    throw InputError(fmt::format(
+        "IMU noise: every density and the inflation must be positive, but the smallest density is "
+        "{} and the inflation {}; give the datasheet's figures",
+        smallest, inflation));
+  }
+}
+
+}  // namespace
+
+Quat IntermediateRotation::correctedFor(const Vec3& gyroscope_bias_change) const {
+  return (so3::exp(theta_by_gyroscope_bias * gyroscope_bias_change) * gamma).normalized();
+}
+
+Preintegration::Preintegration(std::span<const ImuSample> samples, const Vec3& gyroscope_bias_B,
+                               const Vec3& accelerometer_bias_B, const ImuCalibration& imu,
+                               const PreintegrationOptions& options)
+    : samples_(samples.begin(), samples.end()), imu_(imu), options_(options) {
+  requireUsable(samples);
+  checkNoise(imu.noise, options.noise_inflation);
+  rotations_.reserve(samples_.size());
+  repropagate(gyroscope_bias_B, accelerometer_bias_B);
+}
+
+void Preintegration::repropagate(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B) {
+  gyroscope_bias_ = gyroscope_bias_B;
+  accelerometer_bias_ = accelerometer_bias_B;
+  integrate();
+}
+
+bool Preintegration::needsRepropagation(const Vec3& gyroscope_bias_B,
+                                        const Vec3& accelerometer_bias_B) const {
+  return (gyroscope_bias_B - gyroscope_bias_).norm() * dt_s() > options_.max_rotation_correction_rad ||
+         (accelerometer_bias_B - accelerometer_bias_).norm() * dt_s() >
+             options_.max_velocity_correction_m_per_s;
+}
+
+RelativeMotion Preintegration::correctedFor(const Vec3& gyroscope_bias_B,
+                                            const Vec3& accelerometer_bias_B) const {
+  Eigen::Matrix<double, 6, 1> change;
+  change << gyroscope_bias_B - gyroscope_bias_, accelerometer_bias_B - accelerometer_bias_;
+  const Eigen::Matrix<double, 9, 1> correction = bias_jacobian_ * change;
+  RelativeMotion corrected;
+  corrected.alpha = motion_.alpha + correction.segment<3>(kAlpha);
+  corrected.beta = motion_.beta + correction.segment<3>(kBeta);
+  corrected.gamma = (so3::exp(correction.segment<3>(kTheta)) * motion_.gamma).normalized();
+  return corrected;
+}
+
+void Preintegration::integrate() {
+  motion_ = {};
+  bias_jacobian_.setZero();
+  covariance_.setZero();
+  rotations_.assign(1, IntermediateRotation());
+  for (size_t i = 0; i + 1 < samples_.size(); ++i) advance(samples_[i], samples_[i + 1]);
+
+  whitening_.setIdentity();
+  covariance_.llt().matrixL().solveInPlace(whitening_);
+}
+
+void Preintegration::advance(const ImuSample& from, const ImuSample& to) {
+  const double h = (to.time - from.time).seconds();
+  const RotationIncrement increment(from.angular_velocity_B - gyroscope_bias_,
+                                    to.angular_velocity_B - gyroscope_bias_, h);
+  const Mat3 rotation_0 = motion_.gamma.toRotationMatrix();
+  rotations_.push_back(turned(rotations_.back(), increment));
+  motion_.gamma = rotations_.back().gamma;
+  const Mat3 rotation_1 = motion_.gamma.toRotationMatrix();
+  const Vec3 force_0 = rotation_0 * (from.specific_force_B - accelerometer_bias_);
+  const Vec3 force_1 = rotation_1 * (to.specific_force_B - accelerometer_bias_);
+
+  // Integrals of a force that runs linearly from force_0 to force_1.
+  motion_.alpha += h * motion_.beta + h * h * (force_0 / 3.0 + force_1 / 6.0);
+  motion_.beta += 0.5 * h * (force_0 + force_1);
+
+  // The error's transition over the step, [F G; 0 I], is the derivative of the lines above: force_i changes
+  // by theta_i x force_i - R_i b_a, and theta_1 = theta_0 + theta_by_bias * b_g.
+  const Mat3 theta_by_bias = rotation_0 * so3::leftJacobian(increment.rotation_vector) * increment.by_bias;
+  const Mat3 force_0_by_theta = -so3::skew(force_0);
+  const Mat3 force_1_by_theta = -so3::skew(force_1);
+  Mat15 transition = Mat15::Identity();
+  transition.block<3, 3>(kAlpha, kBeta).diagonal().setConstant(h);
+  transition.block<3, 3>(kAlpha, kTheta) = h * h * (force_0_by_theta / 3.0 + force_1_by_theta / 6.0);
+  transition.block<3, 3>(kBeta, kTheta) = 0.5 * h * (force_0_by_theta + force_1_by_theta);
+  transition.block<3, 3>(kAlpha, kGyroscopeBias) = h * h / 6.0 * force_1_by_theta * theta_by_bias;
+  transition.block<3, 3>(kBeta, kGyroscopeBias) = 0.5 * h * force_1_by_theta * theta_by_bias;
+  transition.block<3, 3>(kTheta, kGyroscopeBias) = theta_by_bias;
+  transition.block<3, 3>(kAlpha, kAccelerometerBias) = -h * h * (rotation_0 / 3.0 + rotation_1 / 6.0);
+  transition.block<3, 3>(kBeta, kAccelerometerBias) = -0.5 * h * (rotation_0 + rotation_1);
+
+  bias_jacobian_ =
+      (transition.topLeftCorner<9, 9>() * bias_jacobian_ + transition.topRightCorner<9, 6>()).eval();
+  covariance_ = (transition * covariance_ * transition.transpose() +
+                 processNoise(h, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
+                    .eval();
+}
+
+Preintegration::Mat15 Preintegration::processNoise(
+    double step_s, const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const {
+  const double h = step_s;
+  const ImuNoise& noise = imu_.noise;
+  const auto squared = [&](double density) {
+    return density * density * options_.noise_inflation * options_.noise_inflation;
+  };
+  double gyroscope = squared(noise.gyroscope_density_rad_per_s_sqrtHz);
+  double accelerometer = squared(noise.accelerometer_density_m_per_s2_sqrtHz);
+  if (h > std::max(options_.max_gap_s, 1.5 / imu_.rate_hz)) {
+    // White noise of density sigma * sqrt(h) has, over the gap, a mean with exactly that sigma.
+    gyroscope += h * options_.gap_rate_sigma_rad_per_s * options_.gap_rate_sigma_rad_per_s;
+    accelerometer +=
+        h * options_.gap_specific_force_sigma_m_per_s2 * options_.gap_specific_force_sigma_m_per_s2;
+  }
+
+  Mat15 q = Mat15::Zero();
+  // The gyroscope's noise enters where its bias does; its mean over the step has variance density^2 / h.
+  q.topLeftCorner<9, 9>() = gyroscope / h * motion_by_gyroscope_bias * motion_by_gyroscope_bias.transpose();
+  // Exact for white noise on the force, and of full rank even for an interval of one step.
+  q.block<3, 3>(kAlpha, kAlpha).diagonal().array() += accelerometer * h * h * h / 3.0;
+  q.block<3, 3>(kAlpha, kBeta).diagonal().array() += accelerometer * h * h / 2.0;
+  q.block<3, 3>(kBeta, kAlpha).diagonal().array() += accelerometer * h * h / 2.0;
+  q.block<3, 3>(kBeta, kBeta).diagonal().array() += accelerometer * h;
+  q.diagonal().segment<3>(kGyroscopeBias).array() =
+      h * squared(noise.gyroscope_random_walk_rad_per_s2_sqrtHz);
+  q.diagonal().segment<3>(kAccelerometerBias).array() =
+      h * squared(noise.accelerometer_random_walk_m_per_s3_sqrtHz);
+  return q;
+}
+
+IntermediateRotation Preintegration::gammaAt(Time time) const {
+  if (time < start() || time > end()) {
+    throw InputError(
+        fmt::format("rotation asked for at {} ns, outside the preintegrated interval {} to {} ns",
+                    time.nanoseconds(), start().nanoseconds(), end().nanoseconds()));
+  }
+  const auto later = std::lower_bound(samples_.begin(), samples_.end(), time,
+                                      [](const ImuSample& sample, Time t) { return sample.time < t; });
+  const size_t i = static_cast<size_t>(later - samples_.begin());
+  if (later->time == time) return rotations_[i];
+
+  const ImuSample& from = samples_[i - 1];
+  const double stretch_s = (time - from.time).seconds();
+  const double fraction = stretch_s / (later->time - from.time).seconds();
+  const Vec3 rate = from.angular_velocity_B - gyroscope_bias_;
+  const Vec3 rate_then = rate + fraction * (later->angular_velocity_B - from.angular_velocity_B);
+  return turned(rotations_[i - 1], RotationIncrement(rate, rate_then, stretch_s));
+}
+
+}  // namespace lodeline

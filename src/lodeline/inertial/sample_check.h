@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "lodeline/sensors/measurements.h"
+
+namespace lodeline {
+
+/// Throws InputError, naming the time, unless there are at least two readings, all finite, with strictly
+/// increasing times.
+void requireUsable(std::span<const ImuSample> samples);
+
+}  // namespace lodeline
