@@ -1,0 +1,69 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/marginalizer.h"
+#include "lodeline/estimator/options.h"
+#include "lodeline/estimator/window.h"
+
+namespace lodeline {
+
+enum class Status {
+  Waiting,   ///< not initialised; no pose
+  Tracking,  ///< images and inertial readings
+  Inertial,  ///< too few landmarks are seen: carried on by inertial readings alone
+};
+const char* toString(Status status);
+
+/// What is known right after a frame was added; never revised later.
+struct FrameEstimate {
+  Time time;
+  Status status = Status::Waiting;
+  std::string waiting_for;  ///< in words, while waiting
+  NavigationState state;
+  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position
+  /// and heading.
+  Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
+  bool is_keyframe = false;
+  int tracks = 0;     ///< seen in this frame
+  int landmarks = 0;  ///< of which have a position
+  double reprojection_rms_sigmas = 0.0;
+  int solver_iterations = 0;
+};
+
+/// Visual-inertial odometry over a sliding window of keyframes and recent frames (paper section III).
+class Estimator {
+ public:
+  Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
+
+  /// Adds one frame: what the front end tracked, and the inertial readings since the frame before (both ends
+  /// on the frames' times; for the first frame all readings there are). Frames must come in order of time.
+  FrameEstimate add(const FrameTracks& tracks, std::span<const ImuSample> imu);
+
+  bool initialized() const { return !window_.empty(); }
+  const Window& window() const { return window_; }
+  const Prior& prior() const { return marginalizer_.prior(); }
+
+ private:
+  bool initialize(const FrameTracks& tracks, std::span<const ImuSample> imu, FrameEstimate* estimate);
+  void insertFrame(const FrameTracks& tracks, std::span<const ImuSample> imu);
+  void addSightings(const FrameTracks& tracks);
+  void optimize(FrameEstimate* estimate);
+  void report(const FrameTracks& tracks, FrameEstimate* estimate);
+
+  Rig rig_;
+  std::vector<std::shared_ptr<const Camera>> cameras_;
+  EstimatorOptions options_;
+  Diagnostics* diagnostics_;
+  FactorMaker factors_;
+  Marginalizer marginalizer_;
+  Window window_;
+  std::vector<ImuSample> imu_before_start_;
+  FrameId frames_added_ = 0;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+
+#include <memory>
+#include <vector>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/estimator/options.h"
+#include "lodeline/estimator/window.h"
+#include "lodeline/factors/prior_factor.h"
+
+namespace lodeline {
+
+/// One term of the cost: a function, the blocks it reads (in its order) and a robust loss (null for none).
+struct Factor {
+  std::unique_ptr<ceres::CostFunction> function;
+  const ceres::LossFunction* loss = nullptr;
+  std::vector<double*> blocks;
+};
+
+/// The terms that one landmark takes part in.
+struct LandmarkFactors {
+  double* landmark = nullptr;
+  std::vector<Factor> factors;
+};
+
+/// Makes factors out of what the window holds. The solver, the marginaliser and the covariance all get their
+/// terms here, so that a new kind of measurement is added in one place.
+class FactorMaker {
+ public:
+  FactorMaker(const Rig& rig, const EstimatorOptions& options);
+
+  /// Inertial term between `frame` and the frame before it.
+  Factor inertial(Frame& before, Frame& frame) const;
+  Factor prior(const Prior& prior) const;
+  /// All sightings of a track that has a landmark.
+  LandmarkFactors landmark(Window& window, Track& track) const;
+
+  const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
+
+ private:
+  std::vector<Rigid3> body_from_camera_;
+  Vec3 gravity_W_;
+  std::unique_ptr<ceres::LossFunction> reprojection_loss_;
+};
+
+}  // namespace lodeline

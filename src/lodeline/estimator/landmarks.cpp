@@ -1,0 +1,161 @@
+#include "lodeline/estimator/landmarks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace lodeline {
+namespace {
+
+/// Sighting by camera 0 in the newest keyframe that has one.
+const Sighting* hostSighting(const Window& window, const Track& track) {
+  for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
+    if (sighting->camera == 0 && window.find(sighting->frame)->is_keyframe) return &*sighting;
+  }
+  return nullptr;
+}
+
+/// Inverse distance along a host's ray from all other sightings. With the host's direction d held, each
+/// sighting says
+///   B^T (R d + rho t) = 0,
+/// which is linear in rho; a second pass weights by the depth that the first one found.
+struct InverseDistance {
+  double value = 0.0;  ///< 1/m
+  double sigma = 1e9;  ///< 1/m
+  double rms_sigmas = 1e9;
+};
+
+InverseDistance solveInverseDistance(const Window& window, const Track& track, const Sighting& host,
+                                     const FactorMaker& factors) {
+  struct Equation {
+    Vec3 direction;  // R d
+    Vec3 baseline;   // t
+    const DirectionMeasurement* measurement;
+  };
+  std::vector<Equation> equations;
+  const Rigid3 world_from_host = window.find(host.frame)->worldFromBody() * factors.bodyFromCamera(0);
+  for (const Sighting& sighting : track.sightings) {
+    if (&sighting == &host) continue;
+    const Rigid3 target_from_host =
+        (window.find(sighting.frame)->worldFromBody() * factors.bodyFromCamera(sighting.camera)).inverse() *
+        world_from_host;
+    equations.push_back({target_from_host.rotation * host.measurement.bearing_C, target_from_host.translation,
+                         &sighting.measurement});
+  }
+  InverseDistance result;
+  for (int pass = 0; pass < 3; ++pass) {
+    double information = 0.0;
+    double right_side = 0.0;
+    for (const Equation& e : equations) {
+      const double depth = e.measurement->bearing_C.dot(e.direction + result.value * e.baseline);
+      if (depth < 0.1) continue;
+      const Mat23 weight = e.measurement->sqrt_information * e.measurement->tangent_C.transpose() / depth;
+      const Vec2 slope = weight * e.baseline;
+      information += slope.squaredNorm();
+      right_side -= slope.dot(weight * e.direction);
+    }
+    if (information <= 0.0) return {};
+    result.value = right_side / information;
+    result.sigma = 1.0 / std::sqrt(information);
+  }
+  double squared_error = 0.0;
+  for (const Equation& e : equations) {
+    squared_error +=
+        directionResidual(*e.measurement, e.direction + result.value * e.baseline, nullptr).squaredNorm();
+  }
+  result.rms_sigmas = std::sqrt(squared_error / (2.0 * static_cast<double>(equations.size())));
+  return result;
+}
+
+bool isUsable(const InverseDistance& rho, const LandmarkOptions& options) {
+  const bool known = rho.sigma < options.max_relative_sigma * std::abs(rho.value) ||
+                     rho.sigma < options.max_inverse_distance_sigma_per_m;
+  // A far point's inverse distance may come out a little below zero.
+  const bool in_front = rho.value > -2.0 * rho.sigma && rho.value < 1.0 / options.min_distance_m;
+  return known && in_front && rho.rms_sigmas < options.max_error_sigmas;
+}
+
+Vec2 residualOf(Factor& factor) {
+  Vec2 residual;
+  factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
+  return residual;
+}
+
+}  // namespace
+
+int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
+  std::vector<Track*> candidates;
+  int landmarks = 0;
+  for (auto& [id, track] : window.tracks()) {
+    if (track.landmark) {
+      ++landmarks;
+    } else if (track.sightings.size() >= 2 && track.seenIn(window.newest().id)) {
+      candidates.push_back(&track);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Track* a, const Track* b) { return a->sightings.size() > b->sightings.size(); });
+  int created = 0;
+  for (Track* track : candidates) {
+    if (landmarks + created >= options.max_landmarks) break;
+    const Sighting* host = hostSighting(window, *track);
+    if (!host) continue;
+    const InverseDistance rho = solveInverseDistance(window, *track, *host, factors);
+    if (!isUsable(rho, options)) continue;
+    Landmark landmark;
+    landmark.host = host->frame;
+    landmark.base = LandmarkBase(host->measurement.bearing_C);
+    landmark.parameters = {0.0, 0.0, std::max(rho.value, 1e-4)};
+    track->landmark = landmark;
+    ++created;
+  }
+  return created;
+}
+
+int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
+  int removed = 0;
+  for (auto& [id, track] : window.tracks()) {
+    if (!track.landmark) continue;
+    LandmarkFactors terms = factors.landmark(window, track);
+    std::vector<Sighting> kept;
+    bool host_kept = false;
+    bool other_kept = false;
+    for (size_t i = 0; i < track.sightings.size(); ++i) {
+      const Sighting& sighting = track.sightings[i];
+      if (residualOf(terms.factors[i]).norm() > options.max_error_sigmas) continue;
+      const bool is_host = sighting.frame == track.landmark->host && sighting.camera == 0;
+      (is_host ? host_kept : other_kept) = true;
+      kept.push_back(sighting);
+    }
+    removed += static_cast<int>(track.sightings.size() - kept.size());
+    const double rho = track.landmark->inverseDistance();
+    const bool sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
+    if (!host_kept || !other_kept || !sane) {
+      // What remains is inconsistent with itself or with the poses: start over with later sightings.
+      track.landmark.reset();
+      kept.clear();
+    }
+    track.sightings = std::move(kept);
+  }
+  window.removeEmptyTracks();
+  return removed;
+}
+
+ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame) {
+  ReprojectionStatistics statistics;
+  double squared = 0.0;
+  for (auto& [id, track] : window.tracks()) {
+    if (!track.landmark || !track.seenIn(frame)) continue;
+    ++statistics.landmarks;
+    LandmarkFactors terms = factors.landmark(window, track);
+    for (size_t i = 0; i < track.sightings.size(); ++i) {
+      if (track.sightings[i].frame != frame) continue;
+      squared += residualOf(terms.factors[i]).squaredNorm();
+      ++statistics.sightings;
+    }
+  }
+  if (statistics.sightings > 0) statistics.rms_sigmas = std::sqrt(squared / (2.0 * statistics.sightings));
+  return statistics;
+}
+
+}  // namespace lodeline

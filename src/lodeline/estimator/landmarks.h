@@ -1,0 +1,26 @@
+#pragma once
+
+#include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/options.h"
+#include "lodeline/estimator/window.h"
+
+namespace lodeline {
+
+/// Gives a place in space to tracks that have been seen from far enough apart, hosted at the newest keyframe
+/// that sees them. Tracks seen by more frames come first when there are more than `max_landmarks`. Returns
+/// how many were added.
+int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
+
+/// Removes sightings that contradict the window by more than `max_error_sigmas`, and the landmarks that are
+/// then seen too little or lie behind their host. Returns the number of sightings removed.
+int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
+
+/// Root mean square of the whitened reprojection errors of one frame.
+struct ReprojectionStatistics {
+  int landmarks = 0;  ///< seen in the frame
+  int sightings = 0;
+  double rms_sigmas = 0.0;
+};
+ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame);
+
+}  // namespace lodeline

@@ -1,0 +1,156 @@
+#include "lodeline/estimator/marginalizer.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace lodeline {
+namespace {
+
+/// Eliminates the rows in `gone` from the system (h, g), keeping `kept`.
+void schurComplement(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const std::vector<int>& gone,
+                     const std::vector<int>& kept, Eigen::MatrixXd* h_kept, Eigen::VectorXd* g_kept) {
+  const Eigen::MatrixXd h_gone = h(gone, gone);
+  // Jacobi scaling makes the factorisation insensitive to the mix of units.
+  const Eigen::VectorXd scale = h_gone.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factorised(scale.asDiagonal() * h_gone * scale.asDiagonal());
+  const Eigen::MatrixXd coupling = scale.asDiagonal() * h(gone, kept);
+  const Eigen::MatrixXd solved = factorised.solve(coupling);
+  *h_kept = h(kept, kept) - coupling.transpose() * solved;
+  *g_kept = g(kept) - solved.transpose() * (scale.asDiagonal() * g(gone));
+}
+
+/// Upper triangular J and e with J^T J = h and J^T e = g. Directions that h leaves (numerically) free are
+/// held by a jitter far below any real information.
+void factorise(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior) {
+  const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt();
+  const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * h * scale.cwiseInverse().asDiagonal();
+  Eigen::LLT<Eigen::MatrixXd> llt;
+  for (double jitter = 1e-14; jitter < 1.0; jitter *= 10.0) {
+    llt.compute(scaled + jitter * Eigen::MatrixXd::Identity(h.rows(), h.cols()));
+    if (llt.info() == Eigen::Success) break;
+  }
+  prior->sqrt_information = Eigen::MatrixXd(llt.matrixU()) * scale.asDiagonal();
+  prior->offset = llt.matrixL().solve(scale.cwiseInverse().asDiagonal() * g);
+}
+
+/// The first estimate of the block at `value`, set to its present value where it has none.
+Eigen::VectorXd firstEstimate(Window& window, const double* value) {
+  for (const auto& frame : window.frames()) {
+    if (value == frame->pose.data()) {
+      if (!frame->first_pose) frame->first_pose = frame->pose;
+      return Eigen::Map<const Eigen::VectorXd>(frame->first_pose->data(), kPoseSize);
+    }
+    if (value == frame->motion.data()) {
+      if (!frame->first_motion) frame->first_motion = frame->motion;
+      return Eigen::Map<const Eigen::VectorXd>(frame->first_motion->data(), kMotionSize);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void moveToNewHost(Window& window, Track& track, FrameId excluded, const Rigid3& body_from_host_camera) {
+  Landmark& landmark = *track.landmark;
+  const Rigid3 world_from_old = window.find(landmark.host)->worldFromBody() * body_from_host_camera;
+  for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
+    const Frame* frame = window.find(sighting->frame);
+    if (sighting->camera != 0 || !frame->is_keyframe || frame->id == excluded) continue;
+    const Rigid3 new_from_old = (frame->worldFromBody() * body_from_host_camera).inverse() * world_from_old;
+    // Homogeneous, so that points at infinity move too.
+    const Vec3 point_new = new_from_old.rotation * landmark.base.direction(landmark.parameters.data()) +
+                           landmark.inverseDistance() * new_from_old.translation;
+    const LandmarkBase base(sighting->measurement.bearing_C);
+    const double depth = base.bearing_C.dot(point_new);
+    if (depth < 0.1 * point_new.norm()) break;
+    const Vec2 ab = base.tangent_C.transpose() * point_new / depth;
+    landmark.host = frame->id;
+    landmark.base = base;
+    landmark.parameters = {ab.x(), ab.y(), landmark.inverseDistance() / depth};
+    return;
+  }
+  track.landmark.reset();
+}
+
+void Marginalizer::start(Frame& first, const Eigen::Matrix<double, 15, 1>& sigmas) {
+  prior_ = Prior();
+  first.first_pose = first.pose;
+  first.first_motion = first.motion;
+  prior_.blocks.push_back({first.pose.data(), Eigen::Map<Eigen::VectorXd>(first.pose.data(), kPoseSize)});
+  prior_.blocks.push_back(
+      {first.motion.data(), Eigen::Map<Eigen::VectorXd>(first.motion.data(), kMotionSize)});
+  prior_.sqrt_information = sigmas.cwiseInverse().asDiagonal();
+  prior_.offset = Eigen::VectorXd::Zero(15);
+}
+
+void Marginalizer::shorten(Window& window, int max_recent_frames, int max_keyframes) {
+  while (window.recentCount() > max_recent_frames) retireOldestRecent(window);
+  while (window.poseOnlyCount() > max_keyframes) removeOldestKeyframe(window);
+}
+
+void Marginalizer::retireOldestRecent(Window& window) {
+  Frame& oldest = *window.oldestRecent();
+  Frame& next = *window.after(oldest);
+  NormalEquations system;
+  if (!prior_.empty()) system.add(factors_.prior(prior_));
+  system.add(factors_.inertial(oldest, next));
+  next.from_previous.reset();
+  if (oldest.is_keyframe) {
+    eliminate(window, system, {oldest.motion.data()});
+    oldest.has_motion = false;
+  } else {
+    eliminate(window, system, {oldest.motion.data(), oldest.pose.data()});
+    window.remove(oldest.id);
+  }
+}
+
+void Marginalizer::removeOldestKeyframe(Window& window) {
+  Frame& oldest = *window.frames().front();
+  const Frame* newest_keyframe = window.newestKeyframe();
+  NormalEquations system;
+  if (!prior_.empty()) system.add(factors_.prior(prior_));
+  for (auto& [id, track] : window.tracks()) {
+    if (!track.landmark || !track.seenIn(oldest.id)) continue;
+    if (track.seenIn(newest_keyframe->id)) {
+      if (track.landmark->host == oldest.id) {
+        moveToNewHost(window, track, oldest.id, factors_.bodyFromCamera(0));
+      }
+    } else {
+      system.addEliminated(factors_.landmark(window, track));
+      track.landmark.reset();
+      track.sightings.clear();
+    }
+  }
+  window.removeEmptyTracks();
+  if (system.find(oldest.pose.data())) eliminate(window, system, {oldest.pose.data()});
+  window.remove(oldest.id);
+}
+
+void Marginalizer::eliminate(Window& window, const NormalEquations& system,
+                             const std::vector<const double*>& eliminated) {
+  std::vector<int> gone;
+  std::vector<int> kept;
+  Prior next;
+  Eigen::VectorXd from_first(system.size());  // current value minus first estimate of the kept rows
+  int kept_size = 0;
+  for (const NormalEquations::Block& block : system.blocks()) {
+    const bool goes = std::find(eliminated.begin(), eliminated.end(), block.value) != eliminated.end();
+    std::vector<int>& rows = goes ? gone : kept;
+    for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
+    if (goes) continue;
+    Prior single;
+    single.blocks.push_back({block.value, firstEstimate(window, block.value)});
+    const double* value = block.value;
+    from_first.segment(kept_size, block.tangentSize()) = single.difference(&value);
+    kept_size += block.tangentSize();
+    next.blocks.push_back(single.blocks.front());
+  }
+  Eigen::MatrixXd h_kept;
+  Eigen::VectorXd g_kept;
+  schurComplement(system.hessian(), system.gradient(), gone, kept, &h_kept, &g_kept);
+  // The system's gradient is taken at the current values; the prior wants it at the first estimates.
+  factorise(h_kept, g_kept - h_kept * from_first.head(kept_size), &next);
+  prior_ = std::move(next);
+}
+
+}  // namespace lodeline

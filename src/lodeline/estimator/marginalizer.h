@@ -1,0 +1,44 @@
+#pragma once
+
+#include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/normal_equations.h"
+
+namespace lodeline {
+
+/// Takes frames and landmarks out of the window without forgetting what they said of those that stay: Schur
+/// complement of the terms that touch them, carried on as a Prior (paper section III-B). Blocks that the
+/// prior touches for the first time get their first estimate here, and every later Jacobian of theirs is
+/// taken there.
+class Marginalizer {
+ public:
+  explicit Marginalizer(const FactorMaker& factors) : factors_(factors) {}
+
+  /// The prior that the very first frame starts from: independent standard deviations for its 6 pose and 9
+  /// motion coordinates (see parameters.h), around its present state.
+  void start(Frame& first, const Eigen::Matrix<double, 15, 1>& sigmas);
+
+  /// Shortens the window to the wanted sizes.
+  void shorten(Window& window, int max_recent_frames, int max_keyframes);
+
+  const Prior& prior() const { return prior_; }
+
+ private:
+  /// Oldest frame with motion: a keyframe loses its motion; any other frame goes, its sightings being dropped
+  /// so that the prior stays sparse.
+  void retireOldestRecent(Window& window);
+  /// Oldest keyframe: landmarks that the newest keyframe does not see are marginalised with all their
+  /// sightings; the others lose only their sightings there, and move to another host.
+  void removeOldestKeyframe(Window& window);
+
+  /// New prior from `system`, which holds the old prior and all terms of the eliminated blocks.
+  void eliminate(Window& window, const NormalEquations& system, const std::vector<const double*>& eliminated);
+
+  const FactorMaker& factors_;
+  Prior prior_;
+};
+
+/// Moves a landmark to the newest keyframe that sees it, other than `excluded`, keeping its position. Without
+/// such a keyframe, or when the point would lie behind it, the track loses its landmark.
+void moveToNewHost(Window& window, Track& track, FrameId excluded, const Rigid3& body_from_host_camera);
+
+}  // namespace lodeline

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lodeline/estimator/factor_list.h"
+
+namespace lodeline {
+
+/// The Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
+/// Jacobians are those the factors give (first estimates where they hold them), residuals are current.
+class NormalEquations {
+ public:
+  struct Block {
+    double* value = nullptr;
+    int ambient_size = 0;
+    int offset = 0;  ///< first row in the system
+
+    int tangentSize() const { return ambient_size == kPoseSize ? kPoseTangentSize : ambient_size; }
+  };
+
+  /// Blocks that factors mention get their rows in the order of the first mention.
+  void add(const Factor& factor);
+
+  /// Adds the terms of one landmark and eliminates it (Schur complement).
+  void addEliminated(const LandmarkFactors& landmark);
+
+  const std::vector<Block>& blocks() const { return blocks_; }
+  int size() const { return size_; }
+  const Block* find(const double* value) const;
+
+  /// Symmetric, size() x size().
+  Eigen::MatrixXd hessian() const;
+  const Eigen::VectorXd gradient() const { return g_.head(size_); }
+
+ private:
+  struct Linearised;
+  int offsetOf(double* value, int ambient_size);
+  void reserve(int size);
+
+  std::vector<Block> blocks_;
+  Eigen::MatrixXd h_;  ///< lower triangle is kept; may be larger than size_
+  Eigen::VectorXd g_;
+  int size_ = 0;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "lodeline/geometry/types.h"
+#include "lodeline/inertial/gravity.h"
+#include "lodeline/inertial/gravity_alignment.h"
+#include "lodeline/inertial/preintegration.h"
+
+namespace lodeline {
+
+/// How sure we are of the state that the first frame starts from; standard deviations.
+struct InitialStateOptions {
+  double alignment_window_s = 1.0;  ///< inertial readings before the first frame that give the tilt
+  int min_stereo_tracks = 20;
+  double position_sigma_m = 1e-4;  ///< with the heading's: the origin of the world, hence tiny
+  double yaw_sigma_rad = 1e-4;
+  double tilt_sigma_min_rad = 0.01;
+  double velocity_sigma_m_per_s = 1.0;
+  double velocity_sigma_still_m_per_s = 0.02;
+  double gyroscope_bias_sigma_rad_per_s = 0.1;
+  double accelerometer_bias_sigma_m_per_s2 = 0.2;
+};
+
+struct WindowOptions {
+  int recent_frames = 5;  ///< newest frames, kept with velocity and biases
+  int keyframes = 7;      ///< older keyframes, kept as poses
+  /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen.
+  int startup_frames = 20;
+};
+
+struct KeyframeOptions {
+  double min_tracked_share = 0.7;   ///< of the last keyframe's landmarks still seen
+  double min_parallax_rad = 0.035;  ///< median rotation-free shift of the common tracks
+  int min_landmarks = 30;           ///< fewer seen landmarks ask for a keyframe
+  /// A frame that sees little becomes a keyframe only when this share of its tracks is new since the last
+  /// one.
+  double min_fresh_share = 0.2;
+};
+
+struct LandmarkOptions {
+  int max_landmarks = 200;
+  double min_distance_m = 0.05;
+  /// Largest sigma of the inverse distance, relative to it, at which a point becomes a landmark...
+  double max_relative_sigma = 0.4;
+  /// ...or absolute, for points that are far away.
+  double max_inverse_distance_sigma_per_m = 0.02;
+  double max_error_sigmas = 4.0;  ///< sightings with larger whitened errors are outliers
+};
+
+struct SolverOptions {
+  int max_iterations = 4;
+  int max_iterations_startup = 10;
+  double robust_scale_sigmas = 2.0;  ///< Cauchy
+};
+
+struct EstimatorOptions {
+  Vec3 gravity_W = standardGravity_W();  ///< m/s^2
+  InitialStateOptions initial_state;
+  WindowOptions window;
+  KeyframeOptions keyframe;
+  LandmarkOptions landmark;
+  SolverOptions solver;
+  PreintegrationOptions preintegration;
+  GravityAlignmentOptions gravity_alignment;
+  int min_landmarks_for_vision = 8;  ///< fewer seen landmarks mean that a frame is carried inertially
+};
+
+}  // namespace lodeline

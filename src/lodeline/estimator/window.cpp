@@ -1,0 +1,88 @@
+#include "lodeline/estimator/window.h"
+
+#include <algorithm>
+
+namespace lodeline {
+
+NavigationState Frame::state() const {
+  NavigationState state;
+  state.time = time;
+  state.world_from_body = worldFromBody();
+  state.velocity_W = velocity_W();
+  state.gyroscope_bias_B = gyroscopeBias();
+  state.accelerometer_bias_B = accelerometerBias();
+  return state;
+}
+
+void Frame::setState(const NavigationState& state) {
+  time = state.time;
+  poseToBlock(state.world_from_body, pose.data());
+  Eigen::Map<Eigen::Matrix<double, kMotionSize, 1>> block(motion.data());
+  block << state.velocity_W, state.gyroscope_bias_B, state.accelerometer_bias_B;
+}
+
+const Sighting* Track::find(FrameId frame, int camera) const {
+  for (const Sighting& sighting : sightings) {
+    if (sighting.frame == frame && sighting.camera == camera) return &sighting;
+  }
+  return nullptr;
+}
+
+bool Track::seenIn(FrameId frame) const {
+  return std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& s) { return s.frame == frame; });
+}
+
+Frame& Window::add(std::unique_ptr<Frame> frame) {
+  frames_.push_back(std::move(frame));
+  return *frames_.back();
+}
+
+void Window::addSighting(TrackId track, const Sighting& sighting) {
+  tracks_[track].sightings.push_back(sighting);
+}
+
+Frame* Window::find(FrameId id) const {
+  const auto found = std::lower_bound(frames_.begin(), frames_.end(), id,
+                                      [](const auto& frame, FrameId wanted) { return frame->id < wanted; });
+  return found != frames_.end() && (*found)->id == id ? found->get() : nullptr;
+}
+
+Frame* Window::newestKeyframe() const {
+  for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame) {
+    if ((*frame)->is_keyframe) return frame->get();
+  }
+  return nullptr;
+}
+
+int Window::recentCount() const {
+  return static_cast<int>(
+      std::count_if(frames_.begin(), frames_.end(), [](const auto& frame) { return frame->has_motion; }));
+}
+
+int Window::poseOnlyCount() const { return static_cast<int>(frames_.size()) - recentCount(); }
+
+Frame* Window::oldestRecent() const {
+  const auto found =
+      std::find_if(frames_.begin(), frames_.end(), [](const auto& frame) { return frame->has_motion; });
+  return found == frames_.end() ? nullptr : found->get();
+}
+
+Frame* Window::after(const Frame& frame) const {
+  const auto found = std::upper_bound(frames_.begin(), frames_.end(), frame.id,
+                                      [](FrameId id, const auto& other) { return id < other->id; });
+  return found == frames_.end() ? nullptr : found->get();
+}
+
+void Window::remove(FrameId id) {
+  for (auto& [track_id, track] : tracks_) {
+    std::erase_if(track.sightings, [id](const Sighting& sighting) { return sighting.frame == id; });
+  }
+  removeEmptyTracks();
+  std::erase_if(frames_, [id](const auto& frame) { return frame->id == id; });
+}
+
+void Window::removeEmptyTracks() {
+  std::erase_if(tracks_, [](const auto& entry) { return entry.second.sightings.empty(); });
+}
+
+}  // namespace lodeline

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lodeline/base/time.h"
+#include "lodeline/factors/parameters.h"
+#include "lodeline/factors/reprojection_factor.h"
+#include "lodeline/features/tracks.h"
+#include "lodeline/inertial/preintegration.h"
+#include "lodeline/inertial/propagation.h"
+
+namespace lodeline {
+
+using FrameId = int64_t;
+using PoseBlock = std::array<double, kPoseSize>;
+using MotionBlock = std::array<double, kMotionSize>;
+
+/// The state at one image time. Old keyframes keep their pose only.
+struct Frame {
+  FrameId id = 0;
+  Time time;
+  bool is_keyframe = false;
+  PoseBlock pose{};
+  bool has_motion = true;
+  MotionBlock motion{};
+  /// Where the block was first linearised by the marginalisation prior; empty while the prior does not touch
+  /// it.
+  std::optional<PoseBlock> first_pose;
+  std::optional<MotionBlock> first_motion;
+  /// Inertial readings since the frame before, while that frame has its motion too.
+  std::unique_ptr<Preintegration> from_previous;
+
+  Rigid3 worldFromBody() const { return poseFromBlock(pose.data()); }
+  Vec3 velocity_W() const { return Vec3(motion.data()); }
+  Vec3 gyroscopeBias() const { return Vec3(motion.data() + 3); }
+  Vec3 accelerometerBias() const { return Vec3(motion.data() + 6); }
+  NavigationState state() const;
+  void setState(const NavigationState& state);
+  const double* firstPose() const { return first_pose ? first_pose->data() : nullptr; }
+  const double* firstMotion() const { return first_motion ? first_motion->data() : nullptr; }
+};
+
+/// One image's view of a track.
+struct Sighting {
+  FrameId frame = 0;
+  int camera = 0;
+  DirectionMeasurement measurement;
+};
+
+/// The position of a tracked point relative to its host frame (see LandmarkBase); hosts are seen by camera 0.
+struct Landmark {
+  FrameId host = 0;
+  LandmarkBase base;
+  std::array<double, kLandmarkSize> parameters{};
+
+  double inverseDistance() const { return parameters[2]; }
+};
+
+/// All that the window knows of one tracked point.
+struct Track {
+  std::vector<Sighting> sightings;  ///< in order of time, then camera
+  std::optional<Landmark> landmark;
+
+  const Sighting* find(FrameId frame, int camera) const;
+  bool seenIn(FrameId frame) const;
+};
+
+/// The sliding window: old keyframes (poses), then the most recent frames (poses and motions), and the tracks
+/// they see.
+class Window {
+ public:
+  Frame& add(std::unique_ptr<Frame> frame);
+  void addSighting(TrackId track, const Sighting& sighting);
+
+  bool empty() const { return frames_.empty(); }
+  /// In order of time. Pointers stay valid until the frame is removed.
+  const std::deque<std::unique_ptr<Frame>>& frames() const { return frames_; }
+  Frame& newest() const { return *frames_.back(); }
+  Frame* find(FrameId id) const;
+  Frame* newestKeyframe() const;
+  int recentCount() const;    ///< frames with motion
+  int poseOnlyCount() const;  ///< keyframes without motion
+  /// Oldest frame with motion, and the one after it (null if there is none).
+  Frame* oldestRecent() const;
+  Frame* after(const Frame& frame) const;
+
+  std::map<TrackId, Track>& tracks() { return tracks_; }
+  const std::map<TrackId, Track>& tracks() const { return tracks_; }
+
+  /// Forgets a frame with all its sightings. No landmark may be hosted there any more.
+  void remove(FrameId id);
+  /// Tracks without sightings are forgotten.
+  void removeEmptyTracks();
+
+ private:
+  std::deque<std::unique_ptr<Frame>> frames_;
+  std::map<TrackId, Track> tracks_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "lodeline/estimator/factor_list.h"
+
+namespace lodeline {
+
+struct SolveSummary {
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  bool usable = true;  ///< false where the solver failed and the window was left as it was
+};
+
+/// Minimises the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
+/// thread, so that the same input gives the same bytes). Inertial terms whose biases moved too far are
+/// integrated again first.
+SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors, int max_iterations);
+
+/// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
+Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
+                                               const FactorMaker& factors);
+
+}  // namespace lodeline
