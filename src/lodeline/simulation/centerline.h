@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lodeline/geometry/types.h"
+
+namespace lodeline {
+
+/// One cross-section of a passage.
+struct PassageStation {
+  /// Along the centreline, m; 0 where the dive starts, negative towards the entrance.
+  double arc_length_m = 0.0;
+  Vec3 position_W = Vec3::Zero();  ///< middle of the passage, m, ENU
+  Vec3 tangent_W = Vec3::UnitX();  ///< unit, into the cave
+  double width_m = 0.0;            ///< wall to wall, horizontal, across the tangent
+  double height_m = 0.0;           ///< floor to ceiling
+};
+
+/// What a passage looks like at large. All lengths in m.
+struct CenterlineOptions {
+  uint64_t seed = 1;
+  double length_m = 110.0;  ///< from the start of the dive to its far end
+  double lead_in_m = 12.0;  ///< passage before the start of the dive
+  double run_out_m = 15.0;  ///< passage beyond the far end
+  double station_spacing_m = 0.25;
+  double main_azimuth_rad = 0.6;  ///< mean direction, clockwise from north
+  double bend_rad = 0.6;          ///< RMS of the winding about the mean direction; never beyond 75 degrees
+  double shortest_bend_m = 22.0;  ///< wavelengths of the winding lie between this and six times this
+  double descent_m = 8.0;         ///< far end below the start
+  double undulation_m = 0.8;      ///< RMS rise and fall on top of it
+  double mean_width_m = 4.5;
+  double mean_height_m = 2.8;
+  double section_variation = 0.3;  ///< RMS relative change of width and height
+};
+
+/// A seeded winding passage. It always makes way along its main azimuth, so it never meets itself.
+class Centerline {
+ public:
+  /// Throws UsageError where an option makes no passage (not positive, not finite).
+  static Centerline generate(const CenterlineOptions& options);
+
+  /// Evenly spaced in arc length.
+  const std::vector<PassageStation>& stations() const { return stations_; }
+  double beginArcLength() const { return stations_.front().arc_length_m; }
+  double endArcLength() const { return stations_.back().arc_length_m; }
+
+  /// Interpolated station (cubic Hermite in position); beyond the ends the end station is carried on
+  /// straight.
+  PassageStation at(double arc_length_m) const;
+
+  /// Arc length of the station nearest to a point, found among those within `window_m` of
+  /// `near_arc_length_m`.
+  double nearestArcLength(const Vec3& point_W, double near_arc_length_m, double window_m) const;
+
+  /// The same passage moved by `offset_W`.
+  Centerline translated(const Vec3& offset_W) const;
+
+ private:
+  std::vector<PassageStation> stations_;
+  double spacing_m_ = 0.0;
+};
+
+}  // namespace lodeline

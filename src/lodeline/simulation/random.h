@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string_view>
+
+#include "lodeline/geometry/types.h"
+
+namespace lodeline {
+
+/// Random numbers that are the same on every machine: std::mt19937_64 is fixed by the standard, the
+/// distributions are spelled out here because the standard's own are not.
+///
+/// Every sensor and effect draws from its own stream of one scenario seed, so that switching one of them off
+/// leaves the draws of all others untouched.
+class Random {
+ public:
+  Random(uint64_t seed, std::string_view stream);
+
+  uint64_t next() { return engine_(); }
+  /// In [0, 1), 53 random bits.
+  double uniform();
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// In [0, count).
+  int index(int count) { return static_cast<int>(uniform() * count); }
+  bool chance(double probability) { return uniform() < probability; }
+  /// -1 or +1.
+  double sign() { return chance(0.5) ? -1.0 : 1.0; }
+  /// Standard normal, Box-Muller.
+  double normal();
+  Vec3 normal3();
+  /// Uniform on the unit sphere.
+  Vec3 direction();
+
+ private:
+  std::mt19937_64 engine_;
+  double spare_ = 0.0;
+  bool has_spare_ = false;
+};
+
+}  // namespace lodeline
