@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -42,9 +43,11 @@ std::vector<Vec3> turnedToLast(std::span<const ImuSample> samples, const Vec3& g
   return forces;
 }
 
-// Variance of the mean force across `up`, per axis. Differences of neighbours show the white part of the
-// scatter, which averages out reading by reading; the rest is motion, which averages out over its correlation
-// time.
+double squared(double x) { return x * x; }
+
+// Variance of the mean force across `up`, per axis, as far as its scatter tells. Differences of neighbours
+// show the white part, which averages out reading by reading; the rest is slow and averages out over its
+// correlation time.
 double horizontalVarianceOfMean(const std::vector<Vec3>& forces, const Vec3& up, double duration_s,
                                 double correlation_s) {
   const Mat32 horizontal = tangentBasis(up);
@@ -58,8 +61,21 @@ double horizontalVarianceOfMean(const std::vector<Vec3>& forces, const Vec3& up,
   }
   scatter /= 2.0 * (count - 1.0);
   const double white = differences / (4.0 * (count - 1.0));
-  const double motion = std::max(0.0, scatter - white);
-  return white / count + motion / (1.0 + duration_s / correlation_s);
+  const double slow = std::max(0.0, scatter - white);
+  return white / count + slow / (1.0 + duration_s / correlation_s);
+}
+
+double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double duration_s, bool still,
+                 const GravityAlignmentOptions& options) {
+  const double force = mean_force.norm();
+  double variance = squared(options.accelerometer_bias_sigma_m_per_s2) +
+                    horizontalVarianceOfMean(forces, mean_force / force, duration_s, options.correlation_s);
+  if (!still) {
+    // The velocities at both ends are taken as independent.
+    variance += std::min(squared(options.acceleration_sigma_m_per_s2),
+                         2.0 * squared(options.speed_sigma_m_per_s / duration_s));
+  }
+  return std::sqrt(variance) / force;
 }
 
 Quat levelWithZeroYaw(const Vec3& up) {
@@ -105,13 +121,9 @@ GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3
                     "of gravity; check the accelerometer's unit (m/s^2), or start later",
                     samples.front().time.nanoseconds(), samples.back().time.nanoseconds(), force));
   }
-  const Vec3 up = result.mean_specific_force_B / force;
-  result.world_from_body = levelWithZeroYaw(up);
+  result.world_from_body = levelWithZeroYaw(result.mean_specific_force_B / force);
   const double duration_s = (samples.back().time - samples.front().time).seconds();
-  const double variance =
-      horizontalVarianceOfMean(forces, up, duration_s, options.motion_correlation_s) +
-      options.accelerometer_bias_sigma_m_per_s2 * options.accelerometer_bias_sigma_m_per_s2;
-  result.tilt_sigma_rad = std::sqrt(variance) / force;
+  result.tilt_sigma_rad = tiltSigma(forces, result.mean_specific_force_B, duration_s, result.still, options);
   return result;
 }
 

@@ -13,14 +13,14 @@ namespace lodeline {
 struct PreintegrationOptions {
   /// Factor on all four densities of ImuNoise. Datasheet and Allan figures hold for a sensor at rest on a
   /// bench; vibration, scale and alignment errors in motion are what this makes up for.
-  double noise_inflation = 1.0;
+  double noise_inflation = 10.0;
 
   /// Two readings further apart than this, and further than 1.5 nominal periods, count as lost data.
   double max_gap_s = 0.02;
   /// How far the mean rate and specific force over a gap may lie from the mean of its two ends, one sigma per
   /// axis.
-  double gap_rate_sigma_rad_per_s = 0.5;
-  double gap_specific_force_sigma_m_per_s2 = 2.0;
+  double gap_rate_sigma_rad_per_s = 0.3;
+  double gap_specific_force_sigma_m_per_s2 = 1.5;
 
   /// Largest corrections for a moved bias that the first-order expansion is trusted with: |db_g| * dt and
   /// |db_a| * dt. alpha and beta are linear in b_a, so the second only bounds the product of both.
