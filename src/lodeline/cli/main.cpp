@@ -1,0 +1,44 @@
+#include <fmt/core.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+
+#include "lodeline/base/error.h"
+#include "lodeline/cli/evaluate_command.h"
+
+namespace {
+
+// The contract with scripts: what ended the program can be told from its exit code.
+enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3 };
+
+int fail(const char* kind, const std::exception& error, ExitCode code) {
+  fmt::print(stderr, "{}: {}\n", kind, error.what());
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Lodeline: where a camera rig went and which way it faced, from images and inertial data");
+  program.name("lodeline");
+  program.set_version_flag("--version", "lodeline " LODELINE_VERSION);
+  program.require_subcommand(1);
+  program.footer("`lodeline COMMAND --help` explains a command, with examples.");
+  lodeline::addEvaluateCommand(program);
+  try {
+    program.parse(argc, argv);
+    return kGood;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kGood : kBadUsage;
+  } catch (const lodeline::InputError& error) {
+    return fail("bad input", error, kBadInput);
+  } catch (const lodeline::UsageError& error) {
+    return fail("bad usage", error, kBadUsage);
+  } catch (const lodeline::EstimationError& error) {
+    return fail("estimation failed", error, kEstimationFailed);
+  } catch (const std::exception& error) {
+    return fail("unexpected failure", error, kEstimationFailed);
+  }
+}

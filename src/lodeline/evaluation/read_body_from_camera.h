@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+/// The entry `T_BS` (body from sensor, 4x4, row by row) of a camera's sensor.yaml in EuRoC's layout. Throws
+/// InputError when the file or the entry is missing or is no rigid transformation.
+Rigid3 readBodyFromCamera(const std::filesystem::path& path);
+
+}  // namespace lodeline

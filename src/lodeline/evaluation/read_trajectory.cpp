@@ -1,0 +1,127 @@
+#include "lodeline/evaluation/read_trajectory.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "lodeline/base/error.h"
+#include "lodeline/evaluation/read_formats.h"
+
+namespace lodeline {
+namespace {
+
+struct FormatName {
+  TrajectoryFormat format;
+  const char* name;
+};
+
+constexpr std::array<FormatName, 5> kFormatNames = {{{TrajectoryFormat::Tum, "tum"},
+                                                     {TrajectoryFormat::Kitti, "kitti"},
+                                                     {TrajectoryFormat::Euroc, "euroc"},
+                                                     {TrajectoryFormat::ColmapText, "colmap-text"},
+                                                     {TrajectoryFormat::ColmapBinary, "colmap-binary"}}};
+
+bool isFile(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+/// Nanoseconds of a clock set to the date; seconds never have so many digits without a decimal point.
+bool looksLikeNanoseconds(const std::string& field) { return isInteger(field) && field.size() >= 15; }
+
+TrajectoryFormat detectFormat(const std::filesystem::path& file) {
+  if (file.extension() == ".bin") return TrajectoryFormat::ColmapBinary;
+  const TextTable head = readTextTable(file, 1);
+  for (const std::string& comment : head.comments) {
+    if (comment.find("IMAGE_ID") != std::string::npos) return TrajectoryFormat::ColmapText;
+  }
+  const std::vector<std::string>& fields = head.lines.front().fields;
+  const std::string file_name = file.filename().string();
+  if (file_name == "images.txt" || file_name == "images.txt.gz") return TrajectoryFormat::ColmapText;
+  if (looksLikeNanoseconds(fields[0]) && fields.size() >= 8) return TrajectoryFormat::Euroc;
+  if (fields.size() == 12) return TrajectoryFormat::Kitti;
+  if (fields.size() >= 8) return TrajectoryFormat::Tum;
+  throw InputError(
+      fmt::format("{}:{}: {} columns fit no known trajectory layout (TUM 8, KITTI 12, EuRoC at least "
+                  "8, COLMAP 10); name it with --format if it is one of these",
+                  file.string(), head.lines.front().number, fields.size()));
+}
+
+/// The file in a folder that holds the trajectory, most specific first.
+std::filesystem::path findInFolder(const std::filesystem::path& folder) {
+  const std::filesystem::path truth = "state_groundtruth_estimate0";
+  const std::array<std::filesystem::path, 9> candidates = {
+      "trajectory.tum",
+      "images.bin",
+      "images.txt",
+      "mav0" / truth / "data.csv",
+      "mav0" / truth / "gt_tum.txt",
+      truth / "data.csv",
+      truth / "gt_tum.txt",
+      "data.csv",
+      "gt_tum.txt",
+  };
+  for (const auto& candidate : candidates) {
+    if (isFile(folder / candidate)) return folder / candidate;
+  }
+  throw InputError(
+      fmt::format("{}: no trajectory in this folder; looked for trajectory.tum, images.bin, images.txt "
+                  "and mav0/state_groundtruth_estimate0/data.csv",
+                  folder.string()));
+}
+
+Trajectory readPoses(const TrajectorySource& source, const TrajectoryReadOptions& options,
+                     Diagnostics& diagnostics) {
+  switch (source.format) {
+    case TrajectoryFormat::Tum:
+      return readTum(source.file, diagnostics);
+    case TrajectoryFormat::Kitti:
+      return readKitti(source.file, diagnostics);
+    case TrajectoryFormat::Euroc:
+      return readEuroc(source.file, diagnostics);
+    case TrajectoryFormat::ColmapText:
+      return readColmapText(source.file, options, diagnostics);
+    case TrajectoryFormat::ColmapBinary:
+      return readColmapBinary(source.file, options, diagnostics);
+  }
+  throw std::logic_error("unknown trajectory format");
+}
+
+}  // namespace
+
+const char* toString(TrajectoryFormat format) {
+  for (const FormatName& entry : kFormatNames) {
+    if (entry.format == format) return entry.name;
+  }
+  throw std::logic_error("unknown trajectory format");
+}
+
+TrajectoryFormat trajectoryFormatFromString(const std::string& name) {
+  for (const FormatName& entry : kFormatNames) {
+    if (name == entry.name) return entry.format;
+  }
+  throw UsageError(
+      fmt::format("unknown trajectory format '{}'; known are tum, kitti, euroc, colmap-text and "
+                  "colmap-binary",
+                  name));
+}
+
+TrajectorySource findTrajectory(const std::filesystem::path& path, std::optional<TrajectoryFormat> format) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw InputError(fmt::format("{}: no such file or folder", path.string()));
+  }
+  const auto file = std::filesystem::is_directory(path, ignored) ? findInFolder(path) : path;
+  return {file, format ? *format : detectFormat(file)};
+}
+
+Trajectory readTrajectory(const std::filesystem::path& path, const TrajectoryReadOptions& options,
+                          Diagnostics& diagnostics) {
+  const TrajectorySource source = findTrajectory(path, options.format);
+  Trajectory trajectory = readPoses(source, options, diagnostics);
+  if (trajectory.empty()) throw InputError(fmt::format("{}: holds no poses", source.file.string()));
+  sortByTime(trajectory, diagnostics);
+  return trajectory;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,21 @@
+#include "lodeline/evaluation/read_formats.h"
+
+namespace lodeline {
+
+Trajectory readTum(const std::filesystem::path& path, Diagnostics& diagnostics) {
+  TextTable table = readTextTable(path);
+  requireColumns(table, 8, "TUM", diagnostics);
+  Trajectory trajectory;
+  trajectory.name = path.string();
+  for (const TextLine& line : table.lines) {
+    const auto value = [&](std::size_t column) { return table.number(line, column); };
+    const Quat rotation(value(7), value(4), value(5), value(6));
+    const Vec3 position_m(value(1), value(2), value(3));
+    if (const auto pose = poseFromNumbers(table.where(line), position_m, rotation, diagnostics)) {
+      trajectory.poses.push_back({table.timeInSeconds(line, 0), *pose});
+    }
+  }
+  return trajectory;
+}
+
+}  // namespace lodeline
