@@ -2,8 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/start.h"
 #include "lodeline/estimator/window_solver.h"
 
 namespace lodeline {
@@ -24,43 +27,68 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
     : rig_(rig),
       options_(options),
       diagnostics_(diagnostics),
-      factors_(rig, options),
-      marginalizer_(factors_) {
+      factors_(rig_, options_),
+      marginalizer_(factors_),
+      mono_initializer_(rig_, options_, factors_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
 
 FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu) {
   FrameEstimate estimate;
   estimate.time = tracks.time;
-  if (!initialized()) {
-    if (!initialize(tracks, imu, &estimate)) return estimate;
-  } else {
-    insertFrame(tracks, imu);
-    addSightings(tracks);
+  const SightingList sightings = sightingsOf(tracks);
+  if (initialized()) {
+    insertFrame(tracks.time, sightings, imu);
     optimize(&estimate);
+  } else if (!initialize(tracks, sightings, imu, &estimate)) {
+    return estimate;
   }
   report(tracks, &estimate);
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);
-  const bool starting_up = frames_added_ < options_.window.startup_frames;
-  if (!starting_up) {
+  if (++frames_since_start_ >= options_.window.startup_frames) {
     marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
   }
   return estimate;
 }
 
-bool Estimator::initialize(const FrameTracks& tracks, std::span<const ImuSample> imu,
-                           FrameEstimate* estimate) {
-  imu_before_start_.insert(imu_before_start_.end(), imu.begin() + (imu_before_start_.empty() ? 0 : 1),
-                           imu.end());
+SightingList Estimator::sightingsOf(const FrameTracks& tracks) const {
+  SightingList sightings;
+  for (const Observation& observation : tracks.observations) {
+    Sighting sighting;
+    sighting.frame = next_frame_id_;
+    sighting.camera = observation.camera;
+    sighting.measurement = DirectionMeasurement::fromBearing(*cameras_[observation.camera],
+                                                             observation.bearing_C, observation.sigma_px);
+    sightings.emplace_back(observation.track, sighting);
+  }
+  return sightings;
+}
+
+bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sightings,
+                           std::span<const ImuSample> imu, FrameEstimate* estimate) {
+  imu_before_start_.insert(imu_before_start_.end(),
+                           imu.begin() + (imu_before_start_.empty() || imu.empty() ? 0 : 1), imu.end());
   const Duration longest = Duration::fromSeconds(options_.initial_state.alignment_window_s);
   std::erase_if(imu_before_start_, [&](const ImuSample& s) { return s.time < tracks.time - longest; });
-  int stereo_tracks = 0;
-  for (const Observation& observation : tracks.observations) stereo_tracks += observation.camera > 0;
-  if (stereo_tracks < options_.initial_state.min_stereo_tracks) {
+  if (rig_.cameras.size() > 1) return startAtOnce(tracks.time, sightings, estimate);
+  if (mono_initializer_.add(tracks.time, sightings, imu, next_frame_id_++)) {
+    window_ = mono_initializer_.takeWindow();
+    marginalizer_.start(mono_initializer_.takePrior());
+    frames_since_start_ = static_cast<int>(window_.frames().size());
+    return true;
+  }
+  estimate->waiting_for = mono_initializer_.waitingFor();
+  return false;
+}
+
+bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate) {
+  const auto stereo_matches = std::count_if(sightings.begin(), sightings.end(),
+                                            [](const auto& entry) { return entry.second.camera > 0; });
+  if (stereo_matches < options_.initial_state.min_stereo_tracks) {
     estimate->waiting_for =
-        fmt::format("stereo matches {} of {}", stereo_tracks, options_.initial_state.min_stereo_tracks);
+        fmt::format("stereo matches {} of {}", stereo_matches, options_.initial_state.min_stereo_tracks);
     return false;
   }
   if (imu_before_start_.size() < 2) {
@@ -69,50 +97,32 @@ bool Estimator::initialize(const FrameTracks& tracks, std::span<const ImuSample>
   }
   const GravityAlignment up = alignWithGravity(imu_before_start_, Vec3::Zero(), options_.gravity_alignment);
   NavigationState state;
-  state.time = tracks.time;
+  state.time = time;
   state.world_from_body.rotation = up.world_from_body;
   state.gyroscope_bias_B = up.gyroscope_bias_B;
   auto frame = std::make_unique<Frame>();
-  frame->id = frames_added_++;
+  frame->id = next_frame_id_++;
   frame->setState(state);
   Frame& first = window_.add(std::move(frame));
-  addSightings(tracks);
-
-  const InitialStateOptions& prior = options_.initial_state;
-  const double tilt_sigma = std::max(up.tilt_sigma_rad, prior.tilt_sigma_min_rad);
-  Eigen::Matrix<double, 15, 1> sigmas;
-  sigmas << Vec3::Constant(prior.position_sigma_m), tilt_sigma, tilt_sigma, prior.yaw_sigma_rad,
-      Vec3::Constant(up.still ? prior.velocity_sigma_still_m_per_s : prior.velocity_sigma_m_per_s),
-      Vec3::Constant(prior.gyroscope_bias_sigma_rad_per_s),
-      Vec3::Constant(prior.accelerometer_bias_sigma_m_per_s2);
-  marginalizer_.start(first, sigmas);
+  for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+  marginalizer_.start(startPrior(first, options_.initial_state, up.tilt_sigma_rad, up.still));
   return true;
 }
 
-void Estimator::insertFrame(const FrameTracks& tracks, std::span<const ImuSample> imu) {
+void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu) {
   const NavigationState before = window_.newest().state();
   auto frame = std::make_unique<Frame>();
-  frame->id = frames_added_++;
+  frame->id = next_frame_id_++;
   frame->from_previous = std::make_unique<Preintegration>(
       imu, before.gyroscope_bias_B, before.accelerometer_bias_B, rig_.imu, options_.preintegration);
   frame->setState(predict(before, *frame->from_previous, options_.gravity_W));
-  frame->time = tracks.time;
+  frame->time = time;
   window_.add(std::move(frame));
-}
-
-void Estimator::addSightings(const FrameTracks& tracks) {
-  for (const Observation& observation : tracks.observations) {
-    Sighting sighting;
-    sighting.frame = window_.newest().id;
-    sighting.camera = observation.camera;
-    sighting.measurement = DirectionMeasurement::fromBearing(*cameras_[observation.camera],
-                                                             observation.bearing_C, observation.sigma_px);
-    window_.addSighting(observation.track, sighting);
-  }
+  for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  const bool starting_up = frames_added_ < options_.window.startup_frames;
+  const bool starting_up = frames_since_start_ < options_.window.startup_frames;
   const int max_iterations =
       starting_up ? options_.solver.max_iterations_startup : options_.solver.max_iterations;
   const SolveSummary summary = solveWindow(window_, marginalizer_.prior(), factors_, max_iterations);

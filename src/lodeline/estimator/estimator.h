@@ -7,6 +7,7 @@
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/marginalizer.h"
+#include "lodeline/estimator/mono_initializer.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/window.h"
 
@@ -49,9 +50,11 @@ class Estimator {
   const Prior& prior() const { return marginalizer_.prior(); }
 
  private:
-  bool initialize(const FrameTracks& tracks, std::span<const ImuSample> imu, FrameEstimate* estimate);
-  void insertFrame(const FrameTracks& tracks, std::span<const ImuSample> imu);
-  void addSightings(const FrameTracks& tracks);
+  SightingList sightingsOf(const FrameTracks& tracks) const;
+  bool initialize(const FrameTracks& tracks, const SightingList& sightings, std::span<const ImuSample> imu,
+                  FrameEstimate* estimate);
+  bool startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate);
+  void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
   void report(const FrameTracks& tracks, FrameEstimate* estimate);
 
@@ -61,9 +64,11 @@ class Estimator {
   Diagnostics* diagnostics_;
   FactorMaker factors_;
   Marginalizer marginalizer_;
+  MonoInitializer mono_initializer_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
-  FrameId frames_added_ = 0;
+  FrameId next_frame_id_ = 0;
+  int frames_since_start_ = 0;
 };
 
 }  // namespace lodeline

@@ -72,17 +72,6 @@ void moveToNewHost(Window& window, Track& track, FrameId excluded, const Rigid3&
   track.landmark.reset();
 }
 
-void Marginalizer::start(Frame& first, const Eigen::Matrix<double, 15, 1>& sigmas) {
-  prior_ = Prior();
-  first.first_pose = first.pose;
-  first.first_motion = first.motion;
-  prior_.blocks.push_back({first.pose.data(), Eigen::Map<Eigen::VectorXd>(first.pose.data(), kPoseSize)});
-  prior_.blocks.push_back(
-      {first.motion.data(), Eigen::Map<Eigen::VectorXd>(first.motion.data(), kMotionSize)});
-  prior_.sqrt_information = sigmas.cwiseInverse().asDiagonal();
-  prior_.offset = Eigen::VectorXd::Zero(15);
-}
-
 void Marginalizer::shorten(Window& window, int max_recent_frames, int max_keyframes) {
   while (window.recentCount() > max_recent_frames) retireOldestRecent(window);
   while (window.poseOnlyCount() > max_keyframes) removeOldestKeyframe(window);

@@ -13,9 +13,8 @@ class Marginalizer {
  public:
   explicit Marginalizer(const FactorMaker& factors) : factors_(factors) {}
 
-  /// The prior that the very first frame starts from: independent standard deviations for its 6 pose and 9
-  /// motion coordinates (see parameters.h), around its present state.
-  void start(Frame& first, const Eigen::Matrix<double, 15, 1>& sigmas);
+  /// Starts from a prior on the first frame. It freezes no first estimate: nothing has been eliminated yet.
+  void start(Prior prior) { prior_ = std::move(prior); }
 
   /// Shortens the window to the wanted sizes.
   void shorten(Window& window, int max_recent_frames, int max_keyframes);

@@ -20,6 +20,20 @@ struct InitialStateOptions {
   double accelerometer_bias_sigma_m_per_s2 = 0.2;
 };
 
+struct MonoInitializationOptions {
+  double min_frame_distance_s = 0.08;  ///< images in between are left out
+  double max_duration_s = 2.5;
+  int min_frames = 6;
+  int min_common_tracks = 40;  ///< seen by the oldest and the newest frame
+  double min_parallax_px = 20.0;
+  double max_epipolar_error_px = 1.0;
+  /// How far gravity may come out from its true magnitude when the alignment leaves it free.
+  double gravity_tolerance_m_per_s2 = 1.0;
+  double start_tilt_sigma_rad = 0.3;
+  int max_iterations = 30;
+  double max_scale_sigma = 0.1;  ///< relative; wait on while the scale is known worse
+};
+
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
   int keyframes = 7;      ///< older keyframes, kept as poses
@@ -55,6 +69,7 @@ struct SolverOptions {
 struct EstimatorOptions {
   Vec3 gravity_W = standardGravity_W();  ///< m/s^2
   InitialStateOptions initial_state;
+  MonoInitializationOptions mono_initialization;
   WindowOptions window;
   KeyframeOptions keyframe;
   LandmarkOptions landmark;

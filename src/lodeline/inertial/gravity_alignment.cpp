@@ -78,15 +78,6 @@ double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double
   return std::sqrt(variance) / force;
 }
 
-Quat levelWithZeroYaw(const Vec3& up) {
-  constexpr double kSteep = 0.866;  // sine of 60 degrees
-  const Vec3 ahead = std::abs(up.x()) < kSteep ? Vec3::UnitX() : Vec3::UnitZ();
-  const Vec3 east = (ahead - up.dot(ahead) * up).normalized();
-  Mat3 body_from_world;
-  body_from_world << east, up.cross(east), up;
-  return so3::canonical(Quat(body_from_world.transpose()));
-}
-
 void judgeStillness(std::span<const ImuSample> samples, const Vec3& gyroscope_bias,
                     const GravityAlignmentOptions& options, GravityAlignment& result) {
   std::vector<Vec3> rates, forces;
@@ -104,6 +95,15 @@ void judgeStillness(std::span<const ImuSample> samples, const Vec3& gyroscope_bi
 }
 
 }  // namespace
+
+Quat levelWithZeroYaw(const Vec3& up_B) {
+  constexpr double kSteep = 0.866;  // sine of 60 degrees
+  const Vec3 ahead = std::abs(up_B.x()) < kSteep ? Vec3::UnitX() : Vec3::UnitZ();
+  const Vec3 east = (ahead - up_B.dot(ahead) * up_B).normalized();
+  Mat3 body_from_world;
+  body_from_world << east, up_B.cross(east), up_B;
+  return so3::canonical(Quat(body_from_world.transpose()));
+}
 
 GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3& gyroscope_bias_B,
                                   const GravityAlignmentOptions& options) {

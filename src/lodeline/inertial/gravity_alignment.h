@@ -43,6 +43,10 @@ struct GravityAlignment {
   Vec3 mean_specific_force_B = Vec3::Zero();  ///< in the frame of the last reading, m/s^2
 };
 
+/// Attitude (world from body, zero yaw as in GravityAlignment) of a body in whose frame the unit vector
+/// `up_B` points up.
+Quat levelWithZeroYaw(const Vec3& up_B);
+
 /// Averages the specific force of `samples`, each turned by the gyroscope into the frame of the last one.
 /// Throws InputError as Preintegration does for unusable samples, and EstimationError when the mean force is
 /// under half of gravity, as in free fall, so that it says nothing about up.

@@ -1,0 +1,152 @@
+#include "lodeline/estimator/mono_initializer.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/start.h"
+#include "lodeline/estimator/visual_inertial_alignment.h"
+#include "lodeline/estimator/visual_structure.h"
+#include "lodeline/estimator/window_solver.h"
+#include "lodeline/inertial/gravity_alignment.h"
+
+namespace lodeline {
+
+bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<const ImuSample> imu,
+                          FrameId id) {
+  pending_imu_.insert(pending_imu_.end(), imu.begin() + (pending_imu_.empty() || imu.empty() ? 0 : 1),
+                      imu.end());
+  const MonoInitializationOptions& wanted = options_.mono_initialization;
+  if (!window_.empty() && (time - window_.newest().time).seconds() < wanted.min_frame_distance_s)
+    return false;
+  if (pending_imu_.size() < 2 && !window_.empty()) {
+    waiting_for_ = "inertial readings";
+    return false;
+  }
+  insert(time, sightings, id);
+  while ((time - window_.frames().front()->time).seconds() > wanted.max_duration_s ||
+         (window_.frames().size() > 1 &&
+          commonTracks(window_, *window_.frames().front(), window_.newest()).size() <
+              static_cast<size_t>(wanted.min_common_tracks))) {
+    dropOldestFrame();
+  }
+  const int frames = static_cast<int>(window_.frames().size());
+  if (frames < wanted.min_frames) {
+    waiting_for_ = fmt::format("frames {} of {} that share {} tracks", frames, wanted.min_frames,
+                               wanted.min_common_tracks);
+    return false;
+  }
+  return solveVisualStructure() && alignWithInertial() && refine();
+}
+
+void MonoInitializer::insert(Time time, const SightingList& sightings, FrameId id) {
+  auto frame = std::make_unique<Frame>();
+  frame->id = id;
+  frame->time = time;
+  frame->is_keyframe = true;
+  if (!window_.empty()) {
+    intervals_[id] = std::make_unique<Preintegration>(pending_imu_, Vec3::Zero(), Vec3::Zero(), rig_.imu,
+                                                      options_.preintegration);
+  }
+  pending_imu_.clear();
+  window_.add(std::move(frame));
+  for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+}
+
+void MonoInitializer::dropOldestFrame() {
+  window_.remove(window_.frames().front()->id);
+  // The interval that led to what is now the oldest frame.
+  if (!window_.empty()) intervals_.erase(window_.frames().front()->id);
+}
+
+std::vector<Preintegration*> MonoInitializer::intervals() const {
+  std::vector<Preintegration*> result;
+  for (const auto& [id, interval] : intervals_) result.push_back(interval.get());
+  return result;
+}
+
+bool MonoInitializer::solveVisualStructure() {
+  for (auto& [id, track] : window_.tracks()) track.landmark.reset();
+  const double focal_px = rig_.cameras[0].fx_px;
+  const double parallax_px = focal_px * parallaxAfterBestRotation(commonTracks(
+                                            window_, *window_.frames().front(), window_.newest()));
+  if (parallax_px < options_.mono_initialization.min_parallax_px) {
+    waiting_for_ = fmt::format("parallax {:.0f} of {:.0f} px", parallax_px,
+                               options_.mono_initialization.min_parallax_px);
+    return false;
+  }
+  if (!estimateStructure(window_, intervals(), factors_, focal_px, options_.mono_initialization)) {
+    waiting_for_ = "a rigid structure that explains the images";
+    return false;
+  }
+  return true;
+}
+
+bool MonoInitializer::alignWithInertial() {
+  const Rigid3& body_from_camera = factors_.bodyFromCamera(0);
+  std::vector<Quat> rotations;
+  std::vector<Vec3> camera_positions;
+  for (const auto& frame : window_.frames()) {
+    rotations.push_back(frame->worldFromBody().rotation);
+    camera_positions.push_back(frame->worldFromBody() * body_from_camera.translation);
+  }
+  const Vec3 gyroscope_bias = alignGyroscopeBias(rotations, intervals());
+  const double gravity = options_.gravity_W.norm();
+  const std::optional<VisualInertialAlignment> alignment =
+      alignVisualInertial(rotations, camera_positions, body_from_camera.translation, intervals(), gravity);
+  const double tolerance = options_.mono_initialization.gravity_tolerance_m_per_s2;
+  if (!alignment || std::abs(alignment->free_gravity_magnitude - gravity) > tolerance) {
+    waiting_for_ = "enough acceleration to tell the scale";
+    return false;
+  }
+  const Vec3 up_B0 = rotations.front().conjugate() * -alignment->gravity_V;
+  const Quat world_from_visual = levelWithZeroYaw(up_B0) * rotations.front().conjugate();
+  const Vec3 origin_V =
+      alignment->scale * camera_positions.front() - rotations.front() * body_from_camera.translation;
+  size_t k = 0;
+  for (const auto& frame : window_.frames()) {
+    NavigationState state;
+    state.time = frame->time;
+    const Vec3 body_V = alignment->scale * camera_positions[k] - rotations[k] * body_from_camera.translation;
+    state.world_from_body = Rigid3(world_from_visual * rotations[k], world_from_visual * (body_V - origin_V));
+    state.velocity_W = world_from_visual * alignment->velocities_V[k];
+    state.gyroscope_bias_B = gyroscope_bias;
+    frame->setState(state);
+    ++k;
+  }
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.landmark) track.landmark->parameters[2] /= alignment->scale;
+  }
+  return true;
+}
+
+bool MonoInitializer::refine() {
+  prior_ = startPrior(*window_.frames().front(), options_.initial_state,
+                      options_.mono_initialization.start_tilt_sigma_rad, false);
+  for (const auto& frame : window_.frames()) {
+    const auto interval = intervals_.find(frame->id);
+    if (interval != intervals_.end()) frame->from_previous = std::move(interval->second);
+  }
+  const SolveSummary summary =
+      solveWindow(window_, prior_, factors_, options_.mono_initialization.max_iterations);
+  const Frame& newest = window_.newest();
+  const Eigen::Matrix<double, 15, 15> covariance = newestCovariance(window_, prior_, factors_);
+  const double displacement_m = newest.worldFromBody().translation.norm();
+  const Vec3 direction_W = newest.worldFromBody().translation / std::max(displacement_m, 1e-9);
+  const double sigma_m = std::sqrt(direction_W.dot(covariance.topLeftCorner<3, 3>() * direction_W));
+  const double share = sigma_m / std::max(displacement_m, 1e-9);
+  if (summary.usable && share < options_.mono_initialization.max_scale_sigma) {
+    intervals_.clear();
+    return true;
+  }
+  waiting_for_ = fmt::format("scale known to {:.0f} % of {:.0f} %", 100.0 * share,
+                             100.0 * options_.mono_initialization.max_scale_sigma);
+  for (const auto& frame : window_.frames()) {
+    if (frame->from_previous) intervals_[frame->id] = std::move(frame->from_previous);
+  }
+  return false;
+}
+
+}  // namespace lodeline

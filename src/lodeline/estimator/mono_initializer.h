@@ -1,0 +1,55 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/options.h"
+#include "lodeline/estimator/window.h"
+
+namespace lodeline {
+
+/// Sightings of one frame with their tracks.
+using SightingList = std::vector<std::pair<TrackId, Sighting>>;
+
+/// Finds the first states of a rig whose images overlap only over time: visual structure from the frame that
+/// has moved far enough against an earlier one, then gyroscope bias, gravity, scale and velocities from the
+/// inertial readings, then everything together. Frames are collected until that succeeds.
+class MonoInitializer {
+ public:
+  MonoInitializer(const Rig& rig, const EstimatorOptions& options, const FactorMaker& factors)
+      : rig_(rig), options_(options), factors_(factors) {}
+
+  /// Adds a frame: its sightings and the inertial readings since the frame before (as Estimator::add). True
+  /// when the window is complete: states of all its frames in a world with gravity down, zero yaw and origin
+  /// at the first frame, landmarks in metres.
+  bool add(Time time, const SightingList& sightings, std::span<const ImuSample> imu, FrameId id);
+
+  /// What is missing, in words; set whenever add() returned false.
+  const std::string& waitingFor() const { return waiting_for_; }
+
+  Window takeWindow() { return std::move(window_); }
+  /// The prior on the first frame that the window was solved with.
+  Prior takePrior() { return std::move(prior_); }
+
+ private:
+  void insert(Time time, const SightingList& sightings, FrameId id);
+  void dropOldestFrame();
+  std::vector<Preintegration*> intervals() const;
+  bool solveVisualStructure();
+  bool alignWithInertial();
+  bool refine();
+
+  const Rig& rig_;
+  const EstimatorOptions& options_;
+  const FactorMaker& factors_;
+  Window window_;
+  Prior prior_;
+  std::vector<ImuSample> pending_imu_;  ///< since the newest frame of the window
+  /// Inertial readings that led to a frame; kept apart from the window while its structure is purely visual.
+  std::map<FrameId, std::unique_ptr<Preintegration>> intervals_;
+  std::string waiting_for_;
+};
+
+}  // namespace lodeline
