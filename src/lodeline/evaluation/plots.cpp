@@ -1,6 +1,31 @@
 #include "lodeline/evaluation/plots.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "lodeline/base/error.h"
+#include "lodeline/evaluation/gnuplot.h"
+#include "lodeline/evaluation/plot_figures.h"
+
 namespace lodeline {
-void writePlots(const Evaluation&, const std::filesystem::path&, Diagnostics& diagnostics) {
-  diagnostics.report(Severity::Warning, "no_plots", "plots are not available in this build");
+
+void writePlots(const Evaluation& evaluation, const std::filesystem::path& folder, Diagnostics& diagnostics) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder, error) || access(folder.c_str(), W_OK) != 0) {
+    throw InputError(
+        fmt::format("{}: plots cannot be written there; it is no writable folder", folder.string()));
+  }
+  std::vector<gnuplot::Figure> figures = {topViewFigure(evaluation), sideViewFigure(evaluation),
+                                          errorOverTimeFigure(evaluation)};
+  if (!evaluation.relative.empty()) figures.push_back(relativeErrorFigure(evaluation));
+  const gnuplot::Result result = gnuplot::draw(figures, folder);
+  if (result.outcome == gnuplot::Outcome::Missing) {
+    diagnostics.report(Severity::Warning, "gnuplot_missing",
+                       "no plots: the program gnuplot is not installed (Debian package gnuplot-nox)");
+  } else if (result.outcome == gnuplot::Outcome::Failed) {
+    diagnostics.report(Severity::Warning, "gnuplot_failed", "no plots: gnuplot failed: " + result.message);
+  }
 }
+
 }  // namespace lodeline
