@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "lodeline/base/error.h"
 #include "lodeline/geometry/so3.h"
@@ -15,6 +16,32 @@ namespace {
 
 using namespace inertial_error;
 
+// One step between two readings; index 0 its start, 1 its end. Axes of body k.
+struct Step {
+  double h;  // s
+  Mat3 rotation_0, rotation_1;
+  Vec3 force_0, force_1;
+  Mat3 theta_by_bias;  // change of theta over the step by the gyroscope bias
+};
+
+// Derivative of the integration over one step: force_i changes by theta_i x force_i - rotation_i b_a, and
+// theta_1 = theta_0 + theta_by_bias b_g.
+Preintegration::Mat15 errorTransition(const Step& step) {
+  const double h = step.h;
+  const Mat3 force_0_by_theta = -so3::skew(step.force_0);
+  const Mat3 force_1_by_theta = -so3::skew(step.force_1);
+  Preintegration::Mat15 f = Preintegration::Mat15::Identity();
+  f.block<3, 3>(kAlpha, kBeta).diagonal().setConstant(h);
+  f.block<3, 3>(kAlpha, kTheta) = h * h * (force_0_by_theta / 3.0 + force_1_by_theta / 6.0);
+  f.block<3, 3>(kBeta, kTheta) = 0.5 * h * (force_0_by_theta + force_1_by_theta);
+  f.block<3, 3>(kAlpha, kGyroscopeBias) = h * h / 6.0 * force_1_by_theta * step.theta_by_bias;
+  f.block<3, 3>(kBeta, kGyroscopeBias) = 0.5 * h * force_1_by_theta * step.theta_by_bias;
+  f.block<3, 3>(kTheta, kGyroscopeBias) = step.theta_by_bias;
+  f.block<3, 3>(kAlpha, kAccelerometerBias) = -h * h * (step.rotation_0 / 3.0 + step.rotation_1 / 6.0);
+  f.block<3, 3>(kBeta, kAccelerometerBias) = -0.5 * h * (step.rotation_0 + step.rotation_1);
+  return f;
+}
+
 IntermediateRotation turned(const IntermediateRotation& rotation, const RotationIncrement& increment) {
   IntermediateRotation result;
   result.gamma = (rotation.gamma * so3::exp(increment.rotation_vector)).normalized();
@@ -24,16 +51,17 @@ IntermediateRotation turned(const IntermediateRotation& rotation, const Rotation
   return result;
 }
 
-void checkNoise(const ImuNoise& noise, double inflation) {
-  const double smallest = std::min(
-      {noise.gyroscope_density_rad_per_s_sqrtHz, noise.gyroscope_random_walk_rad_per_s2_sqrtHz,
-       noise.accelerometer_density_m_per_s2_sqrtHz, noise.accelerometer_random_walk_m_per_s3_sqrtHz});
-  // Written so that NaN fails too.
-  if (!(smallest * inflation > 0.0)) {
-    throw InputError(fmt::format(
-        "IMU noise: every density and the inflation must be positive, but the smallest density is "
-        "{} and the inflation {}; give the datasheet's figures",
-        smallest, inflation));
+void requirePositive(const ImuNoise& noise, double inflation) {
+  for (const double factor :
+       {noise.gyroscope_density_rad_per_s_sqrtHz, noise.gyroscope_random_walk_rad_per_s2_sqrtHz,
+        noise.accelerometer_density_m_per_s2_sqrtHz, noise.accelerometer_random_walk_m_per_s3_sqrtHz,
+        inflation}) {
+    if (!(factor > 0.0) || !std::isfinite(factor)) {
+      throw InputError(
+          fmt::format("IMU noise: every density and the inflation must be positive, but one is {}; give the "
+                      "datasheet's figures",
+                      factor));
+    }
   }
 }
 
@@ -48,7 +76,7 @@ Preintegration::Preintegration(std::span<const ImuSample> samples, const Vec3& g
                                const PreintegrationOptions& options)
     : samples_(samples.begin(), samples.end()), imu_(imu), options_(options) {
   requireUsable(samples);
-  checkNoise(imu.noise, options.noise_inflation);
+  requirePositive(imu.noise, options.noise_inflation);
   rotations_.reserve(samples_.size());
   repropagate(gyroscope_bias_B, accelerometer_bias_B);
 }
@@ -90,39 +118,27 @@ void Preintegration::integrate() {
 }
 
 void Preintegration::advance(const ImuSample& from, const ImuSample& to) {
-  const double h = (to.time - from.time).seconds();
+  Step step;
+  step.h = (to.time - from.time).seconds();
   const RotationIncrement increment(from.angular_velocity_B - gyroscope_bias_,
-                                    to.angular_velocity_B - gyroscope_bias_, h);
-  const Mat3 rotation_0 = motion_.gamma.toRotationMatrix();
+                                    to.angular_velocity_B - gyroscope_bias_, step.h);
+  step.rotation_0 = motion_.gamma.toRotationMatrix();
+  step.theta_by_bias = step.rotation_0 * so3::leftJacobian(increment.rotation_vector) * increment.by_bias;
   rotations_.push_back(turned(rotations_.back(), increment));
   motion_.gamma = rotations_.back().gamma;
-  const Mat3 rotation_1 = motion_.gamma.toRotationMatrix();
-  const Vec3 force_0 = rotation_0 * (from.specific_force_B - accelerometer_bias_);
-  const Vec3 force_1 = rotation_1 * (to.specific_force_B - accelerometer_bias_);
+  step.rotation_1 = motion_.gamma.toRotationMatrix();
+  step.force_0 = step.rotation_0 * (from.specific_force_B - accelerometer_bias_);
+  step.force_1 = step.rotation_1 * (to.specific_force_B - accelerometer_bias_);
 
   // Integrals of a force that runs linearly from force_0 to force_1.
-  motion_.alpha += h * motion_.beta + h * h * (force_0 / 3.0 + force_1 / 6.0);
-  motion_.beta += 0.5 * h * (force_0 + force_1);
+  motion_.alpha += step.h * motion_.beta + step.h * step.h * (step.force_0 / 3.0 + step.force_1 / 6.0);
+  motion_.beta += 0.5 * step.h * (step.force_0 + step.force_1);
 
-  // The error's transition over the step, [F G; 0 I], is the derivative of the lines above: force_i changes
-  // by theta_i x force_i - R_i b_a, and theta_1 = theta_0 + theta_by_bias * b_g.
-  const Mat3 theta_by_bias = rotation_0 * so3::leftJacobian(increment.rotation_vector) * increment.by_bias;
-  const Mat3 force_0_by_theta = -so3::skew(force_0);
-  const Mat3 force_1_by_theta = -so3::skew(force_1);
-  Mat15 transition = Mat15::Identity();
-  transition.block<3, 3>(kAlpha, kBeta).diagonal().setConstant(h);
-  transition.block<3, 3>(kAlpha, kTheta) = h * h * (force_0_by_theta / 3.0 + force_1_by_theta / 6.0);
-  transition.block<3, 3>(kBeta, kTheta) = 0.5 * h * (force_0_by_theta + force_1_by_theta);
-  transition.block<3, 3>(kAlpha, kGyroscopeBias) = h * h / 6.0 * force_1_by_theta * theta_by_bias;
-  transition.block<3, 3>(kBeta, kGyroscopeBias) = 0.5 * h * force_1_by_theta * theta_by_bias;
-  transition.block<3, 3>(kTheta, kGyroscopeBias) = theta_by_bias;
-  transition.block<3, 3>(kAlpha, kAccelerometerBias) = -h * h * (rotation_0 / 3.0 + rotation_1 / 6.0);
-  transition.block<3, 3>(kBeta, kAccelerometerBias) = -0.5 * h * (rotation_0 + rotation_1);
-
+  const Mat15 transition = errorTransition(step);
   bias_jacobian_ =
       (transition.topLeftCorner<9, 9>() * bias_jacobian_ + transition.topRightCorner<9, 6>()).eval();
   covariance_ = (transition * covariance_ * transition.transpose() +
-                 processNoise(h, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
+                 processNoise(step.h, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
                     .eval();
 }
 
