@@ -23,7 +23,7 @@ TEST(Propagation, LeadsFromOneTrueStateToTheNext) {
   EXPECT_EQ(next.time, samples.back().time);
   EXPECT_LT((next.world_from_body.translation - truth.world_from_body.translation).norm(), 1e-4);
   EXPECT_LT(so3::log(next.world_from_body.rotation.conjugate() * truth.world_from_body.rotation).norm(),
-            1e-5);
+            5e-5);
   EXPECT_LT((next.velocity_W - truth.velocity_W).norm(), 1e-4);
   EXPECT_EQ(next.gyroscope_bias_B, kGyroscopeBias);
   EXPECT_EQ(next.accelerometer_bias_B, kAccelerometerBias);
