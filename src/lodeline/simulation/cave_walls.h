@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lodeline/simulation/cave_style.h"
+#include "lodeline/simulation/centerline.h"
+#include "lodeline/simulation/triangle_mesh.h"
+
+namespace lodeline {
+
+/// One ring of wall vertices around the passage.
+struct WallRing {
+  Vec3f center = Vec3f::Zero();
+  Vec3f forward = Vec3f::UnitX();  ///< unit
+  Vec3f right = Vec3f::UnitY();    ///< unit, across the passage
+  Vec3f up = Vec3f::UnitZ();       ///< unit, right x forward
+  float half_width_m = 0.0f;
+  float half_height_m = 0.0f;
+};
+
+/// Walls, ceiling and sediment floor of a passage as a closed tube, its vertices in rings.
+struct CaveWalls {
+  std::vector<WallRing> rings;
+  int ring_size =
+      0;  ///< vertex j of ring i: index i * ring_size + j, at angle 2 pi j / ring_size from `right` to `up`
+  TriangleMesh mesh;  ///< with normals
+
+  const Vec3f& vertex(int ring, int j) const {
+    return mesh.positions[static_cast<size_t>(ring) * ring_size + j];
+  }
+};
+
+/// Sweeps a superelliptic section along the centreline, displaces it by layered noise (large alcoves, bedding
+/// ledges, crags down to the size of a triangle), buries its lower part in sediment and closes both ends. The
+/// inner half of the section stays free of rock, so that the dive line never meets the wall. At most about
+/// `max_triangles`.
+CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, uint64_t seed,
+                        size_t max_triangles);
+
+}  // namespace lodeline

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "lodeline/sensors/rig.h"
+#include "lodeline/simulation/light_field.h"
+#include "lodeline/simulation/render_settings.h"
+#include "lodeline/simulation/render_world.h"
+
+namespace lodeline {
+
+/// True pose of the body at a time of the dive (s). Asked for times around the exposure, and for up to six
+/// time constants of the automatic exposure before: hold the first pose where the dive has not begun.
+using WorldFromBodyAt = std::function<Rigid3(double time_s)>;
+
+/// Renders what a rig's cameras record in a world. All effects are functions of the settings, the motion and
+/// the time alone: images can be made in any order, by any number of threads at once, with the same bytes.
+class ImageRenderer {
+ public:
+  /// `true_rig` holds the cameras as they really are; with a flat port their intrinsics are those in air.
+  ImageRenderer(std::shared_ptr<const RenderWorld> world, const Rig& true_rig,
+                const RenderSettings& settings);
+
+  /// One image (CV_8UC1) exposed symmetrically about `middle_s`; with a rolling shutter, that is the middle
+  /// of the centre row.
+  cv::Mat render(int camera, const WorldFromBodyAt& motion, double middle_s) const;
+
+  /// What the automatic exposure has settled on at that time.
+  ExposureSetting exposure(int camera, const WorldFromBodyAt& motion, double middle_s) const;
+
+  /// Distance to the first surface along a unit direction, m: what a sonar or a landmark sees.
+  std::optional<double> range(const Vec3& origin_W, const Vec3& direction_W) const {
+    return world_->scene.range(origin_W, direction_W);
+  }
+
+  /// World point that a pixel position sees from a true body pose, traced exactly.
+  std::optional<Vec3> hitPoint(int camera, const Vec2& pixel, const Rigid3& world_from_body) const;
+
+  const CameraOptics& optics(int camera) const { return optics_[camera]; }
+  const RenderSettings& settings() const { return settings_; }
+
+ private:
+  /// Light before the sensor, and how far it came.
+  struct Light {
+    cv::Mat radiance;  ///< CV_32F, vignetted
+    cv::Mat range_m;   ///< CV_32F, infinite where nothing was met
+  };
+
+  LightField lightAt(const Rigid3& world_from_body, int camera, double time_s) const;
+  Light trace(int camera, const WorldFromBodyAt& motion, double middle_s, const LightField& light) const;
+  std::vector<float> meter(int camera, const Rigid3& world_from_body, double time_s) const;
+
+  std::shared_ptr<const RenderWorld> world_;
+  RenderSettings settings_;
+  std::vector<CameraOptics> optics_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "lodeline/simulation/cave_style.h"
+#include "lodeline/simulation/centerline.h"
+#include "lodeline/simulation/solid_texture.h"
+#include "lodeline/simulation/traced_scene.h"
+
+namespace lodeline {
+
+/// The place of a dive: what sonar and cameras see, and what it is made of. World frame W, m.
+struct RenderWorld {
+  RenderWorld(TriangleMesh mesh, uint64_t seed) : scene(std::move(mesh)), texture(seed) {}
+
+  TracedScene scene;
+  SolidTexture texture;
+};
+
+struct CaveOptions {
+  CaveStyle style;
+  uint64_t seed = 1;
+  /// Boulders and stalactites keep this far from the centreline, where the dive runs; the walls stay outside
+  /// of 0.6 of the local half width and half height.
+  double clearance_m = 0.9;
+  size_t max_triangles = 2'500'000;  ///< of the walls; the furniture adds up to about half as many
+};
+
+/// A cave along a centreline.
+std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options);
+
+}  // namespace lodeline

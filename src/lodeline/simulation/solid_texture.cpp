@@ -1,0 +1,152 @@
+#include "lodeline/simulation/solid_texture.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "lodeline/simulation/gradient_noise.h"
+
+namespace lodeline {
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Byte4 = int8_t __attribute__((vector_size(4)));
+
+/// Slopes are stored up to this magnitude (m/m).
+constexpr float kSlopeRange = 2.0f;
+
+/// Reflectance and height of the rock at a point of the unit tile.
+struct RockValue {
+  float reflectance;
+  float height;  ///< in tile lengths
+};
+
+RockValue rockValue(const Vec3f& p, uint32_t seed) {
+  const Vec3f warp(gradientNoise(p * 6.0f, seed + 1, 6), gradientNoise(p * 6.0f, seed + 2, 6),
+                   gradientNoise(p * 6.0f, seed + 3, 6));
+  const Vec3f q = p + 0.03f * warp;
+  const float stains = fractalNoise(q * 4.0f, 5, seed + 10, 0.72f, 4);
+  const CellDistances pits = cellNoise(q * 14.0f, seed + 20, 14);
+  const CellDistances grains = cellNoise(q * 28.0f, seed + 21, 28);
+  const float crack = 1.0f - std::min(1.0f, std::abs(gradientNoise(q * 5.0f, seed + 30, 5)) / 0.05f);
+  // Only some cells carry a pit, of random size; the same for bright grains (shell, calcite).
+  const float pit_radius = (pits.nearest_id >> 7 & 3) == 0 ? 0.22f + 0.002f * (pits.nearest_id & 127) : 0.0f;
+  const float pit = pit_radius > 0.0f ? smoothStep(pit_radius, 0.5f * pit_radius, pits.nearest) : 0.0f;
+  const float grain = (grains.nearest_id >> 9 & 7) == 0 ? smoothStep(0.40f, 0.28f, grains.nearest) : 0.0f;
+  RockValue value;
+  value.reflectance = 0.75f * stains - 0.75f * pit + 0.65f * grain - 0.5f * crack;
+  value.height =
+      0.020f * fractalNoise(q * 5.0f, 4, seed + 40, 0.6f, 5) - 0.016f * pit + 0.006f * grain - 0.010f * crack;
+  return value;
+}
+
+int8_t quantise(float value) {
+  return static_cast<int8_t>(std::lround(127.0f * std::clamp(value, -1.0f, 1.0f)));
+}
+
+int floorToInt(float x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (static_cast<float>(truncated) > x ? 1 : 0);
+}
+
+}  // namespace
+
+SolidTexture::SolidTexture(uint64_t seed) {
+  const int n = kSize;
+  std::vector<RockValue> values(static_cast<size_t>(n) * n * n);
+  const auto index = [n](int x, int y, int z) {
+    return (static_cast<size_t>(z & (n - 1)) * n + (y & (n - 1))) * n + (x & (n - 1));
+  };
+  tbb::parallel_for(0, n, [&](int z) {
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        values[index(x, y, z)] =
+            rockValue(Vec3f(x, y, z) / static_cast<float>(n), static_cast<uint32_t>(seed));
+  });
+  double mean = 0.0;
+  for (const RockValue& value : values) mean += value.reflectance;
+  const float offset = static_cast<float>(mean / static_cast<double>(values.size()));
+
+  levels_.push_back({n, std::vector<Voxel>(values.size())});
+  tbb::parallel_for(0, n, [&](int z) {
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const float half = 0.5f * n / kSlopeRange;
+        Voxel& voxel = levels_[0].voxels[index(x, y, z)];
+        voxel.channel[0] = quantise(values[index(x, y, z)].reflectance - offset);
+        voxel.channel[1] =
+            quantise(half * (values[index(x + 1, y, z)].height - values[index(x - 1, y, z)].height));
+        voxel.channel[2] =
+            quantise(half * (values[index(x, y + 1, z)].height - values[index(x, y - 1, z)].height));
+        voxel.channel[3] =
+            quantise(half * (values[index(x, y, z + 1)].height - values[index(x, y, z - 1)].height));
+      }
+  });
+  while (static_cast<int>(levels_.size()) < kLevels) addCoarserLevel();
+}
+
+void SolidTexture::addCoarserLevel() {
+  const Level& fine = levels_.back();
+  const int n = fine.size / 2;
+  Level coarse{n, std::vector<Voxel>(static_cast<size_t>(n) * n * n)};
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        for (int c = 0; c < 4; ++c) {
+          int sum = 0;
+          for (int corner = 0; corner < 8; ++corner) {
+            const size_t row =
+                static_cast<size_t>(2 * z + (corner >> 2)) * fine.size + 2 * y + (corner >> 1 & 1);
+            sum += fine.voxels[row * fine.size + 2 * x + (corner & 1)].channel[c];
+          }
+          coarse.voxels[(static_cast<size_t>(z) * n + y) * n + x].channel[c] =
+              static_cast<int8_t>(std::lround(sum / 8.0));
+        }
+  levels_.push_back(std::move(coarse));
+}
+
+TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footprint_m) const {
+  const float finest_m = tile_m / kSize;
+  const float level = footprint_m <= finest_m ? 0.0f : std::log2(footprint_m / finest_m);
+  if (level >= kLevels) return {};  // finer than a pixel altogether: its mean
+
+  const auto trilinear = [&](int which) {
+    const Level& grid = levels_[which];
+    const float scale = static_cast<float>(grid.size) / tile_m;
+    // Voxel centres of a coarser level lie between those of the finer one.
+    const float shift = 0.5f * (1.0f - static_cast<float>(grid.size) / kSize);
+    const float x = point.x() * scale - shift, y = point.y() * scale - shift, z = point.z() * scale - shift;
+    const int ix = floorToInt(x), iy = floorToInt(y), iz = floorToInt(z);
+    const float fx = x - ix, fy = y - iy, fz = z - iz;
+    const int mask = grid.size - 1;
+    const size_t row = grid.size;
+    const auto fetch = [&](int i, size_t line) {
+      Byte4 bytes;
+      std::memcpy(&bytes, &grid.voxels[line + (i & mask)], sizeof bytes);
+      return __builtin_convertvector(bytes, Float4);
+    };
+    Float4 sum = {0, 0, 0, 0};
+    for (int k = 0; k < 2; ++k)
+      for (int j = 0; j < 2; ++j) {
+        const size_t line = (static_cast<size_t>((iz + k) & mask) * row + ((iy + j) & mask)) * row;
+        const float weight = (k ? fz : 1.0f - fz) * (j ? fy : 1.0f - fy);
+        sum += fetch(ix, line) * (weight * (1.0f - fx)) + fetch(ix + 1, line) * (weight * fx);
+      }
+    return sum;
+  };
+
+  const int lower = static_cast<int>(level);
+  const float blend = level - static_cast<float>(lower);
+  Float4 value = trilinear(lower);
+  // The coarsest level fades out into the mean.
+  if (blend > 0.0f) value *= 1.0f - blend;
+  if (blend > 0.0f && lower + 1 < kLevels) value += trilinear(lower + 1) * blend;
+  TextureSample sample;
+  sample.reflectance = value[0] * (1.0f / 127.0f);
+  sample.slope = Vec3f(value[1], value[2], value[3]) * (kSlopeRange / 127.0f);
+  return sample;
+}
+
+}  // namespace lodeline

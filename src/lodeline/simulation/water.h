@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lodeline/simulation/render_types.h"
+
+namespace lodeline {
+
+/// A stretch of time in which stirred-up silt clouds the water.
+struct SiltEpisode {
+  double start_s = 0.0;
+  double duration_s = 5.0;
+  double peak_attenuation_per_m = 2.0;  ///< added at its thickest
+};
+
+/// Optical properties of the water, in one band of grey.
+struct WaterOptions {
+  double attenuation_per_m = 0.10;  ///< c in Beer-Lambert's exp(-c r), absorption and scattering together
+  double scattering_share = 0.6;    ///< b / c, single-scattering albedo of the water itself
+  double asymmetry = 0.88;          ///< Henyey-Greenstein's g, the mean cosine of scattering
+  double patchiness = 0.0;          ///< relative strength of clouds half a metre to metres wide
+  double drift_speed_m_per_s = 0.03;
+  std::vector<SiltEpisode> silt;
+};
+
+/// The water at one moment.
+class Water {
+ public:
+  Water(const WaterOptions& options, double time_s, uint64_t seed);
+
+  /// Whether attenuation is the same everywhere.
+  bool uniform() const { return silt_per_m_ <= 0.0f && patchiness_ <= 0.0f; }
+  float clearAttenuation() const { return clear_per_m_; }
+  /// Mean over space, 1/m.
+  float meanAttenuation() const { return clear_per_m_ + silt_per_m_; }
+
+  /// Attenuation and scattering coefficients at a place, 1/m.
+  struct Coefficients {
+    float attenuation = 0.0f;
+    float scattering = 0.0f;
+  };
+  Coefficients at(const Vec3f& point_W) const;
+
+  /// Share of scattered light per steradian at an angle, given its cosine: L. Henyey and J. Greenstein,
+  /// "Diffuse radiation in the galaxy", Astrophysical Journal 93, 1941.
+  float phase(float cosine) const;
+
+ private:
+  float clear_per_m_, scattering_share_, asymmetry_, patchiness_;
+  float silt_per_m_ = 0.0f;
+  Vec3f drift_m_;
+  uint32_t seed_;
+};
+
+/// How much an episode adds at a time, 1/m: quick to rise, slow to settle.
+double siltAttenuation(const SiltEpisode& episode, double time_s);
+
+}  // namespace lodeline
