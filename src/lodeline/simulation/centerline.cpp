@@ -7,41 +7,10 @@
 #include <numbers>
 
 #include "lodeline/base/error.h"
-#include "lodeline/simulation/random.h"
+#include "lodeline/simulation/waves.h"
 
 namespace lodeline {
 namespace {
-
-/// A smooth random function of arc length with unit RMS: waves of several lengths with random phases.
-class Waves {
- public:
-  Waves(uint64_t seed, const char* stream, double shortest_m, double longest_m) {
-    Random random(seed, stream);
-    constexpr int kCount = 6;
-    for (int i = 0; i < kCount; ++i) {
-      const double wavelength_m =
-          shortest_m * std::pow(longest_m / shortest_m, (i + random.uniform()) / kCount);
-      wave_number_[i] = 2.0 * std::numbers::pi / wavelength_m;
-      phase_[i] = random.uniform(0.0, 2.0 * std::numbers::pi);
-      // Longer waves are stronger, as in any passage that follows joints and bedding.
-      weight_[i] = std::sqrt(wavelength_m);
-    }
-    double power = 0.0;
-    for (const double w : weight_) power += 0.5 * w * w;
-    for (double& w : weight_) w /= std::sqrt(power);
-  }
-
-  double operator()(double s) const {
-    double sum = 0.0;
-    for (int i = 0; i < 6; ++i) sum += weight_[i] * std::sin(wave_number_[i] * s + phase_[i]);
-    return sum;
-  }
-
- private:
-  double wave_number_[6];
-  double phase_[6];
-  double weight_[6];
-};
 
 void check(const CenterlineOptions& o) {
   const auto positive = [](double value, const char* name) {
@@ -76,11 +45,11 @@ Centerline Centerline::generate(const CenterlineOptions& o) {
   const auto tangentAt = [&](double s) {
     const double bend = kMaxBend * std::tanh(o.bend_rad / kMaxBend * winding(s));
     const double azimuth = o.main_azimuth_rad + bend;
-    // Slope of a cosine-shaped descent plus the slope of the undulation, by central difference.
+    // Slope of a cosine-shaped descent plus that of the undulation.
     const double along = std::clamp(s / o.length_m, 0.0, 1.0);
     const double descent =
         0.5 * std::numbers::pi * std::sin(std::numbers::pi * along) * o.descent_m / o.length_m;
-    const double rise = o.undulation_m * (undulation(s + 0.05) - undulation(s - 0.05)) / 0.1;
+    const double rise = o.undulation_m * undulation.derivative(s);
     const double slope = std::clamp(rise - descent, -0.6, 0.6);
     return Vec3(std::sin(azimuth), std::cos(azimuth), slope).normalized();
   };

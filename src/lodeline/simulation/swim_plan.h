@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace lodeline {
+
+/// A stretch in which the rig lies perfectly still, e.g. put down on a ledge.
+struct StillPhase {
+  double begin_s = 0.0;
+  double duration_s = 0.0;
+};
+
+struct SwimPlanOptions {
+  uint64_t seed = 1;
+  double duration_s = 600.0;
+  double penetration_m = 75.0;  ///< farthest arc length along the centreline
+  bool round_trip = true;       ///< back to the start, or end at the far end
+  bool starts_at_rest = true;   ///< still for `start_rest_s`, else at cruising speed from the first instant
+  double start_rest_s = 4.0;
+  double turn_s = 10.0;           ///< hovering and turning round at the far end
+  double stops_per_minute = 0.6;  ///< short halts of 4 to 10 s
+  std::vector<StillPhase> still_phases;
+};
+
+/// When the diver swims, halts, turns and rests: progress along the centreline as functions of time, sampled
+/// at 20 Hz. Everything else of a dive's motion hangs on these.
+class SwimPlan {
+ public:
+  /// Throws UsageError where length and duration ask for a mean swimming speed outside 0.05 to 0.6 m/s.
+  explicit SwimPlan(const SwimPlanOptions& options);
+
+  double arcLength(double time_s) const { return sampled(arc_length_m_, time_s); }
+  /// 0 before the turn, 1 after it.
+  double turn(double time_s) const { return sampled(turn_, time_s); }
+  /// 0 where the rig lies still, 1 where it is held.
+  double activity(double time_s) const { return sampled(activity_, time_s); }
+  /// 0 hovering, 1 finning at full strength.
+  double kick(double time_s) const { return sampled(kick_, time_s); }
+
+  double meanSwimSpeed() const { return mean_speed_; }
+  double turnBegin_s() const { return turn_begin_s_; }
+  double turnEnd_s() const { return turn_begin_s_ + options_.turn_s; }
+
+ private:
+  struct Pause {
+    double begin_s, end_s;
+    bool still;
+  };
+  std::vector<Pause> pauses() const;
+  void addHalts(std::vector<Pause>& pauses) const;
+  void integrateSpeed();
+  double sampled(const std::vector<double>& values, double time_s) const;
+
+  SwimPlanOptions options_;
+  double turn_begin_s_ = 0.0;
+  double mean_speed_ = 0.0;
+  std::vector<double> arc_length_m_, turn_, activity_, kick_;
+};
+
+}  // namespace lodeline
