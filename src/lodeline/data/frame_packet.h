@@ -10,16 +10,18 @@ namespace lodeline {
 
 /// Everything the sensors said between one moment of images and the next.
 struct FramePacket {
-  Time time;  ///< mid-exposure of the images, on the IMU's clock
+  Time time;         ///< mid-exposure of the images, on the IMU's clock
+  Time image_stamp;  ///< the same moment as the recording wrote it: the stamp of the first camera's image
 
   /// One 8-bit grey image per camera of the rig; empty where the camera gave none.
   std::vector<cv::Mat> images;
 
   /// From the time of the packet before to `time`, readings at both ends interpolated, strictly increasing in
-  /// time. The first packet holds all readings kept from before the first image, so that the tilt can be
+  /// time. The first packet holds the readings kept from before the first image, so that the tilt can be
   /// averaged.
   std::vector<ImuSample> imu;
-  /// Longest stretch inside `imu` without a reading, s; more than a few nominal periods means data was lost.
+  /// Longest time between two true (not interpolated) readings that the interval of `imu` touches, s; more
+  /// than a few nominal periods means data was lost and the interpolation bridges it.
   double longest_imu_gap_s = 0.0;
 
   /// Readings in (time of the packet before, time].

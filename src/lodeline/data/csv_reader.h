@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/base/time.h"
+
+namespace lodeline {
+
+/// One row of a sensor's CSV file: an integer stamp in nanoseconds, then numbers, then perhaps a text column.
+struct CsvRow {
+  Time time;
+  std::vector<double> numbers;
+  std::string text;  ///< the first field after the numbers, blanks trimmed; empty where there is none
+};
+
+/// Reads comma-separated rows one at a time, so that memory does not grow with the length of the recording.
+/// Lines that start with '#', blank lines, a header without '#' and CRLF line ends are all normal. A row that
+/// cannot be used (wrong number of columns, no number where one is due, NaN, cut off) is reported with file
+/// and line and passed over.
+class CsvReader {
+ public:
+  /// `number_count`: how many numbers follow the stamp. Throws InputError where the file cannot be opened.
+  /// `diagnostics` must outlive the reader.
+  CsvReader(std::filesystem::path file, int number_count, Diagnostics* diagnostics);
+
+  /// The next usable row in the order of the file; false at its end.
+  bool next(CsvRow* row);
+
+  const std::filesystem::path& file() const { return file_; }
+  int line() const { return line_number_; }
+
+ private:
+  void readHeader(std::string_view header);
+  /// What is wrong with the current line, or nothing where it filled `row`.
+  std::string parseLine(std::string_view line, CsvRow* row);
+
+  std::filesystem::path file_;
+  size_t number_count_;
+  size_t column_count_;  ///< that every row must have: of the header where it names them, else the fewest
+  Diagnostics* diagnostics_;
+  std::ifstream stream_;
+  std::string line_;
+  std::vector<std::string_view> fields_;
+  int line_number_ = 0;
+};
+
+}  // namespace lodeline

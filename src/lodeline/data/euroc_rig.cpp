@@ -1,0 +1,163 @@
+#include "lodeline/data/euroc_rig.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "lodeline/base/error.h"
+#include "lodeline/data/csv_reader.h"
+#include "lodeline/data/euroc_calibration.h"
+#include "lodeline/data/kalibr_calibration.h"
+
+namespace lodeline {
+namespace {
+
+/// Rows from the start of a stream that its rate is measured on.
+constexpr int kRateRows = 50;
+/// A stated rate further than this factor from the measured one is wrong.
+constexpr double kRateFactor = 1.5;
+
+void warn(const std::string& kind, const std::string& message, Diagnostics* diagnostics) {
+  diagnostics->report(Severity::Warning, kind, message);
+}
+
+std::vector<Time> firstStamps(const std::filesystem::path& csv, int number_count) {
+  Diagnostics reported_when_read_in_earnest;
+  CsvReader reader(csv, number_count, &reported_when_read_in_earnest);
+  std::vector<Time> stamps;
+  CsvRow row;
+  while (static_cast<int>(stamps.size()) < kRateRows && reader.next(&row)) stamps.push_back(row.time);
+  return stamps;
+}
+
+/// The stated rate where it is plausible, else the inverse of the median step; 0 where neither can be had.
+double settleRate(const std::filesystem::path& csv, const std::vector<Time>& stamps, double stated_hz,
+                  Diagnostics* diagnostics) {
+  std::vector<double> steps_s;
+  for (size_t i = 1; i < stamps.size(); ++i) steps_s.push_back((stamps[i] - stamps[i - 1]).seconds());
+  if (steps_s.empty()) return stated_hz;
+  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2),
+                   steps_s.end());
+  const double median_s = steps_s[steps_s.size() / 2];
+  if (!(median_s > 0.0)) return stated_hz;
+  const double measured_hz = 1.0 / median_s;
+  if (!(stated_hz > 0.0)) return measured_hz;
+  if (measured_hz < stated_hz * kRateFactor && measured_hz > stated_hz / kRateFactor) return stated_hz;
+  warn("rate",
+       fmt::format("{}: the calibration says {:g} Hz but the stamps come at {:.4g} Hz, which is used",
+                   csv.string(), stated_hz, measured_hz),
+       diagnostics);
+  return measured_hz;
+}
+
+[[noreturn]] void throwEmpty(const std::filesystem::path& csv, const char* advice) {
+  throw InputError(fmt::format("{}: holds no usable row; {}", csv.string(), advice));
+}
+
+std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const KalibrFiles& kalibr,
+                                           const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
+  std::vector<CameraCalibration> chain;
+  if (kalibr.camchain) chain = readKalibrCameras(*kalibr.camchain, diagnostics);
+  std::vector<CameraCalibration> cameras;
+  for (const int index : layout.camera_indices) {
+    const std::string name = fmt::format("cam{}", index);
+    const std::filesystem::path yaml = layout.sensor(name) / "sensor.yaml";
+    CameraCalibration camera;
+    if (kalibr.camchain) {
+      if (index >= static_cast<int>(chain.size())) {
+        throw InputError(fmt::format("{}: key '{}' is missing, but the recording has this camera",
+                                     kalibr.camchain->string(), name));
+      }
+      camera = chain[static_cast<size_t>(index)];
+      if (std::filesystem::exists(yaml)) {
+        // Kalibr knows neither rates nor masks.
+        const EurocCameraExtras extras = readEurocCameraExtras(yaml);
+        camera.rate_hz = extras.rate_hz;
+        camera.mask_file = extras.mask_file;
+      }
+    } else {
+      camera = readEurocCamera(yaml, name, diagnostics);
+      camera.body_from_camera = body_from_euroc_body * camera.body_from_camera;
+    }
+    const std::filesystem::path csv = layout.csv(name);
+    const std::vector<Time> stamps = firstStamps(csv, 0);
+    if (stamps.empty()) throwEmpty(csv, "restore it or leave this camera out with camera_indices");
+    camera.rate_hz = settleRate(csv, stamps, camera.rate_hz, diagnostics);
+    if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
+    cameras.push_back(std::move(camera));
+  }
+  return cameras;
+}
+
+/// A sensor that a recording may or may not have.
+template <typename Calibration>
+std::optional<Calibration> readOptional(const EurocLayout& layout, const char* name, int number_count,
+                                        Rigid3 Calibration::*body_from_sensor,
+                                        Calibration (*read)(const std::filesystem::path& file,
+                                                            Diagnostics* diagnostics),
+                                        const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
+  const std::filesystem::path csv = layout.csv(name);
+  if (!std::filesystem::exists(csv)) return std::nullopt;
+  const std::vector<Time> stamps = firstStamps(csv, number_count);
+  if (stamps.empty()) {
+    warn("sensor_empty",
+         fmt::format("{}: holds no usable row; carrying on without this sensor", csv.string()), diagnostics);
+    return std::nullopt;
+  }
+  Calibration calibration = read(layout.sensor(name) / "sensor.yaml", diagnostics);
+  calibration.*body_from_sensor = body_from_euroc_body * (calibration.*body_from_sensor);
+  calibration.rate_hz = settleRate(csv, stamps, calibration.rate_hz, diagnostics);
+  if (!(calibration.rate_hz > 0.0)) calibration.rate_hz = Calibration().rate_hz;
+  return calibration;
+}
+
+EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnostics* diagnostics) {
+  const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
+  EurocImu imu;
+  if (!kalibr.imu || std::filesystem::exists(yaml)) imu = readEurocImu(yaml, diagnostics);
+  if (kalibr.imu) {
+    const double euroc_rate_hz = imu.calibration.rate_hz;
+    imu.calibration = readKalibrImu(*kalibr.imu, diagnostics);
+    if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = euroc_rate_hz;
+  }
+  const std::vector<Time> stamps = firstStamps(layout.csv("imu0"), 6);
+  if (stamps.empty()) throwEmpty(layout.csv("imu0"), "the estimator cannot work without inertial data");
+  imu.calibration.rate_hz = settleRate(layout.csv("imu0"), stamps, imu.calibration.rate_hz, diagnostics);
+  if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = ImuCalibration().rate_hz;
+  return imu;
+}
+
+void reportKalibr(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnostics* diagnostics) {
+  for (const auto& [file, sensor] : {std::pair(kalibr.camchain, "cam0"), std::pair(kalibr.imu, "imu0")}) {
+    if (!file || !std::filesystem::exists(layout.sensor(sensor) / "sensor.yaml")) continue;
+    diagnostics->report(Severity::Notice, "kalibr_used",
+                        fmt::format("calibration taken from {} instead of {}/sensor.yaml", file->string(),
+                                    layout.sensor(sensor).string()));
+  }
+}
+
+}  // namespace
+
+Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics) {
+  const std::filesystem::path beside =
+      std::filesystem::absolute(layout.mav0).lexically_normal().parent_path();
+  const KalibrFiles kalibr = findKalibrFiles({beside, layout.mav0});
+  reportKalibr(layout, kalibr, diagnostics);
+
+  const EurocImu imu = readImu(layout, kalibr, diagnostics);
+  const Rigid3 body_from_euroc_body = imu.euroc_body_from_imu.inverse();
+  Rig rig;
+  rig.imu = imu.calibration;
+  rig.cameras = readCameras(layout, kalibr, body_from_euroc_body, diagnostics);
+  rig.magnetometer = readOptional<MagnetometerCalibration>(
+      layout, "mag0", 3, &MagnetometerCalibration::body_from_magnetometer, readEurocMagnetometer,
+      body_from_euroc_body, diagnostics);
+  rig.pressure =
+      readOptional<PressureCalibration>(layout, "pressure0", 1, &PressureCalibration::body_from_pressure,
+                                        readEurocPressure, body_from_euroc_body, diagnostics);
+  rig.sonar = readOptional<SonarCalibration>(layout, "sonar0", 2, &SonarCalibration::body_from_sonar,
+                                             readEurocSonar, body_from_euroc_body, diagnostics);
+  return rig;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lodeline/data/csv_reader.h"
+#include "lodeline/data/euroc_rig.h"
+#include "lodeline/data/measurement_source.h"
+
+namespace lodeline {
+
+struct EurocOptions {
+  /// N of the camN folders to use; the first one is the reference. Empty for all that the recording has.
+  std::vector<int> camera_indices;
+};
+
+/// A recording in the EuRoC ASL layout, read as a stream: whatever its length, only a few rows are in memory.
+///
+///     mav0/camN/data.csv       #timestamp [ns],filename      (the name may be missing: STAMP.png then)
+///     mav0/imu0/data.csv       #timestamp [ns],w x y z [rad/s],a x y z [m/s^2]
+///     mav0/mag0/data.csv       #timestamp [ns],m_x [T],m_y [T],m_z [T]
+///     mav0/pressure0/data.csv  #timestamp [ns],depth [m]     (positive down)
+///     mav0/sonar0/data.csv     #timestamp [ns],range [m],angle [rad]
+///
+/// each with its sensor.yaml (see readEurocRig).
+class EurocSource : public MeasurementSource {
+ public:
+  /// `data`: the folder that contains mav0, or mav0 itself. `diagnostics` must outlive the source. Throws
+  /// InputError as findEurocLayout() and readEurocRig() do.
+  EurocSource(const std::filesystem::path& data, const EurocOptions& options, Diagnostics* diagnostics);
+
+  const Rig& rig() const override { return rig_; }
+  std::optional<ImuSample> nextImu() override;
+  std::optional<PendingImage> nextImage(size_t camera) override;
+  std::optional<MagnetometerSample> nextMagnetometer() override;
+  std::optional<DepthSample> nextDepth() override;
+  std::optional<SonarSample> nextSonar() override;
+
+ private:
+  void checkMagneticUnit(const MagnetometerSample& sample);
+
+  EurocLayout layout_;
+  Diagnostics* diagnostics_;
+  Rig rig_;
+  CsvReader imu_;
+  std::vector<CsvReader> cameras_;
+  std::optional<CsvReader> magnetometer_;
+  std::optional<CsvReader> pressure_;
+  std::optional<CsvReader> sonar_;
+  CsvRow row_;  ///< reused, so that reading does not allocate
+};
+
+}  // namespace lodeline

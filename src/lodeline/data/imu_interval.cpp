@@ -1,0 +1,50 @@
+#include "lodeline/data/imu_interval.h"
+
+#include <algorithm>
+
+namespace lodeline {
+
+ImuSample interpolate(const ImuSample& before, const ImuSample& after, Time time) {
+  const double weight = (time - before.time).seconds() / (after.time - before.time).seconds();
+  ImuSample sample;
+  sample.time = time;
+  sample.angular_velocity_B =
+      before.angular_velocity_B + weight * (after.angular_velocity_B - before.angular_velocity_B);
+  sample.specific_force_B =
+      before.specific_force_B + weight * (after.specific_force_B - before.specific_force_B);
+  return sample;
+}
+
+ImuIntervals::Coverage ImuIntervals::readUntil(Time time) {
+  const Duration history = Duration::fromSeconds(history_s_);
+  while (buffer_.empty() || buffer_.back().time < time) {
+    if (stream_.peek() == nullptr) return Coverage::AfterLast;
+    buffer_.push_back(stream_.pop());
+    if (cut_before_) continue;
+    // Until the first cut, old history goes, but never the pair of readings around `time`.
+    while (buffer_.size() > 2 && buffer_[1].time < std::min(time, buffer_.back().time) - history) {
+      buffer_.pop_front();
+    }
+  }
+  return buffer_.front().time <= time ? Coverage::Covered : Coverage::BeforeFirst;
+}
+
+std::vector<ImuSample> ImuIntervals::cut(Time time, double* longest_gap_s) {
+  std::vector<ImuSample> interval;
+  if (cut_before_) interval.push_back(border_);
+  *longest_gap_s = 0.0;
+  size_t after = 0;
+  for (; buffer_[after].time < time; ++after) {
+    if (interval.empty() || buffer_[after].time > interval.back().time) interval.push_back(buffer_[after]);
+    *longest_gap_s = std::max(*longest_gap_s, (buffer_[after + 1].time - buffer_[after].time).seconds());
+  }
+  const bool exact = buffer_[after].time == time;
+  border_ = exact ? buffer_[after] : interpolate(buffer_[after - 1], buffer_[after], time);
+  interval.push_back(border_);
+  const size_t spent = exact ? after : after - 1;
+  buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(spent));
+  cut_before_ = true;
+  return interval;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+
+#include "lodeline/sensors/measurements.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// What became of an attempt to decode an image.
+struct LoadedImage {
+  cv::Mat image;        ///< 8-bit grey; empty where there was none
+  std::string problem;  ///< why `image` is empty, naming the file; empty where all is well
+};
+
+/// An image that exists but is decoded only when somebody wants its pixels.
+struct PendingImage {
+  Time time;         ///< mid-exposure, on the camera's clock
+  std::string name;  ///< for messages: the file, or topic and stamp
+  /// Decodes. May run on another thread, at the same time as calls to the source; must not throw for damaged
+  /// images.
+  std::function<LoadedImage()> load;
+};
+
+/// A recording (or a live or simulated rig) as one stream per sensor, each pulled one reading at a time in
+/// the order in which it was stored; nothing at a stream's end. Streams of sensors that the rig does not have
+/// are empty. Sources neither sort nor repair: the Synchronizer does that, the same for all of them.
+class MeasurementSource {
+ public:
+  virtual ~MeasurementSource() = default;
+
+  /// The sensors, with the cameras in the order in which nextImage() counts them.
+  virtual const Rig& rig() const = 0;
+
+  virtual std::optional<ImuSample> nextImu() = 0;
+  virtual std::optional<PendingImage> nextImage(size_t camera) = 0;
+  virtual std::optional<MagnetometerSample> nextMagnetometer() { return std::nullopt; }
+  virtual std::optional<DepthSample> nextDepth() { return std::nullopt; }
+  virtual std::optional<SonarSample> nextSonar() { return std::nullopt; }
+};
+
+}  // namespace lodeline

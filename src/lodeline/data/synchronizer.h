@@ -1,0 +1,82 @@
+#pragma once
+
+#include <deque>
+#include <future>
+#include <optional>
+#include <vector>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/data/frame_packet.h"
+#include "lodeline/data/imu_interval.h"
+#include "lodeline/data/measurement_source.h"
+#include "lodeline/data/ordered_stream.h"
+
+namespace lodeline {
+
+struct SynchronizerOptions {
+  /// Images of other cameras belong to the first camera's when they lie this close; capped at 0.4 of the
+  /// frame period.
+  double match_tolerance_s = 5e-3;
+  /// Silence of the IMU and the slower sensors is reported beyond this many nominal periods.
+  double max_gap_periods = 4.0;
+  /// The same for images, where one lost frame is worth a word.
+  double max_image_gap_periods = 1.5;
+  /// Readings kept from before the first image.
+  double history_s = 10.0;
+  /// Leaves out the images of the first so many seconds.
+  double skip_s = 0.0;
+  /// Ends so many seconds after the first image used; 0 for the whole recording.
+  double duration_s = 0.0;
+  /// Decodes the next packet's images on threads of their own while the caller works on this one. The
+  /// packets are the same either way.
+  bool prefetch = false;
+};
+
+/// Turns a source's separate streams into one packet per image of the first camera. A packet is given out
+/// only when inertial readings at or past the image time are there, and magnetometer readings past it (or
+/// their stream has ended). Reports into `diagnostics`, each with its stamp: images without inertial data
+/// (dropped), images without a partner, missing and damaged images (an empty cv::Mat in the packet), and
+/// gaps, duplicates and disorder of every stream. Memory does not grow with the length of the recording.
+class Synchronizer {
+ public:
+  /// `source` and `diagnostics` must outlive the synchroniser.
+  Synchronizer(MeasurementSource* source, const SynchronizerOptions& options, Diagnostics* diagnostics);
+
+  /// The next packet; nothing at the end. Throws InputError for an image of another size than the
+  /// calibration says.
+  std::optional<FramePacket> next();
+
+  /// Readings and images held at present, for tests of its boundedness.
+  size_t bufferedReadings() const;
+
+ private:
+  /// A packet whose images are still to be decoded.
+  struct Draft {
+    FramePacket packet;
+    std::vector<std::optional<PendingImage>> pending;
+    std::vector<std::future<LoadedImage>> decoding;
+  };
+
+  StreamExpectation expectation(const char* kind, const std::string& name, double rate_hz) const;
+  std::optional<Draft> draftNext();
+  bool coveredByImu(const PendingImage& image);
+  std::optional<PendingImage> partnerOf(const PendingImage& reference, size_t camera);
+  void startDecoding(Draft* draft) const;
+  FramePacket finish(Draft draft);
+  void storeImage(size_t camera, const PendingImage& pending, LoadedImage loaded, FramePacket* packet);
+
+  MeasurementSource* source_;
+  SynchronizerOptions options_;
+  Diagnostics* diagnostics_;
+  ImuIntervals imu_;
+  std::vector<OrderedStream<PendingImage>> cameras_;
+  OrderedStream<MagnetometerSample> magnetometer_;
+  OrderedStream<DepthSample> depth_;
+  OrderedStream<SonarSample> sonar_;
+  std::optional<Time> first_image_time_;
+  std::optional<Time> last_packet_time_;
+  std::optional<Draft> prefetched_;
+  bool started_ = false;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+/// Parses a YAML file; the headers that OpenCV writes (%YAML:1.0) are accepted. Throws InputError, with file
+/// and line, where there is no such file or its text is no YAML.
+YAML::Node loadYamlFile(const std::filesystem::path& file);
+
+/// One map of a sensor's calibration, with errors that name the file and the key. Remembers which keys were
+/// asked for, so that the others can be pointed out.
+class CalibrationMap {
+ public:
+  /// `section`: the map's own key in the file, for messages; empty for the whole file. Throws InputError
+  /// where `node` is not a map.
+  CalibrationMap(YAML::Node node, std::filesystem::path file, std::string section);
+
+  bool has(const std::string& key);
+  /// Each throws InputError where the key is missing or holds something else.
+  double number(const std::string& key);
+  std::string text(const std::string& key);
+  std::vector<double> numbers(const std::string& key);
+  /// A 4x4 matrix as EuRoC's map of cols, rows, data, or as 16 numbers, or as 4 rows of 4.
+  Rigid3 transform(const std::string& key);
+  double numberOr(const std::string& key, double fallback);
+
+  /// Adds keys that are known but not needed.
+  void ignore(const std::vector<std::string>& keys);
+  /// Reports every key that was neither asked for nor ignored.
+  void reportUnknownKeys(Diagnostics* diagnostics) const;
+
+  /// "FILE: key KEY", for messages.
+  std::string at(const std::string& key) const;
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  YAML::Node require(const std::string& key);
+
+  YAML::Node node_;
+  std::filesystem::path file_;
+  std::string section_;
+  std::set<std::string> known_;
+};
+
+}  // namespace lodeline
