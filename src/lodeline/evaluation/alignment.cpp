@@ -15,12 +15,23 @@ namespace {
 // position noise would decide on the rotation about it.
 constexpr double kDegenerateRatio = 1e-9;
 
+// Standard deviation of the positions against their size below which they are one place, up to rounding.
+constexpr double kRestingRatio = 1e-12;
+
 struct Moments {
   Vec3 estimate_mean = Vec3::Zero();
   Vec3 reference_mean = Vec3::Zero();
   double estimate_variance = 0.0;
   double reference_variance = 0.0;
   Mat3 covariance = Mat3::Zero();  ///< of reference (rows) with estimate (columns)
+
+  bool estimateRests() const { return rests(estimate_variance, estimate_mean); }
+  bool referenceRests() const { return rests(reference_variance, reference_mean); }
+
+ private:
+  static bool rests(double variance, const Vec3& mean) {
+    return std::sqrt(variance) <= kRestingRatio * mean.norm();
+  }
 };
 
 Moments computeMoments(const PosePairs& pairs) {
@@ -101,9 +112,10 @@ Alignment align(AlignmentType type, const PosePairs& pairs) {
   Alignment result;
   if (type == AlignmentType::None) return result;
   const Moments moments = computeMoments(pairs);
+  const bool one_place = moments.estimateRests() || moments.referenceRests();
   Rotation rotation = best(type, moments.covariance);
   if (type == AlignmentType::Sim3) {
-    if (!(moments.estimate_variance > 0.0 && moments.reference_variance > 0.0 && rotation.trace > 0.0)) {
+    if (one_place || rotation.trace <= 0.0) {
       throw InputError(
           fmt::format("the {} pairs of poses leave the scale open: estimate or reference does not move; "
                       "use another alignment than sim3",
@@ -111,7 +123,7 @@ Alignment align(AlignmentType type, const PosePairs& pairs) {
     }
     result.scale = rotation.trace / moments.estimate_variance;
   }
-  if (!rotation.determined) {
+  if (one_place || !rotation.determined) {
     rotation = best(type, orientationMoments(pairs, pairs.size()));
     result.rotation_from_orientations = true;
   }

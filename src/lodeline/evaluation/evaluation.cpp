@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "lodeline/base/error.h"
 
 namespace lodeline {
@@ -18,11 +20,18 @@ PosePairs firstPairs(const PosePairs& pairs, std::size_t count) {
           {pairs.reference.begin(), pairs.reference.begin() + end}};
 }
 
+double roundTo2Digits(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::round(value / unit) * unit;
+}
+
 std::vector<double> stretchLengths(const EvaluationOptions& options, double path_m) {
   if (!options.stretch_lengths_m.empty()) return options.stretch_lengths_m;
   std::vector<double> lengths_m;
   if (path_m > 0.0) {
-    for (const double share : {0.1, 0.2, 0.3, 0.4, 0.5}) lengths_m.push_back(share * path_m);
+    for (const double share : {0.1, 0.2, 0.3, 0.4, 0.5}) {
+      lengths_m.push_back(roundTo2Digits(share * path_m));
+    }
   }
   return lengths_m;
 }

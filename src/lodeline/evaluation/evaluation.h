@@ -18,7 +18,8 @@ struct EvaluationOptions {
   AlignmentType alignment = AlignmentType::SE3;
   /// Use only the first so many pairs for the alignment; 0 uses all.
   std::size_t alignment_pairs = 0;
-  /// Lengths (m) of the overlapping stretches; empty: 10, 20, 30, 40 and 50 % of the reference's path.
+  /// Lengths (m) of the overlapping stretches; empty: 10, 20, 30, 40 and 50 % of the reference's path,
+  /// rounded to two digits.
   std::vector<double> stretch_lengths_m;
   /// Length (m) of the consecutive stretches.
   double consecutive_length_m = 10.0;

@@ -71,8 +71,8 @@ gnuplot::Figure errorOverTimeFigure(const Evaluation& e) {
                           curveOverTime(e, [&](std::size_t i) { return e.absolute.rotation_deg[i]; }));
   c += gnuplot::dataBlock("yaw", curveOverTime(e, [&](std::size_t i) { return e.absolute.yaw_deg[i]; }));
   c += fmt::format("{}set multiplot layout 2,1 title 'Errors after {} alignment' noenhanced\n", kStyle,
-                   toString(e.options.alignment));
-  c += "set lmargin 10\nset rmargin 3\nset offsets 0, 0, graph 0.15, graph 0.02\n";
+                   alignmentTitle(e.options.alignment));
+  c += "set tmargin 1.8\nset lmargin 10\nset rmargin 3\nset offsets 0, 0, graph 0.15, graph 0.02\n";
   c += "set ylabel 'position error (m)'\n";
   c += "plot $norm with lines lc '#000000' lw 1.6 title 'norm', $ex with lines lc '#d55e00' title 'x', "
        "$ey with lines lc '#009e73' title 'y', $ez with lines lc '#0072b2' title 'z'\n";
@@ -97,11 +97,11 @@ gnuplot::Figure relativeErrorFigure(const Evaluation& e) {
   std::string tics;
   for (const RelativeErrors& r : e.relative) {
     largest_m = std::max(largest_m, r.length_m);
-    tics += fmt::format("{}{:.4g}", tics.empty() ? "" : ", ", r.length_m);
+    tics += fmt::format("{}{:.3g}", tics.empty() ? "" : ", ", r.length_m);
   }
   c +=
       fmt::format("set boxwidth {}\nset xrange [0:{}]\nset xtics ({})\n", boxWidth(e), 1.1 * largest_m, tics);
-  c += "set lmargin 10\nset rmargin 3\nset yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n";
+  c += "set tmargin 1.8\nset lmargin 10\nset rmargin 3\nset yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n";
   c += "set ylabel 'position error (%)'\n" + boxPlot("position", "#d55e00");
   c += "set ylabel 'yaw error (deg)'\nset xlabel 'length of the stretch (m)'\n" + boxPlot("yaw", "#0072b2");
   c += "unset multiplot\n";

@@ -6,6 +6,9 @@
 /// The pictures of an evaluation: the reference in black, the estimate in colour.
 namespace lodeline {
 
+/// "SE(3)" and the like, for titles.
+const char* alignmentTitle(AlignmentType type);
+
 /// The path seen from above (x to the right, y up the page), equal axes.
 gnuplot::Figure topViewFigure(const Evaluation& evaluation);
 

@@ -97,7 +97,7 @@ std::pair<Range, Range> boxAround(const Curves& curves) {
 std::string plotCommand(const Curves& curves) {
   std::string command = "plot ";
   if (!curves.missed.points.empty()) {
-    command += "$missed with lines lc '#b0b0b0' lw 1.5 title 'reference without estimate', ";
+    command += "$missed with lines lc '#b0b0b0' lw 1.5 title 'not covered', ";
   }
   const Curve::Point& start = curves.estimate.points.front();
   const Curve::Point& end = curves.estimate.points.back();
@@ -114,7 +114,7 @@ gnuplot::Figure viewFigure(const Evaluation& e, const char* name, const char* ti
   const Curves curves = curvesAlong(e, right, up);
   const auto [x, y] = boxAround(curves);
   constexpr int kBoxWidth = 1060;
-  constexpr int kMargins = 190;
+  constexpr int kMargins = 210;
   gnuplot::Figure figure;
   figure.name = name;
   figure.height_px = kMargins + static_cast<int>(kBoxWidth * std::min(1.3, y.extent() / x.extent()));
@@ -124,11 +124,11 @@ gnuplot::Figure viewFigure(const Evaluation& e, const char* name, const char* ti
   figure.commands += fmt::format(
       "set title '{}: position error {:.3g} m rmse over {:.4g} m ({} alignment)' noenhanced\n"
       "set xlabel '{} (m)'\nset ylabel '{} (m)'\n"
-      "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
+      "set size ratio -1\nset tmargin 2.5\nset bmargin 5\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
       "set grid lc '#dddddd' lt 1 lw 0.7\nset border lw 0.8\nset tics nomirror out\n"
-      "set key outside bottom center horizontal samplen 2\n",
-      title, e.absolute.position().rmse, e.reference_path_m, toString(e.options.alignment), axis_names[0],
-      axis_names[1], x.min, x.max, y.min, y.max);
+      "set key bmargin center horizontal samplen 2\n",
+      title, e.absolute.position().rmse, e.reference_path_m, alignmentTitle(e.options.alignment),
+      axis_names[0], axis_names[1], x.min, x.max, y.min, y.max);
   figure.commands += plotCommand(curves);
   return figure;
 }

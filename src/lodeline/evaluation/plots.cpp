@@ -9,6 +9,20 @@
 
 namespace lodeline {
 
+const char* alignmentTitle(AlignmentType type) {
+  switch (type) {
+    case AlignmentType::None:
+      return "no";
+    case AlignmentType::Yaw:
+      return "position and yaw";
+    case AlignmentType::SE3:
+      return "SE(3)";
+    case AlignmentType::Sim3:
+      return "sim(3)";
+  }
+  return "";
+}
+
 void writePlots(const Evaluation& evaluation, const std::filesystem::path& folder, Diagnostics& diagnostics) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
