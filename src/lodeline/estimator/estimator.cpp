@@ -47,10 +47,20 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);
-  if (++frames_since_start_ >= options_.window.startup_frames) {
+  ++frames_since_start_;
+  starting_up_ = starting_up_ && !isSettled(estimate.covariance);
+  if (!starting_up_) {
     marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
   }
   return estimate;
+}
+
+bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
+  const WindowOptions& window = options_.window;
+  if (frames_since_start_ < window.startup_frames) return false;
+  const bool scale_is_given = rig_.cameras.size() > 1;
+  return scale_is_given || frames_since_start_ >= window.startup_max_frames ||
+         scaleUncertainty(window_.newest(), covariance) < window.startup_scale_sigma;
 }
 
 SightingList Estimator::sightingsOf(const FrameTracks& tracks) const {
@@ -122,10 +132,9 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  const bool starting_up = frames_since_start_ < options_.window.startup_frames;
-  const int max_iterations =
-      starting_up ? options_.solver.max_iterations_startup : options_.solver.max_iterations;
-  const SolveSummary summary = solveWindow(window_, marginalizer_.prior(), factors_, max_iterations);
+  const SolveLimits limits = starting_up_ ? SolveLimits{options_.solver.max_iterations_startup, 1e-6}
+                                          : SolveLimits{options_.solver.max_iterations, 1e-4};
+  const SolveSummary summary = solveWindow(window_, marginalizer_.prior(), factors_, limits);
   estimate->solver_iterations = summary.iterations;
   if (!summary.usable) {
     diagnostics_->report(

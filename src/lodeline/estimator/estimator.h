@@ -56,6 +56,8 @@ class Estimator {
   bool startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate);
   void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
+  /// Whether the window may begin to be marginalised.
+  bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   void report(const FrameTracks& tracks, FrameEstimate* estimate);
 
   Rig rig_;
@@ -69,6 +71,7 @@ class Estimator {
   std::vector<ImuSample> imu_before_start_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
+  bool starting_up_ = true;
 };
 
 }  // namespace lodeline

@@ -130,13 +130,8 @@ bool MonoInitializer::refine() {
     if (interval != intervals_.end()) frame->from_previous = std::move(interval->second);
   }
   const SolveSummary summary =
-      solveWindow(window_, prior_, factors_, options_.mono_initialization.max_iterations);
-  const Frame& newest = window_.newest();
-  const Eigen::Matrix<double, 15, 15> covariance = newestCovariance(window_, prior_, factors_);
-  const double displacement_m = newest.worldFromBody().translation.norm();
-  const Vec3 direction_W = newest.worldFromBody().translation / std::max(displacement_m, 1e-9);
-  const double sigma_m = std::sqrt(direction_W.dot(covariance.topLeftCorner<3, 3>() * direction_W));
-  const double share = sigma_m / std::max(displacement_m, 1e-9);
+      solveWindow(window_, prior_, factors_, {options_.mono_initialization.max_iterations, 1e-8});
+  const double share = scaleUncertainty(window_.newest(), newestCovariance(window_, prior_, factors_));
   if (summary.usable && share < options_.mono_initialization.max_scale_sigma) {
     intervals_.clear();
     return true;

@@ -30,15 +30,18 @@ struct MonoInitializationOptions {
   /// How far gravity may come out from its true magnitude when the alignment leaves it free.
   double gravity_tolerance_m_per_s2 = 1.0;
   double start_tilt_sigma_rad = 0.3;
-  int max_iterations = 30;
+  int max_iterations = 50;
   double max_scale_sigma = 0.1;  ///< relative; wait on while the scale is known worse
 };
 
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
   int keyframes = 7;      ///< older keyframes, kept as poses
-  /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen.
+  /// Nothing is marginalised before this many frames, nor before the scale is known to `startup_scale_sigma`
+  /// (relative; for at most `startup_max_frames`), so that no early, bad linearisation is frozen.
   int startup_frames = 20;
+  int startup_max_frames = 45;
+  double startup_scale_sigma = 0.03;
 };
 
 struct KeyframeOptions {

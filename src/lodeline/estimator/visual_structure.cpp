@@ -139,7 +139,7 @@ bool estimateStructure(Window& window, const std::vector<Preintegration*>& inter
   int landmarks = 0;
   for (int pass = 0; pass < 2; ++pass) {
     landmarks += createLandmarks(window, factors, landmark_options);
-    if (!solveWindow(window, gauge, factors, 20).usable) return false;
+    if (!solveWindow(window, gauge, factors, {20, 1e-6}).usable) return false;
     removeOutliers(window, factors, landmark_options);
   }
   const ReprojectionStatistics statistics = reprojectionStatistics(window, factors, newest.id);

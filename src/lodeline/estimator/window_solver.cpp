@@ -4,6 +4,8 @@
 #include <ceres/solver.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 
 #include "lodeline/estimator/normal_equations.h"
 
@@ -46,7 +48,8 @@ ceres::Problem::Options problemOptions() {
 
 }  // namespace
 
-SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors, int max_iterations) {
+SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
+                         const SolveLimits& limits) {
   repropagateWhereNeeded(window);
   PoseManifold pose_manifold;
   ceres::Problem problem(problemOptions());
@@ -72,8 +75,11 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
   solver_options.linear_solver_type = ceres::DENSE_SCHUR;
   solver_options.linear_solver_ordering = ordering;
   solver_options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-  solver_options.max_num_iterations = max_iterations;
-  solver_options.function_tolerance = 1e-4;
+  solver_options.max_num_iterations = limits.max_iterations;
+  solver_options.function_tolerance = limits.function_tolerance;
+  // Directions that only the whole window holds together (scale, tilt) have a curvature far below the
+  // diagonal of their blocks; the default damping of 1e-4 of that diagonal would creep along them.
+  solver_options.initial_trust_region_radius = 1e9;
   solver_options.num_threads = 1;
   solver_options.logging_type = ceres::SILENT;
   ceres::Solver::Summary ceres_summary;
@@ -85,6 +91,16 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
   summary.final_cost = ceres_summary.final_cost;
   summary.usable = ceres_summary.IsSolutionUsable();
   return summary;
+}
+
+double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance) {
+  const auto along = [](const Vec3& vector, const Mat3& vector_covariance) {
+    const double length = std::max(vector.norm(), 1e-9);
+    const Vec3 direction = vector / length;
+    return std::sqrt(direction.dot(vector_covariance * direction)) / length;
+  };
+  return std::min(along(newest.worldFromBody().translation, covariance.block<3, 3>(0, 0)),
+                  along(newest.velocity_W(), covariance.block<3, 3>(6, 6)));
 }
 
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,

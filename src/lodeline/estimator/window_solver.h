@@ -14,7 +14,16 @@ struct SolveSummary {
 /// Minimises the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
 /// thread, so that the same input gives the same bytes). Inertial terms whose biases moved too far are
 /// integrated again first.
-SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors, int max_iterations);
+struct SolveLimits {
+  int max_iterations = 4;
+  double function_tolerance = 1e-4;  ///< relative change of the cost that ends the iterations
+};
+SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
+                         const SolveLimits& limits);
+
+/// Relative standard deviation of the scale as the newest frame shows it: of its distance from the origin or
+/// of its speed along their directions, whichever is known better. `covariance` as from newestCovariance().
+double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
 
 /// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
