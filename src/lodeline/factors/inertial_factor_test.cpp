@@ -145,7 +145,7 @@ TEST(InertialFactor, WritesOnlyTheJacobiansAskedFor) {
 }
 
 TEST(InertialFactor, WhitenedNoiseHasUnitCovariance) {
-  constexpr int kRuns = 400;
+  constexpr int kRuns = 300;
   PreintegrationOptions options;
   options.noise_inflation = 1.0;
   const ImuCalibration imu;
@@ -153,7 +153,7 @@ TEST(InertialFactor, WhitenedNoiseHasUnitCovariance) {
   Gaussian gaussian;
   Vec15 sum = Vec15::Zero(), squares = Vec15::Zero();
   for (int run = 0; run < kRuns; ++run) {
-    auto samples = kMotion.readings(1.0, 1.5, imu.rate_hz, kGyroscopeBias, kAccelerometerBias);
+    auto samples = kMotion.readings(1.0, 1.2, imu.rate_hz, kGyroscopeBias, kAccelerometerBias);
     Vec3 gyroscope_walk = Vec3::Zero(), accelerometer_walk = Vec3::Zero();
     for (ImuSample& sample : samples) {
       sample.angular_velocity_B +=
