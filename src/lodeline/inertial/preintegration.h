@@ -12,7 +12,8 @@ namespace lodeline {
 
 struct PreintegrationOptions {
   /// Factor on all four densities of ImuNoise. Datasheet and Allan figures hold for a sensor at rest on a
-  /// bench; vibration, scale and alignment errors in motion are what this makes up for.
+  /// bench; this makes up for vibration, scale and alignment in motion. 10 is what fast flight needs (EuRoC
+  /// V1_03, intervals of 0.1 to 1 s, docs/inertial.md).
   double noise_inflation = 10.0;
 
   /// Two readings further apart than this, and further than 1.5 nominal periods, count as lost data.
