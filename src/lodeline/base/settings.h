@@ -1,0 +1,98 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <iosfwd>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lodeline {
+
+/// Ties the members of options structs to the keys of a YAML configuration. Keys are dotted paths whose last
+/// part carries the unit, "front_end.max_gap_s"; in a file the dots become nested maps.
+///
+///     Settings settings;
+///     settings.bind("front_end.max_features", &options.max_features, "features kept per image");
+///     settings.bind("magnetometer.model", &options.model, {{"paper", Model::Paper}, {"off", Model::Off}},
+///     "…"); settings.load("config.yaml"); settings.set("front_end.max_features", "400");  // the command
+///     line goes last and wins settings.write(stream);                         // what is in effect, itself a
+///     valid configuration
+///
+/// Whatever the user writes wrong throws UsageError with the place (file and line, or command line), the key,
+/// and what would be right: the nearest known key, or the kind of value.
+class Settings {
+ public:
+  /// `target` holds the default and must outlive the settings. Numbers must be finite.
+  void bind(const std::string& key, bool* target, const std::string& documentation);
+  void bind(const std::string& key, int* target, const std::string& documentation);
+  void bind(const std::string& key, double* target, const std::string& documentation);
+  void bind(const std::string& key, std::string* target, const std::string& documentation);
+  void bind(const std::string& key, std::vector<double>* target, const std::string& documentation);
+
+  /// An enumeration by the names that a configuration uses; every value of `target` must have one.
+  template <typename Enum>
+  void bind(const std::string& key, Enum* target, std::initializer_list<std::pair<const char*, Enum>> names,
+            const std::string& documentation);
+
+  void load(const std::filesystem::path& file);
+
+  /// `value` in YAML's spelling: "3", "true", "[1, 2]".
+  void set(const std::string& key, const std::string& value);
+
+  /// All keys in the order of binding, sections together, with their documentation as comments. Doubles read
+  /// back to the same bits.
+  void write(std::ostream& stream) const;
+
+ private:
+  /// A value as written: one scalar, or a list of them.
+  struct Text {
+    bool is_list = false;
+    std::vector<std::string> scalars;
+  };
+  struct Entry {
+    std::string key;
+    std::string documentation;
+    std::string kind;                        ///< "a number", for errors
+    std::function<bool(const Text&)> parse;  ///< stores the value; false where the text is no such value
+    std::function<std::string()> format;
+  };
+  struct Assignment {
+    std::string key;
+    std::string place;
+    Text value;
+  };
+  class FileReader;
+
+  void add(Entry entry);
+  void addChoice(const std::string& key, const std::string& documentation, std::vector<std::string> names,
+                 std::function<void(size_t)> store, std::function<size_t()> current);
+  void apply(const Assignment& assignment);
+  bool isSection(const std::string& path) const;
+  const Entry* find(const std::string& key) const;
+  std::string nearestKey(const std::string& key) const;
+
+  std::vector<Entry> entries_;
+};
+
+template <typename Enum>
+void Settings::bind(const std::string& key, Enum* target,
+                    std::initializer_list<std::pair<const char*, Enum>> names,
+                    const std::string& documentation) {
+  std::vector<std::string> texts;
+  std::vector<Enum> values;
+  for (const auto& [text, value] : names) {
+    texts.emplace_back(text);
+    values.push_back(value);
+  }
+  addChoice(
+      key, documentation, std::move(texts), [target, values](size_t i) { *target = values[i]; },
+      [target, values] {
+        size_t i = 0;
+        while (i < values.size() && values[i] != *target) ++i;
+        return i;
+      });
+}
+
+}  // namespace lodeline
