@@ -56,6 +56,11 @@ TrajectoryReadOptions readOptions(const Arguments& arguments, const std::string&
   return options;
 }
 
+bool isColmap(const std::string& path, const TrajectoryReadOptions& options) {
+  const TrajectoryFormat format = findTrajectory(path, options.format).format;
+  return format == TrajectoryFormat::ColmapText || format == TrajectoryFormat::ColmapBinary;
+}
+
 void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
   std::ofstream file(path);
   file << json.dump(2) << "\n";
@@ -70,10 +75,15 @@ void evaluateCommand(const Arguments& arguments) {
   options.alignment = alignmentTypeFromString(arguments.align);
   if (arguments.interpolate) options.association.method = AssociationMethod::Interpolate;
   if (!arguments.images.empty()) options.expected_stamps = readImageStamps(arguments.images);
-  const Trajectory estimate =
-      readTrajectory(arguments.estimate, readOptions(arguments, arguments.estimate_format), diagnostics);
-  const Trajectory reference =
-      readTrajectory(arguments.reference, readOptions(arguments, arguments.reference_format), diagnostics);
+  const auto estimate_options = readOptions(arguments, arguments.estimate_format);
+  const auto reference_options = readOptions(arguments, arguments.reference_format);
+  const bool for_colmap = !arguments.body_from_camera.empty() || !arguments.image_times.empty();
+  if (for_colmap && !isColmap(arguments.estimate, estimate_options) &&
+      !isColmap(arguments.reference, reference_options)) {
+    throw UsageError("--body-from-camera and --image-times are for COLMAP models; neither trajectory is one");
+  }
+  const Trajectory estimate = readTrajectory(arguments.estimate, estimate_options, diagnostics);
+  const Trajectory reference = readTrajectory(arguments.reference, reference_options, diagnostics);
 
   const Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
   if (!arguments.plots.empty()) writePlots(evaluation, arguments.plots, diagnostics);

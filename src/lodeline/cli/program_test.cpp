@@ -69,6 +69,15 @@ TEST_F(ProgramTest, EndsWithTwoOnWrongUsage) {
   EXPECT_EQ(run("evaluate " + file("a.tum") + " " + file("a.tum") + " --stretches-m 0").exit_code, 2);
 }
 
+TEST_F(ProgramTest, RefusesColmapOptionsWithoutAColmapModel) {
+  folder_.write("a.tum", tum_);
+  folder_.write("times.txt", "a.png 1.0\n");
+  const Execution result =
+      run("evaluate " + file("a.tum") + " " + file("a.tum") + " --image-times " + file("times.txt"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, HasSubstr("COLMAP"));
+}
+
 TEST_F(ProgramTest, EndsWithOneOnBadInputAndSaysWhere) {
   folder_.write("a.tum", tum_);
   folder_.write("bad.tum", "1.0 0 0 0 0 0 0 1\n2.0 0 x 0 0 0 0 1\n");

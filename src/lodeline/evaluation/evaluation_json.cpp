@@ -69,8 +69,10 @@ Json evaluationJson(const Evaluation& e, const Diagnostics& diagnostics) {
       {"pairs", e.pairs.size()},
       {"method", association.method == AssociationMethod::Nearest ? "nearest" : "interpolate"},
       {"tolerance_s", association.tolerance_s},
-      {"time_offset_s", association.time_offset_s},
-      {"span_s", (e.pairs.time.back() - e.pairs.time.front()).seconds()}};
+      {"time_offset_s", association.time_offset_s}};
+  if (e.reference.time_base == TimeBase::Stamps) {
+    json["association"]["span_s"] = (e.pairs.time.back() - e.pairs.time.front()).seconds();
+  }
   json["alignment"] = toJson(e.alignment, e.options.alignment);
   json["completion"] = toJson(e.completion);
   json["absolute"] = {{"position_m", toJson(e.absolute.position())},

@@ -18,8 +18,11 @@ std::string alignmentText(const Evaluation& e) {
   return text;
 }
 
-std::string completionText(const Completion& completion) {
-  if (!completion.by_images) return fmt::format("{:.2f} % of the reference's time", 100.0 * completion.share);
+std::string completionText(const Completion& completion, TimeBase time_base) {
+  if (!completion.by_images) {
+    return fmt::format("{:.2f} % of the reference's {}", 100.0 * completion.share,
+                       time_base == TimeBase::Index ? "rows" : "time");
+  }
   return fmt::format("{:.2f} % ({} of {} images)", 100.0 * completion.share, completion.estimated,
                      completion.expected);
 }
@@ -35,7 +38,7 @@ std::string overview(const Evaluation& e) {
   text += fmt::format("alignment   {}\n", alignmentText(e));
   text += fmt::format("path        reference {:.3f} m, estimate {:.3f} m\n", e.reference_path_m,
                       e.estimate_path_m);
-  text += fmt::format("completion  {}\n", completionText(e.completion));
+  text += fmt::format("completion  {}\n", completionText(e.completion, e.reference.time_base));
   return text;
 }
 

@@ -12,7 +12,7 @@ using gnuplot::Curve;
 
 const char* const kStyle =
     "set grid lc '#dddddd' lt 1 lw 0.7\nset border lw 0.8\nset tics nomirror out\n"
-    "set key top left opaque samplen 2 horizontal\n";
+    "set key tmargin right samplen 2 horizontal\n";
 
 template <typename ValueOf>
 Curve curveOverTime(const Evaluation& e, ValueOf valueOf) {
@@ -70,14 +70,16 @@ gnuplot::Figure errorOverTimeFigure(const Evaluation& e) {
   c += gnuplot::dataBlock("angle",
                           curveOverTime(e, [&](std::size_t i) { return e.absolute.rotation_deg[i]; }));
   c += gnuplot::dataBlock("yaw", curveOverTime(e, [&](std::size_t i) { return e.absolute.yaw_deg[i]; }));
-  c += fmt::format("{}set multiplot layout 2,1 title 'Errors after {} alignment' noenhanced\n", kStyle,
-                   alignmentTitle(e.options.alignment));
-  c += "set tmargin 1.8\nset lmargin 10\nset rmargin 3\nset offsets 0, 0, graph 0.15, graph 0.02\n";
+  c += fmt::format(
+      "{}set multiplot layout 2,1\nset label 1 'Errors after {} alignment' at graph 0, 1.07 left\n", kStyle,
+      alignmentTitle(e.options.alignment));
+  c += "set tmargin 2.5\nset lmargin 10\nset rmargin 3\nset offsets 0, 0, graph 0.05, graph 0.02\n";
   c += "set ylabel 'position error (m)'\n";
   c += "plot $norm with lines lc '#000000' lw 1.6 title 'norm', $ex with lines lc '#d55e00' title 'x', "
        "$ey with lines lc '#009e73' title 'y', $ez with lines lc '#0072b2' title 'z'\n";
   const bool by_index = e.reference.time_base == TimeBase::Index;
-  c += fmt::format("set ylabel 'angle (deg)'\nset xlabel '{}'\n", by_index ? "row" : "time (s)");
+  c += fmt::format("unset label 1\nset ylabel 'angle (deg)'\nset xlabel '{}'\n",
+                   by_index ? "row" : "time (s)");
   c += "plot $angle with lines lc '#000000' lw 1.6 title 'rotation', $yaw with lines lc '#0072b2' title "
        "'yaw'\n";
   c += "unset multiplot\n";
@@ -101,7 +103,7 @@ gnuplot::Figure relativeErrorFigure(const Evaluation& e) {
   }
   c +=
       fmt::format("set boxwidth {}\nset xrange [0:{}]\nset xtics ({})\n", boxWidth(e), 1.1 * largest_m, tics);
-  c += "set tmargin 1.8\nset lmargin 10\nset rmargin 3\nset yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n";
+  c += "set tmargin 2.5\nset lmargin 10\nset rmargin 3\nset yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n";
   c += "set ylabel 'position error (%)'\n" + boxPlot("position", "#d55e00");
   c += "set ylabel 'yaw error (deg)'\nset xlabel 'length of the stretch (m)'\n" + boxPlot("yaw", "#0072b2");
   c += "unset multiplot\n";
