@@ -73,8 +73,8 @@ TEST_F(ReferenceResults, EvoSptamOnKitti00) {
              1e-5);
 }
 
-// No figures are stored beside these; the bounds are those of their publication's class (rotation below 2
-// deg, position below 1 % of the path) and fail when times, conventions or the alignment are wrong.
+// No figures are stored beside these. The bounds stand just above what was found (0.24 % of the path, 1.95
+// deg, mostly a constant turn of the body frame); wrong times, conventions or alignment exceed them by far.
 TEST_F(ReferenceResults, RpgVisualInertialEstimatesAlignInYaw) {
   for (const char* name : {"laptop_vislam_ba_MH_04", "laptop_vislam_ba_V1_02"}) {
     for (const char* estimate : {"/stamped_ba_estimate0.txt.gz", "/stamped_ba_estimate1.txt.gz"}) {
@@ -82,7 +82,7 @@ TEST_F(ReferenceResults, RpgVisualInertialEstimatesAlignInYaw) {
       const Evaluation e =
           compare(sequence + estimate, sequence + "/stamped_groundtruth.txt.gz", AlignmentType::Yaw);
       EXPECT_EQ(e.pairs.size(), e.estimate.size());
-      EXPECT_LT(e.absolute.position().rmse, 0.01 * e.reference_path_m);
+      EXPECT_LT(e.absolute.position().rmse, 0.003 * e.reference_path_m);
       EXPECT_LT(e.absolute.rotation().rmse, 2.0);
     }
   }
