@@ -74,10 +74,12 @@ void Settings::bind(const std::string& key, std::string* target, const std::stri
        [target] { return quotedText(*target); }});
 }
 
-void Settings::bind(const std::string& key, std::vector<double>* target, const std::string& documentation) {
-  add({key, documentation, "a list of numbers, like [1, 2]",
+template <typename Number>
+void Settings::addList(const std::string& key, std::vector<Number>* target, const std::string& documentation,
+                       const std::string& kind) {
+  add({key, documentation, kind,
        [target](const Text& text) {
-         std::vector<double> numbers(text.scalars.size());
+         std::vector<Number> numbers(text.scalars.size());
          for (size_t i = 0; i < numbers.size(); ++i) {
            if (!parseNumber(text.scalars[i], &numbers[i])) return false;
          }
@@ -85,6 +87,14 @@ void Settings::bind(const std::string& key, std::vector<double>* target, const s
          return text.is_list;
        },
        [target] { return fmt::format("[{}]", fmt::join(*target, ", ")); }});
+}
+
+void Settings::bind(const std::string& key, std::vector<double>* target, const std::string& documentation) {
+  addList(key, target, documentation, "a list of numbers, like [1, 2]");
+}
+
+void Settings::bind(const std::string& key, std::vector<int>* target, const std::string& documentation) {
+  addList(key, target, documentation, "a list of whole numbers, like [1, 2]");
 }
 
 void Settings::addChoice(const std::string& key, const std::string& documentation,

@@ -30,6 +30,7 @@ class Settings {
   void bind(const std::string& key, double* target, const std::string& documentation);
   void bind(const std::string& key, std::string* target, const std::string& documentation);
   void bind(const std::string& key, std::vector<double>* target, const std::string& documentation);
+  void bind(const std::string& key, std::vector<int>* target, const std::string& documentation);
 
   /// An enumeration by the names that a configuration uses; every value of `target` must have one.
   template <typename Enum>
@@ -66,6 +67,9 @@ class Settings {
   class FileReader;
 
   void add(Entry entry);
+  template <typename Number>
+  void addList(const std::string& key, std::vector<Number>* target, const std::string& documentation,
+               const std::string& kind);
   void addChoice(const std::string& key, const std::string& documentation, std::vector<std::string> names,
                  std::function<void(size_t)> store, std::function<size_t()> current);
   void apply(const Assignment& assignment);

@@ -7,6 +7,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/cli/evaluate_command.h"
+#include "lodeline/cli/run_command.h"
 
 namespace {
 
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", "lodeline " LODELINE_VERSION);
   program.require_subcommand(1);
   program.footer("`lodeline COMMAND --help` explains a command, with examples.");
+  lodeline::addRunCommand(program);
   lodeline::addEvaluateCommand(program);
   try {
     program.parse(argc, argv);

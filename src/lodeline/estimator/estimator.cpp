@@ -159,4 +159,14 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
                                                                                         : Status::Inertial;
 }
 
+std::vector<MapPoint> Estimator::currentMapPoints() const {
+  std::vector<MapPoint> points;
+  for (const auto& [id, track] : window_.tracks()) {
+    if (!track.landmark) continue;
+    if (const auto point = mapPointOf(window_, id, track, factors_.bodyFromCamera(0)))
+      points.push_back(*point);
+  }
+  return points;
+}
+
 }  // namespace lodeline

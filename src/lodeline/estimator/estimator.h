@@ -49,6 +49,11 @@ class Estimator {
   const Window& window() const { return window_; }
   const Prior& prior() const { return marginalizer_.prior(); }
 
+  /// Landmarks that left the window since the last call, in order.
+  std::vector<MapPoint> takeMapPoints() { return marginalizer_.takeMapPoints(); }
+  /// Landmarks that are still in it.
+  std::vector<MapPoint> currentMapPoints() const;
+
  private:
   SightingList sightingsOf(const FrameTracks& tracks) const;
   bool initialize(const FrameTracks& tracks, const SightingList& sightings, std::span<const ImuSample> imu,

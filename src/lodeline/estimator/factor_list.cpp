@@ -26,7 +26,7 @@ Factor FactorMaker::prior(const Prior& prior) const {
   return factor;
 }
 
-LandmarkFactors FactorMaker::landmark(Window& window, Track& track) const {
+LandmarkFactors FactorMaker::landmark(Window& window, TrackHistory& track) const {
   Landmark& landmark = *track.landmark;
   Frame& host = *window.find(landmark.host);
   LandmarkFactors result;

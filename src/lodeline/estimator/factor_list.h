@@ -36,7 +36,7 @@ class FactorMaker {
   Factor inertial(Frame& before, Frame& frame) const;
   Factor prior(const Prior& prior) const;
   /// All sightings of a track that has a landmark.
-  LandmarkFactors landmark(Window& window, Track& track) const;
+  LandmarkFactors landmark(Window& window, TrackHistory& track) const;
 
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
 

@@ -8,7 +8,7 @@ namespace lodeline {
 namespace {
 
 /// Sighting by camera 0 in the newest keyframe that has one.
-const Sighting* hostSighting(const Window& window, const Track& track) {
+const Sighting* hostSighting(const Window& window, const TrackHistory& track) {
   for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
     if (sighting->camera == 0 && window.find(sighting->frame)->is_keyframe) return &*sighting;
   }
@@ -25,7 +25,7 @@ struct InverseDistance {
   double rms_sigmas = 1e9;
 };
 
-InverseDistance solveInverseDistance(const Window& window, const Track& track, const Sighting& host,
+InverseDistance solveInverseDistance(const Window& window, const TrackHistory& track, const Sighting& host,
                                      const FactorMaker& factors) {
   struct Equation {
     Vec3 direction;  // R d
@@ -84,7 +84,7 @@ Vec2 residualOf(Factor& factor) {
 }  // namespace
 
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
-  std::vector<Track*> candidates;
+  std::vector<TrackHistory*> candidates;
   int landmarks = 0;
   for (auto& [id, track] : window.tracks()) {
     if (track.landmark) {
@@ -93,10 +93,11 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
       candidates.push_back(&track);
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Track* a, const Track* b) { return a->sightings.size() > b->sightings.size(); });
+  std::stable_sort(candidates.begin(), candidates.end(), [](const TrackHistory* a, const TrackHistory* b) {
+    return a->sightings.size() > b->sightings.size();
+  });
   int created = 0;
-  for (Track* track : candidates) {
+  for (TrackHistory* track : candidates) {
     if (landmarks + created >= options.max_landmarks) break;
     const Sighting* host = hostSighting(window, *track);
     if (!host) continue;

@@ -50,7 +50,18 @@ Eigen::VectorXd firstEstimate(Window& window, const double* value) {
 
 }  // namespace
 
-void moveToNewHost(Window& window, Track& track, FrameId excluded, const Rigid3& body_from_host_camera) {
+std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
+                                   const Rigid3& body_from_host_camera) {
+  constexpr double kMinInverseDistance = 1e-3;
+  const Landmark& landmark = *track.landmark;
+  if (landmark.inverseDistance() < kMinInverseDistance) return std::nullopt;
+  const Vec3 point_C = landmark.base.direction(landmark.parameters.data()) / landmark.inverseDistance();
+  const Rigid3 world_from_camera = window.find(landmark.host)->worldFromBody() * body_from_host_camera;
+  return MapPoint{id, world_from_camera * point_C, static_cast<int>(track.sightings.size())};
+}
+
+void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded,
+                   const Rigid3& body_from_host_camera) {
   Landmark& landmark = *track.landmark;
   const Rigid3 world_from_old = window.find(landmark.host)->worldFromBody() * body_from_host_camera;
   for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
@@ -106,6 +117,8 @@ void Marginalizer::removeOldestKeyframe(Window& window) {
       }
     } else {
       system.addEliminated(factors_.landmark(window, track));
+      if (const auto point = mapPointOf(window, id, track, factors_.bodyFromCamera(0)))
+        map_points_.push_back(*point);
       track.landmark.reset();
       track.sightings.clear();
     }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/normal_equations.h"
 
@@ -21,6 +24,9 @@ class Marginalizer {
 
   const Prior& prior() const { return prior_; }
 
+  /// Landmarks that left the window since the last call, in order.
+  std::vector<MapPoint> takeMapPoints() { return std::exchange(map_points_, {}); }
+
  private:
   /// Oldest frame with motion: a keyframe loses its motion; any other frame goes, its sightings being dropped
   /// so that the prior stays sparse.
@@ -34,10 +40,16 @@ class Marginalizer {
 
   const FactorMaker& factors_;
   Prior prior_;
+  std::vector<MapPoint> map_points_;
 };
+
+/// Where a track's landmark is now; nothing for points too far away to have a position (beyond 1 km).
+std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
+                                   const Rigid3& body_from_host_camera);
 
 /// Moves a landmark to the newest keyframe that sees it, other than `excluded`, keeping its position. Without
 /// such a keyframe, or when the point would lie behind it, the track loses its landmark.
-void moveToNewHost(Window& window, Track& track, FrameId excluded, const Rigid3& body_from_host_camera);
+void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded,
+                   const Rigid3& body_from_host_camera);
 
 }  // namespace lodeline

@@ -21,14 +21,14 @@ void Frame::setState(const NavigationState& state) {
   block << state.velocity_W, state.gyroscope_bias_B, state.accelerometer_bias_B;
 }
 
-const Sighting* Track::find(FrameId frame, int camera) const {
+const Sighting* TrackHistory::find(FrameId frame, int camera) const {
   for (const Sighting& sighting : sightings) {
     if (sighting.frame == frame && sighting.camera == camera) return &sighting;
   }
   return nullptr;
 }
 
-bool Track::seenIn(FrameId frame) const {
+bool TrackHistory::seenIn(FrameId frame) const {
   return std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& s) { return s.frame == frame; });
 }
 

@@ -61,8 +61,15 @@ struct Landmark {
   double inverseDistance() const { return parameters[2]; }
 };
 
+/// A landmark that nothing will change any more.
+struct MapPoint {
+  TrackId track = -1;
+  Vec3 position_W = Vec3::Zero();  ///< m
+  int sightings = 0;               ///< in the window when it left
+};
+
 /// All that the window knows of one tracked point.
-struct Track {
+struct TrackHistory {
   std::vector<Sighting> sightings;  ///< in order of time, then camera
   std::optional<Landmark> landmark;
 
@@ -89,8 +96,8 @@ class Window {
   Frame* oldestRecent() const;
   Frame* after(const Frame& frame) const;
 
-  std::map<TrackId, Track>& tracks() { return tracks_; }
-  const std::map<TrackId, Track>& tracks() const { return tracks_; }
+  std::map<TrackId, TrackHistory>& tracks() { return tracks_; }
+  const std::map<TrackId, TrackHistory>& tracks() const { return tracks_; }
 
   /// Forgets a frame with all its sightings. No landmark may be hosted there any more.
   void remove(FrameId id);
@@ -99,7 +106,7 @@ class Window {
 
  private:
   std::deque<std::unique_ptr<Frame>> frames_;
-  std::map<TrackId, Track> tracks_;
+  std::map<TrackId, TrackHistory> tracks_;
 };
 
 }  // namespace lodeline

@@ -1,0 +1,98 @@
+#include "lodeline/cli/run_settings.h"
+
+namespace lodeline {
+namespace {
+
+void bindSource(Settings* settings, EurocOptions* source, SynchronizerOptions* synchronizer) {
+  settings->bind("source.cameras", &source->camera_indices,
+                 "cameras to use, by number; the first is the reference; [] for all");
+  settings->bind("source.skip_s", &synchronizer->skip_s, "leave out the images of the first so many seconds");
+  settings->bind("source.duration_s", &synchronizer->duration_s, "end after so many seconds; 0 for all");
+  settings->bind("source.camera_match_tolerance_s", &synchronizer->match_tolerance_s,
+                 "images of other cameras belong to the first camera's when this close");
+  settings->bind("source.max_gap_periods", &synchronizer->max_gap_periods,
+                 "report silence of a sensor longer than this many periods");
+  settings->bind("source.prefetch", &synchronizer->prefetch,
+                 "decode the next images while the present are worked on");
+}
+
+void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
+  settings->bind("front_end.max_tracks", &options->detector.max_tracks, "points followed at a time");
+  settings->bind("front_end.min_distance_px", &options->detector.min_distance_px,
+                 "between new points and others");
+  settings->bind("front_end.min_gradient_grey_per_px", &options->detector.min_gradient_grey_per_px,
+                 "weakest texture that a point may have");
+  settings->bind("front_end.pyramid_levels", &options->pyramid_levels, "halvings of the image plus one");
+  settings->bind("front_end.max_forward_backward_px", &options->tracker.max_forward_backward_px,
+                 "largest error when a point is followed back");
+  settings->bind("front_end.max_stereo_epipolar_px", &options->stereo.max_epipolar_px,
+                 "largest distance of a stereo match from its epipolar line");
+  settings->bind("front_end.min_depth_m", &options->stereo.min_depth_m,
+                 "nearest point that stereo matching looks for");
+  settings->bind("front_end.max_epipolar_px", &options->consensus.max_error_px,
+                 "largest disagreement of a point with the motion of the others");
+  settings->bind("front_end.max_gap_s", &options->max_gap_s, "images missing for longer end all tracks");
+  settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation");
+}
+
+void bindInertial(Settings* settings, PreintegrationOptions* options) {
+  settings->bind("inertial.noise_inflation", &options->noise_inflation,
+                 "factor on all noise densities of the IMU's calibration");
+  settings->bind("inertial.max_gap_s", &options->max_gap_s, "readings further apart count as lost data");
+  settings->bind("inertial.gap_rate_sigma_rad_per_s", &options->gap_rate_sigma_rad_per_s,
+                 "uncertainty of the rate over lost data");
+  settings->bind("inertial.gap_specific_force_sigma_m_per_s2", &options->gap_specific_force_sigma_m_per_s2,
+                 "uncertainty of the specific force over lost data");
+}
+
+void bindStart(Settings* settings, InitialStateOptions* start, MonoInitializationOptions* mono) {
+  settings->bind("start.alignment_window_s", &start->alignment_window_s,
+                 "inertial readings that give the first tilt");
+  settings->bind("start.min_stereo_tracks", &start->min_stereo_tracks, "stereo matches that a start takes");
+  settings->bind("start.velocity_sigma_m_per_s", &start->velocity_sigma_m_per_s, "of a start in motion");
+  settings->bind("start.velocity_sigma_still_m_per_s", &start->velocity_sigma_still_m_per_s,
+                 "of a start at rest");
+  settings->bind("start.gyroscope_bias_sigma_rad_per_s", &start->gyroscope_bias_sigma_rad_per_s,
+                 "turn-on bias");
+  settings->bind("start.accelerometer_bias_sigma_m_per_s2", &start->accelerometer_bias_sigma_m_per_s2,
+                 "turn-on bias");
+  settings->bind("start.mono.min_parallax_px", &mono->min_parallax_px, "that visual structure takes");
+  settings->bind("start.mono.min_common_tracks", &mono->min_common_tracks, "of the first and the last image");
+  settings->bind("start.mono.max_duration_s", &mono->max_duration_s, "longest stretch that is looked at");
+  settings->bind("start.mono.max_scale_sigma", &mono->max_scale_sigma,
+                 "relative; wait on while it is larger");
+}
+
+void bindEstimator(Settings* settings, EstimatorOptions* options) {
+  settings->bind("window.recent_frames", &options->window.recent_frames,
+                 "newest frames, with velocity and biases");
+  settings->bind("window.keyframes", &options->window.keyframes, "older keyframes");
+  settings->bind("window.startup_frames", &options->window.startup_frames, "nothing is marginalised before");
+  settings->bind("keyframe.min_tracked_share", &options->keyframe.min_tracked_share,
+                 "of the last keyframe's landmarks; fewer ask for a keyframe");
+  settings->bind("keyframe.min_parallax_rad", &options->keyframe.min_parallax_rad,
+                 "more asks for a keyframe");
+  settings->bind("keyframe.min_landmarks", &options->keyframe.min_landmarks, "fewer ask for a keyframe");
+  settings->bind("landmark.max_count", &options->landmark.max_landmarks, "in the window");
+  settings->bind("landmark.min_distance_m", &options->landmark.min_distance_m,
+                 "nearer ones are taken for errors");
+  settings->bind("landmark.max_error_sigmas", &options->landmark.max_error_sigmas,
+                 "sightings beyond are outliers");
+  settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
+  settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "of the Cauchy loss");
+  settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,
+                 "with fewer a frame counts as carried by inertial readings alone");
+}
+
+}  // namespace
+
+void bindRunSettings(Settings* settings, RunSettings* options) {
+  bindSource(settings, &options->source, &options->synchronizer);
+  bindFrontEnd(settings, &options->odometry.front_end);
+  bindInertial(settings, &options->odometry.estimator.preintegration);
+  bindStart(settings, &options->odometry.estimator.initial_state,
+            &options->odometry.estimator.mono_initialization);
+  bindEstimator(settings, &options->odometry.estimator);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "lodeline/data/frame_packet.h"
+#include "lodeline/estimator/estimator.h"
+#include "lodeline/features/front_end.h"
+
+namespace lodeline {
+
+struct OdometryOptions {
+  FrontEndOptions front_end;
+  EstimatorOptions estimator;
+};
+
+/// Processor time spent in each stage so far, s.
+struct StageTimes {
+  double front_end_s = 0.0;
+  double estimator_s = 0.0;
+};
+
+/// The whole way from a packet of measurements to an estimate.
+class Odometry {
+ public:
+  /// `diagnostics` must outlive the odometry.
+  Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics);
+
+  /// Adds one packet of the synchroniser; packets must come in order.
+  FrameEstimate add(const FramePacket& packet);
+
+  Estimator& estimator() { return estimator_; }
+  const StageTimes& times() const { return times_; }
+
+ private:
+  /// The gyroscope's rotation over the packet; none for the first one.
+  Quat previousFromCurrent(const FramePacket& packet) const;
+
+  ImuCalibration imu_;
+  FrontEnd front_end_;
+  Estimator estimator_;
+  Vec3 gyroscope_bias_B_ = Vec3::Zero();
+  bool first_ = true;
+  StageTimes times_;
+};
+
+}  // namespace lodeline

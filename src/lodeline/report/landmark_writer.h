@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "lodeline/estimator/window.h"
+
+namespace lodeline {
+
+/// Writes `landmarks.ply` (binary, positions in the world in metres and the number of sightings), streaming:
+/// the count in the header is filled in by finish(), which the destructor calls too.
+class LandmarkWriter {
+ public:
+  /// Throws InputError where the folder cannot be written to.
+  explicit LandmarkWriter(const std::filesystem::path& folder);
+  ~LandmarkWriter();
+  LandmarkWriter(const LandmarkWriter&) = delete;
+  LandmarkWriter& operator=(const LandmarkWriter&) = delete;
+
+  void write(const std::vector<MapPoint>& points);
+  void finish();
+  int64_t count() const { return count_; }
+
+ private:
+  std::ofstream stream_;
+  int64_t count_ = 0;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "lodeline/base/error.h"
+#include "lodeline/report/landmark_writer.h"
+#include "lodeline/report/run_summary.h"
+#include "lodeline/report/state_writer.h"
+
+namespace lodeline {
+namespace {
+
+class RunFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("lodeline_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string read(const char* name) const {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+  std::filesystem::path folder_;
+};
+
+FrameEstimate estimateAt(int64_t ns, const Vec3& position) {
+  FrameEstimate estimate;
+  estimate.time = Time::fromNanoseconds(ns);
+  estimate.status = Status::Tracking;
+  estimate.state.world_from_body.translation = position;
+  estimate.state.world_from_body.rotation = Quat(-0.5, 0.5, 0.5, 0.5);
+  estimate.covariance.diagonal().setConstant(0.04);
+  return estimate;
+}
+
+TEST_F(RunFolder, TrajectoryKeepsEveryNanosecondAndFlushesEachFrame) {
+  StateWriter writer(folder_);
+  writer.write(estimateAt(1403636584763555584, Vec3(1, -2, 0.25)));
+  EXPECT_EQ(
+      read("trajectory.tum"),
+      "# timestamp [s] x y z qx qy qz qw\n"
+      "1403636584.763555584 1.000000000 -2.000000000 0.250000000 -0.500000000 -0.500000000 -0.500000000 "
+      "0.500000000\n");
+}
+
+TEST_F(RunFolder, StatesHaveAsManyValuesAsNames) {
+  StateWriter writer(folder_);
+  writer.write(estimateAt(5, Vec3::Zero()));
+  std::istringstream states(read("states.csv"));
+  std::string header;
+  std::string row;
+  std::getline(states, header);
+  std::getline(states, row);
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
+  EXPECT_NE(row.find("5,tracking,"), std::string::npos);
+  EXPECT_NE(row.find(",0.2,"), std::string::npos);  // sigma = sqrt(0.04)
+}
+
+TEST_F(RunFolder, WaitingFramesAreNotWritten) {
+  StateWriter writer(folder_);
+  FrameEstimate waiting = estimateAt(1, Vec3::Zero());
+  waiting.status = Status::Waiting;
+  writer.write(waiting);
+  EXPECT_EQ(read("trajectory.tum"), "# timestamp [s] x y z qx qy qz qw\n");
+}
+
+TEST_F(RunFolder, UnwritableFolderIsNamed) {
+  try {
+    StateWriter writer(folder_ / "missing" / "folder");
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("trajectory.tum"), std::string::npos);
+  }
+}
+
+TEST_F(RunFolder, LandmarksCanBeReadBack) {
+  {
+    LandmarkWriter writer(folder_);
+    writer.write({{7, Vec3(1, 2, 3), 4}});
+    writer.write({{8, Vec3(-1, 0.5, 9), 5}});
+  }
+  const std::string ply = read("landmarks.ply");
+  EXPECT_NE(ply.find("element vertex 000000000002\n"), std::string::npos);
+  const size_t data = ply.find("end_header\n") + 11;
+  ASSERT_EQ(ply.size() - data, 2u * 16u);
+  float second[3];
+  int32_t sightings;
+  std::memcpy(second, ply.data() + data + 16, sizeof(second));
+  std::memcpy(&sightings, ply.data() + data + 28, sizeof(sightings));
+  EXPECT_EQ(second[1], 0.5f);
+  EXPECT_EQ(sightings, 5);
+}
+
+TEST_F(RunFolder, SummaryCountsPathCompletionAndFindings) {
+  RunSummary summary;
+  FrameEstimate waiting;
+  waiting.time = Time::fromNanoseconds(0);
+  summary.add(waiting);
+  summary.add(estimateAt(1000000000, Vec3(0, 0, 0)));
+  summary.add(estimateAt(2000000000, Vec3(3, 4, 0)));
+  Diagnostics diagnostics;
+  diagnostics.report(Severity::Serious, "imu_gap", "a gap");
+  const auto json = nlohmann::json::parse(summary.json(diagnostics));
+  EXPECT_DOUBLE_EQ(json["path_m"], 5.0);
+  EXPECT_NEAR(json["completion"], 2.0 / 3.0, 1e-12);
+  EXPECT_DOUBLE_EQ(json["duration_s"], 2.0);
+  EXPECT_EQ(json["findings"][0]["kind"], "imu_gap");
+  EXPECT_NE(summary.text(diagnostics).find("a gap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lodeline

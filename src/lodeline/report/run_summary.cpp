@@ -1,0 +1,98 @@
+#include "lodeline/report/run_summary.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace lodeline {
+
+void RunSummary::add(const FrameEstimate& estimate) {
+  ++frames_;
+  if (!first_time_) first_time_ = estimate.time;
+  last_ = estimate;
+  if (estimate.status == Status::Waiting) return;
+  ++posed_;
+  inertial_ += estimate.status == Status::Inertial;
+  keyframes_ += estimate.is_keyframe;
+  const Vec3& position_W = estimate.state.world_from_body.translation;
+  if (last_position_W_) path_m_ += (position_W - *last_position_W_).norm();
+  last_position_W_ = position_W;
+  tracks_ += estimate.tracks;
+  landmarks_ += estimate.landmarks;
+  if (estimate.landmarks > 0) {
+    reprojection_sigmas_ += estimate.reprojection_rms_sigmas;
+    ++reprojected_frames_;
+  }
+}
+
+double RunSummary::recordingSeconds() const {
+  return first_time_ ? (last_.time - *first_time_).seconds() : 0.0;
+}
+double RunSummary::meanTracks() const { return posed_ ? tracks_ / posed_ : 0.0; }
+double RunSummary::meanLandmarks() const { return posed_ ? landmarks_ / posed_ : 0.0; }
+double RunSummary::meanReprojection_sigmas() const {
+  return reprojected_frames_ ? reprojection_sigmas_ / reprojected_frames_ : 0.0;
+}
+double RunSummary::coreMillisecondsPerFrame(double seconds) const {
+  return frames_ ? 1e3 * seconds / frames_ : 0.0;
+}
+
+std::string RunSummary::text(const Diagnostics& diagnostics) const {
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<20} {}\n", name, value);
+  };
+  line("completion", fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone)",
+                                 100.0 * completion(), posed_, frames_, inertial_));
+  line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
+                           keyframes_, map_points));
+  line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
+  line("reprojection", fmt::format("{:.2f} sigma rms", meanReprojection_sigmas()));
+  if (posed_ > 0) {
+    const Eigen::VectorXd sigma = last_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    line("end uncertainty", fmt::format("{:.3f} m, heading {:.2f} deg (one sigma)", sigma.head<3>().norm(),
+                                        sigma[5] * 180.0 / M_PI));
+  }
+  line("time",
+       fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (reading {:.1f}, front end {:.1f}, "
+                   "estimator {:.1f})",
+                   wall_s, realTimeFactor(), coreMillisecondsPerFrame(process_s),
+                   coreMillisecondsPerFrame(reading_s), coreMillisecondsPerFrame(front_end_s),
+                   coreMillisecondsPerFrame(estimator_s)));
+  for (const Finding& finding : diagnostics.ranked()) {
+    const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : "";
+    line(toString(finding.severity), finding.first_message + times);
+  }
+  return text;
+}
+
+std::string RunSummary::json(const Diagnostics& diagnostics) const {
+  nlohmann::ordered_json json;
+  json["frames"] = frames_;
+  json["frames_with_pose"] = posed_;
+  json["frames_inertial"] = inertial_;
+  json["keyframes"] = keyframes_;
+  json["completion"] = completion();
+  json["path_m"] = path_m_;
+  json["duration_s"] = recordingSeconds();
+  json["landmarks"] = map_points;
+  json["mean_tracks"] = meanTracks();
+  json["mean_landmarks"] = meanLandmarks();
+  json["mean_reprojection_rms_sigmas"] = meanReprojection_sigmas();
+  json["wall_s"] = wall_s;
+  json["real_time_factor"] = realTimeFactor();
+  json["core_ms_per_frame"] = {{"total", coreMillisecondsPerFrame(process_s)},
+                               {"reading", coreMillisecondsPerFrame(reading_s)},
+                               {"front_end", coreMillisecondsPerFrame(front_end_s)},
+                               {"estimator", coreMillisecondsPerFrame(estimator_s)}};
+  json["findings"] = nlohmann::ordered_json::array();
+  for (const Finding& finding : diagnostics.ranked()) {
+    json["findings"].push_back({{"severity", toString(finding.severity)},
+                                {"kind", finding.kind},
+                                {"message", finding.first_message},
+                                {"count", finding.count}});
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace lodeline

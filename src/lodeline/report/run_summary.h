@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/estimator/estimator.h"
+
+namespace lodeline {
+
+/// Gathers the figures of a run frame by frame.
+class RunSummary {
+ public:
+  void add(const FrameEstimate& estimate);
+
+  int frames() const { return frames_; }
+  int posed() const { return posed_; }
+  const FrameEstimate& last() const { return last_; }
+
+  // Filled in by whoever runs the stages; processor seconds.
+  double reading_s = 0.0;
+  double front_end_s = 0.0;
+  double estimator_s = 0.0;
+  double process_s = 0.0;  ///< of the whole process, all threads
+  double wall_s = 0.0;
+  int64_t map_points = 0;
+
+  double recordingSeconds() const;
+  /// Share of the frames that got a pose.
+  double completion() const { return frames_ ? static_cast<double>(posed_) / frames_ : 0.0; }
+  double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
+  double pathLength_m() const { return path_m_; }
+  double meanTracks() const;
+  double meanLandmarks() const;
+  double meanReprojection_sigmas() const;
+
+  /// A screenful for people.
+  std::string text(const Diagnostics& diagnostics) const;
+  /// run.json: the same and more for programs.
+  std::string json(const Diagnostics& diagnostics) const;
+
+ private:
+  double coreMillisecondsPerFrame(double seconds) const;
+
+  FrameEstimate last_;
+  std::optional<Time> first_time_;
+  std::optional<Vec3> last_position_W_;
+  int frames_ = 0;
+  int posed_ = 0;
+  int inertial_ = 0;
+  int keyframes_ = 0;
+  double path_m_ = 0.0;
+  double tracks_ = 0.0;
+  double landmarks_ = 0.0;
+  double reprojection_sigmas_ = 0.0;
+  int reprojected_frames_ = 0;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,83 @@
+#include "lodeline/report/state_writer.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "lodeline/geometry/so3.h"
+#include "lodeline/report/output_file.h"
+
+namespace lodeline {
+namespace {
+
+constexpr const char* kStateHeader =
+    "#timestamp [ns],status,keyframe,tracks,landmarks,reprojection_rms [sigma],"
+    "p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z,v_x [m/s],v_y [m/s],v_z [m/s],"
+    "b_g_x [rad/s],b_g_y [rad/s],b_g_z [rad/s],b_a_x [m/s^2],b_a_y [m/s^2],b_a_z [m/s^2],"
+    "sigma_p_x [m],sigma_p_y [m],sigma_p_z [m],sigma_theta_x [rad],sigma_theta_y [rad],sigma_theta_z [rad],"
+    "sigma_v_x [m/s],sigma_v_y [m/s],sigma_v_z [m/s],sigma_b_g_x [rad/s],sigma_b_g_y [rad/s],sigma_b_g_z "
+    "[rad/s],"
+    "sigma_b_a_x [m/s^2],sigma_b_a_y [m/s^2],sigma_b_a_z [m/s^2]";
+
+/// Seconds with nine decimals, from the integer so that no digit is lost.
+std::string seconds(Time time) {
+  return fmt::format("{}.{:09}", time.nanoseconds() / 1000000000, time.nanoseconds() % 1000000000);
+}
+
+void append(fmt::memory_buffer& line, const Vec3& v) {
+  fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
+}
+
+/// Header of the pose covariance's upper triangle, [p, theta] in world axes.
+std::string covarianceHeader() {
+  std::string header;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) header += fmt::format(",cov_pose_{}{}", row, column);
+  }
+  return header;
+}
+
+}  // namespace
+
+StateWriter::StateWriter(const std::filesystem::path& folder)
+    : folder_(folder),
+      trajectory_(openOutput(folder / "trajectory.tum")),
+      states_(openOutput(folder / "states.csv")) {
+  trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
+  states_ << kStateHeader << covarianceHeader() << "\n" << std::flush;
+}
+
+void StateWriter::write(const FrameEstimate& estimate) {
+  if (estimate.status == Status::Waiting) return;
+  const NavigationState& state = estimate.state;
+  const Vec3& p = state.world_from_body.translation;
+  const Quat q = so3::canonical(state.world_from_body.rotation);
+  fmt::print(trajectory_, "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", seconds(estimate.time),
+             p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+
+  fmt::memory_buffer line;
+  fmt::format_to(std::back_inserter(line), "{},{},{},{},{},{:.4g}", estimate.time.nanoseconds(),
+                 toString(estimate.status), estimate.is_keyframe ? 1 : 0, estimate.tracks, estimate.landmarks,
+                 estimate.reprojection_rms_sigmas);
+  append(line, p);
+  fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g},{:.9g}", q.w(), q.x(), q.y(), q.z());
+  append(line, state.velocity_W);
+  append(line, state.gyroscope_bias_B);
+  append(line, state.accelerometer_bias_B);
+  for (int i = 0; i < 15; i += 3) {
+    append(line, estimate.covariance.diagonal().segment<3>(i).cwiseMax(0.0).cwiseSqrt());
+  }
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(row, column));
+    }
+  }
+  states_ << fmt::to_string(line) << "\n";
+  trajectory_.flush();
+  states_.flush();
+  if (!trajectory_ || !states_) {
+    throw InputError((folder_ / "trajectory.tum").string() + ": writing failed at " +
+                     std::to_string(estimate.time.nanoseconds()) + " ns; is the disk full?");
+  }
+}
+
+}  // namespace lodeline
