@@ -8,6 +8,19 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
+# Debian 12's libdeflate brings no CMake package.
+find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h REQUIRED)
+find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
+add_library(libdeflate UNKNOWN IMPORTED)
+set_target_properties(libdeflate PROPERTIES IMPORTED_LOCATION ${LIBDEFLATE_LIBRARY}
+                                            INTERFACE_INCLUDE_DIRECTORIES ${LIBDEFLATE_INCLUDE_DIR})
+# GeographicLib's CMake files lie in different places on Debian 12 and Ubuntu 24.04.
+find_path(GEOGRAPHICLIB_INCLUDE_DIR GeographicLib/SphericalHarmonic.hpp REQUIRED)
+find_library(GEOGRAPHICLIB_LIBRARY NAMES GeographicLib Geographic REQUIRED)
+add_library(geographiclib::geographiclib UNKNOWN IMPORTED)
+set_target_properties(geographiclib::geographiclib PROPERTIES
+                      IMPORTED_LOCATION ${GEOGRAPHICLIB_LIBRARY}
+                      INTERFACE_INCLUDE_DIRECTORIES ${GEOGRAPHICLIB_INCLUDE_DIR})
 find_package(TBB REQUIRED COMPONENTS tbb)
 find_package(embree 3.12 REQUIRED)
 add_library(embree::embree ALIAS embree)

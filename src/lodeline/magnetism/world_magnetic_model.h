@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "lodeline/geometry/types.h"
+
+namespace lodeline {
+
+/// A place on or near the Earth, geodetic on the WGS84 ellipsoid.
+struct GeodeticPosition {
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double height_m = 0.0;  ///< above the ellipsoid
+};
+
+/// The Earth's field at one place and time, in local axes east, north, up.
+struct MagneticField {
+  Vec3 field_ENU = Vec3::Zero();          ///< T
+  Vec3 rate_ENU_per_year = Vec3::Zero();  ///< T/year, secular variation
+};
+
+/// A field's size and direction as charts give them.
+struct FieldElements {
+  double declination_rad = 0.0;  ///< of the horizontal part, clockwise from true north
+  double inclination_rad = 0.0;  ///< below the horizon
+  double horizontal_T = 0.0;
+  double total_T = 0.0;
+};
+FieldElements fieldElements(const Vec3& field_ENU);
+
+/// World Magnetic Model 2025. Throws InputError where the year lies outside 2025.0 to 2030.0, for which the
+/// model was made, or the place is none: latitude beyond the poles, longitude beyond +-360, height outside
+/// -10 to 850 km (one below, eight hundred and fifty above sea level is what the model is specified for;
+/// caves and mines may be deeper).
+MagneticField worldMagneticField(const GeodeticPosition& position, double decimal_year);
+
+/// Decimal year of a calendar date (Gregorian), e.g. 2026-11-21 -> 2026.8877. Throws UsageError for a date
+/// that does not exist or is not written YYYY-MM-DD.
+double decimalYear(const std::string& date);
+
+}  // namespace lodeline
