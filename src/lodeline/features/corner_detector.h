@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "lodeline/features/image_pyramid.h"
+
+namespace lodeline {
+
+struct CornerDetectorOptions {
+  int max_tracks = 250;
+  double min_distance_px = 14.0;
+  /// Root-mean-square gradient across the weaker direction of the texture, on the half-size image: twice what
+  /// the noise of a good sensor makes.
+  double min_gradient_grey_per_px = 0.5;
+  double border_px = 12.0;
+};
+
+/// Finds points worth following where there are none: the image is divided into as many cells as points are
+/// wanted, and the strongest corner of each empty cell is taken (smaller eigenvalue of the structure tensor,
+/// J. Shi and C. Tomasi, "Good features to track", CVPR 1994). Corners are rated on the half-size image,
+/// where noise is lower and the window is about as large as a patch.
+class CornerDetector {
+ public:
+  explicit CornerDetector(const CornerDetectorOptions& options) : options_(options) {}
+
+  /// New corners, strongest first, px. `occupied`: where points are followed already. `mask`: 8-bit of the
+  /// image's size, zero where nothing may be detected; may be empty.
+  std::vector<Eigen::Vector2f> detect(const ImagePyramid& image, const cv::Mat& mask,
+                                      const std::vector<Eigen::Vector2f>& occupied) const;
+
+ private:
+  CornerDetectorOptions options_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,201 @@
+#include "lodeline/features/front_end.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lodeline/base/error.h"
+#include "lodeline/features/mask.h"
+
+namespace lodeline {
+namespace {
+
+std::vector<std::shared_ptr<const Camera>> makeCameras(const Rig& rig) {
+  if (rig.cameras.empty()) throw InputError("the rig has no camera; give a calibration of at least cam0");
+  std::vector<std::shared_ptr<const Camera>> cameras;
+  for (const CameraCalibration& calibration : rig.cameras) cameras.push_back(makeCamera(calibration));
+  return cameras;
+}
+
+bool isMasked(const cv::Mat& mask, const Eigen::Vector2f& pixel) {
+  return !mask.empty() &&
+         mask.at<uint8_t>(static_cast<int>(pixel.y() + 0.5F), static_cast<int>(pixel.x() + 0.5F)) == 0;
+}
+
+}  // namespace
+
+FrontEnd::FrontEnd(const Rig& rig, const FrontEndOptions& options)
+    : options_(options),
+      cameras_(makeCameras(rig)),
+      body_from_camera_(rig.cameras.front().body_from_camera.rotation),
+      tracker_(cameras_.front(), options.tracker),
+      detector_(options.detector) {
+  for (const CameraCalibration& calibration : rig.cameras) masks_.push_back(loadMask(calibration));
+  for (size_t i = 1; i < cameras_.size(); ++i) {
+    matchers_.emplace_back(cameras_.front(), cameras_[i], options.stereo);
+  }
+}
+
+void FrontEnd::check(Time time, const std::vector<cv::Mat>& images) const {
+  if (images.size() != cameras_.size()) {
+    throw InputError(fmt::format("frame at {} ns: {} images for {} cameras", time.nanoseconds(),
+                                 images.size(), cameras_.size()));
+  }
+  for (size_t i = 0; i < images.size(); ++i) {
+    const CameraCalibration& c = cameras_[i]->calibration();
+    const cv::Mat& image = images[i];
+    if (image.empty()) continue;
+    if (image.cols != c.width_px || image.rows != c.height_px) {
+      throw InputError(
+          fmt::format("camera '{}', image at {} ns: {} x {} px, but the calibration says {} x {} px; use the "
+                      "calibration that belongs to these images",
+                      c.name, time.nanoseconds(), image.cols, image.rows, c.width_px, c.height_px));
+    }
+    if (image.type() != CV_8UC1) {
+      throw InputError(
+          fmt::format("camera '{}', image at {} ns: not an 8-bit grey image", c.name, time.nanoseconds()));
+    }
+  }
+}
+
+FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
+                              const Quat& previous_from_current_B) {
+  check(time, images);
+  statistics_ = {};
+  previous_from_current_B_ = (previous_from_current_B_ * previous_from_current_B).normalized();
+  if (images.front().empty()) {
+    statistics_.missing = true;
+    return {time, {}};
+  }
+
+  ImagePyramid current(images.front(), options_.pyramid_levels);
+  statistics_.image = assess(current);
+  if ((time - previous_time_).seconds() > options_.max_gap_s) {
+    statistics_.lost = static_cast<int>(tracks_.size());
+    tracks_.clear();
+  }
+  const Quat current_from_previous_C =
+      body_from_camera_.conjugate() * previous_from_current_B_.conjugate() * body_from_camera_;
+  follow(current, current_from_previous_C.toRotationMatrix());
+  detect(current);
+  matchOthers(current, images);
+
+  previous_ = std::move(current);
+  previous_time_ = time;
+  previous_from_current_B_ = Quat::Identity();
+  return observations(time);
+}
+
+void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_previous_C) {
+  std::vector<Track> followed;
+  std::vector<Vec3> previous_bearings;
+  followed.reserve(tracks_.size());
+  for (Track& track : tracks_) {
+    const auto bearing = cameras_.front()->unproject(track.warp.position.cast<double>());
+    if (!bearing || !tracker_.follow(previous_, current, current_from_previous_C, track) ||
+        isMasked(masks_.front(), track.warp.position)) {
+      ++statistics_.lost;
+      continue;
+    }
+    followed.push_back(std::move(track));
+    previous_bearings.push_back(*bearing);
+  }
+  tracks_ = std::move(followed);
+  rejectOutliers(previous_bearings, current_from_previous_C);
+  rejectCrowded();
+  statistics_.kept = static_cast<int>(tracks_.size());
+}
+
+void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings,
+                              const Mat3& current_from_previous_C) {
+  const Camera& camera = *cameras_.front();
+  std::vector<Vec3> bearings;
+  for (const Track& track : tracks_) {
+    // The tracker has seen to it that the pixel lies in the image; a ray may still not exist at the corners.
+    bearings.push_back(camera.unproject(track.warp.position.cast<double>()).value_or(Vec3::Zero()));
+  }
+  const std::vector<bool> agrees = epipolarConsensus(previous_bearings, bearings, current_from_previous_C,
+                                                     camera.calibration().fx_px, options_.consensus);
+  size_t i = 0;
+  const size_t removed = std::erase_if(tracks_, [&](const Track&) {
+    const bool good = agrees[i] && !bearings[i].isZero();
+    ++i;
+    return !good;
+  });
+  statistics_.rejected += static_cast<int>(removed);
+}
+
+void FrontEnd::rejectCrowded() {
+  // Two tracks that have run into each other follow the same point; the older knows it better.
+  const auto distance = static_cast<float>(0.5 * options_.detector.min_distance_px);
+  std::vector<Eigen::Vector2f> kept;
+  const size_t removed = std::erase_if(tracks_, [&](const Track& track) {
+    for (const Eigen::Vector2f& other : kept) {
+      if ((other - track.warp.position).squaredNorm() < distance * distance) return true;
+    }
+    kept.push_back(track.warp.position);
+    return false;
+  });
+  statistics_.rejected += static_cast<int>(removed);
+}
+
+void FrontEnd::detect(const ImagePyramid& current) {
+  std::vector<Eigen::Vector2f> occupied;
+  for (const Track& track : tracks_) occupied.push_back(track.warp.position);
+  for (const Eigen::Vector2f& pixel : detector_.detect(current, masks_.front(), occupied)) {
+    if (static_cast<int>(tracks_.size()) >= options_.detector.max_tracks) break;
+    Track track;
+    track.warp.position = pixel;
+    if (!cameras_.front()->unproject(pixel.cast<double>())) continue;
+    auto looks = PatchTemplate::extract(current, track.warp, options_.pyramid_levels);
+    if (!looks) continue;
+    track.id = next_id_++;
+    track.current = *looks;
+    track.reference = std::move(*looks);
+    track.matches.resize(matchers_.size());
+    tracks_.push_back(std::move(track));
+    ++statistics_.created;
+  }
+}
+
+void FrontEnd::matchOthers(const ImagePyramid& current, const std::vector<cv::Mat>& images) {
+  for (size_t m = 0; m < matchers_.size(); ++m) {
+    const cv::Mat& image = images[m + 1];
+    if (image.empty()) {
+      for (Track& track : tracks_) track.matches[m].reset();
+      continue;
+    }
+    const ImagePyramid other(image, options_.pyramid_levels);
+    for (Track& track : tracks_) {
+      const std::optional<PatchWarp> hint = track.matches[m];
+      track.matches[m] = matchers_[m].match(current, other, hint, track);
+      if (!track.matches[m]) track.inverse_depth_per_m.reset();
+      if (track.matches[m] && isMasked(masks_[m + 1], track.matches[m]->position)) track.matches[m].reset();
+    }
+  }
+  for (const Track& track : tracks_) {
+    statistics_.matched += std::any_of(track.matches.begin(), track.matches.end(),
+                                       [](const auto& match) { return match.has_value(); })
+                               ? 1
+                               : 0;
+  }
+}
+
+FrameTracks FrontEnd::observations(Time time) const {
+  FrameTracks result{time, {}};
+  const auto add = [&](TrackId id, size_t camera, const Eigen::Vector2f& position) {
+    const Vec2 pixel = position.cast<double>();
+    const auto bearing = cameras_[camera]->unproject(pixel);
+    if (!bearing) return;
+    result.observations.push_back({id, static_cast<int>(camera), pixel, *bearing, options_.sigma_px});
+  };
+  for (const Track& track : tracks_) {
+    add(track.id, 0, track.warp.position);
+    for (size_t m = 0; m < track.matches.size(); ++m) {
+      if (track.matches[m]) add(track.id, m + 1, track.matches[m]->position);
+    }
+  }
+  return result;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/features/corner_detector.h"
+#include "lodeline/features/epipolar_consensus.h"
+#include "lodeline/features/image_quality.h"
+#include "lodeline/features/stereo_matcher.h"
+#include "lodeline/features/temporal_tracker.h"
+#include "lodeline/features/tracks.h"
+
+namespace lodeline {
+
+struct FrontEndOptions {
+  int pyramid_levels = 4;
+  CornerDetectorOptions detector;
+  TemporalTrackerOptions tracker;
+  StereoMatcherOptions stereo;
+  EpipolarConsensusOptions consensus;
+  /// Tracks are looked for again after images of camera 0 were missing for at most this long.
+  double max_gap_s = 1.0;
+  /// Standard deviation of an observation.
+  double sigma_px = 0.5;
+};
+
+/// What became of the tracks in one frame.
+struct FrontEndStatistics {
+  int kept = 0;      ///< followed from the frame before
+  int lost = 0;      ///< not found again, or of poor likeness
+  int rejected = 0;  ///< found, but against the motion of the others or on top of another track
+  int created = 0;
+  int matched = 0;       ///< seen in at least one further camera
+  bool missing = false;  ///< camera 0 gave no image
+  ImageQuality image;    ///< of camera 0
+
+  int tracks() const { return kept + created; }
+};
+
+/// From images to tracked points. Points live in camera 0, are followed from frame to frame with the
+/// gyroscope's rotation as prediction, and are matched into every other camera of the same moment; one camera
+/// is merely the case without others.
+class FrontEnd {
+ public:
+  /// Throws InputError where a camera's calibration or mask cannot be used, or the rig has no camera.
+  FrontEnd(const Rig& rig, const FrontEndOptions& options);
+
+  /// `images`: one 8-bit grey image per camera of the rig; empty where the camera gave none.
+  /// `previous_from_current_B`: rotation of the body between the call before and this one. Without an image
+  /// of camera 0 nothing is observed, and tracks wait for the next one. Throws InputError where an image has
+  /// another size or type than the calibration says.
+  FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B);
+
+  /// Of the last frame.
+  const FrontEndStatistics& statistics() const { return statistics_; }
+  const std::vector<Track>& tracks() const { return tracks_; }
+  const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
+
+ private:
+  void check(Time time, const std::vector<cv::Mat>& images) const;
+  void follow(const ImagePyramid& current, const Mat3& current_from_previous_C);
+  void rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C);
+  void rejectCrowded();
+  void detect(const ImagePyramid& current);
+  void matchOthers(const ImagePyramid& current, const std::vector<cv::Mat>& images);
+  FrameTracks observations(Time time) const;
+
+  FrontEndOptions options_;
+  std::vector<std::shared_ptr<const Camera>> cameras_;
+  Quat body_from_camera_;
+  std::vector<cv::Mat> masks_;
+  TemporalTracker tracker_;
+  std::vector<StereoMatcher> matchers_;  ///< camera 0 with camera 1, 2, ...
+  CornerDetector detector_;
+
+  std::vector<Track> tracks_;  ///< by rising id
+  ImagePyramid previous_;
+  Time previous_time_;
+  Quat previous_from_current_B_ = Quat::Identity();  ///< since the last image of camera 0
+  TrackId next_id_ = 0;
+  FrontEndStatistics statistics_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,22 @@
+#include "lodeline/features/image_pyramid.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace lodeline {
+
+ImagePyramid::ImagePyramid(const cv::Mat& image, int levels) {
+  constexpr int kSmallestSide = 16;
+  levels_.reserve(static_cast<size_t>(levels));
+  levels_.emplace_back();
+  image.convertTo(levels_.back(), CV_16U, kUnitsPerGreyLevel);
+  while (static_cast<int>(levels_.size()) < levels) {
+    const cv::Mat& finer = levels_.back();
+    if (std::min(finer.rows, finer.cols) < 2 * kSmallestSide) break;
+    cv::Mat coarser;
+    cv::pyrDown(finer, coarser);
+    levels_.push_back(std::move(coarser));
+  }
+}
+
+}  // namespace lodeline

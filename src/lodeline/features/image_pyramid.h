@@ -1,0 +1,28 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace lodeline {
+
+/// An image and its successive halvings. Grey values carry 6 fractional bits in 16-bit pixels: a dim picture
+/// whose texture spans only a few grey levels would lose most of it to rounding when it is smoothed in 8
+/// bits. Pixel (x, y) of level l is (x, y) * 2^l of the image.
+class ImagePyramid {
+ public:
+  static constexpr int kUnitsPerGreyLevel = 64;
+
+  ImagePyramid() = default;
+  /// `image`: 8-bit, one channel. Levels that would be smaller than 16 px are left out.
+  ImagePyramid(const cv::Mat& image, int levels);
+
+  bool empty() const { return levels_.empty(); }
+  int levels() const { return static_cast<int>(levels_.size()); }
+  /// CV_16UC1.
+  const cv::Mat& level(int index) const { return levels_[static_cast<size_t>(index)]; }
+
+ private:
+  std::vector<cv::Mat> levels_;
+};
+
+}  // namespace lodeline

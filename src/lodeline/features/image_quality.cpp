@@ -1,0 +1,68 @@
+#include "lodeline/features/image_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+namespace lodeline {
+namespace {
+
+/// Mean absolute second difference along rows and columns, grey levels: blind to slopes of light.
+double detailGrey(const cv::Mat& image) {
+  int64_t sum = 0, count = 0;
+  for (int y = 1; y + 1 < image.rows; y += 2) {
+    const auto* above = image.ptr<uint16_t>(y - 1);
+    const auto* here = image.ptr<uint16_t>(y);
+    const auto* below = image.ptr<uint16_t>(y + 1);
+    for (int x = 1; x + 1 < image.cols; x += 2) {
+      sum += std::abs(here[x - 1] - 2 * here[x] + here[x + 1]) + std::abs(above[x] - 2 * here[x] + below[x]);
+      count += 2;
+    }
+  }
+  return static_cast<double>(sum) /
+         (static_cast<double>(std::max<int64_t>(1, count)) * ImagePyramid::kUnitsPerGreyLevel);
+}
+
+}  // namespace
+
+ImageQuality assess(const ImagePyramid& image) {
+  constexpr double kDarkGrey = 12.0, kSaturatedShare = 0.3, kTexturelessGrey = 0.6, kBlurredShare = 0.16;
+  constexpr int kSaturatedGrey = 250;
+  ImageQuality quality;
+  if (image.empty()) return quality;
+
+  const cv::Mat& small = image.level(std::min(2, image.levels() - 1));
+  double sum = 0.0, sum_of_squares = 0.0;
+  int64_t saturated = 0;
+  for (int y = 0; y < small.rows; ++y) {
+    const auto* row = small.ptr<uint16_t>(y);
+    for (int x = 0; x < small.cols; ++x) {
+      const double grey = static_cast<double>(row[x]) / ImagePyramid::kUnitsPerGreyLevel;
+      sum += grey;
+      sum_of_squares += grey * grey;
+      saturated += grey >= kSaturatedGrey ? 1 : 0;
+    }
+  }
+  const auto count = static_cast<double>(small.total());
+  quality.mean_grey = sum / count;
+  quality.contrast_grey =
+      std::sqrt(std::max(0.0, sum_of_squares / count - quality.mean_grey * quality.mean_grey));
+  quality.saturated = static_cast<double>(saturated) / count;
+  const double fine = detailGrey(image.level(std::min(1, image.levels() - 1)));
+  const double coarse = detailGrey(small);
+  quality.sharpness = fine / std::max(1e-9, fine + coarse);
+
+  if (quality.mean_grey < kDarkGrey) {
+    quality.word = "dark";
+  } else if (quality.saturated > kSaturatedShare) {
+    quality.word = "overexposed";
+  } else if (coarse < kTexturelessGrey) {
+    quality.word = "textureless";
+  } else if (quality.sharpness < kBlurredShare) {
+    quality.word = "blurred";
+  }
+  return quality;
+}
+
+}  // namespace lodeline

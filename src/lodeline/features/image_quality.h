@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "lodeline/features/image_pyramid.h"
+
+namespace lodeline {
+
+/// What can be said of an image at a glance.
+struct ImageQuality {
+  double mean_grey = 0.0;
+  double contrast_grey = 0.0;  ///< standard deviation of the image
+  double sharpness = 0.0;      ///< share of fine detail in the detail of all sizes, about 0.5 when sharp
+  double saturated = 0.0;      ///< share of pixels at the upper end
+  /// "good", or what hinders tracking: "dark", "overexposed", "textureless" or "blurred".
+  std::string word = "good";
+};
+
+ImageQuality assess(const ImagePyramid& image);
+
+}  // namespace lodeline

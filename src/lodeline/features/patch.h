@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "lodeline/features/image_pyramid.h"
+#include "lodeline/features/patch_pattern.h"
+
+namespace lodeline {
+
+/// Where a patch lies in an image: pattern offset u is found at `position + linear * u` (px of level 0).
+struct PatchWarp {
+  Eigen::Vector2f position = Eigen::Vector2f::Zero();
+  Eigen::Matrix2f linear = Eigen::Matrix2f::Identity();
+};
+
+/// How well a patch was found.
+struct PatchMatch {
+  float correlation = 0.0F;    ///< of the normalised patches at the finest level, 1 = equal
+  float residual_grey = 0.0F;  ///< RMS difference after normalisation, grey levels of the template
+};
+
+/// The looks of a small neighbourhood, on several pyramid levels, with everything that can be computed once
+/// for finding it again in other images.
+///
+/// Alignment is inverse compositional Gauss-Newton (S. Baker, I. Matthews, "Lucas-Kanade 20 years on", IJCV
+/// 2004) on normalised values: constant, linear trend and gain are taken out of template and image alike, for
+/// a lamp that moves with the camera draws a pool of light over the rock that is bright, steep, and stands
+/// still in the image; whatever of it is left in the residual holds the patch back.
+class PatchTemplate {
+ public:
+  PatchTemplate() = default;
+
+  /// Nothing where the finest level leaves the image or has no texture. Coarser levels that leave the image
+  /// are passed over.
+  static std::optional<PatchTemplate> extract(const ImagePyramid& image, const PatchWarp& where, int levels);
+
+  /// Finds the template in another image, from level `coarsest` down to the image itself. Coarse levels move
+  /// the patch; the finest ones deform it as well. Nothing where it leaves the image or does not converge;
+  /// `warp` is then unspecified.
+  std::optional<PatchMatch> align(const ImagePyramid& image, int coarsest, PatchWarp& warp) const;
+
+  /// Correlation of the image at `warp` with the template on one level, without moving; nothing outside.
+  std::optional<float> correlate(const ImagePyramid& image, int level, const PatchWarp& warp) const;
+
+  int levels() const { return static_cast<int>(levels_.size()); }
+  /// Root of the sum of squares of the detrended template on the finest level, grey levels.
+  float contrastGrey() const { return contrast_grey_; }
+
+ private:
+  static constexpr int kParameters = 6;
+  struct Level {
+    bool valid = false;
+    PatchValues values{};  ///< normalised
+    /// Pseudo-inverse of the Jacobian of the normalised values by (shift, linear part), row by row.
+    std::array<PatchValues, kParameters> gain{};
+  };
+
+  static bool fillLevel(const cv::Mat& image, const PatchWarp& where, Level& level, bool deformable,
+                        float& norm);
+  bool alignLevel(const Level& level, const cv::Mat& image, bool deformable, PatchWarp& warp,
+                  float& correlation) const;
+
+  std::vector<Level> levels_;
+  float contrast_grey_ = 0.0F;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+/// One view of a point from a known place.
+struct BearingView {
+  Rigid3 world_from_camera;
+  Vec3 bearing_C = Vec3::UnitZ();  ///< unit ray
+  double sigma_rad = 1e-3;         ///< standard deviation of the ray's direction along each axis
+};
+
+struct TriangulationOptions {
+  /// Least angle between two of the rays, rad; below, the point is as good as infinitely far.
+  double min_parallax_rad = 0.01;
+  /// Greatest root-mean-square residual, in standard deviations.
+  double max_rms_sigmas = 3.0;
+};
+
+enum class TriangulationStatus {
+  Good,
+  TooFewViews,   ///< fewer than two
+  LowParallax,   ///< the rays are nearly parallel: point and covariance hold, but the depth is poorly known
+  BehindCamera,  ///< in front of not all of the views
+  Inconsistent,  ///< the rays do not meet within their accuracy
+};
+
+struct Triangulation {
+  TriangulationStatus status = TriangulationStatus::TooFewViews;
+  /// Meaningful where `inverse_depth_per_m` is positive.
+  Vec3 point_W = Vec3::Zero();
+  /// 1 / distance from the first view; 0 for a point at infinity.
+  double inverse_depth_per_m = 0.0;
+  double inverse_depth_sigma_per_m = 0.0;
+  double max_parallax_rad = 0.0;
+  double rms_sigmas = 0.0;  ///< residual after the fit
+
+  bool good() const { return status == TriangulationStatus::Good; }
+};
+
+/// The point that several rays see best, by Gauss-Newton on direction and inverse distance in the first view
+/// (J. Civera et al., "Inverse depth parametrization for monocular SLAM", TRO 2008), which stays well
+/// conditioned up to infinity. Residuals are components of the unit rays' difference across the measured ray.
+Triangulation triangulate(const std::vector<BearingView>& views, const TriangulationOptions& options = {});
+
+const char* toString(TriangulationStatus status);
+
+}  // namespace lodeline
