@@ -11,9 +11,9 @@ find_package(ZLIB REQUIRED)
 # Debian 12's libdeflate brings no CMake package.
 find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h REQUIRED)
 find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
-add_library(libdeflate UNKNOWN IMPORTED)
-set_target_properties(libdeflate PROPERTIES IMPORTED_LOCATION ${LIBDEFLATE_LIBRARY}
-                                            INTERFACE_INCLUDE_DIRECTORIES ${LIBDEFLATE_INCLUDE_DIR})
+add_library(libdeflate::libdeflate UNKNOWN IMPORTED)
+set_target_properties(libdeflate::libdeflate PROPERTIES IMPORTED_LOCATION ${LIBDEFLATE_LIBRARY}
+                      INTERFACE_INCLUDE_DIRECTORIES ${LIBDEFLATE_INCLUDE_DIR})
 # GeographicLib's CMake files lie in different places on Debian 12 and Ubuntu 24.04.
 find_path(GEOGRAPHICLIB_INCLUDE_DIR GeographicLib/SphericalHarmonic.hpp REQUIRED)
 find_library(GEOGRAPHICLIB_LIBRARY NAMES GeographicLib Geographic REQUIRED)

@@ -5,6 +5,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache clang-format
   libeigen3-dev libceres-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
+  libdeflate-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   libgeographiclib-dev libembree-dev libtbb-dev libopengv-dev
   gnuplot-nox
