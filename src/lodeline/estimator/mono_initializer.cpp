@@ -132,12 +132,17 @@ bool MonoInitializer::refine() {
   const SolveSummary summary =
       solveWindow(window_, prior_, factors_, {options_.mono_initialization.max_iterations, 1e-8});
   const double share = scaleUncertainty(window_.newest(), newestCovariance(window_, prior_, factors_));
-  if (summary.usable && share < options_.mono_initialization.max_scale_sigma) {
+  const double bias_sigmas =
+      window_.newest().accelerometerBias().norm() / options_.initial_state.accelerometer_bias_sigma_m_per_s2;
+  if (!summary.usable || bias_sigmas > options_.mono_initialization.max_bias_sigmas) {
+    waiting_for_ = "a start on which images and inertial readings agree";
+  } else if (share > options_.mono_initialization.max_scale_sigma) {
+    waiting_for_ = fmt::format("scale known to {:.0f} % of {:.0f} %", 100.0 * share,
+                               100.0 * options_.mono_initialization.max_scale_sigma);
+  } else {
     intervals_.clear();
     return true;
   }
-  waiting_for_ = fmt::format("scale known to {:.0f} % of {:.0f} %", 100.0 * share,
-                             100.0 * options_.mono_initialization.max_scale_sigma);
   for (const auto& frame : window_.frames()) {
     if (frame->from_previous) intervals_[frame->id] = std::move(frame->from_previous);
   }

@@ -31,6 +31,7 @@ struct MonoInitializationOptions {
   double gravity_tolerance_m_per_s2 = 1.0;
   double start_tilt_sigma_rad = 0.3;
   int max_iterations = 50;
+  double max_bias_sigmas = 4.0;  ///< a larger accelerometer bias is taken for a false minimum
   double max_scale_sigma = 0.1;  ///< relative; wait on while the scale is known worse
 };
 
