@@ -21,10 +21,9 @@ ImuIntervals::Coverage ImuIntervals::readUntil(Time time) {
     if (stream_.peek() == nullptr) return Coverage::AfterLast;
     buffer_.push_back(stream_.pop());
     if (cut_before_) continue;
-    // Until the first cut, old history goes, but never the pair of readings around `time`.
-    while (buffer_.size() > 2 && buffer_[1].time < std::min(time, buffer_.back().time) - history) {
-      buffer_.pop_front();
-    }
+    // Until the first cut, old history goes, but never the last reading at or before `time`.
+    const Time oldest = std::min(time, buffer_.back().time) - history;
+    while (buffer_.size() > 1 && buffer_[0].time < oldest && buffer_[1].time <= time) buffer_.pop_front();
   }
   return buffer_.front().time <= time ? Coverage::Covered : Coverage::BeforeFirst;
 }
