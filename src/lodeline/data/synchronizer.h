@@ -29,7 +29,7 @@ struct SynchronizerOptions {
   double duration_s = 0.0;
   /// Decodes the next packet's images on threads of their own while the caller works on this one. The
   /// packets are the same either way.
-  bool prefetch = false;
+  bool prefetch = true;
 };
 
 /// Turns a source's separate streams into one packet per image of the first camera. A packet is given out

@@ -6,6 +6,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <unordered_map>
+#include <vector>
 
 #include "lodeline/estimator/normal_equations.h"
 
@@ -23,26 +26,72 @@ void repropagateWhereNeeded(Window& window) {
   }
 }
 
-/// Calls `visit` for the prior and all inertial terms, then `visit_landmark` for each landmark's terms.
-template <typename Visit, typename VisitLandmark>
-void forEachTerm(Window& window, const Prior& prior, const FactorMaker& factors, const Visit& visit,
-                 const VisitLandmark& visit_landmark) {
-  if (!prior.empty()) visit(factors.prior(prior));
+struct Terms {
+  std::vector<Factor> dense;  ///< prior and inertial terms
+  std::vector<LandmarkFactors> landmarks;
+};
+
+Terms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors) {
+  Terms terms;
+  if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
-    if (before && frame->from_previous) visit(factors.inertial(*before, *frame));
+    if (before && frame->from_previous) terms.dense.push_back(factors.inertial(*before, *frame));
     before = frame.get();
   }
   for (auto& [id, track] : window.tracks()) {
-    if (track.landmark) visit_landmark(factors.landmark(window, track));
+    if (track.landmark) terms.landmarks.push_back(factors.landmark(window, track));
   }
+  return terms;
 }
+
+/// The blocks of a problem, copied side by side. Ceres sorts blocks by their address; with addresses in the
+/// order of frames and tracks, and not wherever the heap put them, two runs add up their sums in the same
+/// order.
+class BlockCopies {
+ public:
+  void add(double* original, int size) {
+    blocks_.push_back({original, static_cast<int>(values_.size()), size});
+    values_.insert(values_.end(), original, original + size);
+    offsets_[original] = blocks_.back().offset;
+  }
+  double* copyOf(const double* original) { return values_.data() + offsets_.at(original); }
+  void writeBack() const {
+    for (const Block& block : blocks_) std::copy_n(values_.data() + block.offset, block.size, block.original);
+  }
+
+ private:
+  struct Block {
+    double* original;
+    int offset;
+    int size;
+  };
+  std::vector<Block> blocks_;
+  std::vector<double> values_;
+  std::unordered_map<const double*, int> offsets_;
+};
 
 ceres::Problem::Options problemOptions() {
   ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.disable_all_safety_checks = true;
+  return options;
+}
+
+ceres::Solver::Options solverOptions(const SolveLimits& limits) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  options.max_num_iterations = limits.max_iterations;
+  options.function_tolerance = limits.function_tolerance;
+  // Directions that only the whole window holds together (scale, tilt) have a curvature far below the
+  // diagonal of their blocks; the default damping of 1e-4 of that diagonal would creep along them.
+  options.initial_trust_region_radius = 1e9;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
   return options;
 }
 
@@ -51,45 +100,46 @@ ceres::Problem::Options problemOptions() {
 SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
                          const SolveLimits& limits) {
   repropagateWhereNeeded(window);
+  Terms terms = collectTerms(window, prior, factors);
+  BlockCopies copies;
+  for (const LandmarkFactors& landmark : terms.landmarks) copies.add(landmark.landmark, kLandmarkSize);
+  for (const auto& frame : window.frames()) {
+    copies.add(frame->pose.data(), kPoseSize);
+    if (frame->has_motion) copies.add(frame->motion.data(), kMotionSize);
+  }
+
   PoseManifold pose_manifold;
   ceres::Problem problem(problemOptions());
-  ceres::Solver::Options solver_options;
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  const ceres::Solver::Options options = solverOptions(limits);
   for (const auto& frame : window.frames()) {
-    problem.AddParameterBlock(frame->pose.data(), kPoseSize, &pose_manifold);
-    ordering->AddElementToGroup(frame->pose.data(), 1);
+    double* pose = copies.copyOf(frame->pose.data());
+    problem.AddParameterBlock(pose, kPoseSize, &pose_manifold);
+    options.linear_solver_ordering->AddElementToGroup(pose, 1);
     if (!frame->has_motion) continue;
-    problem.AddParameterBlock(frame->motion.data(), kMotionSize);
-    ordering->AddElementToGroup(frame->motion.data(), 1);
+    double* motion = copies.copyOf(frame->motion.data());
+    problem.AddParameterBlock(motion, kMotionSize);
+    options.linear_solver_ordering->AddElementToGroup(motion, 1);
   }
-  const auto add = [&](Factor&& factor) {
-    // Ceres frees what it is given and takes no notice of the loss's constness.
-    problem.AddResidualBlock(factor.function.release(), const_cast<ceres::LossFunction*>(factor.loss),
-                             factor.blocks);
+  const auto add = [&](const Factor& factor) {
+    std::vector<double*> blocks;
+    for (const double* block : factor.blocks) blocks.push_back(copies.copyOf(block));
+    // Ceres takes no notice of the loss's constness.
+    problem.AddResidualBlock(factor.function.get(), const_cast<ceres::LossFunction*>(factor.loss), blocks);
   };
-  forEachTerm(window, prior, factors, add, [&](LandmarkFactors&& landmark) {
-    for (Factor& factor : landmark.factors) add(std::move(factor));
-    ordering->AddElementToGroup(landmark.landmark, 0);
-  });
-
-  solver_options.linear_solver_type = ceres::DENSE_SCHUR;
-  solver_options.linear_solver_ordering = ordering;
-  solver_options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-  solver_options.max_num_iterations = limits.max_iterations;
-  solver_options.function_tolerance = limits.function_tolerance;
-  // Directions that only the whole window holds together (scale, tilt) have a curvature far below the
-  // diagonal of their blocks; the default damping of 1e-4 of that diagonal would creep along them.
-  solver_options.initial_trust_region_radius = 1e9;
-  solver_options.num_threads = 1;
-  solver_options.logging_type = ceres::SILENT;
+  for (const Factor& factor : terms.dense) add(factor);
+  for (const LandmarkFactors& landmark : terms.landmarks) {
+    for (const Factor& factor : landmark.factors) add(factor);
+    options.linear_solver_ordering->AddElementToGroup(copies.copyOf(landmark.landmark), 0);
+  }
   ceres::Solver::Summary ceres_summary;
-  ceres::Solve(solver_options, &problem, &ceres_summary);
+  ceres::Solve(options, &problem, &ceres_summary);
 
   SolveSummary summary;
   summary.iterations = static_cast<int>(ceres_summary.iterations.size());
   summary.initial_cost = ceres_summary.initial_cost;
   summary.final_cost = ceres_summary.final_cost;
   summary.usable = ceres_summary.IsSolutionUsable();
+  if (summary.usable) copies.writeBack();
   return summary;
 }
 
@@ -106,9 +156,9 @@ double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
                                                const FactorMaker& factors) {
   NormalEquations system;
-  forEachTerm(
-      window, prior, factors, [&](const Factor& factor) { system.add(factor); },
-      [&](const LandmarkFactors& landmark) { system.addEliminated(landmark); });
+  const Terms terms = collectTerms(window, prior, factors);
+  for (const Factor& factor : terms.dense) system.add(factor);
+  for (const LandmarkFactors& landmark : terms.landmarks) system.addEliminated(landmark);
   const Frame& newest = window.newest();
   const int pose_row = system.find(newest.pose.data())->offset;
   const int motion_row = system.find(newest.motion.data())->offset;
