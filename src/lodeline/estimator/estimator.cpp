@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lodeline/base/error.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
@@ -58,8 +59,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
 bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
   const WindowOptions& window = options_.window;
   if (frames_since_start_ < window.startup_frames) return false;
-  const bool scale_is_given = rig_.cameras.size() > 1;
-  return scale_is_given || frames_since_start_ >= window.startup_max_frames ||
+  return scale_is_given_ || frames_since_start_ >= window.startup_max_frames ||
          scaleUncertainty(window_.newest(), covariance) < window.startup_scale_sigma;
 }
 
@@ -82,30 +82,40 @@ bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sighti
                            imu.begin() + (imu_before_start_.empty() || imu.empty() ? 0 : 1), imu.end());
   const Duration longest = Duration::fromSeconds(options_.initial_state.alignment_window_s);
   std::erase_if(imu_before_start_, [&](const ImuSample& s) { return s.time < tracks.time - longest; });
-  if (rig_.cameras.size() > 1) return startAtOnce(tracks.time, sightings, estimate);
-  if (mono_initializer_.add(tracks.time, sightings, imu, next_frame_id_++)) {
-    window_ = mono_initializer_.takeWindow();
-    marginalizer_.start(mono_initializer_.takePrior());
-    frames_since_start_ = static_cast<int>(window_.frames().size());
-    return true;
-  }
+  const auto stereo_matches = std::count_if(sightings.begin(), sightings.end(),
+                                            [](const auto& entry) { return entry.second.camera > 0; });
+  scale_is_given_ = stereo_matches >= options_.initial_state.min_stereo_tracks;
+  if (scale_is_given_) return startAtOnce(tracks.time, sightings, estimate);
+  if (startMonocular(tracks.time, sightings, imu)) return true;
   estimate->waiting_for = mono_initializer_.waitingFor();
+  if (rig_.cameras.size() > 1) {
+    estimate->waiting_for = fmt::format("stereo matches {} of {}, or {}", stereo_matches,
+                                        options_.initial_state.min_stereo_tracks, estimate->waiting_for);
+  }
   return false;
 }
 
+bool Estimator::startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu) {
+  std::erase_if(sightings, [](const auto& entry) { return entry.second.camera > 0; });
+  if (!mono_initializer_.add(time, sightings, imu, next_frame_id_++)) return false;
+  window_ = mono_initializer_.takeWindow();
+  marginalizer_.start(mono_initializer_.takePrior());
+  frames_since_start_ = static_cast<int>(window_.frames().size());
+  return true;
+}
+
 bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate) {
-  const auto stereo_matches = std::count_if(sightings.begin(), sightings.end(),
-                                            [](const auto& entry) { return entry.second.camera > 0; });
-  if (stereo_matches < options_.initial_state.min_stereo_tracks) {
-    estimate->waiting_for =
-        fmt::format("stereo matches {} of {}", stereo_matches, options_.initial_state.min_stereo_tracks);
-    return false;
-  }
   if (imu_before_start_.size() < 2) {
     estimate->waiting_for = "inertial readings";
     return false;
   }
-  const GravityAlignment up = alignWithGravity(imu_before_start_, Vec3::Zero(), options_.gravity_alignment);
+  GravityAlignment up;
+  try {
+    up = alignWithGravity(imu_before_start_, Vec3::Zero(), options_.gravity_alignment);
+  } catch (const EstimationError& error) {
+    estimate->waiting_for = error.what();
+    return false;
+  }
   NavigationState state;
   state.time = time;
   state.world_from_body.rotation = up.world_from_body;

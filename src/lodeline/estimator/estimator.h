@@ -58,6 +58,7 @@ class Estimator {
   SightingList sightingsOf(const FrameTracks& tracks) const;
   bool initialize(const FrameTracks& tracks, const SightingList& sightings, std::span<const ImuSample> imu,
                   FrameEstimate* estimate);
+  bool startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu);
   bool startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate);
   void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
@@ -77,6 +78,7 @@ class Estimator {
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
   bool starting_up_ = true;
+  bool scale_is_given_ = false;  ///< by a stereo start
 };
 
 }  // namespace lodeline
