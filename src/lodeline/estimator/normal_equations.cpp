@@ -12,6 +12,9 @@ using Mat26 = Eigen::Matrix<double, 2, 6>;
 
 // Eigenvalues of a landmark's scaled 3x3 system below this share of the largest count as unobserved.
 constexpr double kRankTolerance = 1e-10;
+// So does a coordinate with less information than this: an inverse distance that is known to 1000 per metre
+// is not known, and scaling would blow its rounding errors up to a direction that takes information away.
+constexpr double kLeastInformation = 1e-6;
 
 /// Scales residual and Jacobians by the square root of the loss's slope (iteratively reweighted least
 /// squares).
@@ -24,7 +27,7 @@ double robustScale(const ceres::LossFunction* loss, double squared_norm) {
 
 /// Inverse of a positive semi-definite 3x3 matrix on its range, insensitive to the units of its coordinates.
 Mat3 pseudoInverse(const Mat3& matrix) {
-  const Vec3 scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Vec3 scale = matrix.diagonal().cwiseMax(kLeastInformation).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(scale.asDiagonal() * matrix * scale.asDiagonal());
   const double threshold = kRankTolerance * solver.eigenvalues()[2];
   const Vec3 inverted =
