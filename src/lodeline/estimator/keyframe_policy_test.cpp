@@ -1,0 +1,91 @@
+#include "lodeline/estimator/keyframe_policy.h"
+
+#include <gtest/gtest.h>
+
+#include "lodeline/estimator/test_window.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+class KeyframePolicyTest : public testing::Test {
+ protected:
+  // A wall 4 m ahead of the first frame, a keyframe.
+  KeyframePolicyTest() : first_(test_.add(Rigid3(), true)) {
+    for (int i = 0; i < 60; ++i) wall_.emplace_back(4.0, 0.25 * (i % 10) - 1.1, 0.25 * (i / 10) - 0.6);
+    see(first_, 0, 60);
+    for (int i = 0; i < 60; ++i) test_.place(i, wall_[i], first_);
+  }
+
+  // Tracks begin..end-1 seen with half a pixel of noise.
+  void see(const Frame& frame, int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      test_.see(i, wall_[i], frame, 0, 0.5 * Vec2(random_.normal(), random_.normal()));
+  }
+  // New tracks of the same points.
+  void seeFresh(const Frame& frame, int count) {
+    for (int i = 0; i < count; ++i) test_.see(1000 + i, wall_[i], frame);
+  }
+  bool wanted() const { return wantsKeyframe(test_.window, test_.factors, options_); }
+
+  Random random_{1, "keyframe"};
+  TestWindow test_{1};
+  KeyframeOptions options_;
+  std::vector<Vec3> wall_;
+  Frame& first_;
+};
+
+TEST_F(KeyframePolicyTest, TheFirstFrameIsAKeyframe) {
+  first_.is_keyframe = false;
+  EXPECT_TRUE(wanted());
+}
+
+TEST_F(KeyframePolicyTest, StandingStillMakesNone) {
+  for (int i = 0; i < 200; ++i) {
+    see(test_.add(Rigid3(), false), 0, 60);
+    EXPECT_FALSE(wanted()) << "frame " << i;
+  }
+}
+
+TEST_F(KeyframePolicyTest, TurningAloneMakesNone) {
+  see(test_.add(Rigid3(so3::exp(Vec3(0.0, 0.05, 0.1)), Vec3::Zero()), false), 0, 60);
+  EXPECT_FALSE(wanted());
+}
+
+TEST_F(KeyframePolicyTest, MovingFarEnoughMakesOne) {
+  // The points ahead shift by about step / 4 m.
+  see(test_.add(Rigid3(Quat::Identity(), Vec3(0.0, 0.8 * 4.0 * options_.min_parallax_rad, 0.0)), false), 0,
+      60);
+  EXPECT_FALSE(wanted());
+  see(test_.add(Rigid3(Quat::Identity(), Vec3(0.0, 1.2 * 4.0 * options_.min_parallax_rad, 0.0)), false), 0,
+      60);
+  EXPECT_TRUE(wanted());
+}
+
+TEST_F(KeyframePolicyTest, LosingSightMakesOneOnlyWhereThereIsSomethingNew) {
+  see(test_.add(Rigid3(), false), 0, 20);
+  EXPECT_FALSE(wanted()) << "a keyframe without new tracks would know less than the last one";
+  const Frame& next = test_.add(Rigid3(), false);
+  see(next, 0, 20);
+  seeFresh(next, 30);
+  EXPECT_TRUE(wanted());
+}
+
+TEST_F(KeyframePolicyTest, ADarkImageMakesNone) {
+  test_.add(Rigid3(Quat::Identity(), Vec3(0.0, 1.0, 0.0)), false);
+  EXPECT_FALSE(wanted());
+}
+
+TEST_F(KeyframePolicyTest, ParallaxIsTheAngleWithoutRotation) {
+  const double step_m = 0.4;
+  const Frame& moved = test_.add(Rigid3(so3::exp(Vec3(0.1, 0.05, 0.1)), Vec3(0.0, step_m, 0.0)), false);
+  for (int i = 0; i < 60; ++i) test_.see(i, wall_[i], moved);
+  const std::optional<double> parallax = medianParallax(test_.window, first_, moved, test_.factors);
+  // The camera's arm turns with the body, which adds a little; points aside of the axis shift less.
+  ASSERT_TRUE(parallax.has_value());
+  EXPECT_NEAR(*parallax, step_m / 4.0, 0.15 * step_m / 4.0);
+  EXPECT_FALSE(medianParallax(test_.window, first_, test_.add(Rigid3()), test_.factors).has_value());
+}
+
+}  // namespace
+}  // namespace lodeline
