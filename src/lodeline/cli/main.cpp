@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <glog/logging.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -19,9 +20,18 @@ int fail(const char* kind, const std::exception& error, ExitCode code) {
   return code;
 }
 
+/// Ceres logs through glog. Its warnings tell of steps that it recovers from; what matters to the user is in
+/// the run's findings.
+void quietSolverLog(const char* program) {
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_ERROR;
+  google::InitGoogleLogging(program);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  quietSolverLog(argv[0]);
   CLI::App program("Lodeline: where a camera rig went and which way it faced, from images and inertial data");
   program.name("lodeline");
   program.set_version_flag("--version", "lodeline " LODELINE_VERSION);

@@ -1,13 +1,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-
+#include "lodeline/cli/test_program.h"
 #include "lodeline/evaluation/test_trajectories.h"
 
 // The program as a script sees it: exit codes, and what it prints.
@@ -15,24 +10,9 @@
 namespace lodeline {
 namespace {
 
+using test::Execution;
+using test::runProgram;
 using ::testing::HasSubstr;
-
-struct Execution {
-  int exit_code = -1;
-  std::string output;  ///< standard output and error
-};
-
-Execution run(const std::string& arguments) {
-  Execution result;
-  FILE* pipe = popen(fmt::format("'{}' {} 2>&1", LODELINE_PROGRAM, arguments).c_str(), "r");
-  std::array<char, 4096> buffer;
-  while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr) {
-    result.output += buffer.data();
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-  return result;
-}
 
 class ProgramTest : public ::testing::Test {
  protected:
@@ -48,32 +28,33 @@ class ProgramTest : public ::testing::Test {
 };
 
 TEST_F(ProgramTest, PrintsVersionAndHelp) {
-  const Execution version = run("--version");
+  const Execution version = runProgram("--version");
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_THAT(version.output, HasSubstr("lodeline "));
-  EXPECT_EQ(run("--help").exit_code, 0);
-  const Execution help = run("evaluate --help");
+  EXPECT_EQ(runProgram("--help").exit_code, 0);
+  const Execution help = runProgram("evaluate --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, HasSubstr("Examples:"));
 }
 
 TEST_F(ProgramTest, EndsWithTwoOnWrongUsage) {
   folder_.write("a.tum", tum_);
-  EXPECT_EQ(run("").exit_code, 2);
-  EXPECT_EQ(run("evaluate").exit_code, 2);
-  EXPECT_EQ(run("unknown-command").exit_code, 2);
-  EXPECT_EQ(run("evaluate " + file("a.tum") + " " + file("a.tum") + " --unknown").exit_code, 2);
-  EXPECT_EQ(run("evaluate " + file("a.tum") + " " + file("a.tum") + " --align sim4").exit_code, 2);
-  EXPECT_EQ(run("evaluate " + file("a.tum") + " " + file("a.tum") + " --format odd").exit_code, 2);
-  EXPECT_EQ(run("evaluate " + file("a.tum") + " " + file("a.tum") + " --time-tolerance-s -1").exit_code, 2);
-  EXPECT_EQ(run("evaluate " + file("a.tum") + " " + file("a.tum") + " --stretches-m 0").exit_code, 2);
+  EXPECT_EQ(runProgram("").exit_code, 2);
+  EXPECT_EQ(runProgram("evaluate").exit_code, 2);
+  EXPECT_EQ(runProgram("unknown-command").exit_code, 2);
+  EXPECT_EQ(runProgram("evaluate " + file("a.tum") + " " + file("a.tum") + " --unknown").exit_code, 2);
+  EXPECT_EQ(runProgram("evaluate " + file("a.tum") + " " + file("a.tum") + " --align sim4").exit_code, 2);
+  EXPECT_EQ(runProgram("evaluate " + file("a.tum") + " " + file("a.tum") + " --format odd").exit_code, 2);
+  EXPECT_EQ(
+      runProgram("evaluate " + file("a.tum") + " " + file("a.tum") + " --time-tolerance-s -1").exit_code, 2);
+  EXPECT_EQ(runProgram("evaluate " + file("a.tum") + " " + file("a.tum") + " --stretches-m 0").exit_code, 2);
 }
 
 TEST_F(ProgramTest, RefusesColmapOptionsWithoutAColmapModel) {
   folder_.write("a.tum", tum_);
   folder_.write("times.txt", "a.png 1.0\n");
   const Execution result =
-      run("evaluate " + file("a.tum") + " " + file("a.tum") + " --image-times " + file("times.txt"));
+      runProgram("evaluate " + file("a.tum") + " " + file("a.tum") + " --image-times " + file("times.txt"));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.output, HasSubstr("COLMAP"));
 }
@@ -81,10 +62,10 @@ TEST_F(ProgramTest, RefusesColmapOptionsWithoutAColmapModel) {
 TEST_F(ProgramTest, EndsWithOneOnBadInputAndSaysWhere) {
   folder_.write("a.tum", tum_);
   folder_.write("bad.tum", "1.0 0 0 0 0 0 0 1\n2.0 0 x 0 0 0 0 1\n");
-  const Execution missing = run("evaluate " + file("absent.tum") + " " + file("a.tum"));
+  const Execution missing = runProgram("evaluate " + file("absent.tum") + " " + file("a.tum"));
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.output, HasSubstr("absent.tum"));
-  const Execution damaged = run("evaluate " + file("bad.tum") + " " + file("a.tum"));
+  const Execution damaged = runProgram("evaluate " + file("bad.tum") + " " + file("a.tum"));
   EXPECT_EQ(damaged.exit_code, 1);
   EXPECT_THAT(damaged.output, HasSubstr("bad.tum:2"));
 }
@@ -92,16 +73,16 @@ TEST_F(ProgramTest, EndsWithOneOnBadInputAndSaysWhere) {
 TEST_F(ProgramTest, EndsWithOneOnUnwritableOutput) {
   folder_.write("a.tum", tum_);
   const std::string both = file("a.tum") + " " + file("a.tum");
-  EXPECT_EQ(run("evaluate " + both + " --json " + file("absent/figures.json")).exit_code, 1);
-  EXPECT_EQ(run("evaluate " + both + " --plots " + file("a.tum")).exit_code, 1);
+  EXPECT_EQ(runProgram("evaluate " + both + " --json " + file("absent/figures.json")).exit_code, 1);
+  EXPECT_EQ(runProgram("evaluate " + both + " --plots " + file("a.tum")).exit_code, 1);
 }
 
 TEST_F(ProgramTest, EvaluatesAndWritesTheFigures) {
   folder_.write("run/trajectory.tum", tum_);
   folder_.write("truth.tum", tum_);
   folder_.write("cam0/data.csv", "#timestamp [ns],filename\n2000000000,a.png\n5000000000,b.png\n");
-  const Execution result = run("evaluate " + file("run") + " " + file("truth.tum") + " --images " +
-                               file("cam0") + " --json " + file("figures.json"));
+  const Execution result = runProgram("evaluate " + file("run") + " " + file("truth.tum") + " --images " +
+                                      file("cam0") + " --json " + file("figures.json"));
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("50.00 % (1 of 2 images)"));
   std::ifstream stream(folder_.path() / "figures.json");

@@ -1,8 +1,6 @@
 #include "lodeline/cli/run_command.h"
 
 #include <fmt/core.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -12,7 +10,10 @@
 #include "lodeline/base/error.h"
 #include "lodeline/base/settings.h"
 #include "lodeline/base/thread_clock.h"
+#include "lodeline/cli/process_usage.h"
+#include "lodeline/cli/run_progress.h"
 #include "lodeline/cli/run_settings.h"
+#include "lodeline/cli/stop_request.h"
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/report/landmark_writer.h"
 #include "lodeline/report/output_file.h"
@@ -36,42 +37,6 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-double processSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-/// One line that is rewritten on a terminal, or a line each ten seconds of recording in a log.
-class Progress {
- public:
-  explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
-
-  void show(const RunSummary& summary) {
-    if (quiet_ || secondsSince(last_) < (terminal_ ? 0.2 : 5.0)) return;
-    last_ = Clock::now();
-    const FrameEstimate& frame = summary.last();
-    const std::string state = frame.status == Status::Waiting
-                                  ? "waiting for " + frame.waiting_for
-                                  : fmt::format("{}, {} tracks, {} landmarks", toString(frame.status),
-                                                frame.tracks, frame.landmarks);
-    fmt::print(stderr, "{}frame {:6}  {:5.1f} x real time  {:.1f} m  {}{}", terminal_ ? "\r\033[K" : "",
-               summary.frames(), summary.realTimeFactor(), summary.pathLength_m(), state,
-               terminal_ ? "" : "\n");
-  }
-  void end() const {
-    if (!quiet_ && terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  bool quiet_;
-  bool terminal_;
-  Clock::time_point last_ = Clock::now();
-};
-
 void createFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -90,6 +55,72 @@ void loadSettings(const RunArguments& arguments, Settings* settings) {
   }
 }
 
+RunDescription describe(const RunArguments& arguments, const RunSettings& options, const Rig& rig) {
+  RunDescription description;
+  description.version = LODELINE_VERSION;
+  description.data = arguments.data;
+  description.config = arguments.config;
+  description.overrides = arguments.overrides;
+  for (const CameraCalibration& camera : rig.cameras) description.cameras.push_back(camera.name);
+  description.camera_rate_hz = rig.cameras.front().rate_hz;
+  description.imu_rate_hz = rig.imu.rate_hz;
+  if (rig.magnetometer) description.other_sensors.push_back("magnetometer");
+  if (rig.pressure) description.other_sensors.push_back("pressure");
+  if (rig.sonar) description.other_sensors.push_back("sonar");
+  description.observation_sigma_px = options.odometry.front_end.sigma_px;
+  return description;
+}
+
+/// Feeds all packets through the estimator; results are on disk at the end, whatever ended it.
+void process(Synchronizer& synchronizer, Odometry& odometry, const std::filesystem::path& folder, bool quiet,
+             RunSummary* summary) {
+  StateWriter states(folder);
+  LandmarkWriter landmarks(folder);
+  RunProgress progress(quiet);
+  const StopRequest stop;
+  const Clock::time_point start = Clock::now();
+  const double start_processor_s = ProcessUsage::now().processor_s;
+  const auto next = [&] {
+    const double before_s = threadSeconds();
+    std::optional<FramePacket> packet = synchronizer.next();
+    summary->reading_s += threadSeconds() - before_s;
+    return packet;
+  };
+  std::optional<FramePacket> packet = next();
+  for (; packet && !stop.made(); packet = next()) {
+    const FrameEstimate estimate = odometry.add(*packet);
+    states.write(estimate);
+    landmarks.write(odometry.estimator().takeMapPoints());
+    summary->add(estimate);
+    for (const cv::Mat& image : packet->images) summary->images += image.empty() ? 0 : 1;
+    summary->wall_s = secondsSince(start);
+    progress.show(*summary);
+  }
+  progress.end();
+  landmarks.write(odometry.estimator().currentMapPoints());
+  landmarks.finish();
+
+  summary->interrupted = packet.has_value();
+  summary->map_points = landmarks.count();
+  summary->front_end_s = odometry.times().front_end_s;
+  summary->estimator_s = odometry.times().estimator_s;
+  const ProcessUsage usage = ProcessUsage::now();
+  summary->process_s = usage.processor_s - start_processor_s;
+  summary->peak_memory_MB = usage.peak_memory_MB;
+}
+
+/// Turns a run without a result into the error that explains it.
+void requireResult(const RunArguments& arguments, const RunSummary& summary) {
+  if (summary.interrupted || summary.posed() > 0) return;
+  if (summary.images == 0) {
+    throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",
+                                 arguments.data,
+                                 (std::filesystem::path(arguments.output) / "run.json").string()));
+  }
+  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}", arguments.data,
+                                    summary.frames(), summary.last().waiting_for));
+}
+
 void run(const RunArguments& arguments) {
   // One thread for image operations: the same bytes on every machine, and core-milliseconds that mean
   // something.
@@ -105,48 +136,15 @@ void run(const RunArguments& arguments) {
   createFolder(folder);
   std::ofstream config = openOutput(folder / "config.yaml");
   settings.write(config);
-  config.close();
+  closeOutput(folder / "config.yaml", &config);
 
   Synchronizer synchronizer(&source, options.synchronizer, &diagnostics);
   Odometry odometry(source.rig(), options.odometry, &diagnostics);
-  StateWriter states(folder);
-  LandmarkWriter landmarks(folder);
-  RunSummary summary;
-  Progress progress(arguments.quiet);
-  const Clock::time_point start = Clock::now();
-  const double start_process_s = processSeconds();
-  const auto next = [&] {
-    const double before_s = threadSeconds();
-    std::optional<FramePacket> packet = synchronizer.next();
-    summary.reading_s += threadSeconds() - before_s;
-    return packet;
-  };
-  while (const std::optional<FramePacket> packet = next()) {
-    const FrameEstimate estimate = odometry.add(*packet);
-    states.write(estimate);
-    landmarks.write(odometry.estimator().takeMapPoints());
-    summary.add(estimate);
-    summary.wall_s = secondsSince(start);
-    progress.show(summary);
-  }
-  progress.end();
-  landmarks.write(odometry.estimator().currentMapPoints());
-  landmarks.finish();
-
-  summary.map_points = landmarks.count();
-  summary.front_end_s = odometry.times().front_end_s;
-  summary.estimator_s = odometry.times().estimator_s;
-  summary.process_s = processSeconds() - start_process_s;
-  openOutput(folder / "run.json") << summary.json(diagnostics);
+  RunSummary summary(describe(arguments, options, source.rig()));
+  process(synchronizer, odometry, folder, arguments.quiet, &summary);
+  writeOutput(folder / "run.json", summary.json(diagnostics));
   if (!arguments.quiet) fmt::print("{}\n{}", folder.string(), summary.text(diagnostics));
-  if (summary.frames() == 0) {
-    throw InputError(fmt::format("{}: no image could be used; see the warnings above and {}", arguments.data,
-                                 (folder / "run.json").string()));
-  }
-  if (summary.posed() == 0) {
-    throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}", arguments.data,
-                                      summary.frames(), summary.last().waiting_for));
-  }
+  requireResult(arguments, summary);
 }
 
 }  // namespace

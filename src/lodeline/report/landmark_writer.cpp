@@ -16,12 +16,18 @@ constexpr const char* kAfterCount =
 }  // namespace
 
 LandmarkWriter::LandmarkWriter(const std::filesystem::path& folder)
-    : stream_(openOutput(folder / "landmarks.ply")) {
+    : file_(folder / "landmarks.ply"), stream_(openOutput(file_)) {
   // Zero-padded so that the final count takes the same room.
   fmt::print(stream_, "{}{:012}{}", kBeforeCount, 0, kAfterCount);
 }
 
-LandmarkWriter::~LandmarkWriter() { finish(); }
+LandmarkWriter::~LandmarkWriter() {
+  try {
+    finish();
+  } catch (const InputError&) {
+    // Another error is on its way already; it says more.
+  }
+}
 
 void LandmarkWriter::write(const std::vector<MapPoint>& points) {
   for (const MapPoint& point : points) {
@@ -37,7 +43,7 @@ void LandmarkWriter::finish() {
   if (!stream_.is_open()) return;
   stream_.seekp(static_cast<std::streamoff>(std::char_traits<char>::length(kBeforeCount)));
   fmt::print(stream_, "{:012}", count_);
-  stream_.close();
+  closeOutput(file_, &stream_);
 }
 
 }  // namespace lodeline

@@ -9,7 +9,7 @@
 namespace lodeline {
 
 /// Writes `landmarks.ply` (binary, positions in the world in metres and the number of sightings), streaming:
-/// the count in the header is filled in by finish(), which the destructor calls too.
+/// the count in the header is filled in by finish(), which the destructor calls too, but without throwing.
 class LandmarkWriter {
  public:
   /// Throws InputError where the folder cannot be written to.
@@ -19,10 +19,12 @@ class LandmarkWriter {
   LandmarkWriter& operator=(const LandmarkWriter&) = delete;
 
   void write(const std::vector<MapPoint>& points);
+  /// Throws InputError where not all could be written.
   void finish();
   int64_t count() const { return count_; }
 
  private:
+  std::filesystem::path file_;
   std::ofstream stream_;
   int64_t count_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "lodeline/base/error.h"
 
@@ -15,6 +16,18 @@ inline std::ofstream openOutput(const std::filesystem::path& file) {
                      ": cannot be written; choose a folder with write permission and free space (-o)");
   }
   return stream;
+}
+
+/// Throws InputError naming the file where something of it could not be written.
+inline void closeOutput(const std::filesystem::path& file, std::ofstream* stream) {
+  stream->close();
+  if (!*stream) throw InputError(file.string() + ": writing failed; is the disk full?");
+}
+
+inline void writeOutput(const std::filesystem::path& file, std::string_view content) {
+  std::ofstream stream = openOutput(file);
+  stream << content;
+  closeOutput(file, &stream);
 }
 
 }  // namespace lodeline

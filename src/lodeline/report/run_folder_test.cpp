@@ -8,6 +8,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/report/landmark_writer.h"
+#include "lodeline/report/output_file.h"
 #include "lodeline/report/run_summary.h"
 #include "lodeline/report/state_writer.h"
 
@@ -100,7 +101,11 @@ TEST_F(RunFolder, LandmarksCanBeReadBack) {
 }
 
 TEST_F(RunFolder, SummaryCountsPathCompletionAndFindings) {
-  RunSummary summary;
+  RunDescription description;
+  description.data = "dive1";
+  description.cameras = {"cam0", "cam1"};
+  description.observation_sigma_px = 0.5;
+  RunSummary summary(description);
   FrameEstimate waiting;
   waiting.time = Time::fromNanoseconds(0);
   summary.add(waiting);
@@ -113,7 +118,30 @@ TEST_F(RunFolder, SummaryCountsPathCompletionAndFindings) {
   EXPECT_NEAR(json["completion"], 2.0 / 3.0, 1e-12);
   EXPECT_DOUBLE_EQ(json["duration_s"], 2.0);
   EXPECT_EQ(json["findings"][0]["kind"], "imu_gap");
+  EXPECT_EQ(json["data"], "dive1");
+  EXPECT_EQ(json["rig"]["cameras"].size(), 2u);
+  EXPECT_FALSE(json["interrupted"]);
   EXPECT_NE(summary.text(diagnostics).find("a gap"), std::string::npos);
+}
+
+TEST_F(RunFolder, SummarySaysReprojectionInPixels) {
+  RunDescription description;
+  description.observation_sigma_px = 0.5;
+  RunSummary summary(description);
+  FrameEstimate estimate = estimateAt(0, Vec3::Zero());
+  estimate.landmarks = 30;
+  estimate.reprojection_rms_sigmas = 0.62;
+  summary.add(estimate);
+  EXPECT_NE(summary.text({}).find("0.31 px rms (0.62 sigma)"), std::string::npos);
+}
+
+TEST_F(RunFolder, FullDiskIsNoticedWhenFilesAreClosed) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  std::filesystem::create_symlink("/dev/full", folder_ / "landmarks.ply");
+  LandmarkWriter writer(folder_);
+  writer.write({{7, Vec3(1, 2, 3), 4}});
+  EXPECT_THROW(writer.finish(), InputError);
+  EXPECT_THROW(writeOutput("/dev/full", "text"), InputError);
 }
 
 }  // namespace

@@ -5,6 +5,21 @@
 #include <nlohmann/json.hpp>
 
 namespace lodeline {
+namespace {
+
+nlohmann::ordered_json toJson(const RunDescription& run) {
+  return {{"program", "lodeline " + run.version},
+          {"data", run.data},
+          {"config", run.config},
+          {"settings_from_command_line", run.overrides},
+          {"rig",
+           {{"cameras", run.cameras},
+            {"camera_rate_hz", run.camera_rate_hz},
+            {"imu_rate_hz", run.imu_rate_hz},
+            {"other_sensors", run.other_sensors}}}};
+}
+
+}  // namespace
 
 void RunSummary::add(const FrameEstimate& estimate) {
   ++frames_;
@@ -47,7 +62,9 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
   line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
                            keyframes_, map_points));
   line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
-  line("reprojection", fmt::format("{:.2f} sigma rms", meanReprojection_sigmas()));
+  line("reprojection",
+       fmt::format("{:.2f} px rms ({:.2f} sigma)",
+                   meanReprojection_sigmas() * description_.observation_sigma_px, meanReprojection_sigmas()));
   if (posed_ > 0) {
     const Eigen::VectorXd sigma = last_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     line("end uncertainty", fmt::format("{:.3f} m, heading {:.2f} deg (one sigma)", sigma.head<3>().norm(),
@@ -59,6 +76,8 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
                    wall_s, realTimeFactor(), coreMillisecondsPerFrame(process_s),
                    coreMillisecondsPerFrame(reading_s), coreMillisecondsPerFrame(front_end_s),
                    coreMillisecondsPerFrame(estimator_s)));
+  line("memory", fmt::format("{:.0f} MB at most", peak_memory_MB));
+  if (interrupted) line("interrupted", "the recording goes on; results cover what was read");
   for (const Finding& finding : diagnostics.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : "";
     line(toString(finding.severity), finding.first_message + times);
@@ -67,10 +86,12 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
 }
 
 std::string RunSummary::json(const Diagnostics& diagnostics) const {
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = toJson(description_);
+  json["interrupted"] = interrupted;
   json["frames"] = frames_;
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
+  json["images"] = images;
   json["keyframes"] = keyframes_;
   json["completion"] = completion();
   json["path_m"] = path_m_;
@@ -78,6 +99,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["landmarks"] = map_points;
   json["mean_tracks"] = meanTracks();
   json["mean_landmarks"] = meanLandmarks();
+  json["mean_reprojection_rms_px"] = meanReprojection_sigmas() * description_.observation_sigma_px;
   json["mean_reprojection_rms_sigmas"] = meanReprojection_sigmas();
   json["wall_s"] = wall_s;
   json["real_time_factor"] = realTimeFactor();
@@ -85,6 +107,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
                                {"reading", coreMillisecondsPerFrame(reading_s)},
                                {"front_end", coreMillisecondsPerFrame(front_end_s)},
                                {"estimator", coreMillisecondsPerFrame(estimator_s)}};
+  json["peak_memory_MB"] = peak_memory_MB;
   json["findings"] = nlohmann::ordered_json::array();
   for (const Finding& finding : diagnostics.ranked()) {
     json["findings"].push_back({{"severity", toString(finding.severity)},

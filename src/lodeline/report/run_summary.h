@@ -2,15 +2,32 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/estimator.h"
 
 namespace lodeline {
 
+/// What a run was made from.
+struct RunDescription {
+  std::string version;  ///< of the program
+  std::string data;     ///< as the user gave it
+  std::string config;   ///< file of settings; empty for none
+  std::vector<std::string> overrides;
+  std::vector<std::string> cameras;  ///< names, the reference first
+  double camera_rate_hz = 0.0;
+  double imu_rate_hz = 0.0;
+  std::vector<std::string> other_sensors;
+  double observation_sigma_px = 0.0;
+};
+
 /// Gathers the figures of a run frame by frame.
 class RunSummary {
  public:
+  explicit RunSummary(RunDescription description = {}) : description_(std::move(description)) {}
+
   void add(const FrameEstimate& estimate);
 
   int frames() const { return frames_; }
@@ -23,7 +40,10 @@ class RunSummary {
   double estimator_s = 0.0;
   double process_s = 0.0;  ///< of the whole process, all threads
   double wall_s = 0.0;
+  double peak_memory_MB = 0.0;  ///< of the whole process
+  int64_t images = 0;           ///< that could be read
   int64_t map_points = 0;
+  bool interrupted = false;  ///< ended by the user before the recording did
 
   double recordingSeconds() const;
   /// Share of the frames that got a pose.
@@ -42,6 +62,7 @@ class RunSummary {
  private:
   double coreMillisecondsPerFrame(double seconds) const;
 
+  RunDescription description_;
   FrameEstimate last_;
   std::optional<Time> first_time_;
   std::optional<Vec3> last_position_W_;

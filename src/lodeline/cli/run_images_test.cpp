@@ -1,0 +1,97 @@
+#include "lodeline/cli/test_room.h"
+
+// `lodeline run` on images that are missing, damaged or of the wrong kind.
+
+namespace lodeline::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using RunImages = RoomTest;
+
+TEST_F(RunImages, MissingImageOfEitherCameraIsNamedAndBridged) {
+  std::filesystem::remove(recording_.image(0, 12));
+  std::filesystem::remove(recording_.image(1, 18));
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("image_unreadable"), 2);
+  EXPECT_THAT(result.output, AllOf(HasSubstr(recording_.image(0, 12).string()), HasSubstr("missing")));
+}
+
+TEST_F(RunImages, ImageMissingInTheListOfTheOtherCameraIsReported) {
+  editLines(recording_.csv("cam1"), [](auto& lines) { lines.erase(lines.begin() + 10); });
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("image_missing"), 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("cam1"), HasSubstr(fmt::format("{}", roomImageStamp_ns(9)))));
+}
+
+TEST_F(RunImages, CorruptImageIsNamedAndBridged) {
+  std::filesystem::resize_file(recording_.image(0, 10), 700);
+  std::ofstream(recording_.image(0, 15)) << "no picture";
+  std::ofstream(recording_.image(0, 20));
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("image_unreadable"), 3);
+  EXPECT_THAT(result.output, AllOf(HasSubstr(recording_.image(0, 10).string()), HasSubstr("damaged")));
+}
+
+TEST_F(RunImages, ImageWithoutInertialReadingsIsPassedOver) {
+  // The last 40 readings are 0.2 s: four images lie after what is left.
+  editLines(recording_.csv("imu0"), [](auto& lines) { lines.resize(lines.size() - 40); });
+  const Execution result = run();
+  expectGoodResult(result, kRoomImages - 4);
+  EXPECT_EQ(findings("image_after_imu"), 4);
+  EXPECT_THAT(result.output, HasSubstr("after the last IMU reading"));
+}
+
+TEST_F(RunImages, ImageBeforeTheFirstInertialReadingIsPassedOver) {
+  // 0.5 s before the first image and three images' time.
+  editLines(recording_.csv("imu0"),
+            [](auto& lines) { lines.erase(lines.begin() + 1, lines.begin() + 1 + 100 + 25); });
+  const Execution result = run();
+  expectGoodResult(result, kRoomImages - 3);
+  EXPECT_EQ(findings("image_before_imu"), 3);
+}
+
+TEST_F(RunImages, WrongResolutionEndsTheRunAndGivesBothSizes) {
+  replaceText(recording_.sensor("cam0") / "sensor.yaml", "[320, 240]", "[640, 480]");
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr(recording_.image(0, 0).string()), HasSubstr("320 x 240"),
+                                   HasSubstr("640 x 480")));
+}
+
+TEST_F(RunImages, AllImagesMissingIsBadInput) {
+  for (size_t i = 0; i < recording_.image_names.size(); ++i) {
+    std::filesystem::remove(recording_.image(0, i));
+    std::filesystem::remove(recording_.image(1, i));
+  }
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("bad input"), HasSubstr("no image"), HasSubstr("run.json"),
+                                   HasSubstr(recording_.image(0, 0).string())));
+  EXPECT_EQ(findings("image_unreadable"), 2 * kRoomImages);
+}
+
+TEST_F(RunImages, MissingFolderOfImagesIsNamed) {
+  std::filesystem::remove_all(recording_.sensor("cam1") / "data");
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr((recording_.sensor("cam1") / "data").string()));
+}
+
+TEST_F(RunImages, ImagesWithoutTextureEndInEstimationFailure) {
+  for (size_t i = 0; i < recording_.image_names.size(); ++i) {
+    for (int camera = 0; camera < 2; ++camera) writeBlankImage(recording_.image(camera, i));
+  }
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("estimation failed"), HasSubstr("waiting for")));
+  EXPECT_EQ(poses(), 0);
+  EXPECT_EQ(summary()["completion"], 0.0);
+}
+
+}  // namespace
+}  // namespace lodeline::test

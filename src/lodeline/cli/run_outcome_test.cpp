@@ -1,0 +1,150 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "lodeline/cli/test_room.h"
+
+// `lodeline run`: where it finds its input, what it writes, how it ends.
+
+namespace lodeline::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using RunOutcome = RoomTest;
+
+TEST_F(RunOutcome, MissingDataIsNamed) {
+  std::filesystem::rename(recording_.data, folder_.path() / "elsewhere");
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr(recording_.data.string()), HasSubstr("mav0")));
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
+TEST_F(RunOutcome, FolderWithoutRecordingIsNamed) {
+  std::filesystem::remove_all(recording_.data / "mav0");
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr(recording_.data.string()), HasSubstr("mav0")));
+}
+
+TEST_F(RunOutcome, TakesMav0ItselfToo) {
+  ASSERT_EQ(run().exit_code, 0);
+  const std::string trajectory = readText(output_ / "trajectory.tum");
+  recording_.data /= "mav0";
+  ASSERT_EQ(run().exit_code, 0);
+  EXPECT_EQ(readText(output_ / "trajectory.tum"), trajectory);
+}
+
+TEST_F(RunOutcome, WrongUsageEndsWithTwo) {
+  EXPECT_EQ(runProgram("run").exit_code, 2);
+  EXPECT_EQ(runProgram("run " + quoted(recording_.data)).exit_code, 2);
+  EXPECT_EQ(run("--unknown").exit_code, 2);
+}
+
+TEST_F(RunOutcome, FolderThatCannotBeMadeIsNamed) {
+  output_ = folder_.write("file", "") / "out";
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr(output_.string()), HasSubstr("-o")));
+}
+
+TEST_F(RunOutcome, FilesThatCannotBeWrittenAreNamed) {
+  for (const char* file : {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply", "run.json"}) {
+    std::filesystem::create_directories(output_ / file);
+    const Execution result = run();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.output, HasSubstr((output_ / file).string()));
+    std::filesystem::remove_all(output_);
+  }
+}
+
+TEST_F(RunOutcome, FullDiskIsNoticed) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  for (const char* file : {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply", "run.json"}) {
+    std::filesystem::create_directories(output_);
+    std::filesystem::create_symlink("/dev/full", output_ / file);
+    const Execution result = run();
+    EXPECT_EQ(result.exit_code, 1) << file;
+    EXPECT_THAT(result.output, AllOf(HasSubstr(output_.string()), HasSubstr("disk full")));
+    std::filesystem::remove_all(output_);
+  }
+}
+
+TEST_F(RunOutcome, WritesTheWholeFolderAndNothingElse) {
+  ASSERT_EQ(run().exit_code, 0);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(output_)) {
+    names.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("trajectory.tum", "states.csv", "landmarks.ply",
+                                                   "config.yaml", "run.json"));
+  const nlohmann::json json = summary();
+  EXPECT_EQ(json["data"], recording_.data.string());
+  EXPECT_GT(json["peak_memory_MB"], 1.0);
+  EXPECT_GT(json["landmarks"], 50);
+}
+
+TEST_F(RunOutcome, QuietSaysNothing) { EXPECT_EQ(run("--quiet").output, ""); }
+
+/// Makes the recording go on for half a minute, with the same images to and fro.
+void prolong(const RoomRecording& recording) {
+  for (const char* camera : {"cam0", "cam1"}) {
+    std::ofstream list(recording.csv(camera), std::ios::app);
+    for (int i = kRoomImages; i < 20 * kRoomImages; ++i) {
+      const int phase = i % (2 * kRoomImages);
+      const int image = phase < kRoomImages ? phase : 2 * kRoomImages - 1 - phase;
+      list << roomImageStamp_ns(i) << "," << recording.image_names[static_cast<size_t>(image)] << "\n";
+    }
+  }
+  std::ofstream list(recording.csv("imu0"), std::ios::app);
+  const int64_t end_ns = roomImageStamp_ns(20 * kRoomImages);
+  for (int64_t stamp_ns = roomImageStamp_ns(kRoomImages); stamp_ns < end_ns; stamp_ns += 5'000'000) {
+    list << stamp_ns << ",0,0,0,0,0,9.8\n";
+  }
+}
+
+/// Starts the program, waits until it has written `poses` poses, and sends it the signal.
+int signalAfterPoses(const RoomRecording& recording, const std::filesystem::path& output, int poses,
+                     int signal) {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl(LODELINE_PROGRAM, LODELINE_PROGRAM, "run", recording.data.c_str(), "-o", output.c_str(), "-q",
+          nullptr);
+    _exit(127);
+  }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (std::chrono::steady_clock::now() < deadline) {
+    const std::string text = readText(output / "trajectory.tum");
+    if (std::count(text.begin(), text.end(), '\n') > poses) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  kill(child, signal);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(RunOutcome, InterruptCompletesTheResultsSoFar) {
+  prolong(recording_);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EQ(signalAfterPoses(recording_, output_, 10, signal), 0);
+    const nlohmann::json json = summary();
+    EXPECT_TRUE(json["interrupted"]);
+    EXPECT_GE(json["frames"], 10);
+    EXPECT_LT(json["frames"], 20 * kRoomImages);
+    EXPECT_EQ(poses(), json["frames_with_pose"]);
+    EXPECT_GT(json["landmarks"], 50);
+    const std::string ply = readText(output_ / "landmarks.ply");
+    EXPECT_NE(ply.find(fmt::format("element vertex {:012}\n", json["landmarks"].get<int>())),
+              std::string::npos);
+    std::filesystem::remove_all(output_);
+  }
+}
+
+}  // namespace
+}  // namespace lodeline::test

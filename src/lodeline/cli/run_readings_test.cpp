@@ -1,0 +1,122 @@
+#include "lodeline/cli/test_room.h"
+
+// `lodeline run` on lists of readings that are empty, cut off, disordered or full of holes.
+
+namespace lodeline::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using RunReadings = RoomTest;
+
+void expectNamed(const Execution& result, const std::filesystem::path& file, int line) {
+  EXPECT_THAT(result.output, HasSubstr(fmt::format("{}:{}", file.string(), line)));
+}
+
+TEST_F(RunReadings, UndamagedRecordingIsTracked) {
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(summary()["findings"].size(), 0u) << summary().dump(2);
+  EXPECT_EQ(summary()["rig"]["cameras"].size(), 2u);
+  EXPECT_LT(error_m(), 0.004);
+}
+
+TEST_F(RunReadings, EmptyListIsBadInput) {
+  for (const char* sensor : {"imu0", "cam0", "cam1"}) {
+    const std::string content = readText(recording_.csv(sensor));
+    for (const std::string& empty : {std::string(), content.substr(0, content.find('\n') + 1)}) {
+      std::ofstream(recording_.csv(sensor)) << empty;
+      const Execution result = run();
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_THAT(result.output,
+                  AllOf(HasSubstr(recording_.csv(sensor).string()), HasSubstr("no usable row")));
+    }
+    std::ofstream(recording_.csv(sensor)) << content;
+  }
+}
+
+TEST_F(RunReadings, MissingListIsBadInput) {
+  std::filesystem::remove(recording_.csv("imu0"));
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr(recording_.csv("imu0").string()));
+}
+
+TEST_F(RunReadings, TruncatedLineIsNamedAndPassedOver) {
+  editLines(recording_.csv("imu0"), [](auto& lines) { lines[200].resize(lines[200].size() / 2); });
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("csv_row"), 1);
+  expectNamed(result, recording_.csv("imu0"), 201);
+}
+
+TEST_F(RunReadings, ListCutOffInItsLastLineIsUsedUpToThere) {
+  const auto size = std::filesystem::file_size(recording_.csv("imu0"));
+  std::filesystem::resize_file(recording_.csv("imu0"), size - 30);
+  const Execution result = run();
+  expectGoodResult(result, kRoomImages - 1);
+  EXPECT_EQ(findings("csv_row"), 1);
+  EXPECT_THAT(result.output, HasSubstr("cut off"));
+}
+
+TEST_F(RunReadings, LineEndsOfWindowsChangeNothing) {
+  ASSERT_EQ(run().exit_code, 0);
+  const std::string unix_result = readText(output_ / "trajectory.tum") + readText(output_ / "states.csv");
+  for (const char* sensor : {"imu0", "cam0", "cam1"}) {
+    for (const char* file : {"data.csv", "sensor.yaml"}) {
+      editLines(recording_.sensor(sensor) / file, [](auto& lines) {
+        for (std::string& line : lines) line += '\r';
+      });
+    }
+  }
+  ASSERT_EQ(run().exit_code, 0);
+  EXPECT_EQ(readText(output_ / "trajectory.tum") + readText(output_ / "states.csv"), unix_result);
+  EXPECT_EQ(summary()["findings"].size(), 0u);
+}
+
+TEST_F(RunReadings, NanIsNamedAndPassedOver) {
+  editLines(recording_.csv("imu0"), [](auto& lines) {
+    lines[150] = lines[150].substr(0, lines[150].find(',')) + ",nan,0,0,0,0,9.8";
+    lines[250] = lines[250].substr(0, lines[250].rfind(',')) + ",inf";
+  });
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("csv_row"), 2);
+  expectNamed(result, recording_.csv("imu0"), 151);
+}
+
+TEST_F(RunReadings, TimeGoingBackwardsIsReportedWithBothStamps) {
+  editLines(recording_.csv("imu0"), [](auto& lines) { std::swap(lines[180], lines[183]); });
+  editLines(recording_.csv("cam0"), [](auto& lines) { std::swap(lines[12], lines[13]); });
+  const Execution result = run();
+  expectGoodResult(result, kRoomImages - 1);
+  EXPECT_GE(findings("imu_disorder"), 1);
+  EXPECT_EQ(findings("image_disorder"), 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("time goes backwards"),
+                                   HasSubstr(fmt::format("from stamp {} ns to {} ns", roomImageStamp_ns(12),
+                                                         roomImageStamp_ns(11)))));
+}
+
+TEST_F(RunReadings, RepeatedStampIsReported) {
+  editLines(recording_.csv("imu0"), [](auto& lines) { lines.insert(lines.begin() + 120, lines[120]); });
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("imu_duplicate"), 1);
+}
+
+TEST_F(RunReadings, InertialGapOfHalfASecondIsReportedAndSurvived) {
+  // From 0.4 s after the first image on; the header is line 0, images begin at line 101.
+  editLines(recording_.csv("imu0"),
+            [](auto& lines) { lines.erase(lines.begin() + 182, lines.begin() + 281); });
+  const Execution result = run();
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(findings("imu_gap"), 1);
+  EXPECT_THAT(result.output, HasSubstr("nothing for 0.500 s after stamp"));
+  EXPECT_EQ(poses(), kRoomImages);
+  // Images carry on through the gap; inertial readings made up over it must not be believed.
+  EXPECT_LT(error_m(), 0.02);
+}
+
+}  // namespace
+}  // namespace lodeline::test
