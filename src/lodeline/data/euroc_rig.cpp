@@ -81,7 +81,7 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
     }
     const std::filesystem::path csv = layout.csv(name);
     const std::vector<Time> stamps = firstStamps(csv, 0);
-    if (stamps.empty()) throwEmpty(csv, "restore it or leave this camera out with camera_indices");
+    if (stamps.empty()) throwEmpty(csv, "restore it or leave this camera out (source.cameras)");
     camera.rate_hz = settleRate(csv, stamps, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));

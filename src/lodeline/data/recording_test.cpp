@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+
 #include "lodeline/base/test_data.h"
 #include "lodeline/data/euroc_source.h"
+#include "lodeline/data/image_loader.h"
 #include "lodeline/data/synchronizer.h"
 
 namespace lodeline {
@@ -70,6 +74,17 @@ TEST_F(Mh01, PrefetchingChangesNothing) {
       ASSERT_EQ(a[i].images[c].size(), b[i].images[c].size());
       EXPECT_TRUE(std::equal(a[i].images[c].datastart, a[i].images[c].dataend, b[i].images[c].datastart));
     }
+  }
+}
+
+TEST_F(Mh01, DecodesTheSamePixelsAsOpenCv) {
+  int compared = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(data_ / "mav0" / "cam1" / "data")) {
+    if (compared++ == 20) break;
+    const cv::Mat expected = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+    const cv::Mat image = loadGreyImage(entry.path()).image;
+    ASSERT_EQ(image.size(), expected.size());
+    EXPECT_TRUE(std::equal(image.datastart, image.dataend, expected.datastart)) << entry.path();
   }
 }
 
