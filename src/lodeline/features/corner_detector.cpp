@@ -5,73 +5,14 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
+#include "lodeline/features/structure_tensor.h"
+
 namespace lodeline {
 namespace {
 
-constexpr int kWindowRadius = 3;
-
 struct Corner {
-  Eigen::Vector2f pixel;
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();
   float strength = 0.0F;
-};
-
-/// Sums of gradient products over a window around every pixel of a cell.
-class StructureTensor {
- public:
-  StructureTensor(const cv::Mat& image, const cv::Rect& cell) : width_(cell.width), height_(cell.height) {
-    const int wide = width_ + 2 * kWindowRadius, high = height_ + 2 * kWindowRadius;
-    xx_.assign(static_cast<size_t>(wide * high), 0.0F);
-    xy_ = yy_ = xx_;
-    for (int row = 0; row < high; ++row) {
-      const int y = cell.y + row - kWindowRadius;
-      const auto* above = image.ptr<uint16_t>(y - 1) + cell.x - kWindowRadius;
-      const auto* here = image.ptr<uint16_t>(y) + cell.x - kWindowRadius;
-      const auto* below = image.ptr<uint16_t>(y + 1) + cell.x - kWindowRadius;
-      for (int column = 0; column < wide; ++column) {
-        const auto gx = static_cast<float>(here[column + 1] - here[column - 1]);
-        const auto gy = static_cast<float>(below[column] - above[column]);
-        const auto i = static_cast<size_t>(row * wide + column);
-        xx_[i] = gx * gx;
-        xy_[i] = gx * gy;
-        yy_[i] = gy * gy;
-      }
-    }
-    for (std::vector<float>* sums : {&xx_, &xy_, &yy_}) sumWindows(*sums, wide, high);
-  }
-
-  /// Root-mean-square gradient across the weaker direction, grey levels per px.
-  float strength(int column, int row) const {
-    constexpr int kSide = 2 * kWindowRadius + 1;
-    constexpr float kScale =
-        1.0F / (kSide * kSide * 4.0F * ImagePyramid::kUnitsPerGreyLevel * ImagePyramid::kUnitsPerGreyLevel);
-    const auto i = static_cast<size_t>(row * (width_ + 2 * kWindowRadius) + column);
-    const float mean = 0.5F * (xx_[i] + yy_[i]), difference = 0.5F * (xx_[i] - yy_[i]);
-    return std::sqrt(std::max(0.0F, kScale * (mean - std::sqrt(difference * difference + xy_[i] * xy_[i]))));
-  }
-
- private:
-  /// Entry (column, row) becomes the sum over the window whose upper left corner it is.
-  void sumWindows(std::vector<float>& values, int wide, int high) const {
-    constexpr int kSide = 2 * kWindowRadius + 1;
-    for (int row = 0; row < high; ++row) {
-      float* line = values.data() + row * wide;
-      for (int column = 0; column < width_; ++column) {
-        float sum = 0.0F;
-        for (int k = 0; k < kSide; ++k) sum += line[column + k];
-        line[column] = sum;
-      }
-    }
-    for (int row = 0; row < height_; ++row) {
-      float* line = values.data() + row * wide;
-      for (int k = 1; k < kSide; ++k) {
-        const float* other = line + k * wide;
-        for (int column = 0; column < width_; ++column) line[column] += other[column];
-      }
-    }
-  }
-
-  int width_, height_;
-  std::vector<float> xx_, xy_, yy_;
 };
 
 /// Marks the surroundings of points, so that none is taken too close to another.
@@ -93,48 +34,72 @@ class Occupancy {
   cv::Mat free_;
 };
 
+/// Divides a picture into about `count` square cells.
+class Grid {
+ public:
+  Grid(cv::Size size, int count) : size_(size) {
+    const double cell_px = std::sqrt(static_cast<double>(size.area()) / std::max(1, count));
+    columns_ = std::max(1, static_cast<int>(std::lround(size.width / cell_px)));
+    rows_ = std::max(1, static_cast<int>(std::lround(size.height / cell_px)));
+  }
+  int count() const { return columns_ * rows_; }
+  cv::Rect cell(int index) const {
+    const int column = index % columns_, row = index / columns_;
+    const int left = size_.width * column / columns_, top = size_.height * row / rows_;
+    return {left, top, size_.width * (column + 1) / columns_ - left, size_.height * (row + 1) / rows_ - top};
+  }
+  /// Of a point in the picture.
+  int indexOf(const Eigen::Vector2f& point) const {
+    const int column = std::clamp(static_cast<int>(point.x()) * columns_ / size_.width, 0, columns_ - 1);
+    const int row = std::clamp(static_cast<int>(point.y()) * rows_ / size_.height, 0, rows_ - 1);
+    return row * columns_ + column;
+  }
+
+ private:
+  cv::Size size_;
+  int columns_ = 1, rows_ = 1;
+};
+
+/// The strongest corner of a cell of the picture that is `scale` times smaller than the image.
+Corner strongestIn(const cv::Mat& picture, const cv::Rect& cell, int scale, const Occupancy& occupancy) {
+  const StructureTensor tensor(picture, cell);
+  Corner best;
+  for (int y = 0; y < cell.height; ++y) {
+    for (int x = 0; x < cell.width; ++x) {
+      const float strength = tensor.weakerGradientGreyPerPx(x, y);
+      if (strength <= best.strength) continue;
+      const int full_x = (cell.x + x) * scale, full_y = (cell.y + y) * scale;
+      if (!occupancy.isFree(full_x, full_y)) continue;
+      best = {Eigen::Vector2f(static_cast<float>(full_x), static_cast<float>(full_y)), strength};
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2f> CornerDetector::detect(const ImagePyramid& image, const cv::Mat& mask,
                                                     const std::vector<Eigen::Vector2f>& occupied) const {
-  const int level = image.levels() > 1 ? 1 : 0;
+  const int level = std::min(1, image.levels() - 1);
   const int scale = 1 << level;
   const cv::Mat& picture = image.level(level);
-  const cv::Size size = image.level(0).size();
-  Occupancy occupancy(size, mask, options_.min_distance_px);
-
-  const double cell_px = std::sqrt(static_cast<double>(picture.rows) * picture.cols / options_.max_tracks);
-  const int columns = std::max(1, static_cast<int>(std::lround(picture.cols / cell_px)));
-  const int rows = std::max(1, static_cast<int>(std::lround(picture.rows / cell_px)));
-  std::vector<bool> filled(static_cast<size_t>(columns * rows), false);
+  const Grid grid(picture.size(), options_.max_tracks);
+  Occupancy occupancy(image.level(0).size(), mask, options_.min_distance_px);
+  std::vector<bool> filled(static_cast<size_t>(grid.count()), false);
   for (const Eigen::Vector2f& pixel : occupied) {
     occupancy.occupy(pixel);
-    const int column = std::clamp(static_cast<int>(pixel.x()) * columns / size.width, 0, columns - 1);
-    const int row = std::clamp(static_cast<int>(pixel.y()) * rows / size.height, 0, rows - 1);
-    filled[static_cast<size_t>(row * columns + column)] = true;
+    filled[static_cast<size_t>(grid.indexOf(pixel / static_cast<float>(scale)))] = true;
   }
 
-  const int border = std::max(static_cast<int>(std::ceil(options_.border_px / scale)), kWindowRadius + 2);
+  const int border =
+      std::max(static_cast<int>(std::ceil(options_.border_px / scale)), StructureTensor::kWindowRadius + 2);
   const cv::Rect usable(border, border, picture.cols - 2 * border, picture.rows - 2 * border);
   std::vector<Corner> corners;
-  for (int i = 0; i < columns * rows; ++i) {
+  for (int i = 0; i < grid.count(); ++i) {
     if (filled[static_cast<size_t>(i)]) continue;
-    const int left = picture.cols * (i % columns) / columns, top = picture.rows * (i / columns) / rows;
-    const int right = picture.cols * (i % columns + 1) / columns;
-    const int bottom = picture.rows * (i / columns + 1) / rows;
-    const cv::Rect cell = cv::Rect(left, top, right - left, bottom - top) & usable;
+    const cv::Rect cell = grid.cell(i) & usable;
     if (cell.empty()) continue;
-    const StructureTensor tensor(picture, cell);
-    Corner best;
-    for (int y = 0; y < cell.height; ++y) {
-      for (int x = 0; x < cell.width; ++x) {
-        const float strength = tensor.strength(x, y);
-        if (strength <= best.strength) continue;
-        const int full_x = (cell.x + x) * scale, full_y = (cell.y + y) * scale;
-        if (!occupancy.isFree(full_x, full_y)) continue;
-        best = {Eigen::Vector2f(static_cast<float>(full_x), static_cast<float>(full_y)), strength};
-      }
-    }
+    const Corner best = strongestIn(picture, cell, scale, occupancy);
     if (best.strength < options_.min_gradient_grey_per_px) continue;
     occupancy.occupy(best.pixel);
     corners.push_back(best);

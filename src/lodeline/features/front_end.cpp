@@ -147,7 +147,7 @@ void FrontEnd::detect(const ImagePyramid& current) {
     Track track;
     track.warp.position = pixel;
     if (!cameras_.front()->unproject(pixel.cast<double>())) continue;
-    auto looks = PatchTemplate::extract(current, track.warp, options_.pyramid_levels);
+    auto looks = PatchTemplate::extract(current, pixel, options_.pyramid_levels);
     if (!looks) continue;
     track.id = next_id_++;
     track.current = *looks;
@@ -167,9 +167,7 @@ void FrontEnd::matchOthers(const ImagePyramid& current, const std::vector<cv::Ma
     }
     const ImagePyramid other(image, options_.pyramid_levels);
     for (Track& track : tracks_) {
-      const std::optional<PatchWarp> hint = track.matches[m];
-      track.matches[m] = matchers_[m].match(current, other, hint, track);
-      if (!track.matches[m]) track.inverse_depth_per_m.reset();
+      track.matches[m] = matchers_[m].match(current, other, track.matches[m], track);
       if (track.matches[m] && isMasked(masks_[m + 1], track.matches[m]->position)) track.matches[m].reset();
     }
   }

@@ -9,7 +9,7 @@ ImagePyramid::ImagePyramid(const cv::Mat& image, int levels) {
   constexpr int kSmallestSide = 16;
   levels_.reserve(static_cast<size_t>(levels));
   levels_.emplace_back();
-  image.convertTo(levels_.back(), CV_16U, kUnitsPerGreyLevel);
+  image.convertTo(levels_.back(), CV_32F);
   while (static_cast<int>(levels_.size()) < levels) {
     const cv::Mat& finer = levels_.back();
     if (std::min(finer.rows, finer.cols) < 2 * kSmallestSide) break;

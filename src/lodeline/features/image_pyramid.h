@@ -10,15 +10,13 @@ namespace lodeline {
 /// bits. Pixel (x, y) of level l is (x, y) * 2^l of the image.
 class ImagePyramid {
  public:
-  static constexpr int kUnitsPerGreyLevel = 64;
-
   ImagePyramid() = default;
   /// `image`: 8-bit, one channel. Levels that would be smaller than 16 px are left out.
   ImagePyramid(const cv::Mat& image, int levels);
 
   bool empty() const { return levels_.empty(); }
   int levels() const { return static_cast<int>(levels_.size()); }
-  /// CV_16UC1.
+  /// CV_32FC1, grey levels.
   const cv::Mat& level(int index) const { return levels_[static_cast<size_t>(index)]; }
 
  private:

@@ -3,25 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 namespace lodeline {
 namespace {
 
 /// Mean absolute second difference along rows and columns, grey levels: blind to slopes of light.
 double detailGrey(const cv::Mat& image) {
-  int64_t sum = 0, count = 0;
+  double sum = 0.0;
+  int64_t count = 0;
   for (int y = 1; y + 1 < image.rows; y += 2) {
-    const auto* above = image.ptr<uint16_t>(y - 1);
-    const auto* here = image.ptr<uint16_t>(y);
-    const auto* below = image.ptr<uint16_t>(y + 1);
+    const auto* above = image.ptr<float>(y - 1);
+    const auto* here = image.ptr<float>(y);
+    const auto* below = image.ptr<float>(y + 1);
     for (int x = 1; x + 1 < image.cols; x += 2) {
-      sum += std::abs(here[x - 1] - 2 * here[x] + here[x + 1]) + std::abs(above[x] - 2 * here[x] + below[x]);
+      sum += static_cast<double>(std::abs(here[x - 1] - 2.0F * here[x] + here[x + 1]) +
+                                 std::abs(above[x] - 2.0F * here[x] + below[x]));
       count += 2;
     }
   }
-  return static_cast<double>(sum) /
-         (static_cast<double>(std::max<int64_t>(1, count)) * ImagePyramid::kUnitsPerGreyLevel);
+  return sum / static_cast<double>(std::max<int64_t>(1, count));
 }
 
 }  // namespace
@@ -36,9 +36,9 @@ ImageQuality assess(const ImagePyramid& image) {
   double sum = 0.0, sum_of_squares = 0.0;
   int64_t saturated = 0;
   for (int y = 0; y < small.rows; ++y) {
-    const auto* row = small.ptr<uint16_t>(y);
+    const auto* row = small.ptr<float>(y);
     for (int x = 0; x < small.cols; ++x) {
-      const double grey = static_cast<double>(row[x]) / ImagePyramid::kUnitsPerGreyLevel;
+      const double grey = row[x];
       sum += grey;
       sum_of_squares += grey * grey;
       saturated += grey >= kSaturatedGrey ? 1 : 0;

@@ -6,7 +6,7 @@ namespace lodeline {
 
 /// When an alignment counts as the same point.
 struct MatchQuality {
-  double min_correlation = 0.8;
+  double min_correlation = 0.85;
   /// In a dim picture noise alone lowers the correlation; what differs no more than the sensor's noise is
   /// accepted down to `min_correlation_in_noise`.
   double noise_grey = 2.0;

@@ -1,20 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <vector>
 
 #include "lodeline/features/image_pyramid.h"
-#include "lodeline/features/patch_pattern.h"
+#include "lodeline/features/patch_sampling.h"
 
 namespace lodeline {
 
-/// Where a patch lies in an image: pattern offset u is found at `position + linear * u` (px of level 0).
-struct PatchWarp {
-  Eigen::Vector2f position = Eigen::Vector2f::Zero();
-  Eigen::Matrix2f linear = Eigen::Matrix2f::Identity();
-};
+/// What alignment may change of a warp: its position, or its linear part as well.
+enum class PatchMotion { Shift, Deformation };
 
 /// How well a patch was found.
 struct PatchMatch {
@@ -35,12 +31,14 @@ class PatchTemplate {
 
   /// Nothing where the finest level leaves the image or has no texture. Coarser levels that leave the image
   /// are passed over.
-  static std::optional<PatchTemplate> extract(const ImagePyramid& image, const PatchWarp& where, int levels);
+  static std::optional<PatchTemplate> extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
+                                              int levels);
 
-  /// Finds the template in another image, from level `coarsest` down to the image itself. Coarse levels move
-  /// the patch; the finest ones deform it as well. Nothing where it leaves the image or does not converge;
-  /// `warp` is then unspecified.
-  std::optional<PatchMatch> align(const ImagePyramid& image, int coarsest, PatchWarp& warp) const;
+  /// Finds the template in another image, from level `coarsest` down to the image itself. Deformation
+  /// follows the linear part of the warp as well, on the finest level. Nothing where it leaves the image or
+  /// does not converge; `warp` is then unspecified.
+  std::optional<PatchMatch> align(const ImagePyramid& image, int coarsest, PatchMotion motion,
+                                  PatchWarp& warp) const;
 
   /// Correlation of the image at `warp` with the template on one level, without moving; nothing outside.
   std::optional<float> correlate(const ImagePyramid& image, int level, const PatchWarp& warp) const;
@@ -54,16 +52,19 @@ class PatchTemplate {
   struct Level {
     bool valid = false;
     PatchValues values{};  ///< normalised
-    /// Pseudo-inverse of the Jacobian of the normalised values by (shift, linear part), row by row.
-    std::array<PatchValues, kParameters> gain{};
+    /// Pseudo-inverse of the Jacobian of the normalised values by the shift, row by row.
+    std::array<PatchValues, 2> shift_gain{};
   };
 
-  static bool fillLevel(const cv::Mat& image, const PatchWarp& where, Level& level, bool deformable,
-                        float& norm);
-  bool alignLevel(const Level& level, const cv::Mat& image, bool deformable, PatchWarp& warp,
-                  float& correlation) const;
+  static bool fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, Level& level,
+                        std::array<PatchValues, kParameters>* gain, float& norm);
+  bool shiftOnLevel(const Level& level, const cv::Mat& image, float converged_px, PatchWarp& warp,
+                    float& correlation) const;
+  bool deform(const cv::Mat& image, PatchWarp& warp, float& correlation) const;
 
   std::vector<Level> levels_;
+  /// As `shift_gain` of the finest level, by (shift, linear part).
+  std::array<PatchValues, kParameters> deformation_gain_{};
   float contrast_grey_ = 0.0F;
 };
 

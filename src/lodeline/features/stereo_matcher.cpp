@@ -8,6 +8,7 @@ namespace lodeline {
 namespace {
 
 constexpr int kSearchLevel = 2;
+constexpr int kFramesBetweenSearches = 4;
 /// A match may lie this far on the wrong side of infinity, for calibrations are not perfect.
 constexpr double kBeyondInfinityPx = 1.0;
 
@@ -68,10 +69,10 @@ std::optional<PatchWarp> StereoMatcher::search(const ImagePyramid& second, const
 
 bool StereoMatcher::returns(const ImagePyramid& first, const ImagePyramid& second, const PatchWarp& match,
                             const Track& track) const {
-  const auto looks = PatchTemplate::extract(second, {match.position, Eigen::Matrix2f::Identity()}, 2);
+  const auto looks = PatchTemplate::extract(second, match.position, 2);
   if (!looks) return false;
   PatchWarp back{track.warp.position + Eigen::Vector2f(1.0F, 0.5F), match.linear.inverse()};
-  return looks->align(first, 1, back) &&
+  return looks->align(first, 1, PatchMotion::Shift, back) &&
          (back.position - track.warp.position).norm() <= options_.max_left_right_px;
 }
 
@@ -82,16 +83,18 @@ std::optional<PatchWarp> StereoMatcher::match(const ImagePyramid& first, const I
 
   std::optional<PatchWarp> warp;
   int coarsest = options_.coarsest_level;
-  if (track.inverse_depth_per_m) {
+  // A point that is not seen in the other camera would be searched for in vain in every frame.
+  const bool search_again = !hint && (track.id + track.sightings) % kFramesBetweenSearches == 0;
+  if (track.inverse_depth_per_m && !search_again) {
     const auto expected = projectAt(*first_bearing, *track.inverse_depth_per_m);
     if (expected) warp = PatchWarp{expected->cast<float>(), Eigen::Matrix2f::Identity()};
     if (warp && hint) warp->linear = hint->linear;
-  } else {
+  } else if (track.sightings == 1 || search_again) {
     warp = search(second, *first_bearing, track.current);
     coarsest = kSearchLevel;
   }
   if (!warp) return std::nullopt;
-  const auto found = track.current.align(second, coarsest, *warp);
+  const auto found = track.current.align(second, coarsest, PatchMotion::Deformation, *warp);
   if (!found || !options_.quality.accepts(*found)) return std::nullopt;
   if (!second_->contains(warp->position.cast<double>(), options_.border_px)) return std::nullopt;
 

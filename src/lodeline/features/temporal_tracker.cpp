@@ -20,32 +20,32 @@ std::optional<PatchWarp> TemporalTracker::predict(const Mat3& current_from_previ
   return PatchWarp{pixel->cast<float>(), current_by_previous.cast<float>() * warp.linear};
 }
 
-bool TemporalTracker::find(const ImagePyramid& previous, const ImagePyramid& current,
-                           const PatchWarp& predicted, Track& track) const {
+bool TemporalTracker::find(const ImagePyramid& current, const PatchWarp& predicted, Track& track) const {
   PatchWarp warp = predicted;
-  auto match = track.reference.align(current, options_.coarsest_level, warp);
-  if (match && options_.quality.accepts(*match)) {
+  auto match = track.reference.align(current, options_.coarsest_level, PatchMotion::Deformation, warp);
+  if (match && options_.reference_quality.accepts(*match)) {
     track.warp = warp;
     return true;
   }
   // The point no longer looks as it first did: carry on from the image before, which costs one step of drift.
-  auto renewed = PatchTemplate::extract(previous, {track.warp.position, Eigen::Matrix2f::Identity()},
-                                        options_.coarsest_level + 1);
-  if (!renewed) return false;
   warp = {predicted.position, predicted.linear * track.warp.linear.inverse()};
-  match = renewed->align(current, options_.coarsest_level, warp);
+  match = track.current.align(current, options_.coarsest_level, PatchMotion::Deformation, warp);
   if (!match || !options_.quality.accepts(*match)) return false;
-  track.reference = std::move(*renewed);
+  track.reference = track.current;
   track.warp = warp;
   return true;
 }
 
 bool TemporalTracker::returns(const ImagePyramid& previous, const PatchWarp& predicted,
                               const Eigen::Vector2f& previous_position, const Track& track) const {
-  // Starting as far off as the forward search did keeps the check from agreeing by standing still.
+  // Starting as far off as the forward search did, within reach of the fine levels, keeps the check from
+  // agreeing by standing still.
   constexpr int kCoarsestLevel = 1;
-  PatchWarp back{previous_position + (predicted.position - track.warp.position), Eigen::Matrix2f::Identity()};
-  return track.current.align(previous, kCoarsestLevel, back) &&
+  constexpr float kReachPx = 1.5F;
+  Eigen::Vector2f offset = predicted.position - track.warp.position;
+  if (offset.norm() > kReachPx) offset *= kReachPx / offset.norm();
+  PatchWarp back{previous_position + offset, Eigen::Matrix2f::Identity()};
+  return track.current.align(previous, kCoarsestLevel, PatchMotion::Shift, back) &&
          (back.position - previous_position).norm() <= options_.max_forward_backward_px;
 }
 
@@ -56,11 +56,10 @@ bool TemporalTracker::follow(const ImagePyramid& previous, const ImagePyramid& c
   if (!rotated) return false;
   PatchWarp predicted = *rotated;
   predicted.position += track.parallax_px;
-  if (!find(previous, current, predicted, track)) return false;
+  if (!find(current, predicted, track)) return false;
   if (!camera_->contains(track.warp.position.cast<double>(), options_.border_px)) return false;
 
-  auto looks = PatchTemplate::extract(current, {track.warp.position, Eigen::Matrix2f::Identity()},
-                                      options_.coarsest_level + 1);
+  auto looks = PatchTemplate::extract(current, track.warp.position, options_.coarsest_level + 1);
   if (!looks) return false;
   track.current = std::move(*looks);
   if (!returns(previous, predicted, previous_position, track)) return false;

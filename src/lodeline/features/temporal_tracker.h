@@ -9,9 +9,12 @@
 namespace lodeline {
 
 struct TemporalTrackerOptions {
-  MatchQuality quality;
+  /// Against the image before.
+  MatchQuality quality{.min_correlation = 0.7};
+  /// Against the first sighting, which may have become another sight of the place.
+  MatchQuality reference_quality{.min_correlation = 0.9};
   int coarsest_level = 3;
-  double max_forward_backward_px = 0.7;
+  double max_forward_backward_px = 1.0;
   double border_px = 8.0;
 };
 
@@ -30,8 +33,7 @@ class TemporalTracker {
   std::optional<PatchWarp> predict(const Mat3& current_from_previous_C, const PatchWarp& warp) const;
 
  private:
-  bool find(const ImagePyramid& previous, const ImagePyramid& current, const PatchWarp& predicted,
-            Track& track) const;
+  bool find(const ImagePyramid& current, const PatchWarp& predicted, Track& track) const;
   bool returns(const ImagePyramid& previous, const PatchWarp& predicted,
                const Eigen::Vector2f& previous_position, const Track& track) const;
 
