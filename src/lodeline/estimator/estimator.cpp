@@ -105,7 +105,7 @@ bool Estimator::startMonocular(Time time, SightingList sightings, std::span<cons
 }
 
 bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate) {
-  if (imu_before_start_.size() < 2) {
+  if (imu_before_start_.empty()) {
     estimate->waiting_for = "inertial readings";
     return false;
   }

@@ -68,8 +68,10 @@ double horizontalVarianceOfMean(const std::vector<Vec3>& forces, const Vec3& up,
 double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double duration_s, bool still,
                  const GravityAlignmentOptions& options) {
   const double force = mean_force.norm();
-  double variance = squared(options.accelerometer_bias_sigma_m_per_s2) +
-                    horizontalVarianceOfMean(forces, mean_force / force, duration_s, options.correlation_s);
+  double variance = squared(options.accelerometer_bias_sigma_m_per_s2);
+  if (forces.size() > 1) {
+    variance += horizontalVarianceOfMean(forces, mean_force / force, duration_s, options.correlation_s);
+  }
   if (!still) {
     // The velocities at both ends are taken as independent.
     variance += std::min(squared(options.acceleration_sigma_m_per_s2),
@@ -80,6 +82,8 @@ double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double
 
 void judgeStillness(std::span<const ImuSample> samples, const Vec3& gyroscope_bias,
                     const GravityAlignmentOptions& options, GravityAlignment& result) {
+  result.gyroscope_bias_B = gyroscope_bias;
+  if (samples.size() == 1) return;
   std::vector<Vec3> rates, forces;
   for (const ImuSample& sample : samples) {
     rates.push_back(sample.angular_velocity_B);
@@ -91,7 +95,7 @@ void judgeStillness(std::span<const ImuSample> samples, const Vec3& gyroscope_bi
   result.still = result.gyroscope_std_rad_per_s < options.still_gyroscope_std_rad_per_s &&
                  result.specific_force_std_m_per_s2 < options.still_specific_force_std_m_per_s2 &&
                  (mean_rate - gyroscope_bias).norm() < options.still_rate_rad_per_s;
-  result.gyroscope_bias_B = result.still ? mean_rate : gyroscope_bias;
+  if (result.still) result.gyroscope_bias_B = mean_rate;
 }
 
 }  // namespace
@@ -107,7 +111,7 @@ Quat levelWithZeroYaw(const Vec3& up_B) {
 
 GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3& gyroscope_bias_B,
                                   const GravityAlignmentOptions& options) {
-  requireUsable(samples);
+  requireUsable(samples, 1);
   GravityAlignment result;
   judgeStillness(samples, gyroscope_bias_B, options, result);
 

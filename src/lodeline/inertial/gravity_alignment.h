@@ -47,9 +47,10 @@ struct GravityAlignment {
 /// `up_B` points up.
 Quat levelWithZeroYaw(const Vec3& up_B);
 
-/// Averages the specific force of `samples`, each turned by the gyroscope into the frame of the last one.
-/// Throws InputError as Preintegration does for unusable samples, and EstimationError when the mean force is
-/// under half of gravity, as in free fall, so that it says nothing about up.
+/// Averages the specific force of `samples`, each turned by the gyroscope into the frame of the last one. A
+/// single reading will do, with the uncertainty of a rig that moves; none shows stillness. Throws InputError
+/// as Preintegration does for unusable samples, and EstimationError when the mean force is under half of
+/// gravity, as in free fall, so that it says nothing about up.
 GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3& gyroscope_bias_B,
                                   const GravityAlignmentOptions& options = {});
 

@@ -6,10 +6,10 @@
 
 namespace lodeline {
 
-void requireUsable(std::span<const ImuSample> samples) {
-  if (samples.size() < 2) {
-    throw InputError(fmt::format("an interval needs IMU readings at both its ends, but there are {} in all",
-                                 samples.size()));
+void requireUsable(std::span<const ImuSample> samples, size_t fewest) {
+  if (samples.size() < fewest) {
+    throw InputError(
+        fmt::format("at least {} IMU readings are needed, but there are {} in all", fewest, samples.size()));
   }
   for (size_t i = 0; i < samples.size(); ++i) {
     const int64_t ns = samples[i].time.nanoseconds();

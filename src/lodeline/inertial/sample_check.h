@@ -6,8 +6,8 @@
 
 namespace lodeline {
 
-/// Throws InputError, naming the time, unless there are at least two readings, all finite, with strictly
+/// Throws InputError, naming the time, unless there are at least so many readings, all finite, with strictly
 /// increasing times.
-void requireUsable(std::span<const ImuSample> samples);
+void requireUsable(std::span<const ImuSample> samples, size_t fewest = 2);
 
 }  // namespace lodeline
