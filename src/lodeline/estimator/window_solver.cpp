@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -145,7 +146,8 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
 
 double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance) {
   const auto along = [](const Vec3& vector, const Mat3& vector_covariance) {
-    const double length = std::max(vector.norm(), 1e-9);
+    const double length = vector.norm();
+    if (length < 1e-9) return std::numeric_limits<double>::infinity();
     const Vec3 direction = vector / length;
     return std::sqrt(direction.dot(vector_covariance * direction)) / length;
   };
