@@ -1,7 +1,7 @@
 # Every dependency is a Debian package; scripts/install-dependencies.sh installs them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(Ceres 2.1 REQUIRED)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs video calib3d)
+find_package(Ceres 2.1 REQUIRED)  # brings glog::glog along
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs calib3d)
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
@@ -22,8 +22,14 @@ set_target_properties(geographiclib::geographiclib PROPERTIES
                       IMPORTED_LOCATION ${GEOGRAPHICLIB_LIBRARY}
                       INTERFACE_INCLUDE_DIRECTORIES ${GEOGRAPHICLIB_INCLUDE_DIR})
 find_package(TBB REQUIRED COMPONENTS tbb)
-find_package(embree 3.12 REQUIRED)
-add_library(embree::embree ALIAS embree)
+# Embree 4 on Ubuntu 24.04, 3 on Debian 12.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3.12 REQUIRED)
+endif()
+if(NOT TARGET embree::embree)
+  add_library(embree::embree ALIAS embree)
+endif()
 if(LODELINE_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)

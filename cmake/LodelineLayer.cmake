@@ -1,12 +1,24 @@
+# Makes a target part of the installed library, as lodeline::NAME.
+function(lodeline_export name)
+  set_target_properties(lodeline_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS lodeline_${name} EXPORT lodeline)
+endfunction()
+
 # What every target of the project is compiled with.
 add_library(lodeline_options INTERFACE)
-target_compile_options(lodeline_options INTERFACE -Wall -Wextra -Wpedantic -Werror)
-target_include_directories(lodeline_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_compile_features(lodeline_options INTERFACE cxx_std_20)
+target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic>)
+if(LODELINE_WARNINGS_AS_ERRORS)
+  target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Werror>)
+endif()
+target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
+                                                      $<INSTALL_INTERFACE:include>)
 if(LODELINE_SANITIZERS)
   target_compile_options(lodeline_options INTERFACE -fsanitize=${LODELINE_SANITIZERS}
                                                     -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(lodeline_options INTERFACE -fsanitize=${LODELINE_SANITIZERS})
 endif()
+lodeline_export(options)
 
 # lodeline_layer(NAME [SOURCES ...] [DEPENDS layer-or-library ...] [TESTS ...] [REAL_TESTS ...])
 #
@@ -32,6 +44,7 @@ function(lodeline_layer name)
     add_library(lodeline_${name} INTERFACE)
     target_link_libraries(lodeline_${name} INTERFACE lodeline_options ${links})
   endif()
+  lodeline_export(${name})
   if(NOT LODELINE_BUILD_TESTS)
     return()
   endif()

@@ -1,11 +1,11 @@
 #include "lodeline/simulation/traced_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+
+#include "lodeline/simulation/embree.h"
 
 namespace lodeline {
 namespace {
@@ -31,13 +31,6 @@ void fill(const RayPacket& rays, RTCRay16& out) {
   std::memset(out.time, 0, sizeof out.time);
   std::memset(out.mask, 0xFF, sizeof out.mask);
   std::memset(out.flags, 0, sizeof out.flags);
-}
-
-RTCIntersectContext coherentContext() {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  return context;
 }
 
 }  // namespace
@@ -82,8 +75,7 @@ void TracedScene::intersect(const RayPacket& rays, HitPacket& hits) const {
   fill(rays, query.ray);
   std::memset(query.hit.geomID, 0xFF, sizeof query.hit.geomID);
   std::memset(query.hit.instID, 0xFF, sizeof query.hit.instID);
-  RTCIntersectContext context = coherentContext();
-  rtcIntersect16(rays.active, scene_, &context, &query);
+  embree::intersect16(rays.active, scene_, &query);
   for (int i = 0; i < kRayPacketSize; ++i) {
     const bool hit = rays.active[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
     hits.range_m[i] = hit ? query.ray.tfar[i] : std::numeric_limits<float>::infinity();
@@ -96,8 +88,7 @@ void TracedScene::intersect(const RayPacket& rays, HitPacket& hits) const {
 uint32_t TracedScene::occluded(const RayPacket& rays) const {
   RTCRay16 query;
   fill(rays, query);
-  RTCIntersectContext context = coherentContext();
-  rtcOccluded16(rays.active, scene_, &context, &query);
+  embree::occluded16(rays.active, scene_, &query);
   uint32_t bits = 0;
   for (int i = 0; i < kRayPacketSize; ++i) {
     // Embree marks an occluded ray by a range of minus infinity.
@@ -144,9 +135,7 @@ std::optional<double> TracedScene::range(const Vec3& origin_W, const Vec3& direc
   query.ray.flags = 0;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene_, &context, &query);
+  embree::intersect1(scene_, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return query.ray.tfar;
 }
