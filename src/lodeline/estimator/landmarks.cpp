@@ -15,8 +15,9 @@ const Sighting* hostSighting(const Window& window, const TrackHistory& track) {
   return nullptr;
 }
 
-/// Inverse distance along a host's ray from all other sightings. With the host's direction d held, each
-/// sighting says
+/// Inverse distance along a host's ray from all other sightings; every candidate asks for it in every frame,
+/// so it is a closed form and not the full fit of features/triangulation.h. With the host's direction d held,
+/// each sighting says
 ///   B^T (R d + rho t) = 0,
 /// which is linear in rho; a second pass weights by the depth that the first one found.
 struct InverseDistance {

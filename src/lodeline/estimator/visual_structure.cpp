@@ -6,6 +6,7 @@
 
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/window_solver.h"
+#include "lodeline/features/triangulation.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -13,22 +14,20 @@ namespace {
 
 using PointMap = std::map<TrackId, Vec3>;
 
-/// Points (axes of camera a) of the tracks in both frames that lie in front of both cameras.
+/// Points (axes of camera a) of the tracks in both frames on which the two views agree.
 PointMap triangulatePair(const Window& window, const Frame& a, const Frame& b, const Rigid3& b_from_a,
                          double max_error_rad) {
+  const TriangulationOptions options{.min_parallax_rad = 2.0 * max_error_rad, .max_rms_sigmas = 1.0};
+  const Rigid3 a_from_b = b_from_a.inverse();
   PointMap points;
   for (const auto& [id, track] : window.tracks()) {
     const Sighting* in_a = track.find(a.id, 0);
     const Sighting* in_b = track.find(b.id, 0);
     if (!in_a || !in_b) continue;
-    const Vec3 ray = in_a->measurement.bearing_C;
-    const Mat32& tangent = in_b->measurement.tangent_C;
-    const Vec2 slope = tangent.transpose() * b_from_a.translation;
-    const double rho = -slope.dot(tangent.transpose() * (b_from_a.rotation * ray)) / slope.squaredNorm();
-    if (!(rho > 1e-3 && rho < 10.0)) continue;  // in baselines
-    const Vec3 point_b = b_from_a * Vec3(ray / rho);
-    if (point_b.normalized().dot(in_b->measurement.bearing_C) < std::cos(3.0 * max_error_rad)) continue;
-    points[id] = ray / rho;
+    const Triangulation point = triangulate({{Rigid3(), in_a->measurement.bearing_C, max_error_rad},
+                                             {a_from_b, in_b->measurement.bearing_C, max_error_rad}},
+                                            options);
+    if (point.good()) points[id] = point.point_W;
   }
   return points;
 }
