@@ -1,5 +1,6 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build dependencies test test-sanitized bench format check-format install clean
+.PHONY: build dependencies demo test test-sanitized bench install format check-format clean
+PREFIX ?= /usr/local
 
 build: dependencies
 	cmake --preset release
@@ -7,6 +8,11 @@ build: dependencies
 
 dependencies:
 	./scripts/install-dependencies.sh
+
+# Runs the program on a recording and compares the result with the reference. Its own recording in place of the
+# one looked for: RECORDING=/path/to/folder-with-mav0.
+demo: build
+	./scripts/demo.sh
 
 # All tests; those that need recordings say SKIPPED where these are missing.
 test: build check-format
@@ -18,14 +24,18 @@ test-sanitized: dependencies
 	cmake --build --preset asan
 	ctest --test-dir build/asan --output-on-failure -j2 -L fast
 
+bench: build
+	./scripts/benchmark.sh
+
+# To PREFIX (default /usr/local); DESTDIR is put before it.
+install: build
+	cmake --install build/release --prefix $(PREFIX)
+
 format:
-	clang-format -i $$(git ls-files '*.h' '*.cpp')
+	clang-format-14 -i $$(find src -name '*.h' -o -name '*.cpp')
 
 check-format:
-	clang-format --dry-run --Werror $$(git ls-files '*.h' '*.cpp')
-
-install: build
-	cmake --install build/release
+	clang-format-14 --dry-run --Werror $$(find src -name '*.h' -o -name '*.cpp')
 
 clean:
-	rm -rf build
+	rm -rf build demo

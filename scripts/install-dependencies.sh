@@ -3,11 +3,12 @@
 set -euo pipefail
 
 packages=(
-  build-essential cmake ninja-build ccache clang-format
-  libeigen3-dev libceres-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
-  libdeflate-dev
+  build-essential cmake ninja-build ccache git
+  clang-format-14  # other versions lay code out differently
+  libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
+  nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  libgeographiclib-dev libembree-dev libtbb-dev libopengv-dev
+  libgeographiclib-dev libembree-dev libtbb-dev
   gnuplot-nox
 )
 
@@ -18,7 +19,10 @@ done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
 sudo=
-[ "$(id -u)" -eq 0 ] || sudo=sudo
+if [ "$(id -u)" -ne 0 ]; then
+  sudo=sudo
+  command -v sudo >/dev/null || { echo "Missing packages; install as root: apt-get install ${missing[*]}" >&2; exit 1; }
+fi
 echo "Installing: ${missing[*]}"
 $sudo apt-get update -qq
 $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
