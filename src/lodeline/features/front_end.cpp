@@ -68,8 +68,10 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
     return {time, {}};
   }
 
-  ImagePyramid current(images.front(), options_.pyramid_levels);
-  statistics_.image = assess(current);
+  ImagePyramid current = pyramid(images.front());
+  const bool was_faint = faint_;
+  updateQuality(current);
+  if (faint_ != was_faint) current = pyramid(images.front());
   if ((time - previous_time_).seconds() > options_.max_gap_s) {
     statistics_.lost = static_cast<int>(tracks_.size());
     tracks_.clear();
@@ -84,6 +86,18 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   previous_time_ = time;
   previous_from_current_B_ = Quat::Identity();
   return observations(time);
+}
+
+ImagePyramid FrontEnd::pyramid(const cv::Mat& image) const {
+  constexpr int kUsualSidePx = 3, kFaintSidePx = 5;
+  return ImagePyramid(image, options_.pyramid_levels, faint_ ? kFaintSidePx : kUsualSidePx);
+}
+
+void FrontEnd::updateQuality(const ImagePyramid& current) {
+  // Leaving the faint state later than entering it keeps patches of two images comparable.
+  constexpr double kHysteresis = 1.3;
+  statistics_.image = assess(current);
+  faint_ = statistics_.image.texture_grey < options_.faint_texture_grey * (faint_ ? kHysteresis : 1.0);
 }
 
 void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_previous_C) {
@@ -165,7 +179,7 @@ void FrontEnd::matchOthers(const ImagePyramid& current, const std::vector<cv::Ma
       for (Track& track : tracks_) track.matches[m].reset();
       continue;
     }
-    const ImagePyramid other(image, options_.pyramid_levels);
+    const ImagePyramid other = pyramid(image);
     for (Track& track : tracks_) {
       track.matches[m] = matchers_[m].match(current, other, track.matches[m], track);
       if (track.matches[m] && isMasked(masks_[m + 1], track.matches[m]->position)) track.matches[m].reset();

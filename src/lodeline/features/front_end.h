@@ -20,6 +20,9 @@ struct FrontEndOptions {
   TemporalTrackerOptions tracker;
   StereoMatcherOptions stereo;
   EpipolarConsensusOptions consensus;
+  /// Images whose texture (ImageQuality::texture_grey) is below this are smoothed more before tracking, for
+  /// noise weighs more in them.
+  double faint_texture_grey = 1.5;
   /// Tracks are looked for again after images of camera 0 were missing for at most this long.
   double max_gap_s = 1.0;
   /// Standard deviation of an observation.
@@ -60,6 +63,8 @@ class FrontEnd {
 
  private:
   void check(Time time, const std::vector<cv::Mat>& images) const;
+  ImagePyramid pyramid(const cv::Mat& image) const;
+  void updateQuality(const ImagePyramid& current);
   void follow(const ImagePyramid& current, const Mat3& current_from_previous_C);
   void rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C);
   void rejectCrowded();
@@ -77,6 +82,7 @@ class FrontEnd {
 
   std::vector<Track> tracks_;  ///< by rising id
   ImagePyramid previous_;
+  bool faint_ = false;  ///< the texture of the last image
   Time previous_time_;
   Quat previous_from_current_B_ = Quat::Identity();  ///< since the last image of camera 0
   TrackId next_id_ = 0;

@@ -5,11 +5,12 @@
 
 namespace lodeline {
 
-ImagePyramid::ImagePyramid(const cv::Mat& image, int levels) {
+ImagePyramid::ImagePyramid(const cv::Mat& image, int levels, int smoothing_side_px) {
   constexpr int kSmallestSide = 16;
   levels_.reserve(static_cast<size_t>(levels));
   levels_.emplace_back();
   image.convertTo(levels_.back(), CV_32F);
+  cv::GaussianBlur(levels_.back(), levels_.back(), {smoothing_side_px, smoothing_side_px}, 0.0);
   while (static_cast<int>(levels_.size()) < levels) {
     const cv::Mat& finer = levels_.back();
     if (std::min(finer.rows, finer.cols) < 2 * kSmallestSide) break;

@@ -11,8 +11,9 @@ namespace lodeline {
 class ImagePyramid {
  public:
   ImagePyramid() = default;
-  /// `image`: 8-bit, one channel. Levels that would be smaller than 16 px are left out.
-  ImagePyramid(const cv::Mat& image, int levels);
+  /// `image`: 8-bit, one channel. Levels that would be smaller than 16 px are left out. `smoothing_side_px`:
+  /// of the Gaussian kernel (odd) that keeps noise from being sampled along with the texture.
+  ImagePyramid(const cv::Mat& image, int levels, int smoothing_side_px = 3);
 
   bool empty() const { return levels_.empty(); }
   int levels() const { return static_cast<int>(levels_.size()); }

@@ -50,14 +50,14 @@ ImageQuality assess(const ImagePyramid& image) {
       std::sqrt(std::max(0.0, sum_of_squares / count - quality.mean_grey * quality.mean_grey));
   quality.saturated = static_cast<double>(saturated) / count;
   const double fine = detailGrey(image.level(std::min(1, image.levels() - 1)));
-  const double coarse = detailGrey(small);
-  quality.sharpness = fine / std::max(1e-9, fine + coarse);
+  quality.texture_grey = detailGrey(small);
+  quality.sharpness = fine / std::max(1e-9, fine + quality.texture_grey);
 
   if (quality.mean_grey < kDarkGrey) {
     quality.word = "dark";
   } else if (quality.saturated > kSaturatedShare) {
     quality.word = "overexposed";
-  } else if (coarse < kTexturelessGrey) {
+  } else if (quality.texture_grey < kTexturelessGrey) {
     quality.word = "textureless";
   } else if (quality.sharpness < kBlurredShare) {
     quality.word = "blurred";

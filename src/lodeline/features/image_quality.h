@@ -10,6 +10,7 @@ namespace lodeline {
 struct ImageQuality {
   double mean_grey = 0.0;
   double contrast_grey = 0.0;  ///< standard deviation of the image
+  double texture_grey = 0.0;   ///< mean second difference on the quarter-size image, blind to slopes of light
   double sharpness = 0.0;      ///< share of fine detail in the detail of all sizes, about 0.5 when sharp
   double saturated = 0.0;      ///< share of pixels at the upper end
   /// "good", or what hinders tracking: "dark", "overexposed", "textureless" or "blurred".
