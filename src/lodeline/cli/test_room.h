@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "lodeline/cli/test_program.h"
 #include "lodeline/cli/test_recording.h"
 #include "lodeline/evaluation/test_trajectories.h"
