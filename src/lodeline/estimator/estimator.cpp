@@ -5,10 +5,12 @@
 #include <algorithm>
 
 #include "lodeline/base/error.h"
+#include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/window_solver.h"
+#include "lodeline/estimator/window_update.h"
 
 namespace lodeline {
 
@@ -37,11 +39,16 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
 FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu) {
   FrameEstimate estimate;
   estimate.time = tracks.time;
+  checkOrder(tracks.time, imu);
   const SightingList sightings = sightingsOf(tracks);
-  if (initialized()) {
-    insertFrame(tracks.time, sightings, imu);
+  const bool carries_on = initialized();
+  if (carries_on) insertFrame(tracks.time, sightings, imu);
+  last_time_ = tracks.time;
+  if (carries_on) {
     optimize(&estimate);
-  } else if (!initialize(tracks, sightings, imu, &estimate)) {
+  } else if (initialize(tracks, sightings, imu, &estimate)) {
+    estimate.covariance = newestCovariance(window_, marginalizer_.prior(), factors_);
+  } else {
     return estimate;
   }
   report(tracks, &estimate);
@@ -54,6 +61,26 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
     marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
   }
   return estimate;
+}
+
+void Estimator::checkOrder(Time time, std::span<const ImuSample> imu) const {
+  const int64_t now_ns = time.nanoseconds();
+  if (last_time_ && time <= *last_time_) {
+    throw InputError(fmt::format("frame at {} ns comes after one at {} ns; frames must come in order of time",
+                                 now_ns, last_time_->nanoseconds()));
+  }
+  if (imu.empty()) {
+    if (!initialized()) return;
+    throw InputError(fmt::format("no inertial readings lead to the frame at {} ns; give those since {} ns",
+                                 now_ns, last_time_->nanoseconds()));
+  }
+  if (imu.back().time != time || (initialized() && imu.front().time != *last_time_)) {
+    throw InputError(
+        fmt::format("inertial readings from {} to {} ns do not lead to the frame at {} ns; give them from "
+                    "frame to frame, "
+                    "interpolated at both ends",
+                    imu.front().time.nanoseconds(), imu.back().time.nanoseconds(), now_ns));
+  }
 }
 
 bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
@@ -142,9 +169,17 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  const SolveLimits limits = starting_up_ ? SolveLimits{options_.solver.max_iterations_startup, 1e-6}
-                                          : SolveLimits{options_.solver.max_iterations, 1e-4};
-  const SolveSummary summary = solveWindow(window_, marginalizer_.prior(), factors_, limits);
+  SolveSummary summary;
+  if (starting_up_) {
+    summary =
+        solveWindow(window_, marginalizer_.prior(), factors_, {options_.solver.max_iterations_startup, 1e-6});
+    estimate->covariance = newestCovariance(window_, marginalizer_.prior(), factors_);
+  } else {
+    const WindowUpdate update =
+        updateWindow(window_, marginalizer_.prior(), factors_, {options_.solver.max_iterations, 1e-4});
+    summary = update.summary;
+    estimate->covariance = update.newest_covariance;
+  }
   estimate->solver_iterations = summary.iterations;
   if (!summary.usable) {
     diagnostics_->report(
@@ -160,7 +195,6 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   const Frame& newest = window_.newest();
   const ReprojectionStatistics statistics = reprojectionStatistics(window_, factors_, newest.id);
   estimate->state = newest.state();
-  estimate->covariance = newestCovariance(window_, marginalizer_.prior(), factors_);
   estimate->landmarks = statistics.landmarks;
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
   for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;

@@ -42,7 +42,8 @@ class Estimator {
   Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
   /// Adds one frame: what the front end tracked, and the inertial readings since the frame before (both ends
-  /// on the frames' times; for the first frame all readings there are). Frames must come in order of time.
+  /// on the frames' times; for the first frame all readings there are). Throws InputError, and leaves the
+  /// estimator as it was, where frame or readings do not follow on the frame before.
   FrameEstimate add(const FrameTracks& tracks, std::span<const ImuSample> imu);
 
   bool initialized() const { return !window_.empty(); }
@@ -55,6 +56,7 @@ class Estimator {
   std::vector<MapPoint> currentMapPoints() const;
 
  private:
+  void checkOrder(Time time, std::span<const ImuSample> imu) const;
   SightingList sightingsOf(const FrameTracks& tracks) const;
   bool initialize(const FrameTracks& tracks, const SightingList& sightings, std::span<const ImuSample> imu,
                   FrameEstimate* estimate);
@@ -75,6 +77,7 @@ class Estimator {
   MonoInitializer mono_initializer_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
+  std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
   bool starting_up_ = true;
