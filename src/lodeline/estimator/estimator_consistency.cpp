@@ -24,6 +24,16 @@ constexpr Column kColumns[] = {{"pose", 6, &NeesSample::pose},
                                {"yaw", 1, &NeesSample::yaw},
                                {"motion", 9, &NeesSample::motion}};
 
+void printEach(const Consistency& consistency) {
+  for (const ConsistencyRow& row : consistency.rows) {
+    for (const NeesSample& sample : row.samples) {
+      fmt::print("{:7.1f} s:", row.time_s);
+      for (const Column& column : kColumns) fmt::print(" {} {:.2f}", column.name, sample.*column.figure);
+      fmt::print(", position {:.3f} ({:.3f}) m\n", sample.position_error_m, sample.position_sigma_m);
+    }
+  }
+}
+
 void print(const Consistency& consistency) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   fmt::print("{:>7} {:>6}", "time s", "seeds");
@@ -57,6 +67,7 @@ int main(int argc, char** argv) {
       "number after the slash. ok/high/low: against bounds that hold with probability 0.999.");
   ConsistencyOptions options;
   double seconds = 60.0;
+  bool each = false;
   options.estimator = honestOptions(options.scene);
   app.add_option("--seeds", options.seeds)->capture_default_str();
   app.add_option("--seconds", seconds)->capture_default_str();
@@ -67,9 +78,12 @@ int main(int argc, char** argv) {
   app.add_option("--iterations", options.estimator.solver.max_iterations)->capture_default_str();
   app.add_option("--recent-frames", options.estimator.window.recent_frames)->capture_default_str();
   app.add_option("--keyframes", options.estimator.window.keyframes)->capture_default_str();
+  app.add_flag("--each", each, "list every seed too");
   CLI11_PARSE(app, argc, argv);
   std::erase_if(options.times_s, [&](double t) { return t > seconds; });
   if (options.times_s.empty() || options.times_s.back() < seconds) options.times_s.push_back(seconds);
-  print(measureConsistency(options));
+  const Consistency consistency = measureConsistency(options);
+  if (each) printEach(consistency);
+  print(consistency);
   return 0;
 }

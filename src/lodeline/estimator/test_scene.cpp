@@ -27,13 +27,18 @@ Motion swaying(const TestSceneOptions& options) {
          random.uniform(0.0, 2.0 * std::numbers::pi)});
   };
   MotionChannels channels;
-  add(channels.east, 1.0, 0.7);
-  add(channels.east, 0.2, 2.1);
-  add(channels.north, 0.8, 0.9);
-  add(channels.up, 0.3, 1.3);
+  add(channels.east, 1.0 * options.translation, 0.7);
+  add(channels.east, 0.2 * options.translation, 2.1);
+  add(channels.north, 0.8 * options.translation, 0.9);
+  add(channels.up, 0.3 * options.translation, 1.3);
   add(channels.yaw, 0.5, 0.4);
   add(channels.pitch, 0.2, 1.1);
   add(channels.roll, 0.15, 0.8);
+  MotionChannel* path[] = {&channels.east, &channels.north, &channels.up};
+  for (int axis = 0; axis < 3; ++axis) {
+    path[axis]->splines.push_back(
+        motionSpline(options.duration_s, 1.0, [&](double t) { return options.drift_m_per_s[axis] * t; }));
+  }
   return Motion(std::move(channels), Rigid3(), options.duration_s);
 }
 

@@ -13,9 +13,11 @@ struct TestSceneOptions {
   uint64_t seed = 1;  ///< of noise, points, biases and the phases of the motion
   int cameras = 2;
   double duration_s = 20.0;
-  double liveliness = 1.0;        ///< 1: about 1 m/s, 1.5 m/s^2 and 0.5 rad/s; scales position and rotation
-  std::vector<TimeSpan> still;    ///< the sway fades within 3 s of their borders
-  PointSimulationOptions points;  ///< seed, end and IMU errors are filled in by the scene
+  double liveliness = 1.0;   ///< 1: about 1 m/s, 1.5 m/s^2 and 0.5 rad/s; scales position and rotation
+  double translation = 1.0;  ///< scales the sway of the position once more; 0 turns on the spot
+  Vec3 drift_m_per_s = Vec3::Zero();  ///< constant velocity on top
+  std::vector<TimeSpan> still;        ///< the sway fades within 3 s of their borders
+  PointSimulationOptions points;      ///< seed, end and IMU errors are filled in by the scene
   /// The specimen's biases at the start are drawn from these, one sigma per axis.
   double gyroscope_bias_sigma_rad_per_s = 0.02;
   double accelerometer_bias_sigma_m_per_s2 = 0.05;

@@ -1,0 +1,46 @@
+#include "lodeline/estimator/consistency.h"
+
+#include <gtest/gtest.h>
+
+namespace lodeline {
+namespace {
+
+TEST(NeesBounds, AreThoseOfTheChiSquaredDistribution) {
+  // Tables: chi-squared of 100 degrees of freedom at 0.0005 and 0.9995 is 59.90 and 153.17.
+  const NeesBounds bounds = neesBounds(5, 20);
+  EXPECT_NEAR(bounds.low, 59.90 / 20.0, 0.01);
+  EXPECT_NEAR(bounds.high, 153.17 / 20.0, 0.01);
+}
+
+// The first metres of a heading that only first estimates keep honest. The robust loss counts good sightings
+// as 0.7 of their worth, which makes the estimator's sigmas some 1.2 times too large: hence the lower bound
+// at half of what an exact covariance would give.
+void expectConsistent(int cameras) {
+  ConsistencyOptions options;
+  options.scene.cameras = cameras;
+  options.scene.points.tracks = 50;
+  options.scene.points.frame_rate_hz = 10.0;
+  options.estimator = honestOptions(options.scene);
+  options.seeds = 12;
+  options.times_s = {8.0};
+  const Consistency consistency = measureConsistency(options);
+  EXPECT_EQ(consistency.lost, 0);
+  const ConsistencyRow& row = consistency.rows.back();
+  const int count = static_cast<int>(row.samples.size());
+  const auto expectWithin = [&](const char* name, int coordinates, double NeesSample::*figure) {
+    const NeesBounds bounds = neesBounds(coordinates, count);
+    EXPECT_LT(row.mean(figure), bounds.high) << name << " is worse than claimed";
+    EXPECT_GT(row.mean(figure), 0.5 * bounds.low) << name << " is much better than claimed";
+  };
+  expectWithin("pose", 6, &NeesSample::pose);
+  expectWithin("position", 3, &NeesSample::position);
+  expectWithin("orientation", 3, &NeesSample::orientation);
+  expectWithin("yaw", 1, &NeesSample::yaw);
+  expectWithin("motion", 9, &NeesSample::motion);
+}
+
+TEST(Consistency, StereoIsAsGoodAsItSays) { expectConsistent(2); }
+TEST(Consistency, MonoIsAsGoodAsItSays) { expectConsistent(1); }
+
+}  // namespace
+}  // namespace lodeline

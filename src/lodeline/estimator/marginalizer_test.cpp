@@ -1,0 +1,279 @@
+#include "lodeline/estimator/marginalizer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/start.h"
+#include "lodeline/estimator/test_window.h"
+#include "lodeline/estimator/window_solver.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {
+  TestSceneOptions options;
+  options.duration_s = duration_s;
+  options.points.tracks = 40;
+  options.points.frame_rate_hz = frame_rate_hz;
+  return options;
+}
+
+EstimatorOptions quadraticOptions() {
+  EstimatorOptions options;
+  options.solver.robust_scale_sigmas = 1e3;  // so that the cost is as good as quadratic
+  return options;
+}
+
+struct StartedWindow : TestWindow {
+  StartedWindow() : TestWindow(2, quadraticOptions()) {}
+  Prior start;
+};
+
+// Eight keyframes at the batch solution. What frame 0 sees, the newest frame does not: then all its
+// landmarks go with it, and marginalisation drops nothing.
+class LosslessMarginalizationTest : public testing::Test {
+ protected:
+  static constexpr int kFrames = 8;
+
+  void fill(StartedWindow& test) {
+    TestScene scene(sceneOptions(1.0 + (kFrames - 1) * 0.2 + 0.01, 5.0));
+    std::vector<SimulatedFrame> frames = scene.all();
+    ASSERT_EQ(frames.size(), static_cast<size_t>(kFrames));
+    std::erase_if(frames.back().tracks.observations, [&](const Observation& o) {
+      const auto& first = frames.front().tracks.observations;
+      return std::any_of(first.begin(), first.end(),
+                         [&](const Observation& other) { return other.track == o.track; });
+    });
+    for (const SimulatedFrame& frame : frames) {
+      test.add(frame);
+      createLandmarks(test.window, test.factors, test.options.landmark);
+    }
+    test.start = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05, false);
+    ASSERT_TRUE(solveWindow(test.window, test.start, test.factors, kToTheEnd).usable);
+  }
+  static constexpr SolveLimits kToTheEnd{100, 1e-16};
+
+  StartedWindow batch_;
+  StartedWindow shortened_;
+};
+
+TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
+  fill(batch_);
+  fill(shortened_);
+  shortened_.disturb(1e-4, 11);
+  Marginalizer marginalizer(shortened_.factors);
+  marginalizer.start(shortened_.start);
+  marginalizer.shorten(shortened_.window, 3, 4);
+  ASSERT_EQ(shortened_.window.frames().size(), 7u);
+  ASSERT_FALSE(marginalizer.takeMapPoints().empty());
+  ASSERT_TRUE(solveWindow(shortened_.window, marginalizer.prior(), shortened_.factors, kToTheEnd).usable);
+
+  // Linearised 1e-4 (m, rad) away from the solution, what remains is of second order: the curvature that
+  // Gauss-Newton leaves out, some per cent of that.
+  double moved = 0.0;
+  for (const auto& frame : shortened_.window.frames()) {
+    const Frame& other = *batch_.window.find(frame->id);
+    const auto difference = perturbationBetween(other.worldFromBody(), frame->worldFromBody());
+    EXPECT_LT(difference.norm(), 1e-5) << "frame " << frame->id;
+    if (frame->first_pose) {
+      const Rigid3 first = poseFromBlock(frame->firstPose());
+      moved = std::max(moved, perturbationBetween(first, frame->worldFromBody()).norm());
+    }
+    if (!frame->has_motion) continue;
+    EXPECT_LT((other.velocity_W() - frame->velocity_W()).norm(), 2e-5);
+    EXPECT_LT((other.accelerometerBias() - frame->accelerometerBias()).norm(), 1e-4);
+  }
+  EXPECT_GT(moved, 1e-4) << "the comparison means nothing where nothing moves";
+
+  const auto batch_covariance = newestCovariance(batch_.window, batch_.start, batch_.factors);
+  const auto covariance = newestCovariance(shortened_.window, marginalizer.prior(), shortened_.factors);
+  const Eigen::Matrix<double, 15, 1> scale = batch_covariance.diagonal().cwiseSqrt().cwiseInverse();
+  EXPECT_LT((scale.asDiagonal() * (covariance - batch_covariance) * scale.asDiagonal()).cwiseAbs().maxCoeff(),
+            0.01);
+}
+
+// The four directions that neither camera nor IMU can see: translations, and rotation about gravity.
+Eigen::Vector4d unobservableInformation(const Prior& prior) {
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(prior.tangentSize(), 4);
+  int row = 0;
+  for (const Prior::Block& block : prior.blocks) {
+    const Vec3 first = block.first_estimate.head<3>();  // position, or velocity
+    directions.block<3, 1>(row, 3) = Vec3::UnitZ().cross(first);
+    if (block.isPose()) {
+      directions.block<3, 3>(row, 0).setIdentity();
+      directions.block<3, 1>(row + 3, 3) = Vec3::UnitZ();
+    }
+    row += block.tangentSize();
+  }
+  return (prior.sqrt_information * directions).colwise().squaredNorm();
+}
+
+// Runs a window without any prior on where it is, and returns what its marginalisations claim to know of
+// that.
+Eigen::Vector4d informationAfter(int frames, bool first_estimates) {
+  EstimatorOptions options;
+  TestWindow test(2, options);
+  Marginalizer marginalizer(test.factors);
+  TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
+  for (int k = 0; k < frames; ++k) {
+    test.add(*scene.next(), k % 2 == 0);
+    createLandmarks(test.window, test.factors, options.landmark);
+    if (k < 3) continue;
+    EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
+    removeOutliers(test.window, test.factors, options.landmark);
+    marginalizer.shorten(test.window, 3, 3);
+    if (first_estimates) continue;
+    for (const auto& frame : test.window.frames()) {
+      frame->first_pose.reset();
+      frame->first_motion.reset();
+    }
+  }
+  EXPECT_EQ(test.window.poseOnlyCount(), 3);
+  return unobservableInformation(marginalizer.prior());
+}
+
+TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
+  const Eigen::Vector4d information = informationAfter(30, true);
+  // What is left is rounding and the factorisation's jitter: less than 10 m and 0.1 rad once.
+  EXPECT_LT(information[0], 1e-2);
+  EXPECT_LT(information[1], 1e-2);
+  EXPECT_LT(information[2], 1e-2);
+  EXPECT_LT(information[3], 1e2);
+}
+
+TEST(Marginalizer, WithoutFirstEstimatesWouldInventAHeading) {
+  const Eigen::Vector4d with = informationAfter(30, true);
+  const Eigen::Vector4d without = informationAfter(30, false);
+  EXPECT_GT(without[3], 1e4) << "a heading known to 0.6 degrees out of nothing";
+  EXPECT_GT(without[3], 1e3 * with[3]);
+}
+
+TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {
+  TestWindow test(2);
+  Marginalizer marginalizer(test.factors);
+  TestScene scene(sceneOptions(4.0, 10.0));
+  std::map<TrackId, MapPoint> map;
+  for (int k = 0; k < 30; ++k) {
+    Frame& added = test.add(*scene.next(), k % 3 == 0);
+    if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
+    createLandmarks(test.window, test.factors, test.options.landmark);
+    marginalizer.shorten(test.window, 3, 4);
+    for (const MapPoint& point : marginalizer.takeMapPoints()) map[point.track] = point;
+
+    const Window& window = test.window;
+    ASSERT_LE(window.recentCount(), 3);
+    ASSERT_LE(window.poseOnlyCount(), 4);
+    const Frame* before = nullptr;
+    for (const auto& frame : window.frames()) {
+      EXPECT_TRUE(frame->has_motion || frame->is_keyframe);
+      const bool follows_motion = before && before->has_motion;
+      EXPECT_EQ(frame->from_previous != nullptr, follows_motion) << "frame " << frame->id;
+      before = frame.get();
+    }
+    for (const auto& [id, track] : window.tracks()) {
+      for (const Sighting& sighting : track.sightings) ASSERT_NE(window.find(sighting.frame), nullptr);
+      if (track.landmark) {
+        ASSERT_NE(window.find(track.landmark->host), nullptr);
+        ASSERT_NE(track.find(track.landmark->host, 0), nullptr) << "the host must see its landmark";
+      }
+    }
+    for (const Prior::Block& block : marginalizer.prior().blocks) {
+      const bool lives = std::any_of(window.frames().begin(), window.frames().end(), [&](const auto& frame) {
+        return block.value == frame->pose.data() ||
+               (frame->has_motion && block.value == frame->motion.data());
+      });
+      ASSERT_TRUE(lives) << "the prior speaks of a block that is gone";
+    }
+  }
+  EXPECT_TRUE(marginalizer.takeMapPoints().empty());
+  // Frames stand at the truth, so points are as good as their sightings: half a pixel over a short baseline.
+  ASSERT_GT(map.size(), 10u);
+  double squares = 0.0;
+  for (const auto& [id, point] : map) {
+    EXPECT_GE(point.sightings, 2);
+    const double range_m = scene.landmark(id).norm();
+    squares += (point.position_W - scene.landmark(id)).squaredNorm() / (range_m * range_m);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(map.size())), 0.1) << "of their distance";
+}
+
+class MoveToNewHostTest : public testing::Test {
+ protected:
+  MoveToNewHostTest() {
+    for (int i = 0; i < 4; ++i)
+      test_.add(Rigid3(so3::exp(Vec3(0.01, 0.02, 0.05 * i)), Vec3(0.1 * i, -0.2 * i, 0.0)), i != 3);
+  }
+  Landmark& landmark(TrackId id) { return *test_.window.tracks().at(id).landmark; }
+  void move(TrackId id, FrameId excluded) {
+    moveToNewHost(test_.window, test_.window.tracks().at(id), excluded, test_.factors.bodyFromCamera(0));
+  }
+  Frame& frame(int i) { return *test_.window.frames()[i]; }
+
+  TestWindow test_{1};
+};
+
+TEST_F(MoveToNewHostTest, KeepsThePoint) {
+  const Vec3 point_W(4.0, 0.3, 0.5);
+  // The new host's own ray is off, which must not move the point.
+  for (int i = 0; i < 4; ++i) test_.see(1, point_W, frame(i), 0, Vec2(3.0 * i, -2.0 * i));
+  test_.place(1, point_W, frame(0));
+  move(1, 0);
+  EXPECT_EQ(landmark(1).host, 2) << "the newest keyframe, not the newest frame";
+  EXPECT_LT((test_.position(1) - point_W).norm(), 1e-12);
+  move(1, 2);
+  EXPECT_EQ(landmark(1).host, 1);
+  EXPECT_LT((test_.position(1) - point_W).norm(), 1e-12);
+}
+
+TEST_F(MoveToNewHostTest, MovesPointsAtInfinityToo) {
+  const Vec3 far_W(1e6, 1e5, 0.0);
+  for (int i = 0; i < 3; ++i) test_.see(1, far_W, frame(i));
+  test_.place(1, far_W, frame(0)).parameters[2] = 0.0;
+  move(1, 0);
+  EXPECT_EQ(landmark(1).host, 2);
+  EXPECT_NEAR(landmark(1).inverseDistance(), 0.0, 1e-12);
+  const Vec3 direction_W = frame(2).worldFromBody().rotation *
+                           test_.rig.cameras[0].body_from_camera.rotation *
+                           landmark(1).base.direction(landmark(1).parameters.data());
+  EXPECT_LT(direction_W.normalized().cross(far_W.normalized()).norm(), 1e-6);
+}
+
+TEST_F(MoveToNewHostTest, GivesUpALandmarkWithoutAHost) {
+  const Vec3 point_W(4.0, 0.3, 0.5);
+  test_.see(1, point_W, frame(0));
+  test_.see(1, point_W, frame(3));  // no keyframe
+  test_.place(1, point_W, frame(0));
+  move(1, 0);
+  EXPECT_FALSE(test_.window.tracks().at(1).landmark.has_value());
+  // Here the only other keyframe has moved past the point.
+  test_.see(2, point_W, frame(0));
+  test_.seeAlong(2, Vec3::UnitZ(), frame(1));
+  test_.place(2, Vec3(0.1, 0.0, 0.0) + frame(0).worldFromBody().translation, frame(0));
+  NavigationState past = frame(1).state();
+  past.world_from_body.translation = Vec3(10.0, 0.0, 0.0);
+  frame(1).setState(past);
+  move(2, 0);
+  EXPECT_FALSE(test_.window.tracks().at(2).landmark.has_value());
+}
+
+TEST_F(MoveToNewHostTest, PointsTooFarAwayHaveNoPositionOnTheMap) {
+  const Vec3 point_W(4.0, 0.3, 0.5);
+  test_.see(1, point_W, frame(0));
+  test_.place(1, point_W, frame(0));
+  const TrackHistory& track = test_.window.tracks().at(1);
+  const auto point = mapPointOf(test_.window, 1, track, test_.factors.bodyFromCamera(0));
+  ASSERT_TRUE(point.has_value());
+  EXPECT_EQ(point->track, 1);
+  EXPECT_EQ(point->sightings, 1);
+  EXPECT_LT((point->position_W - point_W).norm(), 1e-12);
+  landmark(1).parameters[2] = 5e-4;
+  EXPECT_FALSE(mapPointOf(test_.window, 1, track, test_.factors.bodyFromCamera(0)).has_value());
+}
+
+}  // namespace
+}  // namespace lodeline

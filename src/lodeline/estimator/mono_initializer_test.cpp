@@ -1,0 +1,88 @@
+#include "lodeline/estimator/mono_initializer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lodeline/estimator/test_scene.h"
+
+namespace lodeline {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TestSceneOptions monoScene(double duration_s) {
+  TestSceneOptions options;
+  options.cameras = 1;
+  options.duration_s = duration_s;
+  options.points.tracks = 100;
+  options.points.frame_rate_hz = 12.5;
+  return options;
+}
+
+// Ends with the frame that completes the start, or with the scene.
+std::vector<Comparison> untilStarted(const TestSceneOptions& options) {
+  TestScene scene(options);
+  ComparedEstimator estimator(scene, honestOptions(options));
+  std::vector<Comparison> comparisons;
+  while (const auto frame = scene.next()) {
+    comparisons.push_back(estimator.add(*frame));
+    if (comparisons.back().initialized()) break;
+    EXPECT_FALSE(comparisons.back().estimate.waiting_for.empty());
+  }
+  return comparisons;
+}
+
+TEST(MonoInitializer, StartsAMovingCameraAndSaysWhatItWaitsFor) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    TestSceneOptions options = monoScene(8.0);
+    options.seed = seed;
+    const std::vector<Comparison> comparisons = untilStarted(options);
+    EXPECT_THAT(comparisons.front().estimate.waiting_for, StartsWith("frames 1 of 6"));
+    ASSERT_TRUE(comparisons.back().initialized())
+        << "seed " << seed << ": " << comparisons.back().estimate.waiting_for;
+    // The start promises the scale to a tenth; three times that is as good as never exceeded.
+    const Comparison& start = comparisons.back();
+    const double way_m = start.true_world_from_body.translation.norm();
+    EXPECT_GT(way_m, 0.1);
+    EXPECT_NEAR(start.estimate.state.world_from_body.translation.norm() / way_m, 1.0, 0.3) << "seed " << seed;
+    // Against gravity and the frame of the start: 0.1 m/s^2 of unknown accelerometer bias are 0.01 rad.
+    EXPECT_LT(start.rotationError(), 0.05) << "seed " << seed;
+    EXPECT_LT(start.positionError(), 4.0 * std::sqrt(start.estimate.covariance.topLeftCorner<3, 3>().trace()))
+        << "seed " << seed;
+  }
+}
+
+TEST(MonoInitializer, WaitsForParallaxWhileTheRigStandsStill) {
+  TestSceneOptions options = monoScene(6.0);
+  options.liveliness = 0.0;
+  const std::vector<Comparison> comparisons = untilStarted(options);
+  EXPECT_FALSE(comparisons.back().initialized());
+  EXPECT_THAT(comparisons.back().estimate.waiting_for, StartsWith("parallax"));
+  EXPECT_THAT(comparisons.back().estimate.waiting_for, HasSubstr("of 20 px"));
+}
+
+TEST(MonoInitializer, WaitsForParallaxWhileTheRigOnlyTurns) {
+  TestSceneOptions options = monoScene(6.0);
+  options.translation = 0.0;
+  const std::vector<Comparison> comparisons = untilStarted(options);
+  EXPECT_FALSE(comparisons.back().initialized());
+  EXPECT_THAT(comparisons.back().estimate.waiting_for,
+              testing::AnyOf(StartsWith("parallax"), StartsWith("frames")));
+}
+
+TEST(MonoInitializer, DoesNotGuessTheScaleOfASteadyGlide) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    TestSceneOptions options = monoScene(5.0);
+    options.seed = seed;
+    options.liveliness = 0.0;
+    options.drift_m_per_s = Vec3(0.1, 0.5, 0.1);
+    const std::vector<Comparison> comparisons = untilStarted(options);
+    EXPECT_FALSE(comparisons.back().initialized()) << "seed " << seed;
+    EXPECT_THAT(comparisons.back().estimate.waiting_for, testing::Not(StartsWith("frames")))
+        << "there was enough to see";
+  }
+}
+
+}  // namespace
+}  // namespace lodeline
