@@ -9,7 +9,6 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/settings.h"
-#include "lodeline/base/thread_clock.h"
 #include "lodeline/cli/process_usage.h"
 #include "lodeline/cli/run_progress.h"
 #include "lodeline/cli/run_settings.h"
@@ -71,7 +70,8 @@ RunDescription describe(const RunArguments& arguments, const RunSettings& option
   return description;
 }
 
-/// Feeds all packets through the estimator; results are on disk at the end, whatever ended it.
+/// Feeds all packets through the estimator; results are on disk at the end, whether the recording or the
+/// user ended it.
 void process(Synchronizer& synchronizer, Odometry& odometry, const std::filesystem::path& folder, bool quiet,
              RunSummary* summary) {
   StateWriter states(folder);
@@ -80,14 +80,8 @@ void process(Synchronizer& synchronizer, Odometry& odometry, const std::filesyst
   const StopRequest stop;
   const Clock::time_point start = Clock::now();
   const double start_processor_s = ProcessUsage::now().processor_s;
-  const auto next = [&] {
-    const double before_s = threadSeconds();
-    std::optional<FramePacket> packet = synchronizer.next();
-    summary->reading_s += threadSeconds() - before_s;
-    return packet;
-  };
-  std::optional<FramePacket> packet = next();
-  for (; packet && !stop.made(); packet = next()) {
+  std::optional<FramePacket> packet = synchronizer.next();
+  for (; packet && !stop.made(); packet = synchronizer.next()) {
     const FrameEstimate estimate = odometry.add(*packet);
     states.write(estimate);
     landmarks.write(odometry.estimator().takeMapPoints());

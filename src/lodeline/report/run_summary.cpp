@@ -71,10 +71,10 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
                                         sigma[5] * 180.0 / M_PI));
   }
   line("time",
-       fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (reading {:.1f}, front end {:.1f}, "
+       fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (files {:.1f}, front end {:.1f}, "
                    "estimator {:.1f})",
                    wall_s, realTimeFactor(), coreMillisecondsPerFrame(process_s),
-                   coreMillisecondsPerFrame(reading_s), coreMillisecondsPerFrame(front_end_s),
+                   coreMillisecondsPerFrame(filesSeconds()), coreMillisecondsPerFrame(front_end_s),
                    coreMillisecondsPerFrame(estimator_s)));
   line("memory", fmt::format("{:.0f} MB at most", peak_memory_MB));
   if (interrupted) line("interrupted", "the recording goes on; results cover what was read");
@@ -104,7 +104,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["wall_s"] = wall_s;
   json["real_time_factor"] = realTimeFactor();
   json["core_ms_per_frame"] = {{"total", coreMillisecondsPerFrame(process_s)},
-                               {"reading", coreMillisecondsPerFrame(reading_s)},
+                               {"files", coreMillisecondsPerFrame(filesSeconds())},
                                {"front_end", coreMillisecondsPerFrame(front_end_s)},
                                {"estimator", coreMillisecondsPerFrame(estimator_s)}};
   json["peak_memory_MB"] = peak_memory_MB;

@@ -35,7 +35,6 @@ class RunSummary {
   const FrameEstimate& last() const { return last_; }
 
   // Filled in by whoever runs the stages; processor seconds.
-  double reading_s = 0.0;
   double front_end_s = 0.0;
   double estimator_s = 0.0;
   double process_s = 0.0;  ///< of the whole process, all threads
@@ -61,6 +60,8 @@ class RunSummary {
 
  private:
   double coreMillisecondsPerFrame(double seconds) const;
+  /// What the process spent outside of front end and estimator: reading, decoding, writing.
+  double filesSeconds() const { return process_s - front_end_s - estimator_s; }
 
   RunDescription description_;
   FrameEstimate last_;
