@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/visual_inertial_alignment.h"

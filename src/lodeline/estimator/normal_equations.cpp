@@ -96,10 +96,6 @@ void NormalEquations::add(const Factor& factor) {
 }
 
 void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
-  struct Coupling {
-    int offset;
-    Mat63 pose_by_landmark = Mat63::Zero();
-  };
   std::vector<Coupling> couplings;
   const auto couplingOf = [&](int offset) -> Coupling& {
     for (Coupling& coupling : couplings) {
@@ -147,6 +143,18 @@ void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
       if (column.offset > row.offset) continue;
       h_.block<6, 6>(row.offset, column.offset).noalias() -= weighted * column.pose_by_landmark.transpose();
     }
+  }
+  eliminated_.push_back({landmark.landmark, inverse, g_landmark, std::move(couplings)});
+}
+
+void NormalEquations::stepLandmarks(const Eigen::VectorXd& step) const {
+  for (const EliminatedLandmark& landmark : eliminated_) {
+    Vec3 gradient = landmark.gradient;
+    for (const Coupling& coupling : landmark.couplings) {
+      gradient.noalias() += coupling.pose_by_landmark.transpose() * step.segment<6>(coupling.offset);
+    }
+    Eigen::Map<Eigen::Matrix<double, kLandmarkSize, 1>> value(landmark.value);
+    value -= landmark.inverse_hessian * gradient;
   }
 }
 

@@ -25,6 +25,9 @@ class NormalEquations {
   /// Adds the terms of one landmark and eliminates it (Schur complement).
   void addEliminated(const LandmarkFactors& landmark);
 
+  /// Moves the eliminated landmarks along with a step d of the blocks.
+  void stepLandmarks(const Eigen::VectorXd& step) const;
+
   const std::vector<Block>& blocks() const { return blocks_; }
   int size() const { return size_; }
   const Block* find(const double* value) const;
@@ -34,11 +37,22 @@ class NormalEquations {
   const Eigen::VectorXd gradient() const { return g_.head(size_); }
 
  private:
-  struct Linearised;
+  struct Coupling {
+    int offset;
+    Eigen::Matrix<double, 6, 3> pose_by_landmark = Eigen::Matrix<double, 6, 3>::Zero();
+  };
+  /// What back-substitution needs.
+  struct EliminatedLandmark {
+    double* value;
+    Mat3 inverse_hessian;
+    Vec3 gradient;
+    std::vector<Coupling> couplings;
+  };
   int offsetOf(double* value, int ambient_size);
   void reserve(int size);
 
   std::vector<Block> blocks_;
+  std::vector<EliminatedLandmark> eliminated_;
   Eigen::MatrixXd h_;  ///< lower triangle is kept; may be larger than size_
   Eigen::VectorXd g_;
   int size_ = 0;

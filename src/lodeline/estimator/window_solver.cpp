@@ -12,39 +12,10 @@
 #include <vector>
 
 #include "lodeline/estimator/normal_equations.h"
+#include "lodeline/estimator/window_terms.h"
 
 namespace lodeline {
 namespace {
-
-void repropagateWhereNeeded(Window& window) {
-  const Frame* before = nullptr;
-  for (const auto& frame : window.frames()) {
-    if (before && before->has_motion && frame->from_previous &&
-        frame->from_previous->needsRepropagation(before->gyroscopeBias(), before->accelerometerBias())) {
-      frame->from_previous->repropagate(before->gyroscopeBias(), before->accelerometerBias());
-    }
-    before = frame.get();
-  }
-}
-
-struct Terms {
-  std::vector<Factor> dense;  ///< prior and inertial terms
-  std::vector<LandmarkFactors> landmarks;
-};
-
-Terms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors) {
-  Terms terms;
-  if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
-  Frame* before = nullptr;
-  for (const auto& frame : window.frames()) {
-    if (before && frame->from_previous) terms.dense.push_back(factors.inertial(*before, *frame));
-    before = frame.get();
-  }
-  for (auto& [id, track] : window.tracks()) {
-    if (track.landmark) terms.landmarks.push_back(factors.landmark(window, track));
-  }
-  return terms;
-}
 
 /// The blocks of a problem, copied side by side. Ceres sorts blocks by their address; with addresses in the
 /// order of frames and tracks, and not wherever the heap put them, two runs add up their sums in the same
@@ -100,8 +71,7 @@ ceres::Solver::Options solverOptions(const SolveLimits& limits) {
 
 SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
                          const SolveLimits& limits) {
-  repropagateWhereNeeded(window);
-  Terms terms = collectTerms(window, prior, factors);
+  const WindowTerms terms = collectTerms(window, prior, factors);
   BlockCopies copies;
   for (const LandmarkFactors& landmark : terms.landmarks) copies.add(landmark.landmark, kLandmarkSize);
   for (const auto& frame : window.frames()) {
@@ -142,38 +112,6 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
   summary.usable = ceres_summary.IsSolutionUsable();
   if (summary.usable) copies.writeBack();
   return summary;
-}
-
-double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance) {
-  const auto along = [](const Vec3& vector, const Mat3& vector_covariance) {
-    const double length = vector.norm();
-    if (length < 1e-9) return std::numeric_limits<double>::infinity();
-    const Vec3 direction = vector / length;
-    return std::sqrt(direction.dot(vector_covariance * direction)) / length;
-  };
-  return std::min(along(newest.worldFromBody().translation, covariance.block<3, 3>(0, 0)),
-                  along(newest.velocity_W(), covariance.block<3, 3>(6, 6)));
-}
-
-Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
-                                               const FactorMaker& factors) {
-  NormalEquations system;
-  const Terms terms = collectTerms(window, prior, factors);
-  for (const Factor& factor : terms.dense) system.add(factor);
-  for (const LandmarkFactors& landmark : terms.landmarks) system.addEliminated(landmark);
-  const Frame& newest = window.newest();
-  const int pose_row = system.find(newest.pose.data())->offset;
-  const int motion_row = system.find(newest.motion.data())->offset;
-  const Eigen::MatrixXd h = system.hessian();
-  const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factorised(scale.asDiagonal() * h * scale.asDiagonal());
-  Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(system.size(), 15);
-  for (int i = 0; i < 6; ++i) selection(pose_row + i, i) = scale[pose_row + i];
-  for (int i = 0; i < 9; ++i) selection(motion_row + i, 6 + i) = scale[motion_row + i];
-  const Eigen::MatrixXd columns = scale.asDiagonal() * factorised.solve(selection);
-  Eigen::Matrix<double, 15, 15> covariance;
-  covariance << columns.middleRows<6>(pose_row), columns.middleRows<9>(motion_row);
-  return 0.5 * (covariance + covariance.transpose());
 }
 
 }  // namespace lodeline

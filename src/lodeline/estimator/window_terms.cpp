@@ -1,0 +1,38 @@
+#include "lodeline/estimator/window_terms.h"
+
+namespace lodeline {
+namespace {
+
+void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
+  if (preintegration.needsRepropagation(before.gyroscopeBias(), before.accelerometerBias())) {
+    preintegration.repropagate(before.gyroscopeBias(), before.accelerometerBias());
+  }
+}
+
+}  // namespace
+
+WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors) {
+  WindowTerms terms;
+  if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
+  Frame* before = nullptr;
+  for (const auto& frame : window.frames()) {
+    if (before && frame->from_previous) {
+      repropagateIfNeeded(*before, *frame->from_previous);
+      terms.dense.push_back(factors.inertial(*before, *frame));
+    }
+    before = frame.get();
+  }
+  for (auto& [id, track] : window.tracks()) {
+    if (track.landmark) terms.landmarks.push_back(factors.landmark(window, track));
+  }
+  return terms;
+}
+
+NormalEquations linearise(const WindowTerms& terms) {
+  NormalEquations system;
+  for (const Factor& factor : terms.dense) system.add(factor);
+  for (const LandmarkFactors& landmark : terms.landmarks) system.addEliminated(landmark);
+  return system;
+}
+
+}  // namespace lodeline

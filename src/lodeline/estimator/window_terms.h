@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/normal_equations.h"
+
+namespace lodeline {
+
+/// Every term of the window's cost.
+struct WindowTerms {
+  std::vector<Factor> dense;  ///< prior and inertial terms
+  std::vector<LandmarkFactors> landmarks;
+};
+
+/// In a fixed order: prior, inertial terms by time, landmarks by track. Inertial terms whose biases moved too
+/// far are integrated again first.
+WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors);
+
+/// The linear system of all terms at the window's present values, landmarks eliminated.
+NormalEquations linearise(const WindowTerms& terms);
+
+}  // namespace lodeline

@@ -1,0 +1,124 @@
+#include "lodeline/estimator/window_update.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "lodeline/estimator/covariance.h"
+
+namespace lodeline {
+namespace {
+
+/// The values of all blocks that a step moves, to go back to when it did not help.
+class Snapshot {
+ public:
+  explicit Snapshot(Window& window) {
+    for (const auto& frame : window.frames()) {
+      save(frame->pose.data(), kPoseSize);
+      save(frame->motion.data(), kMotionSize);
+    }
+    for (auto& [id, track] : window.tracks()) {
+      if (track.landmark) save(track.landmark->parameters.data(), kLandmarkSize);
+    }
+  }
+  void restore() const {
+    const double* value = values_.data();
+    for (const auto& [target, size] : targets_) {
+      std::copy_n(value, size, target);
+      value += size;
+    }
+  }
+
+ private:
+  void save(double* value, int size) {
+    targets_.emplace_back(value, size);
+    values_.insert(values_.end(), value, value + size);
+  }
+  std::vector<std::pair<double*, int>> targets_;
+  std::vector<double> values_;
+};
+
+double costOf(const Factor& factor, std::vector<double>& residual) {
+  residual.resize(factor.function->num_residuals());
+  factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
+  const double squared = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()).squaredNorm();
+  if (!factor.loss) return 0.5 * squared;
+  double rho[3];
+  factor.loss->Evaluate(squared, rho);
+  return 0.5 * rho[0];
+}
+
+double costOf(const WindowTerms& terms) {
+  std::vector<double> residual;
+  double cost = 0.0;
+  for (const Factor& factor : terms.dense) cost += costOf(factor, residual);
+  for (const LandmarkFactors& landmark : terms.landmarks) {
+    for (const Factor& factor : landmark.factors) cost += costOf(factor, residual);
+  }
+  return cost;
+}
+
+/// H d = -g with `damping` times the diagonal added; nothing where that is not positive definite.
+std::optional<Eigen::VectorXd> solveDamped(const Eigen::MatrixXd& h, const Eigen::VectorXd& g,
+                                           double damping) {
+  const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
+  scaled.diagonal().array() += damping;
+  const Eigen::LLT<Eigen::MatrixXd> factorised(scaled);
+  if (factorised.info() != Eigen::Success) return std::nullopt;
+  Eigen::VectorXd step = -(scale.asDiagonal() * factorised.solve(scale.asDiagonal() * g));
+  if (!step.allFinite()) return std::nullopt;
+  return step;
+}
+
+void apply(const NormalEquations& system, const Eigen::VectorXd& step) {
+  for (const NormalEquations::Block& block : system.blocks()) {
+    if (block.ambient_size == kPoseSize) {
+      poseToBlock(perturbed(poseFromBlock(block.value), step.segment<6>(block.offset)), block.value);
+    } else {
+      Eigen::Map<Eigen::VectorXd>(block.value, block.ambient_size) +=
+          step.segment(block.offset, block.ambient_size);
+    }
+  }
+  system.stepLandmarks(step);
+}
+
+}  // namespace
+
+WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker& factors,
+                          const SolveLimits& limits) {
+  constexpr double kLeastDamping = 1e-9;
+  constexpr double kMostDamping = 1e-1;
+  const WindowTerms terms = collectTerms(window, prior, factors);
+  WindowUpdate update;
+  double cost = costOf(terms);
+  update.summary.initial_cost = cost;
+  double damping = kLeastDamping;
+  NormalEquations system;
+  while (update.summary.iterations < limits.max_iterations) {
+    ++update.summary.iterations;
+    system = linearise(terms);
+    const Eigen::MatrixXd h = system.hessian();
+    const Snapshot before(window);
+    double gain = 0.0;
+    while (!(gain > 0.0) && damping <= kMostDamping) {
+      if (const std::optional<Eigen::VectorXd> step = solveDamped(h, system.gradient(), damping)) {
+        apply(system, *step);
+        gain = cost - costOf(terms);
+        if (!(gain > 0.0)) before.restore();
+      }
+      damping *= gain > 0.0 ? 0.01 : 100.0;
+    }
+    damping = std::max(damping, kLeastDamping);
+    if (!(gain > limits.function_tolerance * cost)) break;
+    cost -= gain;
+  }
+  update.summary.final_cost = cost;
+  update.summary.usable = std::isfinite(cost);
+  update.newest_covariance = covarianceOf(system, window.newest());
+  return update;
+}
+
+}  // namespace lodeline
