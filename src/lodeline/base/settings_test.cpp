@@ -143,6 +143,16 @@ TEST_F(SettingsTest, CommandLineTakesYamlSpelling) {
   EXPECT_FALSE(equalise_);
 }
 
+TEST_F(SettingsTest, ListsOfWholeNumbersTakeNoFractions) {
+  std::vector<int> cameras;
+  settings_.bind("cameras", &cameras, "by number");
+  settings_.set("cameras", "[1, 0]");
+  EXPECT_THAT(cameras, ElementsAre(1, 0));
+  EXPECT_THAT([&] { settings_.set("cameras", "[0.5]"); }, testing::Throws<UsageError>());
+  EXPECT_THAT([&] { settings_.set("cameras", "1"); }, testing::Throws<UsageError>());
+  EXPECT_THAT(cameras, ElementsAre(1, 0));
+}
+
 TEST_F(SettingsTest, RefusesToBindAKeyTwice) {
   int other = 0;
   EXPECT_THROW(settings_.bind("name", &other, ""), std::logic_error);
