@@ -56,21 +56,23 @@ void addBoulder(TriangleMesh& out, const Vec3f& position, float radius_m, const 
 
 /// A spike from `root` over `length_m` along `down` (unit vertical), tapering, banded like grown calcite.
 void addSpike(TriangleMesh& out, const Vec3f& root, const Vec3f& down, float length_m, float radius_m,
-              float sharpness, const CaveStyle& style, uint64_t seed) {
+              float sharpness, float flare, const CaveStyle& style, uint64_t seed) {
   const int rows = std::clamp(static_cast<int>(length_m / 0.03f), 8, 60);
   const int columns = std::clamp(static_cast<int>(6.3f * radius_m / 0.02f), 10, 28);
   const uint32_t noise_seed = static_cast<uint32_t>(seed);
   TriangleMesh spike;
   for (int i = 0; i < rows; ++i) {
     const float t = static_cast<float>(i) / (rows - 1);
-    const float taper = std::pow(std::max(0.0f, 1.0f - t), sharpness);
+    // Flared where it grew from the rock.
+    const float taper =
+        std::pow(std::max(0.0f, 1.0f - t), sharpness) + flare * std::exp(-t / 0.10f) * (1.0f - t);
     for (int j = 0; j < columns; ++j) {
       const float angle = 2.0f * std::numbers::pi_v<float> * j / columns;
       const Vec3f around(std::cos(angle), std::sin(angle), 0.0f);
       const Vec3f axis = root + down * ((t * 1.15f - 0.15f) * length_m);
       const Vec3f q = axis + radius_m * around;
       const float bulge =
-          1.0f + 0.30f * fractalNoise(Vec3f(q.x() / 0.25f, q.y() / 0.25f, q.z() / 0.12f), 3, noise_seed) +
+          1.0f + 0.45f * fractalNoise(Vec3f(q.x() / 0.25f, q.y() / 0.25f, q.z() / 0.12f), 3, noise_seed) +
           0.25f * gradientNoise(Vec3f(0.0f, 0.0f, q.z() / 0.3f), noise_seed + 9);
       const float band = gradientNoise(Vec3f(angle, 0.0f, q.z() / 0.06f), noise_seed + 5);
       spike.addVertex(axis + radius_m * taper * bulge * around,
@@ -121,11 +123,11 @@ void hangStalactites(TriangleMesh& out, const CaveWalls& walls, const CaveStyle&
     const float drop = column ? 0.75f * gap : std::min(length, 0.45f * gap);
     const Vec3f tip = root - drop * Vec3f::UnitZ();
     if (!isClear(tip) || !isClear(0.5f * (root + tip))) continue;
-    addSpike(out, root, -Vec3f::UnitZ(), drop, radius, 0.8f, style, random.next());
+    addSpike(out, root, -Vec3f::UnitZ(), drop, radius, 0.8f, 0.9f, style, random.next());
     const Vec3f under(root.x(), root.y(), foot.z());
     const float height = column ? 0.75f * gap : drop * uniform(random, 0.1, 0.6);
     if (random.chance(column ? 1.0 : 0.4) && isClear(under + height * Vec3f::UnitZ())) {
-      addSpike(out, under, Vec3f::UnitZ(), height, 1.5f * radius + 0.02f, 0.5f, style, random.next());
+      addSpike(out, under, Vec3f::UnitZ(), height, 1.5f * radius + 0.02f, 0.5f, 0.0f, style, random.next());
     }
   }
 }

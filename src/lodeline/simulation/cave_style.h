@@ -4,15 +4,15 @@ namespace lodeline {
 
 /// What the rock of a cave is like. Lengths in m, shares between 0 and 1.
 struct CaveStyle {
-  float boulders_per_m = 1.2f;     ///< breakdown blocks, over the length of the passage
+  float boulders_per_m = 2.0f;     ///< breakdown blocks, over the length of the passage
   float largest_boulder_m = 0.8f;  ///< radius
   float stalactites_per_m = 0.0f;  ///< with their stalagmites and columns
   float sediment_fill = 0.28f;     ///< how far up the passage silt has buried the floor, share of its height
   float bare_share = 0.10f;        ///< of walls and floor, covered by smooth silt or flowstone
   float ledge_m = 0.30f;           ///< depth of the ledges that the bedding leaves
-  float rock_albedo = 0.34f;
-  float sediment_albedo = 0.46f;
-  float flowstone_albedo = 0.60f;
+  float rock_albedo = 0.42f;
+  float sediment_albedo = 0.33f;
+  float flowstone_albedo = 0.52f;
 
   /// Florida's Devil's Eye: ledged, dark limestone, silty floor.
   static CaveStyle floridaSpring() { return {}; }
@@ -21,11 +21,11 @@ struct CaveStyle {
   static CaveStyle yucatanDecorated() {
     CaveStyle style;
     style.boulders_per_m = 0.8f;
-    style.stalactites_per_m = 3.0f;
+    style.stalactites_per_m = 12.0f;
     style.ledge_m = 0.12f;
-    style.rock_albedo = 0.46f;
-    style.sediment_albedo = 0.52f;
-    style.flowstone_albedo = 0.66f;
+    style.rock_albedo = 0.50f;
+    style.sediment_albedo = 0.42f;
+    style.flowstone_albedo = 0.56f;
     style.bare_share = 0.15f;
     return style;
   }

@@ -49,6 +49,14 @@ double meanPerimeter(const Centerline& centerline) {
   return sum / static_cast<double>(centerline.stations().size());
 }
 
+/// Rock broken along joints: blocks that stand out by random amounts (-0.5..0.5), grooves between them.
+float brokenRock(const Vec3f& q, uint32_t seed) {
+  const CellDistances cell = cellNoise(q, seed);
+  const float block = static_cast<float>(cell.nearest_id >> 8 & 255) / 255.0f - 0.5f;
+  const float joint = smoothStep(0.0f, 0.14f, cell.second - cell.nearest);
+  return block * joint + 0.35f * (1.0f - joint);
+}
+
 /// How far the rock stands back (positive) from the smooth section at a point of it, m.
 float displacement(const Vec3f& q, float radius_m, const CaveStyle& style, uint32_t seed) {
   const float wavelength = std::max(2.0f, 1.6f * radius_m);
@@ -56,14 +64,14 @@ float displacement(const Vec3f& q, float radius_m, const CaveStyle& style, uint3
   // Beds of different hardness: noise stretched along the horizontal, sharpened into ledges.
   const Vec3f bedded(q.x() / 5.0f, q.y() / 5.0f, q.z() / 0.55f + 0.4f * gradientNoise(q / 3.0f, seed + 2));
   const float bed = gradientNoise(bedded, seed + 3) + 0.5f * gradientNoise(2.3f * bedded, seed + 4);
-  const float ledge = bed / (0.15f + std::abs(bed));
+  const float ledge = bed / (0.3f + std::abs(bed));
   const Vec3f warp(gradientNoise(q / 1.1f, seed + 5), gradientNoise(q / 1.1f, seed + 6),
                    gradientNoise(q / 1.1f, seed + 7));
-  const Vec3f warped = q + 0.35f * warp;
-  const float crags = -ridgedNoise(warped / 1.3f, 4, seed + 8, 0.55f);
-  const float rubble = fractalNoise(warped / 0.32f, 3, seed + 9, 0.55f);
+  const Vec3f warped = q + 0.25f * warp;
+  const float crags = fractalNoise(warped / 1.1f, 5, seed + 8, 0.58f);
   return 0.28f * std::min(radius_m, 3.0f) * alcove * (alcove > 0.0f ? 1.5f : 0.8f) + style.ledge_m * ledge +
-         0.30f * crags + 0.05f * rubble;
+         0.30f * crags + 0.24f * brokenRock(warped / 0.85f, seed + 9) +
+         0.09f * brokenRock(warped / 0.30f, seed + 10);
 }
 
 /// Height (world z, m) of the silt at a place of the ring.
@@ -109,11 +117,16 @@ void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, uint32_
   // Near the closed ends the section is too small for the full relief.
   const float relief = std::min(1.0f, radius);
   const float moved = radius + relief * displacement(base, radius, style, seed);
-  Vec3f position = ring.center + std::max(moved, 0.6f * radius) * outward;
+  const float outer = std::max(moved, 0.6f * radius);
+  Vec3f position = ring.center + outer * outward;
   Material material = rockMaterial(position, style, seed);
-  const float silt = sedimentLevel(ring, position, style, seed);
-  if (sine < 0.0f && position.z() < silt) {
-    position.z() = silt;
+  if (sine < 0.0f && position.z() < sedimentLevel(ring, position, style, seed)) {
+    // The line from the centre meets the silt before the rock. The level varies slowly: three steps suffice.
+    for (int step = 0; step < 3; ++step) {
+      const float drop = ring.center.z() - sedimentLevel(ring, position, style, seed);
+      const float reach = std::min(outer, drop / std::max(0.02f, -outward.z()));
+      position = ring.center + reach * outward;
+    }
     material = sedimentMaterial(position, style, seed);
   }
   const size_t index = static_cast<size_t>(i) * walls.ring_size + j;

@@ -73,9 +73,9 @@ HazeSample HazeVolume::at(float x_px, float y_px, float range_m) const {
   int step = 0;
   float t = range / step_range_m_[0];  // within the first step everything grows from zero
   if (t > 1.0f) {
-    step = std::min(kSteps - 1, 1 + static_cast<int>(std::log2(t) * kPerLogGrowth));
-    t = std::clamp((range - step_range_m_[step - 1]) / (step_range_m_[step] - step_range_m_[step - 1]), 0.0f,
-                   1.0f);
+    step = std::min(kSteps - 1, 1 + static_cast<int>(roughLog2(t) * kPerLogGrowth));
+    // The logarithm is rough: a range just over the border of its step continues that step's line.
+    t = (range - step_range_m_[step - 1]) / (step_range_m_[step] - step_range_m_[step - 1]);
   }
   Entry sum;
   for (int corner = 0; corner < 4; ++corner) {

@@ -10,15 +10,13 @@
 #include "lodeline/simulation/haze_volume.h"
 #include "lodeline/simulation/motion_blur.h"
 #include "lodeline/simulation/pixel_hash.h"
+#include "lodeline/simulation/place_light.h"
 #include "lodeline/simulation/surface_shader.h"
 
 namespace lodeline {
 namespace {
 
-constexpr float kSight_m = 60.0f;  // no lamp reaches farther and back
 constexpr int kPacketWidth = 4, kPacketHeight = 4;
-constexpr int kMeterColumns = 24, kMeterRows = 18;
-constexpr int kMeterings = 6;  ///< past moments that the automatic exposure remembers
 
 /// A camera in the world, single precision.
 struct CameraPose {
@@ -53,21 +51,8 @@ HazeVolume hazeOver(const CameraOptics& optics, const CameraPose& pose, const Li
 
 ImageRenderer::ImageRenderer(std::shared_ptr<const RenderWorld> world, const Rig& true_rig,
                              const RenderSettings& settings)
-    : world_(std::move(world)), settings_(settings) {
+    : world_(world), settings_(settings), meter_(std::move(world), settings) {
   for (const CameraCalibration& camera : true_rig.cameras) optics_.emplace_back(camera, settings.lens);
-}
-
-LightField ImageRenderer::lightAt(const Rigid3& world_from_body, int camera, double time_s) const {
-  LightField light{{}, settings_.daylight, Water(settings_.water, time_s, settings_.seed)};
-  for (const Lamp& lamp : settings_.lamps) light.lamps.emplace_back(lamp, world_from_body);
-  if (settings_.second_diver) {
-    const Vec3 forward =
-        world_from_body.rotation * (optics_[camera].bodyFromCamera().rotation * Vec3::UnitZ());
-    const auto torch = placeSecondDiver(*settings_.second_diver, world_from_body.translation, forward, time_s,
-                                        settings_.seed);
-    if (torch) light.lamps.push_back(*torch);
-  }
-  return light;
 }
 
 ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& motion, double middle_s,
@@ -114,69 +99,10 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
   return out;
 }
 
-std::vector<float> ImageRenderer::meter(int camera, const Rigid3& world_from_body, double time_s) const {
-  const CameraOptics& optics = optics_[camera];
-  const CameraPose pose(world_from_body * optics.bodyFromCamera());
-  const LightField light = lightAt(world_from_body, camera, time_s);
-  const SurfaceShader shader(world_->scene, world_->texture);
-  std::vector<int> pixels;
-  std::vector<Vec3f> directions;
-  for (int j = 0; j < kMeterRows; ++j) {
-    for (int i = 0; i < kMeterColumns; ++i) {
-      const int x = (2 * i + 1) * optics.width() / (2 * kMeterColumns);
-      const int y = (2 * j + 1) * optics.height() / (2 * kMeterRows);
-      pixels.push_back(y * optics.width() + x);
-      directions.push_back(pose.rotation * optics.direction(pixels.back()));
-    }
-  }
-  // A node of haze for every metered ray.
-  const HazeVolume haze(light, pose.position, directions, kMeterColumns);
-  std::vector<float> metered;
-  metered.reserve(pixels.size());
-  for (size_t first = 0; first < pixels.size(); first += kRayPacketSize) {
-    RayPacket rays;
-    for (int lane = 0; lane < kRayPacketSize; ++lane) {
-      const bool used = first + lane < pixels.size() && optics.sees(pixels[first + lane]);
-      if (used)
-        aim(rays, lane, optics, pixels[first + lane], pose);
-      else
-        rays.disable(lane);
-    }
-    HitPacket hits;
-    world_->scene.intersect(rays, hits);
-    float radiance[kRayPacketSize];
-    shader.shade(rays, hits, light, optics.pixelAngle(), false, radiance);
-    for (int lane = 0; lane < kRayPacketSize && first + lane < pixels.size(); ++lane) {
-      const int n = static_cast<int>(first) + lane;
-      const HazeSample veil =
-          haze.at(static_cast<float>(n % kMeterColumns * HazeVolume::kNodeSpacing_px),
-                  static_cast<float>(n / kMeterColumns * HazeVolume::kNodeSpacing_px), hits.range_m[lane]);
-      metered.push_back(optics.light(pixels[n]) * (radiance[lane] * veil.transmittance + veil.radiance));
-    }
-  }
-  return metered;
-}
-
-ExposureSetting ImageRenderer::exposure(int camera, const WorldFromBodyAt& motion, double middle_s) const {
-  const SensorOptions& sensor = settings_.sensor;
-  // The controller is a first-order lag in the logarithm of exposure. Its response is written out over the
-  // recent past instead of carried from image to image, so that any image can be made on its own.
-  const double step_s = 0.5 * sensor.exposure_lag_s;
-  double sum = 0.0, weights = 0.0;
-  for (int k = 1; k <= kMeterings; ++k) {
-    // On a grid of time: equal for both cameras of a pair and from image to image.
-    const double when = (std::floor(middle_s / step_s) - (k - 1)) * step_s;
-    const double weight = std::exp(-(middle_s - when) / sensor.exposure_lag_s);
-    sum += weight * std::log(meteredExposure(sensor, meter(camera, motion(when), when)));
-    weights += weight;
-  }
-  return splitExposure(sensor, std::exp(sum / weights));
-}
-
 cv::Mat ImageRenderer::render(int camera, const WorldFromBodyAt& motion, double middle_s) const {
   const CameraOptics& optics = optics_[camera];
   const Rigid3 world_from_body = motion(middle_s);
-  const LightField light = lightAt(world_from_body, camera, middle_s);
+  const LightField light = placeLight(settings_, optics, world_from_body, middle_s);
   ExposureSetting setting = exposure(camera, motion, middle_s);
   Light image = trace(camera, motion, middle_s, light);
 

@@ -1,24 +1,21 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
 #include "lodeline/sensors/rig.h"
-#include "lodeline/simulation/light_field.h"
+#include "lodeline/simulation/light_meter.h"
 #include "lodeline/simulation/render_settings.h"
 #include "lodeline/simulation/render_world.h"
 
 namespace lodeline {
 
-/// True pose of the body at a time of the dive (s). Asked for times around the exposure, and for up to six
-/// time constants of the automatic exposure before: hold the first pose where the dive has not begun.
-using WorldFromBodyAt = std::function<Rigid3(double time_s)>;
-
 /// Renders what a rig's cameras record in a world. All effects are functions of the settings, the motion and
 /// the time alone: images can be made in any order, by any number of threads at once, with the same bytes.
+/// The motion is asked for times around the exposure and for the three time constants of the automatic
+/// exposure before it: it must hold its first pose where the dive has not begun.
 class ImageRenderer {
  public:
   /// `true_rig` holds the cameras as they really are; with a flat port their intrinsics are those in air.
@@ -30,7 +27,9 @@ class ImageRenderer {
   cv::Mat render(int camera, const WorldFromBodyAt& motion, double middle_s) const;
 
   /// What the automatic exposure has settled on at that time.
-  ExposureSetting exposure(int camera, const WorldFromBodyAt& motion, double middle_s) const;
+  ExposureSetting exposure(int camera, const WorldFromBodyAt& motion, double middle_s) const {
+    return meter_.exposure(optics_[camera], motion, middle_s);
+  }
 
   /// Distance to the first surface along a unit direction, m: what a sonar or a landmark sees.
   std::optional<double> range(const Vec3& origin_W, const Vec3& direction_W) const {
@@ -50,12 +49,10 @@ class ImageRenderer {
     cv::Mat range_m;   ///< CV_32F, infinite where nothing was met
   };
 
-  LightField lightAt(const Rigid3& world_from_body, int camera, double time_s) const;
   Light trace(int camera, const WorldFromBodyAt& motion, double middle_s, const LightField& light) const;
-  std::vector<float> meter(int camera, const Rigid3& world_from_body, double time_s) const;
-
   std::shared_ptr<const RenderWorld> world_;
   RenderSettings settings_;
+  LightMeter meter_;
   std::vector<CameraOptics> optics_;
 };
 

@@ -16,7 +16,7 @@ struct SensorOptions {
   double shortest_exposure_s = 0.0005;
   double longest_exposure_s = 0.012;
   double highest_gain = 12.0;
-  double target_grey = 0.33;    ///< mean grey value that the automatic exposure seeks, of 1
+  double target_grey = 0.36;    ///< mean grey value that the automatic exposure seeks, of 1
   double exposure_lag_s = 0.4;  ///< time constant with which it follows the scene
   double gain_flicker = 0.0;    ///< RMS relative error of the gain from image to image
   double readout_s = 0.0;       ///< rolling shutter: time from the first row to the last; 0 is global

@@ -102,7 +102,7 @@ void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics
     const double brightness = flake.brightness * options.reflectance / std::numbers::pi * arriving * back;
     const Vec3 before = motion.start_from_middle * point_C, after = motion.end_from_middle * point_C;
     const Vec2 streak = focal_px * (after.head<2>() / after.z() - before.head<2>() / before.z());
-    addDisc(radiance, {*pixel, streak, std::max(0.4, std::hypot(radius_px, blur_px)),
+    addDisc(radiance, {*pixel, streak, std::max(0.6, std::hypot(radius_px, blur_px)),
                        brightness * std::numbers::pi * radius_px * radius_px});
   };
 

@@ -9,7 +9,7 @@ std::vector<Lamp> twoVideoLamps() {
   for (const double side : {1.0, -1.0}) {
     Lamp lamp;
     lamp.position_B = Vec3(0.10, 0.42 * side, 0.22);
-    lamp.direction_B = Vec3(1.0, 0.12 * side, -0.10).normalized();
+    lamp.direction_B = Vec3(1.0, 0.16 * side, 0.05).normalized();
     lamp.spot_intensity = 5.0;
     lamp.spot_half_angle_rad = 0.20;
     lamp.flood_intensity = 5.0;
@@ -32,8 +32,8 @@ RenderSettings RenderSettings::field() {
   settings.water.attenuation_per_m = 0.38;
   settings.water.scattering_share = 0.75;
   settings.water.patchiness = 0.4;
-  settings.snow.flakes_per_m3 = 350.0;
-  settings.snow.median_radius_m = 0.0003;
+  settings.snow.flakes_per_m3 = 600.0;
+  settings.snow.median_radius_m = 0.00018;
   settings.second_diver = SecondDiver{};
   settings.sensor.longest_exposure_s = 0.022;
   settings.sensor.gain_flicker = 0.015;

@@ -10,6 +10,9 @@
 
 namespace lodeline {
 
+/// No lamp reaches farther than this and back, m.
+inline constexpr float kSight_m = 60.0f;
+
 /// The place of a dive: what sonar and cameras see, and what it is made of. World frame W, m.
 struct RenderWorld {
   RenderWorld(TriangleMesh mesh, uint64_t seed) : scene(std::move(mesh)), texture(seed) {}

@@ -34,7 +34,7 @@ class SolidTexture {
   };
   struct Level {
     int size = 0;
-    std::vector<Voxel> voxels;
+    std::vector<Voxel> voxels;  ///< x fastest; every row repeats its first voxel at its end
   };
 
   void addCoarserLevel();

@@ -7,112 +7,120 @@
 namespace lodeline {
 namespace {
 
-// Rock seen near, at arm's length and across the room; incommensurate, so that no repetition lines up.
-constexpr float kTile_m[3] = {0.43f, 2.1f, 11.3f};
-constexpr float kTileContrast[3] = {0.62f, 0.55f, 0.40f};
-constexpr float kTileRelief[3] = {0.75f, 0.55f, 0.0f};
+// Rock seen near and across the room; the sizes are incommensurate, so that no repetition lines up. What is
+// larger than these is in the vertices' materials.
+constexpr int kTiles = 2;
+constexpr float kTile_m[kTiles] = {0.43f, 2.1f};
+constexpr float kTileContrast[kTiles] = {0.62f, 0.60f};
+constexpr float kTileRelief[kTiles] = {0.75f, 0.55f};
 
 // Light that has met more than one wall, as a share of the direct light that reaches a place: it comes from
 // all around and knows no shadows. For walls of albedo 0.35 that fill half the view, 0.35 * 0.5 * 0.35 =
 // 0.06.
 constexpr float kIndirectShare = 0.06f;
 
-/// Each tile size is turned differently, so that their lattices do not align.
-Vec3f turned(const Vec3f& p, int tile) {
-  switch (tile) {
-    case 0:
-      return p;
-    case 1:
-      return {0.80f * p.x() + 0.60f * p.y(), -0.48f * p.x() + 0.64f * p.y() + 0.60f * p.z(),
-              0.36f * p.x() - 0.48f * p.y() + 0.80f * p.z()};
-    default:
-      return {0.60f * p.y() + 0.80f * p.z(), p.x(), 0.80f * p.y() - 0.60f * p.z()};
-  }
+/// The larger tile is turned against the smaller one, so that their lattices do not align.
+Vec3f turned(const Vec3f& p) {
+  return {0.80f * p.x() + 0.60f * p.y(), -0.48f * p.x() + 0.64f * p.y() + 0.60f * p.z(),
+          0.36f * p.x() - 0.48f * p.y() + 0.80f * p.z()};
 }
 
-Vec3f turnedBack(const Vec3f& p, int tile) {
-  switch (tile) {
-    case 0:
-      return p;
-    case 1:
-      return {0.80f * p.x() - 0.48f * p.y() + 0.36f * p.z(), 0.60f * p.x() + 0.64f * p.y() - 0.48f * p.z(),
-              0.60f * p.y() + 0.80f * p.z()};
-    default:
-      return {p.y(), 0.60f * p.x() + 0.80f * p.z(), 0.80f * p.x() - 0.60f * p.z()};
-  }
+Vec3f turnedBack(const Vec3f& p) {
+  return {0.80f * p.x() - 0.48f * p.y() + 0.36f * p.z(), 0.60f * p.x() + 0.64f * p.y() - 0.48f * p.z(),
+          0.60f * p.y() + 0.80f * p.z()};
 }
 
 }  // namespace
 
-SurfaceShader::Lit SurfaceShader::surface(const RayPacket& rays, const HitPacket& hits, int i,
-                                          float pixel_angle_rad, bool detail) const {
+void SurfaceShader::describe(const RayPacket& rays, const HitPacket& hits, int i, float pixel_angle_rad,
+                             bool detail, Lit& lit) const {
   const SurfacePoint base = scene_.surfaceAt(hits, i);
   const Vec3f view = rays.directionOf(i);
-  Lit lit;
-  lit.point = rays.originOf(i) + hits.range_m[i] * view;
-  lit.normal = base.normal;
-  lit.reflectance = base.reflectance;
-  lit.gloss = base.gloss;
+  const Vec3f point = rays.originOf(i) + hits.range_m[i] * view;
   const float facing = -base.normal.dot(view);
-  if (facing < 0.0f) lit.normal = -lit.normal;
-  if (!detail) return lit;
-
-  // At grazing incidence a pixel covers a long strip; the geometric mean of its axes is a fair width.
-  const float footprint = hits.range_m[i] * pixel_angle_rad / std::sqrt(std::max(0.08f, std::abs(facing)));
-  float shade = 0.0f;
-  Vec3f slope = Vec3f::Zero();
-  for (int tile = 0; tile < 3; ++tile) {
-    const TextureSample sample = texture_.sample(turned(lit.point, tile), kTile_m[tile], footprint);
-    shade += kTileContrast[tile] * sample.reflectance;
-    if (kTileRelief[tile] > 0.0f) slope += kTileRelief[tile] * turnedBack(sample.slope, tile);
+  Vec3f normal = facing < 0.0f ? Vec3f(-base.normal) : base.normal;
+  float reflectance = base.reflectance;
+  if (detail) {
+    // At grazing incidence a pixel covers a long strip; the geometric mean of its axes is a fair width.
+    const float footprint = hits.range_m[i] * pixel_angle_rad / std::sqrt(std::max(0.08f, std::abs(facing)));
+    const TextureSample fine = texture_.sample(point, kTile_m[0], footprint);
+    const TextureSample coarse = texture_.sample(turned(point), kTile_m[1], footprint);
+    const float shade = kTileContrast[0] * fine.reflectance + kTileContrast[1] * coarse.reflectance;
+    reflectance *= std::clamp(1.0f + base.contrast * shade, 0.12f, 2.4f);
+    // A relief h over the surface tilts its normal by minus the tangential part of h's gradient (J. Blinn,
+    // "Simulation of wrinkled surfaces", SIGGRAPH 1978).
+    const Vec3f slope =
+        base.contrast * (kTileRelief[0] * fine.slope + kTileRelief[1] * turnedBack(coarse.slope));
+    normal = (normal - (slope - slope.dot(normal) * normal)).normalized();
   }
-  lit.reflectance *= std::clamp(1.0f + base.contrast * shade, 0.12f, 2.4f);
-  // A relief h over the surface tilts its normal by minus the tangential part of h's gradient (J. Blinn,
-  // "Simulation of wrinkled surfaces", SIGGRAPH 1978).
-  slope *= base.contrast;
-  lit.normal = (lit.normal - (slope - slope.dot(lit.normal) * lit.normal)).normalized();
-  return lit;
+  for (int axis = 0; axis < 3; ++axis) {
+    lit.point[axis][i] = point[axis];
+    lit.normal[axis][i] = normal[axis];
+  }
+  lit.reflectance[i] = reflectance;
+  lit.gloss[i] = base.gloss;
+}
+
+void SurfaceShader::addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp, float attenuation,
+                            float* radiance) const {
+  float towards[3][kRayPacketSize], distance[kRayPacketSize], direct[kRayPacketSize];
+  for (int i = 0; i < kRayPacketSize; ++i) {
+    const float x = lamp.position().x() - lit.point[0][i];
+    const float y = lamp.position().y() - lit.point[1][i];
+    const float z = lamp.position().z() - lit.point[2][i];
+    distance[i] = std::sqrt(std::max(0.0025f, x * x + y * y + z * z));
+    const float per_distance = 1.0f / distance[i];
+    towards[0][i] = x * per_distance;
+    towards[1][i] = y * per_distance;
+    towards[2][i] = z * per_distance;
+    const float arriving = lamp.irradiance(Vec3f(towards[0][i], towards[1][i], towards[2][i]), distance[i]) *
+                           fastExp(-attenuation * distance[i]);
+    const float cosine = std::max(0.0f, lit.normal[0][i] * towards[0][i] + lit.normal[1][i] * towards[1][i] +
+                                            lit.normal[2][i] * towards[2][i]);
+    // Blinn-Phong's broad highlight (SIGGRAPH 1977), exponent 32.
+    const float hx = towards[0][i] - rays.direction[0][i];
+    const float hy = towards[1][i] - rays.direction[1][i];
+    const float hz = towards[2][i] - rays.direction[2][i];
+    const float aligned = lit.normal[0][i] * hx + lit.normal[1][i] * hy + lit.normal[2][i] * hz;
+    const float a2 = aligned * aligned / std::max(1e-6f, hx * hx + hy * hy + hz * hz);
+    const float a4 = a2 * a2, a8 = a4 * a4, a16 = a8 * a8;
+    radiance[i] += kIndirectShare * lit.reflectance[i] * arriving;
+    direct[i] = arriving * (lit.reflectance[i] * cosine + 0.35f * lit.gloss[i] * a16 * a16);
+  }
+  RayPacket shadow;
+  for (int i = 0; i < kRayPacketSize; ++i) {
+    // A share that nobody would see needs no shadow.
+    if (direct[i] <= 0.02f * radiance[i]) {
+      shadow.disable(i);
+      continue;
+    }
+    // Shadow rays start a little off the surface, back towards camera and lamp.
+    const Vec3f to_lamp(towards[0][i], towards[1][i], towards[2][i]);
+    const Vec3f point(lit.point[0][i], lit.point[1][i], lit.point[2][i]);
+    shadow.set(i, point + 0.004f * (to_lamp - rays.directionOf(i)), to_lamp, distance[i] - 0.01f);
+  }
+  const uint32_t shadowed = scene_.occluded(shadow);
+  for (int i = 0; i < kRayPacketSize; ++i) {
+    if ((shadowed >> i & 1) == 0) radiance[i] += direct[i];
+  }
 }
 
 void SurfaceShader::shade(const RayPacket& rays, const HitPacket& hits, const LightField& light,
                           float pixel_angle_rad, bool detail, float* radiance) const {
-  Lit lit[kRayPacketSize];
+  Lit lit = {};
   for (int i = 0; i < kRayPacketSize; ++i) {
+    if (std::isfinite(hits.range_m[i])) describe(rays, hits, i, pixel_angle_rad, detail, lit);
     radiance[i] = 0.0f;
-    if (!std::isfinite(hits.range_m[i])) continue;
-    lit[i] = surface(rays, hits, i, pixel_angle_rad, detail);
-    radiance[i] = lit[i].reflectance * light.daylight.onSurface(lit[i].point, lit[i].normal);
   }
-  const float attenuation = light.water.meanAttenuation();
+  if (!light.daylight.none()) {
+    for (int i = 0; i < kRayPacketSize; ++i) {
+      const Vec3f point(lit.point[0][i], lit.point[1][i], lit.point[2][i]);
+      const Vec3f normal(lit.normal[0][i], lit.normal[1][i], lit.normal[2][i]);
+      radiance[i] = lit.reflectance[i] * light.daylight.onSurface(point, normal);
+    }
+  }
   for (const PlacedLamp& lamp : light.lamps) {
-    RayPacket shadow;
-    float direct[kRayPacketSize];
-    for (int i = 0; i < kRayPacketSize; ++i) {
-      shadow.disable(i);
-      if (!std::isfinite(hits.range_m[i])) continue;
-      const Vec3f to_lamp = lamp.position() - lit[i].point;
-      const float distance = std::max(0.05f, to_lamp.norm());
-      const Vec3f towards = to_lamp / distance;
-      const float arriving = lamp.irradiance(towards, distance) * fastExp(-attenuation * distance);
-      radiance[i] += kIndirectShare * lit[i].reflectance * arriving;
-      const float cosine = lit[i].normal.dot(towards);
-      if (cosine <= 0.0f) continue;
-      direct[i] = lit[i].reflectance * arriving * cosine;
-      if (lit[i].gloss > 0.0f) {
-        // Blinn-Phong's broad highlight (SIGGRAPH 1977), exponent 32.
-        const Vec3f half = (towards - rays.directionOf(i)).normalized();
-        const float aligned = std::max(0.0f, lit[i].normal.dot(half));
-        const float a2 = aligned * aligned, a4 = a2 * a2, a8 = a4 * a4, a16 = a8 * a8;
-        direct[i] += 0.35f * lit[i].gloss * arriving * a16 * a16;
-      }
-      // Shadow rays start a little off the surface, back towards camera and lamp.
-      const Vec3f start = lit[i].point - 0.004f * rays.directionOf(i) + 0.004f * towards;
-      shadow.set(i, start, towards, distance - 0.01f);
-    }
-    const uint32_t shadowed = scene_.occluded(shadow);
-    for (int i = 0; i < kRayPacketSize; ++i) {
-      if (shadow.active[i] != 0 && (shadowed >> i & 1) == 0) radiance[i] += direct[i];
-    }
+    addLamp(rays, lit, lamp, light.water.meanAttenuation(), radiance);
   }
   constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
   for (int i = 0; i < kRayPacketSize; ++i) radiance[i] *= kPerPi;

@@ -17,14 +17,19 @@ class SurfaceShader {
              bool detail, float* radiance) const;
 
  private:
+  /// The surfaces that a packet met, lane by lane so that the compiler can work on several at once. Lanes
+  /// without a hit hold a black surface.
   struct Lit {
-    Vec3f point;
-    Vec3f normal;  ///< with the small relief, facing the camera
-    float reflectance = 0.0f;
-    float gloss = 0.0f;
+    float point[3][kRayPacketSize];
+    float normal[3][kRayPacketSize];  ///< with the small relief, facing the camera
+    float reflectance[kRayPacketSize];
+    float gloss[kRayPacketSize];
   };
 
-  Lit surface(const RayPacket& rays, const HitPacket& hits, int i, float pixel_angle_rad, bool detail) const;
+  void describe(const RayPacket& rays, const HitPacket& hits, int i, float pixel_angle_rad, bool detail,
+                Lit& lit) const;
+  void addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp, float attenuation,
+               float* radiance) const;
 
   const TracedScene& scene_;
   const SolidTexture& texture_;
