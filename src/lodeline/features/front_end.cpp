@@ -89,7 +89,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
 }
 
 ImagePyramid FrontEnd::pyramid(const cv::Mat& image) const {
-  constexpr int kUsualSidePx = 3, kFaintSidePx = 5;
+  constexpr int kUsualSidePx = 3, kFaintSidePx = 7;
   return ImagePyramid(image, options_.pyramid_levels, faint_ ? kFaintSidePx : kUsualSidePx);
 }
 

@@ -27,7 +27,8 @@ double detailGrey(const cv::Mat& image) {
 }  // namespace
 
 ImageQuality assess(const ImagePyramid& image) {
-  constexpr double kDarkGrey = 12.0, kSaturatedShare = 0.3, kTexturelessGrey = 0.6, kBlurredShare = 0.16;
+  constexpr double kDarkGrey = 12.0, kSaturatedShare = 0.3, kTexturelessGrey = 0.35, kFaintGrey = 1.5,
+                   kBlurredShare = 0.265;
   constexpr int kSaturatedGrey = 250;
   ImageQuality quality;
   if (image.empty()) return quality;
@@ -59,6 +60,8 @@ ImageQuality assess(const ImagePyramid& image) {
     quality.word = "overexposed";
   } else if (quality.texture_grey < kTexturelessGrey) {
     quality.word = "textureless";
+  } else if (quality.texture_grey < kFaintGrey) {
+    quality.word = "faint";
   } else if (quality.sharpness < kBlurredShare) {
     quality.word = "blurred";
   }

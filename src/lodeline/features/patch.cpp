@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kMaxIterations = 10;
 constexpr float kConvergedStepPx = 0.01F;
+/// Change of the linear part; 0.1 px at the rim of the patch.
+constexpr float kConvergedBend = 0.1F / PatchPattern::kReach;
 /// A coarse level only has to bring the patch within reach of the next finer one.
 constexpr float kCoarseStepPx = 0.05F;
 /// A patch this weak, as the norm of its detrended values, is noise.
@@ -129,7 +131,8 @@ bool PatchTemplate::deform(const cv::Mat& image, PatchWarp& warp, float& correla
     const Eigen::Vector2f move = warp.linear * Eigen::Vector2f(step[0], step[1]);
     warp.position -= move;
     if ((warp.position - start).squaredNorm() > PatchPattern::kReach * PatchPattern::kReach) return false;
-    if (move.squaredNorm() < kConvergedStepPx * kConvergedStepPx) break;
+    const float bend = std::max({std::abs(step[2]), std::abs(step[3]), std::abs(step[4]), std::abs(step[5])});
+    if (move.squaredNorm() < kConvergedStepPx * kConvergedStepPx && bend < kConvergedBend) break;
   }
   const float determinant = warp.linear.determinant();
   return determinant > kMinDeterminant && determinant < 1.0F / kMinDeterminant;

@@ -1,0 +1,252 @@
+#include "lodeline/features/front_end.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "lodeline/base/error.h"
+#include "lodeline/features/draw_tracks.h"
+#include "lodeline/features/test_sequence.h"
+
+namespace lodeline {
+namespace {
+
+constexpr int kFrames = 14;
+
+/// A sequence with its pictures, rendered once for all tests.
+struct Recording {
+  Recording(const TestLight& light, double speed_m_per_s) : sequence(light, speed_m_per_s) {
+    for (int i = 0; i < kFrames; ++i) images.push_back(sequence.images(i));
+  }
+  Quat previousFromCurrent(int frame) const {
+    return frame == 0 ? Quat::Identity() : sequence.previousFromCurrent(frame);
+  }
+  TestSequence sequence;
+  std::vector<std::vector<cv::Mat>> images;
+};
+
+const Recording& daylight() {
+  static const Recording kRecording(TestLight::daylight(), 0.3);
+  return kRecording;
+}
+
+std::vector<FrameTracks> track(const Recording& recording, FrontEnd& front_end) {
+  std::vector<FrameTracks> result;
+  for (int i = 0; i < kFrames; ++i) {
+    result.push_back(front_end.process(TestSequence::time(i), recording.images[static_cast<size_t>(i)],
+                                       recording.previousFromCurrent(i)));
+  }
+  return result;
+}
+
+std::map<TrackId, Vec2> pixels(const FrameTracks& frame, int camera) {
+  std::map<TrackId, Vec2> result;
+  for (const Observation& observation : frame.observations) {
+    if (observation.camera == camera) result[observation.track] = observation.pixel;
+  }
+  return result;
+}
+
+struct Accuracy {
+  int tracks = 0;    ///< at the start
+  int survived = 0;  ///< ten frames later
+  Vec2 bias = Vec2::Zero();
+  double rms_px = 0.0;  ///< along each axis
+};
+
+/// How far the tracks of one frame have slipped ten frames later, averaged over all starts.
+Accuracy overTenFrames(const Recording& recording, const std::vector<FrameTracks>& frames) {
+  constexpr int kLater = 10;
+  Accuracy result;
+  double squared = 0.0;
+  const int starts = static_cast<int>(frames.size()) - kLater;
+  for (int i = 0; i < starts; ++i) {
+    const auto first = pixels(frames[static_cast<size_t>(i)], 0);
+    const auto last = pixels(frames[static_cast<size_t>(i + kLater)], 0);
+    for (const auto& [id, pixel] : first) {
+      ++result.tracks;
+      if (!last.contains(id)) continue;
+      ++result.survived;
+      const Vec2 slip = last.at(id) - *recording.sequence.truePixel(i, 0, pixel, i + kLater, 0);
+      result.bias += slip;
+      squared += slip.squaredNorm();
+    }
+  }
+  result.bias /= std::max(1, result.survived);
+  result.rms_px = std::sqrt(squared / std::max(1, 2 * result.survived));
+  result.tracks /= starts;
+  result.survived /= starts;
+  return result;
+}
+
+Accuracy accuracyIn(const TestLight& light, double speed_m_per_s) {
+  const Recording recording(light, speed_m_per_s);
+  FrontEnd front_end(recording.sequence.rig(), {});
+  return overTenFrames(recording, track(recording, front_end));
+}
+
+TEST(FrontEnd, FollowsAWallInDaylight) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  const Accuracy accuracy = overTenFrames(daylight(), track(daylight(), front_end));
+  EXPECT_GE(accuracy.survived, 210);
+  EXPECT_LT(accuracy.bias.norm(), 0.01);
+  EXPECT_LT(accuracy.rms_px, 0.06);
+  EXPECT_EQ(front_end.statistics().image.word, "good");
+}
+
+TEST(FrontEnd, IsNotDraggedAlongByTheLampInADimPicture) {
+  const Accuracy accuracy = accuracyIn(TestLight::dimLamp(), 0.3);
+  EXPECT_GE(accuracy.survived, 150);
+  EXPECT_LT(accuracy.bias.norm(), 0.05);
+  EXPECT_LT(accuracy.rms_px, 0.45);
+}
+
+TEST(FrontEnd, IsNotDraggedAlongByTheLampInMilkyWater) {
+  const Accuracy accuracy = accuracyIn(TestLight::hazyLamp(), 0.3);
+  EXPECT_GE(accuracy.survived, 130);
+  EXPECT_LT(accuracy.bias.norm(), 0.1);
+  EXPECT_LT(accuracy.rms_px, 0.5);
+}
+
+TEST(FrontEnd, StandsStillWithTheCamera) {
+  const Accuracy accuracy = accuracyIn(TestLight::daylight(), 0.0);
+  EXPECT_GE(accuracy.survived, 245);
+  EXPECT_LT(accuracy.bias.norm(), 0.005);
+  EXPECT_LT(accuracy.rms_px, 0.05);
+}
+
+TEST(FrontEnd, MatchesAcrossTheStereoPair) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  const std::vector<FrameTracks> frames = track(daylight(), front_end);
+  for (int i = 0; i < kFrames; i += 6) {
+    const FrameTracks& frame = frames[static_cast<size_t>(i)];
+    const auto left = pixels(frame, 0), right = pixels(frame, 1);
+    EXPECT_GE(right.size(), 190u);
+    std::vector<double> errors;
+    for (const auto& [id, pixel] : right) {
+      ASSERT_TRUE(left.contains(id));
+      errors.push_back((pixel - *daylight().sequence.truePixel(i, 0, left.at(id), i, 1)).norm());
+    }
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.06);
+    EXPECT_LT(errors[errors.size() * 95 / 100], 0.2);
+  }
+}
+
+TEST(FrontEnd, KeepsItsPromiseOnTheOutput) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  std::set<TrackId> ended;
+  std::set<TrackId> before;
+  for (const FrameTracks& frame : track(daylight(), front_end)) {
+    std::set<TrackId> now;
+    for (size_t i = 0; i < frame.observations.size(); ++i) {
+      const Observation& o = frame.observations[i];
+      EXPECT_NEAR(o.bearing_C.norm(), 1.0, 1e-12);
+      const auto& camera = front_end.cameras()[static_cast<size_t>(o.camera)];
+      EXPECT_LT((*camera->project(o.bearing_C) - o.pixel).norm(), 1e-6);
+      EXPECT_FALSE(ended.contains(o.track)) << "identifier used again";
+      now.insert(o.track);
+      if (i == 0) continue;
+      const Observation& last = frame.observations[i - 1];
+      EXPECT_LT(std::make_pair(last.track, last.camera), std::make_pair(o.track, o.camera));
+    }
+    std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
+                        std::inserter(ended, ended.end()));
+    before = now;
+  }
+}
+
+TEST(FrontEnd, RepeatsItselfExactly) {
+  FrontEnd first(daylight().sequence.rig(), {}), second(daylight().sequence.rig(), {});
+  const std::vector<FrameTracks> a = track(daylight(), first), b = track(daylight(), second);
+  for (size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].observations.size(), b[i].observations.size());
+    for (size_t j = 0; j < a[i].observations.size(); ++j) {
+      EXPECT_EQ(a[i].observations[j].track, b[i].observations[j].track);
+      EXPECT_EQ(a[i].observations[j].pixel, b[i].observations[j].pixel);
+    }
+  }
+}
+
+TEST(FrontEnd, GivesMonocularObservationsWithoutTheRightImage) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  Recording recording = daylight();
+  recording.images[5][1] = cv::Mat();
+  const std::vector<FrameTracks> frames = track(recording, front_end);
+  EXPECT_GT(pixels(frames[5], 0).size(), 230u);
+  EXPECT_TRUE(pixels(frames[5], 1).empty());
+  EXPECT_GT(pixels(frames[6], 1).size(), 190u);
+}
+
+TEST(FrontEnd, WorksWithOneCamera) {
+  Rig rig = daylight().sequence.rig();
+  rig.cameras.resize(1);
+  Recording recording = daylight();
+  for (auto& images : recording.images) images.resize(1);
+  FrontEnd front_end(rig, {});
+  EXPECT_GE(overTenFrames(recording, track(recording, front_end)).survived, 210);
+}
+
+TEST(FrontEnd, FindsTracksAgainAfterMissingImages) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  Recording recording = daylight();
+  for (const size_t i : {6u, 7u, 8u}) recording.images[i][0] = cv::Mat();
+  const std::vector<FrameTracks> frames = track(recording, front_end);
+  EXPECT_TRUE(frames[7].observations.empty());
+  const auto before = pixels(frames[5], 0), after = pixels(frames[9], 0);
+  const auto again = std::count_if(before.begin(), before.end(),
+                                   [&](const auto& entry) { return after.contains(entry.first); });
+  EXPECT_GE(again, 180);
+}
+
+TEST(FrontEnd, StartsAnewAfterALongSilence) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  const auto first = front_end.process(Time::fromSeconds(10.0), daylight().images[0], Quat::Identity());
+  const auto later = front_end.process(Time::fromSeconds(12.0), daylight().images[0], Quat::Identity());
+  EXPECT_GT(later.observations.front().track, first.observations.back().track);
+}
+
+TEST(FrontEnd, LosesEverythingInDarknessAndRecovers) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  Recording recording = daylight();
+  for (cv::Mat& image : recording.images[4]) image = cv::Mat(image.size(), CV_8U, cv::Scalar(0));
+  const std::vector<FrameTracks> frames = track(recording, front_end);
+  EXPECT_TRUE(frames[4].observations.empty());
+  EXPECT_GT(pixels(frames[5], 0).size(), 230u);
+}
+
+TEST(FrontEnd, NamesCameraAndSizesOfAForeignImage) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  const cv::Mat good = daylight().images[0][0], half(240, 376, CV_8U), colour(480, 752, CV_8UC3);
+  const auto process = [&](const std::vector<cv::Mat>& images) {
+    return [&front_end, images] { front_end.process(Time(), images, Quat::Identity()); };
+  };
+  using testing::AllOf;
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_THAT(
+      process({good, half}),
+      ThrowsMessage<InputError>(AllOf(HasSubstr("'cam1'"), HasSubstr("376 x 240"), HasSubstr("752 x 480"))));
+  EXPECT_THAT(process({colour, good}), ThrowsMessage<InputError>(HasSubstr("'cam0'")));
+  EXPECT_THAT(process({good}), ThrowsMessage<InputError>(HasSubstr("1 images for 2 cameras")));
+  EXPECT_THROW(FrontEnd(Rig(), {}), InputError);
+}
+
+TEST(DrawTracks, PaintsAllCamerasSideBySide) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  front_end.process(Time(), daylight().images[0], Quat::Identity());
+  const cv::Mat picture = drawTracks(front_end, daylight().images[0]);
+  ASSERT_EQ(picture.type(), CV_8UC3);
+  EXPECT_EQ(picture.cols, 2 * 752);
+  EXPECT_GT(picture.rows, 480);
+  const Eigen::Vector2f position = front_end.tracks().front().warp.position;
+  const auto dot = picture.at<cv::Vec3b>(static_cast<int>(position.y()), static_cast<int>(position.x()));
+  EXPECT_GT(std::max({dot[0], dot[1], dot[2]}) - std::min({dot[0], dot[1], dot[2]}), 100);
+  EXPECT_EQ(drawTracks(front_end, {cv::Mat(), cv::Mat()}).size(), picture.size());
+}
+
+}  // namespace
+}  // namespace lodeline
