@@ -14,16 +14,17 @@ float uniform(Random& random, double low, double high) {
   return static_cast<float>(random.uniform(low, high));
 }
 
-/// Least distance of a point from the centreline near ring i.
-float distanceToLine(const CaveWalls& walls, int i, const Vec3f& point, float reach_m) {
-  const float spacing = std::max(0.01f, (walls.rings[1].center - walls.rings[0].center).norm());
-  const int window = static_cast<int>(reach_m / spacing) + 1;
-  float best = 1e9f;
+/// Whether a thing of some radius at a point near ring i stays clear of the diver's corridor.
+bool isClear(const CaveWalls& walls, int i, const Vec3f& point, float margin_m, float radius_m) {
+  const float spacing_m = std::max(0.01f, (walls.rings[1].center - walls.rings[0].center).norm());
+  const int window = static_cast<int>((radius_m + 1.5f) / spacing_m) + 1;
   const int last = static_cast<int>(walls.rings.size()) - 1;
   for (int k = std::max(0, i - window); k <= std::min(last, i + window); ++k) {
-    best = std::min(best, (walls.rings[k].center - point).norm());
+    const float along = walls.rings[k].forward.dot(point - walls.rings[k].center);
+    if (std::abs(along) > radius_m + spacing_m) continue;
+    if (!walls.rings[k].clearOfCorridor(point, margin_m + radius_m)) return false;
   }
-  return best;
+  return true;
 }
 
 /// Vertex of ring i at an angle (rad from right to up).
@@ -97,7 +98,7 @@ void scatterBoulders(TriangleMesh& out, const CaveWalls& walls, const CaveStyle&
     const float radius = std::clamp(size, 0.08f, 0.35f * walls.rings[i].half_width_m + 0.05f);
     if (heap < -0.1f && radius > 0.15f) continue;
     const Vec3f position = wallAt(walls, i, angle) + 0.15f * radius * Vec3f::UnitZ();
-    if (distanceToLine(walls, i, position, clearance_m + 2.0f) < clearance_m + 1.3f * radius) continue;
+    if (!isClear(walls, i, position, clearance_m, 1.3f * radius)) continue;
     addBoulder(out, position, radius, style, random);
   }
 }
@@ -116,17 +117,15 @@ void hangStalactites(TriangleMesh& out, const CaveWalls& walls, const CaveStyle&
     const Vec3f root = wallAt(walls, i, angle);
     const Vec3f foot = wallAt(walls, i, -angle);
     const float gap = root.z() - foot.z();
-    const auto isClear = [&](const Vec3f& p) {
-      return distanceToLine(walls, i, p, clearance_m + 2.0f) > clearance_m + radius;
-    };
-    const bool column = length > 0.7f * gap && isClear(0.5f * (root + foot)) && isClear(foot);
+    const auto clear = [&](const Vec3f& p) { return isClear(walls, i, p, clearance_m, 1.5f * radius); };
+    const bool column = length > 0.7f * gap && clear(0.5f * (root + foot)) && clear(foot);
     const float drop = column ? 0.75f * gap : std::min(length, 0.45f * gap);
     const Vec3f tip = root - drop * Vec3f::UnitZ();
-    if (!isClear(tip) || !isClear(0.5f * (root + tip))) continue;
+    if (!clear(tip) || !clear(0.5f * (root + tip))) continue;
     addSpike(out, root, -Vec3f::UnitZ(), drop, radius, 0.8f, 0.9f, style, random.next());
     const Vec3f under(root.x(), root.y(), foot.z());
     const float height = column ? 0.75f * gap : drop * uniform(random, 0.1, 0.6);
-    if (random.chance(column ? 1.0 : 0.4) && isClear(under + height * Vec3f::UnitZ())) {
+    if (random.chance(column ? 1.0 : 0.4) && clear(under + height * Vec3f::UnitZ())) {
       addSpike(out, under, Vec3f::UnitZ(), height, 1.5f * radius + 0.02f, 0.5f, 0.0f, style, random.next());
     }
   }

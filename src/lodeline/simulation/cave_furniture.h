@@ -5,7 +5,7 @@
 namespace lodeline {
 
 /// Breakdown blocks on the floor and, where the style has them, stalactites, stalagmites and columns. None
-/// comes within `clearance_m` of the passage's centreline. Normals included.
+/// comes within `clearance_m` of the diver's corridor. Normals included.
 TriangleMesh makeCaveFurniture(const CaveWalls& walls, const CaveStyle& style, uint64_t seed,
                                double clearance_m);
 

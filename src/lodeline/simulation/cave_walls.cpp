@@ -12,7 +12,8 @@ namespace lodeline {
 namespace {
 
 constexpr float kFinestCell_m = 0.04f;
-constexpr float kEndCap_m = 3.0f;  ///< length over which the tube closes at either end
+constexpr float kWidening_m = 0.3f;  ///< room for the relief between wall and corridor
+constexpr float kEndCap_m = 3.0f;    ///< length over which the tube closes at either end
 
 /// Rings every `cell_m`, each with a frame that stays upright where the passage is not steep.
 std::vector<WallRing> makeRings(const Centerline& centerline, double cell_m) {
@@ -33,10 +34,36 @@ std::vector<WallRing> makeRings(const Centerline& centerline, double cell_m) {
     ring.up = ring.right.cross(ring.forward);
     const float to_end = static_cast<float>(std::min(s - begin, end - s));
     const float taper = std::sqrt(std::min(1.0f, to_end / kEndCap_m + 1e-4f));
+    ring.taper = taper;
     ring.half_width_m = 0.5f * static_cast<float>(station.width_m) * taper;
     ring.half_height_m = 0.5f * static_cast<float>(station.height_m) * taper;
   }
   return rings;
+}
+
+float corridorHalfWidth(const WallRing& ring) {
+  return static_cast<float>(kCorridorShareOfHalfWidth) * ring.half_width_m +
+         static_cast<float>(kCorridorSway_m);
+}
+
+float corridorHalfHeight(const WallRing& ring) {
+  return static_cast<float>(kCorridorShareOfHalfHeight) * ring.half_height_m +
+         static_cast<float>(kCorridorSway_m);
+}
+
+/// Radius of a superellipse of exponent 4 about the corridor with its clearance, wide enough to hold the
+/// corners of the corridor itself.
+float clearRadius(const WallRing& ring, float cosine, float sine, float clearance_m) {
+  const float x = cosine / (corridorHalfWidth(ring) + clearance_m);
+  const float y = sine / (corridorHalfHeight(ring) + clearance_m);
+  return 1.06f / std::pow(x * x * x * x + y * y * y * y, 0.25f);
+}
+
+/// `radius` where it lies well outside of `closest`, otherwise squeezed softly so that it stays outside.
+float keptOutside(float closest, float radius) {
+  constexpr float kSoft_m = 0.25f;
+  const float gap = radius - closest;
+  return closest + (gap > kSoft_m ? gap : kSoft_m * std::exp(gap / kSoft_m - 1.0f));
 }
 
 double meanPerimeter(const Centerline& centerline) {
@@ -75,13 +102,14 @@ float displacement(const Vec3f& q, float radius_m, const CaveStyle& style, uint3
 }
 
 /// Height (world z, m) of the silt at a place of the ring.
-float sedimentLevel(const WallRing& ring, const Vec3f& q, const CaveStyle& style, uint32_t seed) {
+float sedimentLevel(const WallRing& ring, const Vec3f& q, const CaveStyle& style, float clearance_m,
+                    uint32_t seed) {
   const float dunes = fractalNoise(Vec3f(q.x(), q.y(), 0.0f) / 4.0f, 2, seed + 20);
   const float ripples = gradientNoise(Vec3f(q.x() / 0.35f, q.y() / 0.35f, 0.0f), seed + 21);
   // Where the fill dwindles the floor is bare rock.
   const float fill = style.sediment_fill + 0.22f * gradientNoise(ring.center / 9.0f, seed + 22);
-  return ring.center.z() + ring.half_height_m * (-1.0f + 2.0f * std::clamp(fill, -0.2f, 0.36f)) +
-         0.22f * dunes + 0.012f * ripples;
+  const float level = ring.half_height_m * (-1.0f + 2.0f * fill) + 0.22f * dunes;
+  return ring.center.z() + std::min(level, -corridorHalfHeight(ring) - clearance_m) + 0.012f * ripples;
 }
 
 Material rockMaterial(const Vec3f& q, const CaveStyle& style, uint32_t seed) {
@@ -104,7 +132,7 @@ Material sedimentMaterial(const Vec3f& q, const CaveStyle& style, uint32_t seed)
   return Material::of(style.sediment_albedo * (1.0f + 0.25f * patches), lerp(0.55f, 0.10f, bare));
 }
 
-void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, uint32_t seed) {
+void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, float clearance_m, uint32_t seed) {
   const WallRing& ring = walls.rings[i];
   const float angle = 2.0f * std::numbers::pi_v<float> * j / walls.ring_size;
   const float cosine = std::cos(angle), sine = std::sin(angle);
@@ -116,14 +144,15 @@ void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, uint32_
   const Vec3f base = ring.center + radius * outward;
   // Near the closed ends the section is too small for the full relief.
   const float relief = std::min(1.0f, radius);
-  const float moved = radius + relief * displacement(base, radius, style, seed);
-  const float outer = std::max(moved, 0.6f * radius);
+  const float moved = radius + relief * (kWidening_m + displacement(base, radius, style, seed));
+  const float closest = std::max(0.6f * radius, ring.taper * clearRadius(ring, cosine, sine, clearance_m));
+  const float outer = keptOutside(closest, moved);
   Vec3f position = ring.center + outer * outward;
   Material material = rockMaterial(position, style, seed);
-  if (sine < 0.0f && position.z() < sedimentLevel(ring, position, style, seed)) {
+  if (sine < 0.0f && position.z() < sedimentLevel(ring, position, style, clearance_m, seed)) {
     // The line from the centre meets the silt before the rock. The level varies slowly: three steps suffice.
     for (int step = 0; step < 3; ++step) {
-      const float drop = ring.center.z() - sedimentLevel(ring, position, style, seed);
+      const float drop = ring.center.z() - sedimentLevel(ring, position, style, clearance_m, seed);
       const float reach = std::min(outer, drop / std::max(0.02f, -outward.z()));
       position = ring.center + reach * outward;
     }
@@ -136,8 +165,14 @@ void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, uint32_
 
 }  // namespace
 
+bool WallRing::clearOfCorridor(const Vec3f& point, float margin_m) const {
+  const Vec3f offset = point - center;
+  return std::abs(offset.dot(right)) > corridorHalfWidth(*this) + margin_m ||
+         std::abs(offset.dot(up)) > corridorHalfHeight(*this) + margin_m;
+}
+
 CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, uint64_t seed,
-                        size_t max_triangles) {
+                        double clearance_m, size_t max_triangles) {
   const double length = centerline.endArcLength() - centerline.beginArcLength();
   const double perimeter = meanPerimeter(centerline);
   // Displacement stretches the rings by about a third.
@@ -150,7 +185,9 @@ CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, ui
   walls.mesh.positions.resize(static_cast<size_t>(count) * walls.ring_size);
   walls.mesh.materials.resize(walls.mesh.positions.size());
   tbb::parallel_for(0, count, [&](int i) {
-    for (int j = 0; j < walls.ring_size; ++j) placeVertex(walls, i, j, style, static_cast<uint32_t>(seed));
+    for (int j = 0; j < walls.ring_size; ++j) {
+      placeVertex(walls, i, j, style, static_cast<float>(clearance_m), static_cast<uint32_t>(seed));
+    }
   });
   addGridTriangles(walls.mesh, 0, count, walls.ring_size, true);
   walls.mesh.computeNormals();

@@ -17,6 +17,10 @@ struct WallRing {
   Vec3f up = Vec3f::UnitZ();       ///< unit, right x forward
   float half_width_m = 0.0f;
   float half_height_m = 0.0f;
+  float taper = 1.0f;  ///< below 1 where the passage closes at its ends
+
+  /// Whether a point near the ring's plane stays `margin_m` away from where the diver swims.
+  bool clearOfCorridor(const Vec3f& point, float margin_m) const;
 };
 
 /// Walls, ceiling and sediment floor of a passage as a closed tube, its vertices in rings.
@@ -32,10 +36,9 @@ struct CaveWalls {
 };
 
 /// Sweeps a superelliptic section along the centreline, displaces it by layered noise (large alcoves, bedding
-/// ledges, crags down to the size of a triangle), buries its lower part in sediment and closes both ends. The
-/// inner half of the section stays free of rock, so that the dive line never meets the wall. At most about
-/// `max_triangles`.
+/// ledges, crags down to the size of a triangle), buries its lower part in sediment and closes both ends.
+/// Everything stays `clearance_m` away from the diver's corridor. At most about `max_triangles`.
 CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, uint64_t seed,
-                        size_t max_triangles);
+                        double clearance_m, size_t max_triangles);
 
 }  // namespace lodeline

@@ -17,6 +17,12 @@ struct PassageStation {
   double height_m = 0.0;           ///< floor to ceiling
 };
 
+/// The diver keeps the origin of the diver frame within these shares of the half width and half height of the
+/// passage, plus kCorridorSway_m; walls and furniture keep out of it.
+constexpr double kCorridorShareOfHalfWidth = 0.45;
+constexpr double kCorridorShareOfHalfHeight = 0.35;
+constexpr double kCorridorSway_m = 0.1;
+
 /// What a passage looks like at large. All lengths in m.
 struct CenterlineOptions {
   uint64_t seed = 1;

@@ -6,11 +6,6 @@
 
 namespace lodeline {
 
-/// The diver keeps the origin of the diver frame within these shares of the half width and half height of the
-/// passage, plus 0.1 m of swaying.
-constexpr double kCorridorShareOfHalfWidth = 0.45;
-constexpr double kCorridorShareOfHalfHeight = 0.35;
-
 struct DiveMotionOptions {
   uint64_t seed = 1;
   double duration_s = 600.0;

@@ -12,6 +12,7 @@ namespace {
 // Steps grow geometrically: most of the haze arises within a metre of the lamps.
 constexpr float kFirstStep_m = 0.08f;
 constexpr float kGrowth = 1.21f;
+constexpr float kOpaque = 7.0f;  // optical depth that leaves a thousandth
 const float kPerLogGrowth = 1.0f / std::log2(kGrowth);
 
 /// Light scattered towards the camera per metre at a point, before it travels to the camera.
@@ -53,6 +54,10 @@ void HazeVolume::march(const LightField& light, const Vec3f& origin_W, const Vec
   float from = 0.0f;
   Water::Coefficients water = light.water.at(origin_W);
   for (int k = 0; k < kSteps; ++k) {
+    if (sum.optical_depth > kOpaque) {
+      entries[k] = sum;
+      continue;
+    }
     const float step = step_range_m_[k] - from;
     const Vec3f middle = origin_W + (from + 0.5f * step) * direction_W;
     if (!light.water.uniform()) water = light.water.at(middle);

@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-LandmarkField::LandmarkField(std::vector<SurfacePoint> points) : points_(std::move(points)) {
+LandmarkField::LandmarkField(std::vector<LandmarkPoint> points) : points_(std::move(points)) {
   for (size_t i = 0; i < points_.size(); ++i) {
     by_column_.emplace_back(cellOf(points_[i].position_W.x()), static_cast<int>(i));
   }
@@ -36,7 +36,7 @@ LandmarkField passageLandmarks(const Centerline& centerline, double points_per_m
   Random random(seed, "landmarks");
   const double begin = centerline.beginArcLength();
   const double length = centerline.endArcLength() - begin;
-  std::vector<SurfacePoint> points;
+  std::vector<LandmarkPoint> points;
   const int count = static_cast<int>(length * points_per_metre);
   for (int i = 0; i < count; ++i) {
     const PassageStation station = centerline.at(begin + length * random.uniform());
@@ -45,7 +45,7 @@ LandmarkField passageLandmarks(const Centerline& centerline, double points_per_m
     const Vec3 left = Vec3::UnitZ().cross(station.tangent_W).normalized();
     const Vec3 above = station.tangent_W.cross(left);
     const double a = 0.5 * station.width_m, b = 0.5 * station.height_m;
-    SurfacePoint point;
+    LandmarkPoint point;
     point.position_W =
         station.position_W + rough * (a * std::cos(angle) * left + b * std::sin(angle) * above);
     point.normal_W = -(std::cos(angle) / a * left + std::sin(angle) / b * above).normalized();

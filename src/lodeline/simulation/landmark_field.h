@@ -9,7 +9,7 @@
 namespace lodeline {
 
 /// A point on a surface that a front end could track.
-struct SurfacePoint {
+struct LandmarkPoint {
   Vec3 position_W = Vec3::Zero();
   Vec3 normal_W = Vec3::UnitZ();  ///< into the open water
 };
@@ -17,9 +17,9 @@ struct SurfacePoint {
 /// Surface points with a search by place.
 class LandmarkField {
  public:
-  explicit LandmarkField(std::vector<SurfacePoint> points);
+  explicit LandmarkField(std::vector<LandmarkPoint> points);
 
-  const std::vector<SurfacePoint>& points() const { return points_; }
+  const std::vector<LandmarkPoint>& points() const { return points_; }
 
   /// Indices of all points within `radius_m`, ascending.
   std::vector<int> near(const Vec3& center_W, double radius_m) const;
@@ -28,7 +28,7 @@ class LandmarkField {
   static constexpr double kCell_m = 2.0;
   int cellOf(double coordinate_m) const;
 
-  std::vector<SurfacePoint> points_;
+  std::vector<LandmarkPoint> points_;
   std::vector<std::pair<int, int>> by_column_;  // (slab along x, point), sorted
 };
 

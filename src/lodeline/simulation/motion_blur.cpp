@@ -46,7 +46,7 @@ void blurByMotion(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics&
       const float dx = per_z * (moved.x() - point.x() / point.z() * moved.z());
       const float dy = per_z * (moved.y() - point.y() / point.z() * moved.z());
       const float length = std::min(40.0f, std::sqrt(dx * dx + dy * dy));
-      if (length < 0.3f) continue;
+      if (length < 0.5f) continue;  // less than the lens blurs anyway
       const int taps = std::min(17, 2 + static_cast<int>(length));
       float sum = 0.0f;
       for (int k = 0; k < taps; ++k) {

@@ -92,7 +92,7 @@ void PointSimulation::takeImu(SimulatedFrame& frame) {
 }
 
 std::optional<Vec2> PointSimulation::seen(int camera, const Rigid3& world_from_body,
-                                          const SurfacePoint& point) const {
+                                          const LandmarkPoint& point) const {
   constexpr double kBorder_px = 4.0;
   const Rigid3 world_from_camera = world_from_body * true_rig_.cameras[camera].body_from_camera;
   const Vec3 ray_W = point.position_W - world_from_camera.translation;
@@ -130,7 +130,7 @@ void PointSimulation::renewTracks(double time_s, const Rigid3& world_from_body) 
 void PointSimulation::observe(const Rigid3& world_from_body, FrameTracks& tracks) {
   // Tracks are in the order of their identities: new ones are appended.
   for (const Track& track : tracks_) {
-    const SurfacePoint& point = landmarks_.points()[track.point];
+    const LandmarkPoint& point = landmarks_.points()[track.point];
     for (int camera = 0; camera < static_cast<int>(true_cameras_.size()); ++camera) {
       if (camera > 0 && !choice_.chance(options_.stereo_share)) continue;
       const auto pixel = seen(camera, world_from_body, point);

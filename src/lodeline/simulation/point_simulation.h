@@ -91,7 +91,7 @@ class PointSimulation {
   double secondsOf(int frame) const { return options_.first_frame_s + frame / options_.frame_rate_hz; }
   void takeImu(SimulatedFrame& frame);
   void renewTracks(double time_s, const Rigid3& world_from_body);
-  std::optional<Vec2> seen(int camera, const Rigid3& world_from_body, const SurfacePoint& point) const;
+  std::optional<Vec2> seen(int camera, const Rigid3& world_from_body, const LandmarkPoint& point) const;
   void observe(const Rigid3& world_from_body, FrameTracks& tracks);
   void addObservation(TrackId track, int camera, const Vec2& true_pixel, FrameTracks& tracks);
 

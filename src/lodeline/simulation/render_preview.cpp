@@ -1,5 +1,5 @@
 // Writes a handful of rendered pictures along a passage, for looking at them while working on the renderer:
-//   render_preview DIR [florida|yucatan|wreck] [clean|field|ideal] [count] [seed]
+//   render_preview DIR [florida|yucatan|wreck] [clean|field|open|ideal] [count] [seed]
 #include <fmt/core.h>
 #include <sys/resource.h>
 
@@ -49,6 +49,18 @@ Rigid3 swimPose(const Centerline& line, double s) {
   return Rigid3(Quat(rotation), station.position_W + sway * left);
 }
 
+/// Round the wreck at seven metres, looking inwards and ahead.
+Rigid3 circlePose(double s) {
+  const double angle = s / 14.0;
+  const Vec3 position(14.0 * std::cos(angle), 7.5 * std::sin(angle), 2.2 + 1.2 * std::sin(2.0 * angle));
+  const Vec3 forward =
+      (Vec3(0.0, 0.0, 1.6) + 2.0 * Vec3(-std::sin(angle), std::cos(angle), 0.0) - position).normalized();
+  const Vec3 left = Vec3::UnitZ().cross(forward).normalized();
+  Mat3 rotation;
+  rotation << forward, left, forward.cross(left);
+  return Rigid3(Quat(rotation), position);
+}
+
 int run(const std::string& folder, const std::string& place, const std::string& water, int count,
         uint64_t seed) {
   CenterlineOptions passage;
@@ -58,18 +70,23 @@ int run(const std::string& folder, const std::string& place, const std::string& 
   cave.seed = seed;
   if (place == "yucatan") cave.style = CaveStyle::yucatanDecorated();
   const auto started = std::chrono::steady_clock::now();
-  const auto world = buildCaveWorld(line, cave);
+  const bool wreck = place == "wreck";
+  const auto world =
+      wreck ? buildWreckWorld({.seed = seed, .center_W = Vec3f::Zero()}) : buildCaveWorld(line, cave);
   const double build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   fmt::print("world: {} triangles, {:.1f} s, peak {:.0f} MB\n", world->scene.triangleCount(), build_s,
              usage.ru_maxrss / 1024.0);
-  RenderSettings settings = water == "field"   ? RenderSettings::field()
+  RenderSettings settings = water == "open"    ? RenderSettings::openWater()
+                            : water == "field" ? RenderSettings::field()
                             : water == "ideal" ? RenderSettings::ideal()
                                                : RenderSettings::clean();
   const ImageRenderer renderer(world, previewRig(), settings);
   const double speed = 0.3;
-  const WorldFromBodyAt motion = [&](double t) { return swimPose(line, speed * t); };
+  const WorldFromBodyAt motion = [&](double t) {
+    return wreck ? circlePose(speed * t) : swimPose(line, speed * t);
+  };
   for (int n = 0; n < count; ++n) {
     const double t = (2.0 + n * (passage.length_m - 4.0) / std::max(1, count)) / speed;
     const double before = cpuSeconds();

@@ -21,6 +21,14 @@ std::vector<Lamp> twoVideoLamps() {
 
 }  // namespace
 
+void RenderSettings::mountLamps(const Rigid3& diver_from_body) {
+  const Rigid3 body_from_diver = diver_from_body.inverse();
+  for (Lamp& lamp : lamps) {
+    lamp.position_B = body_from_diver * lamp.position_B;
+    lamp.direction_B = body_from_diver.rotation * lamp.direction_B;
+  }
+}
+
 RenderSettings RenderSettings::clean() {
   RenderSettings settings;
   settings.lamps = twoVideoLamps();
@@ -41,6 +49,13 @@ RenderSettings RenderSettings::field() {
   // Lamps do not match in the field: one burns low.
   settings.lamps[1].spot_intensity *= 0.7;
   settings.lamps[1].flood_intensity *= 0.7;
+  return settings;
+}
+
+RenderSettings RenderSettings::openWater() {
+  RenderSettings settings = clean();
+  settings.daylight.irradiance = 0.9;
+  settings.water.attenuation_per_m = 0.16;
   return settings;
 }
 

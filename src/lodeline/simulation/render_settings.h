@@ -26,13 +26,20 @@ struct RenderSettings {
   SensorOptions sensor;
   bool motion_blur = true;
 
-  /// Clear spring water, a good camera, every effect present but mild. The lamps are for a body frame with x
-  /// forward, y left, z up.
+  /// Turns the lamps from the diver frame D (x forward, y left, z up), in which the presets give them, into
+  /// the body frame.
+  void mountLamps(const Rigid3& diver_from_body);
+
+  /// Clear spring water, a good camera, every effect present but mild. The lamps stand in the diver
+  /// frame: see mountLamps.
   static RenderSettings clean();
 
   /// What a diver gets: milky water, a companion's lamp, longer exposures, a flickering gain. Silt-outs and
   /// the flat port are added by the scenario, which knows their times and the calibration.
   static RenderSettings field();
+
+  /// Open water: daylight from above over lamps, clear sea.
+  static RenderSettings openWater();
 
   /// Without blur, snow and noise, exposed once for all: for measuring geometry in the images.
   static RenderSettings ideal();

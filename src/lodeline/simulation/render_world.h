@@ -7,6 +7,7 @@
 #include "lodeline/simulation/centerline.h"
 #include "lodeline/simulation/solid_texture.h"
 #include "lodeline/simulation/traced_scene.h"
+#include "lodeline/simulation/wreck_mesh.h"
 
 namespace lodeline {
 
@@ -24,13 +25,15 @@ struct RenderWorld {
 struct CaveOptions {
   CaveStyle style;
   uint64_t seed = 1;
-  /// Boulders and stalactites keep this far from the centreline, where the dive runs; the walls stay outside
-  /// of 0.6 of the local half width and half height.
-  double clearance_m = 0.9;
+  /// Walls, silt, boulders and stalactites keep this far from the diver's corridor: room for lamps and arms.
+  double clearance_m = 0.4;
   size_t max_triangles = 2'500'000;  ///< of the walls; the furniture adds up to about half as many
 };
 
 /// A cave along a centreline.
 std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options);
+
+/// A wreck on the sea bottom in open water.
+std::shared_ptr<const RenderWorld> buildWreckWorld(const WreckOptions& options);
 
 }  // namespace lodeline

@@ -31,7 +31,7 @@ Water::Water(const WaterOptions& options, double time_s, uint64_t seed)
 Water::Coefficients Water::at(const Vec3f& point_W) const {
   float clear = clear_per_m_, silt = silt_per_m_;
   if (!uniform()) {
-    const float cloud = fractalNoise((point_W - drift_m_) / 0.9f, 3, seed_ + 61, 0.55f);
+    const float cloud = fractalNoise((point_W - drift_m_) / 0.8f, 2, seed_ + 61, 0.6f);
     clear *= std::max(0.2f, 1.0f + patchiness_ * 1.8f * cloud);
     // Billows: thick here, nearly clear there.
     silt *= std::max(0.05f, 1.0f + 2.0f * cloud);
