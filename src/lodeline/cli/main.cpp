@@ -9,6 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/run_command.h"
+#include "lodeline/cli/simulate_command.h"
 
 namespace {
 
@@ -39,6 +40,7 @@ int main(int argc, char** argv) {
   program.footer("`lodeline COMMAND --help` explains a command, with examples.");
   lodeline::addRunCommand(program);
   lodeline::addEvaluateCommand(program);
+  lodeline::addSimulateCommand(program);
   try {
     program.parse(argc, argv);
     return kGood;

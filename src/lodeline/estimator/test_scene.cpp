@@ -44,7 +44,7 @@ Motion swaying(const TestSceneOptions& options) {
 
 LandmarkField room(const TestSceneOptions& options, const Vec3& centre) {
   Random random(options.seed, "scene/room");
-  std::vector<SurfacePoint> points;
+  std::vector<LandmarkPoint> points;
   for (int i = 0; i < 2000; ++i) {
     const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
     const Vec3 inward(-std::cos(angle), -std::sin(angle), 0.0);
