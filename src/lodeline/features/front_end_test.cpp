@@ -9,6 +9,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/features/draw_tracks.h"
+#include "lodeline/features/test_accuracy.h"
 #include "lodeline/features/test_sequence.h"
 
 namespace lodeline {
@@ -50,71 +51,39 @@ std::map<TrackId, Vec2> pixels(const FrameTracks& frame, int camera) {
   return result;
 }
 
-struct Accuracy {
-  int tracks = 0;    ///< at the start
-  int survived = 0;  ///< ten frames later
-  Vec2 bias = Vec2::Zero();
-  double rms_px = 0.0;  ///< along each axis
-};
-
-/// How far the tracks of one frame have slipped ten frames later, averaged over all starts.
-Accuracy overTenFrames(const Recording& recording, const std::vector<FrameTracks>& frames) {
-  constexpr int kLater = 10;
-  Accuracy result;
-  double squared = 0.0;
-  const int starts = static_cast<int>(frames.size()) - kLater;
-  for (int i = 0; i < starts; ++i) {
-    const auto first = pixels(frames[static_cast<size_t>(i)], 0);
-    const auto last = pixels(frames[static_cast<size_t>(i + kLater)], 0);
-    for (const auto& [id, pixel] : first) {
-      ++result.tracks;
-      if (!last.contains(id)) continue;
-      ++result.survived;
-      const Vec2 slip = last.at(id) - *recording.sequence.truePixel(i, 0, pixel, i + kLater, 0);
-      result.bias += slip;
-      squared += slip.squaredNorm();
-    }
-  }
-  result.bias /= std::max(1, result.survived);
-  result.rms_px = std::sqrt(squared / std::max(1, 2 * result.survived));
-  result.tracks /= starts;
-  result.survived /= starts;
-  return result;
-}
-
-Accuracy accuracyIn(const TestLight& light, double speed_m_per_s) {
+TrackAccuracy accuracyIn(const TestLight& light, double speed_m_per_s) {
   const Recording recording(light, speed_m_per_s);
   FrontEnd front_end(recording.sequence.rig(), {});
-  return overTenFrames(recording, track(recording, front_end));
+  return accuracyOverTenFrames(recording.sequence, track(recording, front_end));
 }
 
 TEST(FrontEnd, FollowsAWallInDaylight) {
   FrontEnd front_end(daylight().sequence.rig(), {});
-  const Accuracy accuracy = overTenFrames(daylight(), track(daylight(), front_end));
+  const TrackAccuracy accuracy = accuracyOverTenFrames(daylight().sequence, track(daylight(), front_end));
   EXPECT_GE(accuracy.survived, 210);
-  EXPECT_LT(accuracy.bias.norm(), 0.01);
+  EXPECT_LT(accuracy.bias_px.norm(), 0.01);
   EXPECT_LT(accuracy.rms_px, 0.06);
   EXPECT_EQ(front_end.statistics().image.word, "good");
 }
 
 TEST(FrontEnd, IsNotDraggedAlongByTheLampInADimPicture) {
-  const Accuracy accuracy = accuracyIn(TestLight::dimLamp(), 0.3);
+  const TrackAccuracy accuracy = accuracyIn(TestLight::dimLamp(), 0.3);
   EXPECT_GE(accuracy.survived, 150);
-  EXPECT_LT(accuracy.bias.norm(), 0.05);
+  EXPECT_LT(accuracy.bias_px.norm(), 0.05);
   EXPECT_LT(accuracy.rms_px, 0.45);
 }
 
 TEST(FrontEnd, IsNotDraggedAlongByTheLampInMilkyWater) {
-  const Accuracy accuracy = accuracyIn(TestLight::hazyLamp(), 0.3);
+  const TrackAccuracy accuracy = accuracyIn(TestLight::hazyLamp(), 0.3);
   EXPECT_GE(accuracy.survived, 130);
-  EXPECT_LT(accuracy.bias.norm(), 0.1);
+  EXPECT_LT(accuracy.bias_px.norm(), 0.1);
   EXPECT_LT(accuracy.rms_px, 0.5);
 }
 
 TEST(FrontEnd, StandsStillWithTheCamera) {
-  const Accuracy accuracy = accuracyIn(TestLight::daylight(), 0.0);
+  const TrackAccuracy accuracy = accuracyIn(TestLight::daylight(), 0.0);
   EXPECT_GE(accuracy.survived, 245);
-  EXPECT_LT(accuracy.bias.norm(), 0.005);
+  EXPECT_LT(accuracy.bias_px.norm(), 0.005);
   EXPECT_LT(accuracy.rms_px, 0.05);
 }
 
@@ -187,7 +156,7 @@ TEST(FrontEnd, WorksWithOneCamera) {
   Recording recording = daylight();
   for (auto& images : recording.images) images.resize(1);
   FrontEnd front_end(rig, {});
-  EXPECT_GE(overTenFrames(recording, track(recording, front_end)).survived, 210);
+  EXPECT_GE(accuracyOverTenFrames(recording.sequence, track(recording, front_end)).survived, 210);
 }
 
 TEST(FrontEnd, FindsTracksAgainAfterMissingImages) {
