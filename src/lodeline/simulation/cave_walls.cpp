@@ -189,6 +189,11 @@ CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, ui
       placeVertex(walls, i, j, style, static_cast<float>(clearance_m), static_cast<uint32_t>(seed));
     }
   });
+  // The end rings draw together into a point: no way out.
+  for (int j = 0; j < walls.ring_size; ++j) {
+    walls.mesh.positions[j] = walls.rings.front().center;
+    walls.mesh.positions[walls.mesh.positions.size() - 1 - j] = walls.rings.back().center;
+  }
   addGridTriangles(walls.mesh, 0, count, walls.ring_size, true);
   walls.mesh.computeNormals();
   return walls;

@@ -30,7 +30,7 @@ Flake flakeOf(uint64_t hash, const Vec3& cell_origin, const SnowOptions& options
   const Vec3 inside(uniformFromHash(scrambleBits(hash + 1)), uniformFromHash(scrambleBits(hash + 2)),
                     uniformFromHash(scrambleBits(hash + 3)));
   // Log-normal sizes: many small, few large flakes.
-  const double size = std::exp(0.6 * roughNormalFromHash(scrambleBits(hash + 4)));
+  const double size = std::exp(0.5 * roughNormalFromHash(scrambleBits(hash + 4)));
   return {cell_origin + kCell_m * inside, options.median_radius_m * size,
           0.5 + uniformFromHash(scrambleBits(hash + 5))};
 }

@@ -12,7 +12,7 @@ namespace lodeline {
 struct SnowOptions {
   double flakes_per_m3 = 150.0;
   double median_radius_m = 0.00016;
-  double reflectance = 0.3;
+  double reflectance = 0.2;
   double drift_speed_m_per_s = 0.04;
   double aperture_m = 0.003;  ///< of the lens: how fast flakes blur away from the focus
   double focus_m = 1.5;

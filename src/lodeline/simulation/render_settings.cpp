@@ -37,11 +37,11 @@ RenderSettings RenderSettings::clean() {
 
 RenderSettings RenderSettings::field() {
   RenderSettings settings = clean();
-  settings.water.attenuation_per_m = 0.38;
+  settings.water.attenuation_per_m = 0.33;
   settings.water.scattering_share = 0.75;
   settings.water.patchiness = 0.4;
-  settings.snow.flakes_per_m3 = 600.0;
-  settings.snow.median_radius_m = 0.00018;
+  settings.snow.flakes_per_m3 = 350.0;
+  settings.snow.median_radius_m = 0.00017;
   settings.second_diver = SecondDiver{};
   settings.sensor.longest_exposure_s = 0.022;
   settings.sensor.gain_flicker = 0.015;

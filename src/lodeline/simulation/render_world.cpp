@@ -5,12 +5,15 @@
 
 namespace lodeline {
 
-std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options) {
+TriangleMesh makeCaveMesh(const Centerline& centerline, const CaveOptions& options) {
   CaveWalls walls =
       makeCaveWalls(centerline, options.style, options.seed, options.clearance_m, options.max_triangles);
-  const TriangleMesh furniture = makeCaveFurniture(walls, options.style, options.seed, options.clearance_m);
-  walls.mesh.append(furniture);
-  return std::make_shared<const RenderWorld>(std::move(walls.mesh), options.seed);
+  walls.mesh.append(makeCaveFurniture(walls, options.style, options.seed, options.clearance_m));
+  return std::move(walls.mesh);
+}
+
+std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options) {
+  return std::make_shared<const RenderWorld>(makeCaveMesh(centerline, options), options.seed);
 }
 
 std::shared_ptr<const RenderWorld> buildWreckWorld(const WreckOptions& options) {

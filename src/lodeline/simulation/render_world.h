@@ -27,8 +27,11 @@ struct CaveOptions {
   uint64_t seed = 1;
   /// Walls, silt, boulders and stalactites keep this far from the diver's corridor: room for lamps and arms.
   double clearance_m = 0.4;
-  size_t max_triangles = 2'500'000;  ///< of the walls; the furniture adds up to about half as many
+  size_t max_triangles = 2'500'000;  ///< of the walls; boulders and stalactites come on top
 };
+
+/// Walls and furniture of a cave along a centreline, with normals.
+TriangleMesh makeCaveMesh(const Centerline& centerline, const CaveOptions& options);
 
 /// A cave along a centreline.
 std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options);

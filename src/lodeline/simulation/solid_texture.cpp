@@ -8,6 +8,7 @@
 
 #include "lodeline/simulation/fast_exp.h"
 #include "lodeline/simulation/gradient_noise.h"
+#include "lodeline/simulation/random.h"
 
 namespace lodeline {
 namespace {
@@ -28,30 +29,52 @@ inline void addWeighted(const Byte8& voxels, const Float8& weight, Float8& sum) 
 /// Slopes are stored up to this magnitude (m/m).
 constexpr float kSlopeRange = 2.0f;
 
-/// Reflectance and height of the rock at a point of the unit tile.
+/// Reflectance and height of the rock at a voxel.
 struct RockValue {
   float reflectance;
   float height;  ///< in tile lengths
 };
 
+/// Stains, unevenness and cracks at a point of the unit tile.
 RockValue rockValue(const Vec3f& p, uint32_t seed) {
   const Vec3f warp(gradientNoise(p * 6.0f, seed + 1, 6), gradientNoise(p * 6.0f, seed + 2, 6),
                    gradientNoise(p * 6.0f, seed + 3, 6));
   const Vec3f q = p + 0.03f * warp;
   const float stains = 0.55f * fractalNoise(q * 4.0f, 3, seed + 10, 0.75f, 4) +
                        0.60f * fractalNoise(q * 26.0f, 2, seed + 11, 0.9f, 26);
-  const CellDistances pits = cellNoise(q * 15.0f, seed + 20, 15);
-  const CellDistances grains = cellNoise(q * 31.0f, seed + 21, 31);
   const float crack = 1.0f - std::min(1.0f, std::abs(gradientNoise(q * 5.0f, seed + 30, 5)) / 0.03f);
-  // Only some cells carry a pit, of random size; the same for bright grains (shell, calcite).
-  const float pit_radius = (pits.nearest_id >> 7 & 3) < 2 ? 0.20f + 0.002f * (pits.nearest_id & 127) : 0.0f;
-  const float pit = pit_radius > 0.0f ? smoothStep(pit_radius, 0.6f * pit_radius, pits.nearest) : 0.0f;
-  const float grain = (grains.nearest_id >> 9 & 3) == 0 ? smoothStep(0.40f, 0.28f, grains.nearest) : 0.0f;
-  RockValue value;
-  value.reflectance = stains - 0.75f * pit + 0.75f * grain - 0.4f * crack;
-  value.height =
-      0.020f * fractalNoise(q * 5.0f, 4, seed + 40, 0.6f, 5) - 0.016f * pit + 0.006f * grain - 0.010f * crack;
-  return value;
+  return {stains - 0.4f * crack, 0.020f * fractalNoise(q * 5.0f, 4, seed + 40, 0.6f, 5) - 0.010f * crack};
+}
+
+/// Balls strewn over the tile: pits that dissolved, bright grains of shell and calcite.
+struct Strewn {
+  int count;
+  float least_radius, greatest_radius;  ///< tile lengths
+  RockValue change;                     ///< at the middle of a ball
+};
+constexpr Strewn kPits = {1700, 0.013f, 0.030f, {-0.75f, -0.016f}};
+constexpr Strewn kGrains = {7400, 0.009f, 0.013f, {0.75f, 0.006f}};
+
+/// Adds the balls to a periodic cube of n^3 values.
+void strew(const Strewn& kind, Random random, int n, std::vector<RockValue>& values) {
+  for (int ball = 0; ball < kind.count; ++ball) {
+    const Vec3f centre =
+        static_cast<float>(n) * Vec3(random.uniform(), random.uniform(), random.uniform()).cast<float>();
+    const float radius = static_cast<float>(n * random.uniform(kind.least_radius, kind.greatest_radius));
+    const int reach = static_cast<int>(radius) + 1;
+    const Eigen::Vector3i middle = centre.cast<int>();
+    for (int dz = -reach; dz <= reach; ++dz)
+      for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx) {
+          const Eigen::Vector3i at = middle + Eigen::Vector3i(dx, dy, dz);
+          const float share = smoothStep(radius, 0.6f * radius, (at.cast<float>() - centre).norm());
+          if (share <= 0.0f) continue;
+          const size_t z = at.z() & (n - 1), y = at.y() & (n - 1), x = at.x() & (n - 1);
+          RockValue& value = values[(z * n + y) * n + x];
+          value.reflectance += share * kind.change.reflectance;
+          value.height += share * kind.change.height;
+        }
+  }
 }
 
 int8_t quantise(float value) {
@@ -85,6 +108,8 @@ SolidTexture::SolidTexture(uint64_t seed) {
         values[index(x, y, z)] =
             rockValue(Vec3f(x, y, z) / static_cast<float>(n), static_cast<uint32_t>(seed));
   });
+  strew(kPits, Random(seed, "texture/pits"), n, values);
+  strew(kGrains, Random(seed, "texture/grains"), n, values);
   double mean = 0.0;
   for (const RockValue& value : values) mean += value.reflectance;
   const float offset = static_cast<float>(mean / static_cast<double>(values.size()));

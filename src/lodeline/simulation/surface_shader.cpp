@@ -42,7 +42,9 @@ void SurfaceShader::describe(const RayPacket& rays, const HitPacket& hits, int i
   float reflectance = base.reflectance;
   if (detail) {
     // At grazing incidence a pixel covers a long strip; the geometric mean of its axes is a fair width.
-    const float footprint = hits.range_m[i] * pixel_angle_rad / std::sqrt(std::max(0.08f, std::abs(facing)));
+    // A third more than the pixel itself keeps what is left well sampled.
+    const float footprint =
+        1.35f * hits.range_m[i] * pixel_angle_rad / std::sqrt(std::max(0.08f, std::abs(facing)));
     const TextureSample fine = texture_.sample(point, kTile_m[0], footprint);
     const TextureSample coarse = texture_.sample(turned(point), kTile_m[1], footprint);
     const float shade = kTileContrast[0] * fine.reflectance + kTileContrast[1] * coarse.reflectance;
