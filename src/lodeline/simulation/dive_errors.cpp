@@ -14,17 +14,21 @@ Quat drawTurn(double least_rad, double most_rad, Random& random) {
   return so3::exp(angle * random.direction());
 }
 
+// What misleads a calibration (target, water, window) misleads it for both cameras alike, and since it fits
+// them together, the stereo pair's images still agree to a fraction of a pixel: the errors are common, with
+// little of their own for each camera.
 void misstateIntrinsics(uint64_t seed, Rig& given) {
+  Random common(seed, "calibration/intrinsics");
+  const double focal_error = common.sign() * common.uniform(0.0012, 0.0048);
+  const double size_px = common.uniform(1.2, 2.8);
+  const double angle = common.uniform(0.0, 2.0 * std::numbers::pi);
   for (CameraCalibration& camera : given.cameras) {
-    Random random(seed, "calibration/intrinsics/" + camera.name);
-    // Both focal lengths err together: a calibration confuses them with the target's distance.
-    const double scale = 1.0 + random.sign() * random.uniform(0.001, 0.005);
-    camera.fx_px *= scale;
-    camera.fy_px *= scale * (1.0 + 2e-4 * random.normal());
-    const double size_px = random.uniform(1.0, 3.0) * camera.width_px / 640.0;
-    const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
-    camera.cx_px += size_px * std::cos(angle);
-    camera.cy_px += size_px * std::sin(angle);
+    Random own(seed, "calibration/intrinsics/" + camera.name);
+    camera.fx_px *= 1.0 + focal_error + own.uniform(-1.5e-4, 1.5e-4);
+    camera.fy_px *= 1.0 + focal_error + own.uniform(-1.5e-4, 1.5e-4);
+    const double scale = camera.width_px / 640.0;
+    camera.cx_px += scale * (size_px * std::cos(angle) + own.uniform(-0.12, 0.12));
+    camera.cy_px += scale * (size_px * std::sin(angle) + own.uniform(-0.12, 0.12));
   }
 }
 
