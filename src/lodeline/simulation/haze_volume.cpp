@@ -25,8 +25,8 @@ float inScatter(const LightField& light, const Water::Coefficients& water, const
     const float distance = std::sqrt(to_lamp.squaredNorm() + 0.03f * 0.03f);
     const Vec3f towards = to_lamp / distance;
     // The light travels along -towards and is scattered into -view.
-    sum += light.water.phase(towards.dot(view)) * lamp.irradiance(towards, distance) *
-           fastExp(-water.attenuation * distance);
+    sum += light.water.phase(towards.dot(view), water.scattering) * lamp.irradiance(towards, distance) *
+           fastExp(-water.diffuse_attenuation * distance);
   }
   // Daylight comes from everywhere: isotropic.
   sum += light.daylight.inWater(point) / (4.0f * std::numbers::pi_v<float>);
@@ -51,19 +51,20 @@ HazeVolume::HazeVolume(const LightField& light, const Vec3f& origin_W, const std
 void HazeVolume::march(const LightField& light, const Vec3f& origin_W, const Vec3f& direction_W,
                        Entry* entries) const {
   Entry sum;
-  float from = 0.0f;
+  float from = 0.0f, diffuse_depth = 0.0f;
   Water::Coefficients water = light.water.at(origin_W);
   for (int k = 0; k < kSteps; ++k) {
-    if (sum.optical_depth > kOpaque) {
+    if (diffuse_depth > kOpaque) {
       entries[k] = sum;
       continue;
     }
     const float step = step_range_m_[k] - from;
     const Vec3f middle = origin_W + (from + 0.5f * step) * direction_W;
     if (!light.water.uniform()) water = light.water.at(middle);
-    const float half_depth = sum.optical_depth + 0.5f * step * water.attenuation;
+    const float half_depth = diffuse_depth + 0.5f * step * water.diffuse_attenuation;
     sum.radiance += step * inScatter(light, water, middle, direction_W) * fastExp(-half_depth);
     sum.optical_depth += step * water.attenuation;
+    diffuse_depth += step * water.diffuse_attenuation;
     entries[k] = sum;
     from = step_range_m_[k];
   }

@@ -12,11 +12,11 @@ struct HazeSample {
   float radiance = 0.0f;       ///< light of the lamps scattered into the ray on its way, W/m^2/sr
 };
 
-/// Single scattering along the rays of a coarse grid over the image, accumulated over distance:
-///   L(r) = integral_0^r  b(x) * sum_l p(angle_l) * E_l(x) * exp(-tau(x))  dx
-/// with E_l the lamp's irradiance after Beer-Lambert attenuation, p the phase function and tau the optical
-/// depth from the camera (e.g. S. Chandrasekhar, "Radiative Transfer", 1950, section 7). Haze is smooth over
-/// the image, so a node every sixteen pixels is enough.
+/// Light scattered into the rays of a coarse grid over the image, accumulated over distance:
+///   L(r) = integral_0^r  b(x) * sum_l p(angle_l) * E_l(x) * exp(-tau'(x))  dx
+/// with E_l the lamp's attenuated irradiance, p the phase function and tau' the diffuse optical depth from
+/// the camera, see Water::Coefficients (S. Chandrasekhar, "Radiative Transfer", 1950, section 7, gives the
+/// single scattering that it extends). Haze is smooth over the image: a node every sixteen pixels is enough.
 class HazeVolume {
  public:
   static constexpr int kNodeSpacing_px = 16;

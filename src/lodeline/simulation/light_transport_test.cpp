@@ -50,7 +50,8 @@ TEST(Water, PhaseFunctionIsNormalised) {
   constexpr int kSteps = 20000;
   for (int i = 0; i < kSteps; ++i) {
     const double cosine = -1.0 + 2.0 * (i + 0.5) / kSteps;
-    const double share = 2.0 * std::numbers::pi * water.phase(static_cast<float>(cosine)) * 2.0 / kSteps;
+    const double share =
+        2.0 * std::numbers::pi * water.phase(static_cast<float>(cosine), 0.0f) * 2.0 / kSteps;
     sum += share;
     mean_cosine += share * cosine;
   }
@@ -62,9 +63,9 @@ TEST(Water, SiltComesAndGoes) {
   WaterOptions options;
   options.attenuation_per_m = 0.1;
   options.silt = {{10.0, 5.0, 2.0}};
-  EXPECT_FLOAT_EQ(Water(options, 9.9, 1).meanAttenuation(), 0.1f);
-  EXPECT_NEAR(Water(options, 12.0, 1).meanAttenuation(), 2.1f, 1e-4);
-  EXPECT_FLOAT_EQ(Water(options, 15.1, 1).meanAttenuation(), 0.1f);
+  EXPECT_FLOAT_EQ(Water(options, 9.9, 1).mean().attenuation, 0.1f);
+  EXPECT_NEAR(Water(options, 12.0, 1).mean().attenuation, 2.1f, 1e-4);
+  EXPECT_FLOAT_EQ(Water(options, 15.1, 1).mean().attenuation, 0.1f);
 }
 
 TEST(HazeVolume, MatchesNumericIntegration) {
@@ -81,8 +82,10 @@ TEST(HazeVolume, MatchesNumericIntegration) {
       const float r = range * (i + 0.5f) / steps;
       const Vec3f to_lamp = light.lamps[0].position() - (eye + r * view);
       const float d = std::sqrt(to_lamp.squaredNorm() + 0.03f * 0.03f);
-      expected += range / steps * 0.3 * options.scattering_share * std::exp(-0.3 * (r + d)) *
-                  light.lamps[0].irradiance(to_lamp / d, d) * light.water.phase(to_lamp.dot(view) / d);
+      const double b = 0.3 * options.scattering_share, diffuse = 0.3 - options.asymmetry * b;
+      expected += range / steps * b * std::exp(-diffuse * (r + d)) *
+                  light.lamps[0].irradiance(to_lamp / d, d) *
+                  light.water.phase(to_lamp.dot(view) / d, static_cast<float>(b));
     }
     const HazeSample sample = haze.at(7.0f, 3.0f, range);
     EXPECT_NEAR(sample.transmittance, std::exp(-0.3 * range), 2e-3) << range;

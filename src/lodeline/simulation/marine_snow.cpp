@@ -41,7 +41,8 @@ float irradianceAt(const LightField& light, const Vec3f& point) {
   for (const PlacedLamp& lamp : light.lamps) {
     const Vec3f to_lamp = lamp.position() - point;
     const float distance = std::max(0.05f, to_lamp.norm());
-    sum += lamp.irradiance(to_lamp / distance, distance) * fastExp(-light.water.meanAttenuation() * distance);
+    sum += lamp.irradiance(to_lamp / distance, distance) *
+           fastExp(-light.water.mean().diffuse_attenuation * distance);
   }
   return sum;
 }
@@ -98,7 +99,7 @@ void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics
     const double blur_px =
         0.5 * focal_px * options.aperture_m * std::abs(1.0 / point_C.z() - 1.0 / options.focus_m);
     const float arriving = irradianceAt(light, flake.position_W.cast<float>());
-    const float back = fastExp(-light.water.meanAttenuation() * static_cast<float>(range));
+    const float back = fastExp(-light.water.mean().attenuation * static_cast<float>(range));
     const double brightness = flake.brightness * options.reflectance / std::numbers::pi * arriving * back;
     const Vec3 before = motion.start_from_middle * point_C, after = motion.end_from_middle * point_C;
     const Vec2 streak = focal_px * (after.head<2>() / after.z() - before.head<2>() / before.z());

@@ -122,7 +122,7 @@ void SurfaceShader::shade(const RayPacket& rays, const HitPacket& hits, const Li
     }
   }
   for (const PlacedLamp& lamp : light.lamps) {
-    addLamp(rays, lit, lamp, light.water.meanAttenuation(), radiance);
+    addLamp(rays, lit, lamp, light.water.mean().diffuse_attenuation, radiance);
   }
   constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
   for (int i = 0; i < kRayPacketSize; ++i) radiance[i] *= kPerPi;

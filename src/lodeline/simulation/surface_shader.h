@@ -28,6 +28,7 @@ class SurfaceShader {
 
   void describe(const RayPacket& rays, const HitPacket& hits, int i, float pixel_angle_rad, bool detail,
                 Lit& lit) const;
+  /// `attenuation` (1/m) is the diffuse one: light that the water scatters forwards still falls on the rock.
   void addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp, float attenuation,
                float* radiance) const;
 

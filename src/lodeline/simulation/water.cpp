@@ -36,14 +36,22 @@ Water::Coefficients Water::at(const Vec3f& point_W) const {
     // Billows: thick here, nearly clear there.
     silt *= std::max(0.05f, 1.0f + 2.0f * cloud);
   }
-  // Mineral silt hardly absorbs: nine tenths of what it takes from a ray it scatters.
-  return {clear + silt, scattering_share_ * clear + 0.9f * silt};
+  return coefficients(clear, silt);
 }
 
-float Water::phase(float cosine) const {
+Water::Coefficients Water::coefficients(float clear_per_m, float silt_per_m) const {
+  // Mineral silt hardly absorbs: nine tenths of what it takes from a ray it scatters.
+  const float scattering = scattering_share_ * clear_per_m + 0.9f * silt_per_m;
+  const float attenuation = clear_per_m + silt_per_m;
+  return {attenuation, scattering, attenuation - asymmetry_ * scattering};
+}
+
+float Water::phase(float cosine, float scattering_per_m) const {
   const float g = asymmetry_;
   const float base = 1.0f + g * g - 2.0f * g * cosine;
-  return (1.0f - g * g) / (4.0f * std::numbers::pi_v<float> * base * std::sqrt(base));
+  const float forward = (1.0f - g * g) / (base * std::sqrt(base));
+  const float squared = scattering_per_m * scattering_per_m, fourth = squared * squared;
+  return lerp(forward, 1.0f, fourth / (fourth + 1.0f)) / (4.0f * std::numbers::pi_v<float>);
 }
 
 }  // namespace lodeline

@@ -31,22 +31,27 @@ class Water {
 
   /// Whether attenuation is the same everywhere.
   bool uniform() const { return silt_per_m_ <= 0.0f && patchiness_ <= 0.0f; }
-  float clearAttenuation() const { return clear_per_m_; }
-  /// Mean over space, 1/m.
-  float meanAttenuation() const { return clear_per_m_ + silt_per_m_; }
-
-  /// Attenuation and scattering coefficients at a place, 1/m.
+  /// Coefficients at a place, 1/m.
   struct Coefficients {
     float attenuation = 0.0f;
     float scattering = 0.0f;
+    /// Of light on its way through haze. What is scattered forwards goes on about where it went, so only the
+    /// share 1 - g of scattering takes it away: the similarity relation (H. C. van de Hulst, "Multiple Light
+    /// Scattering", 1980, chapter 14).
+    float diffuse_attenuation = 0.0f;
   };
   Coefficients at(const Vec3f& point_W) const;
+  Coefficients mean() const { return coefficients(clear_per_m_, silt_per_m_); }
 
   /// Share of scattered light per steradian at an angle, given its cosine: L. Henyey and J. Greenstein,
   /// "Diffuse radiation in the galaxy", Astrophysical Journal 93, 1941.
-  float phase(float cosine) const;
+  /// In thick silt light arrives after many turns, from everywhere: with the scattering coefficient the phase
+  /// function passes into an even one, by half at 1/m (a fit to the eye, not a law).
+  float phase(float cosine, float scattering_per_m) const;
 
  private:
+  Coefficients coefficients(float clear_per_m, float silt_per_m) const;
+
   float clear_per_m_, scattering_share_, asymmetry_, patchiness_;
   float silt_per_m_ = 0.0f;
   Vec3f drift_m_;
