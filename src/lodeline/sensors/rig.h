@@ -52,6 +52,16 @@ struct MagnetometerCalibration {
   double rate_hz = 100.0;
   double noise_density_T_per_sqrtHz = 1.0e-8;
   Rigid3 body_from_magnetometer;
+  /// Soft and hard iron as `lodeline calibrate magnetometer` finds them (paper section III-E): the field in M
+  /// is A (reading - h). A is symmetric; what it lacks in rotation is in body_from_magnetometer.
+  Mat3 iron_correction = Mat3::Identity();
+  Vec3 hard_iron_T = Vec3::Zero();
+  bool is_calibrated = false;  ///< whether iron_correction and hard_iron_T come from a calibration
+
+  /// A reading freed from soft and hard iron, T, in body axes.
+  Vec3 corrected_B(const Vec3& reading_M) const {
+    return body_from_magnetometer.rotation * (iron_correction * (reading_M - hard_iron_T));
+  }
 };
 
 struct PressureCalibration {
