@@ -16,36 +16,48 @@ std::filesystem::path findMav0(const std::filesystem::path& data) {
     throw InputError(fmt::format("{}: no such folder; give the folder that contains mav0", data.string()));
   }
   if (std::filesystem::is_directory(data / "mav0")) return data / "mav0";
-  if (std::filesystem::is_directory(data / "cam0") || std::filesystem::is_directory(data / "imu0"))
-    return data;
+  for (const char* sensor : {"cam0", "imu0", "mag0"}) {
+    if (std::filesystem::is_directory(data / sensor)) return data;
+  }
   throw InputError(
-      fmt::format("{}: holds neither mav0 nor cam0 and imu0; give the folder of a recording in the EuRoC ASL "
+      fmt::format("{}: holds neither mav0 nor sensors (cam0, imu0, mag0); give the folder of a recording in "
+                  "the EuRoC ASL "
                   "layout (mav0/cam0/data.csv, mav0/imu0/data.csv, …)",
                   data.string()));
 }
 
-}  // namespace
-
-EurocLayout findEurocLayout(const std::filesystem::path& data, const std::vector<int>& camera_indices) {
-  EurocLayout layout;
-  layout.mav0 = findMav0(data);
+std::vector<int> findCameras(const EurocLayout& layout, const std::vector<int>& asked_for) {
   std::vector<int> present;
   for (int i = 0; i < kMostCameras; ++i) {
     if (std::filesystem::exists(layout.csv(fmt::format("cam{}", i)))) present.push_back(i);
   }
-  layout.camera_indices = camera_indices.empty() ? present : camera_indices;
-  for (const int index : layout.camera_indices) {
+  for (const int index : asked_for) {
     if (std::find(present.begin(), present.end(), index) != present.end()) continue;
     throw InputError(fmt::format("{}: missing, but camera {} was asked for; the recording has cameras [{}]",
                                  layout.csv(fmt::format("cam{}", index)).string(), index,
                                  fmt::join(present, ", ")));
   }
-  for (const char* name : {"cam0", "imu0"}) {
-    const bool needed = std::string_view(name) == "imu0" || layout.camera_indices.empty();
-    if (needed && !std::filesystem::exists(layout.csv(name))) {
-      throw InputError(
-          fmt::format("{}: missing; a recording needs a camera and an IMU", layout.csv(name).string()));
-    }
+  if (present.empty()) {
+    throw InputError(
+        fmt::format("{}: missing, and so is every other camera; a trajectory cannot be estimated "
+                    "without images",
+                    layout.csv("cam0").string()));
+  }
+  return asked_for.empty() ? present : asked_for;
+}
+
+}  // namespace
+
+EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options) {
+  EurocLayout layout;
+  layout.mav0 = findMav0(data);
+  if (options.with_cameras) layout.camera_indices = findCameras(layout, options.camera_indices);
+  layout.has_imu = std::filesystem::exists(layout.csv("imu0"));
+  if (options.needs_imu && !layout.has_imu) {
+    throw InputError(fmt::format("{}: missing; inertial readings are needed", layout.csv("imu0").string()));
+  }
+  if (!options.with_cameras && !layout.has_imu && !std::filesystem::exists(layout.csv("mag0"))) {
+    throw InputError(fmt::format("{}: holds neither imu0/data.csv nor mag0/data.csv", layout.mav0.string()));
   }
   return layout;
 }

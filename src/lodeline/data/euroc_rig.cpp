@@ -21,13 +21,24 @@ void warn(const std::string& kind, const std::string& message, Diagnostics* diag
   diagnostics->report(Severity::Warning, kind, message);
 }
 
-std::vector<Time> firstStamps(const std::filesystem::path& csv, int number_count) {
+struct StreamStart {
+  std::vector<Time> stamps;
+  std::string why_empty;  ///< where there is no stamp
+};
+
+StreamStart readStart(const std::filesystem::path& csv, int number_count) {
   Diagnostics reported_when_read_in_earnest;
   CsvReader reader(csv, number_count, &reported_when_read_in_earnest);
-  std::vector<Time> stamps;
+  StreamStart start;
   CsvRow row;
-  while (static_cast<int>(stamps.size()) < kRateRows && reader.next(&row)) stamps.push_back(row.time);
-  return stamps;
+  while (static_cast<int>(start.stamps.size()) < kRateRows && reader.next(&row)) {
+    start.stamps.push_back(row.time);
+  }
+  if (!start.stamps.empty()) return start;
+  start.why_empty = fmt::format("{}: holds no usable row", csv.string());
+  const std::vector<Finding> findings = reported_when_read_in_earnest.ranked();
+  if (!findings.empty()) start.why_empty += fmt::format(" (first: {})", findings.front().first_message);
+  return start;
 }
 
 /// The stated rate where it is plausible, else the inverse of the median step; 0 where neither can be had.
@@ -50,8 +61,11 @@ double settleRate(const std::filesystem::path& csv, const std::vector<Time>& sta
   return measured_hz;
 }
 
-[[noreturn]] void throwEmpty(const std::filesystem::path& csv, const char* advice) {
-  throw InputError(fmt::format("{}: holds no usable row; {}", csv.string(), advice));
+/// For sensors that cannot be done without.
+std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, const char* advice) {
+  StreamStart start = readStart(csv, number_count);
+  if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
+  return std::move(start.stamps);
 }
 
 std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const KalibrFiles& kalibr,
@@ -80,8 +94,8 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
       camera.body_from_camera = body_from_euroc_body * camera.body_from_camera;
     }
     const std::filesystem::path csv = layout.csv(name);
-    const std::vector<Time> stamps = firstStamps(csv, 0);
-    if (stamps.empty()) throwEmpty(csv, "restore it or leave this camera out (source.cameras)");
+    const std::vector<Time> stamps =
+        requireStamps(csv, 0, "restore it or leave this camera out (source.cameras)");
     camera.rate_hz = settleRate(csv, stamps, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));
@@ -98,20 +112,20 @@ std::optional<Calibration> readOptional(const EurocLayout& layout, const char* n
                                         const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
-  const std::vector<Time> stamps = firstStamps(csv, number_count);
-  if (stamps.empty()) {
-    warn("sensor_empty",
-         fmt::format("{}: holds no usable row; carrying on without this sensor", csv.string()), diagnostics);
+  const StreamStart start = readStart(csv, number_count);
+  if (start.stamps.empty()) {
+    warn("sensor_empty", start.why_empty + "; carrying on without this sensor", diagnostics);
     return std::nullopt;
   }
   Calibration calibration = read(layout.sensor(name) / "sensor.yaml", diagnostics);
   calibration.*body_from_sensor = body_from_euroc_body * (calibration.*body_from_sensor);
-  calibration.rate_hz = settleRate(csv, stamps, calibration.rate_hz, diagnostics);
+  calibration.rate_hz = settleRate(csv, start.stamps, calibration.rate_hz, diagnostics);
   if (!(calibration.rate_hz > 0.0)) calibration.rate_hz = Calibration().rate_hz;
   return calibration;
 }
 
 EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnostics* diagnostics) {
+  if (!layout.has_imu) return {};
   const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
   EurocImu imu;
   if (!kalibr.imu || std::filesystem::exists(yaml)) imu = readEurocImu(yaml, diagnostics);
@@ -120,8 +134,8 @@ EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnosti
     imu.calibration = readKalibrImu(*kalibr.imu, diagnostics);
     if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = euroc_rate_hz;
   }
-  const std::vector<Time> stamps = firstStamps(layout.csv("imu0"), 6);
-  if (stamps.empty()) throwEmpty(layout.csv("imu0"), "the estimator cannot work without inertial data");
+  const std::vector<Time> stamps =
+      requireStamps(layout.csv("imu0"), 6, "the estimator cannot work without inertial data");
   imu.calibration.rate_hz = settleRate(layout.csv("imu0"), stamps, imu.calibration.rate_hz, diagnostics);
   if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = ImuCalibration().rate_hz;
   return imu;

@@ -8,24 +8,38 @@
 
 namespace lodeline {
 
+/// What to read of an EuRoC ASL recording. The defaults are what estimating a trajectory takes; tools that
+/// look at inertial or magnetic readings alone open recordings that have nothing else.
+struct EurocOptions {
+  /// N of the camN folders to use; the first one is the reference. Empty for all that the recording has.
+  std::vector<int> camera_indices;
+  /// False leaves cameras out, whether the recording has any or not.
+  bool with_cameras = true;
+  /// False for a recording that may have no `imu0`; EuRoC's body is the body frame then.
+  bool needs_imu = true;
+};
+
 /// Where the parts of an EuRoC ASL recording lie.
 struct EurocLayout {
   std::filesystem::path mav0;
   std::vector<int> camera_indices;  ///< N of the camN used, in the order of Rig::cameras
+  bool has_imu = false;
 
   std::filesystem::path sensor(const std::string& name) const { return mav0 / name; }
   std::filesystem::path csv(const std::string& name) const { return mav0 / name / "data.csv"; }
 };
 
-/// Finds `mav0` (given itself, or the folder that contains it) and its cameras; all of them, or those asked
-/// for. Throws InputError where there is no recording, no camera, no IMU, or not a camera asked for.
-EurocLayout findEurocLayout(const std::filesystem::path& data, const std::vector<int>& camera_indices);
+/// Finds `mav0` (given itself, or the folder that contains it) and what is in it. Throws InputError where
+/// there is no recording, or nothing of what `options` ask for: no camera, not one of those named, no IMU,
+/// or, with neither needed, no IMU and no magnetometer.
+EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options);
 
 /// Reads the calibration of every sensor that has a `data.csv`: Kalibr's files beside or in mav0 before the
 /// sensor.yaml files, which is reported as a notice. The body frame of the result is the IMU frame, also
 /// where EuRoC's body is another. Rates that no file states, or that contradict the stamps, are measured.
-/// Optional sensors whose CSV has no usable row are left out with a warning. Throws InputError naming file
-/// and key for a calibration that is absent or incomplete, and for a camera or IMU without data.
+/// Optional sensors whose CSV has no usable row are left out with a warning. Rig::imu keeps its defaults
+/// where the recording has no IMU. Throws InputError naming file and key for a calibration that is absent or
+/// incomplete, and for a camera or IMU without data.
 Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics);
 
 }  // namespace lodeline

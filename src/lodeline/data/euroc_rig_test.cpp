@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "lodeline/base/error.h"
+#include "lodeline/data/euroc_source.h"
 #include "lodeline/data/test_recording.h"
 
 namespace lodeline {
@@ -20,7 +21,7 @@ using testing::ThrowsMessage;
 class EurocRigTest : public testing::Test {
  protected:
   Rig read(const std::vector<int>& cameras = {}) {
-    return readEurocRig(findEurocLayout(recording_.folder(), cameras), &diagnostics_);
+    return readEurocRig(findEurocLayout(recording_.folder(), {.camera_indices = cameras}), &diagnostics_);
   }
   auto reading() {
     return [this] { read(); };
@@ -77,6 +78,34 @@ TEST_F(EurocRigTest, AcceptsMav0ItselfAndRefusesOtherFolders) {
               ThrowsMessage<InputError>(HasSubstr("no such folder")));
   EXPECT_THAT([&] { findEurocLayout(recording_.path("imu0"), {}); },
               ThrowsMessage<InputError>(HasSubstr("EuRoC")));
+}
+
+TEST_F(EurocRigTest, OpensReadingsWithoutCamerasForToolsThatNeedNone) {
+  for (const char* camera : {"cam0", "cam1"}) std::filesystem::remove_all(recording_.path(camera));
+  EXPECT_THAT(reading(), ThrowsMessage<InputError>(AllOf(HasSubstr("cam0/data.csv"), HasSubstr("images"))));
+  EurocOptions options;
+  options.with_cameras = false;
+  EurocSource both(recording_.folder(), options, &diagnostics_);
+  EXPECT_TRUE(both.rig().cameras.empty());
+  EXPECT_TRUE(both.nextImu() && both.nextMagnetometer());
+
+  std::filesystem::remove_all(recording_.path("imu0"));
+  const auto opening = [&] { EurocSource(recording_.folder(), options, &diagnostics_); };
+  EXPECT_THAT(opening, ThrowsMessage<InputError>(HasSubstr("imu0/data.csv: missing")));
+  options.needs_imu = false;
+  EurocSource magnetometer_alone(recording_.path(""), options, &diagnostics_);
+  EXPECT_FALSE(magnetometer_alone.nextImu());
+  EXPECT_TRUE(magnetometer_alone.nextMagnetometer());
+
+  std::filesystem::rename(recording_.path("mag0/data.csv"), recording_.path("mag0/lost.csv"));
+  EXPECT_THAT(opening, ThrowsMessage<InputError>(HasSubstr("neither imu0/data.csv nor mag0/data.csv")));
+}
+
+TEST_F(EurocRigTest, CamerasCanBeLeftOut) {
+  recording_.write("cam0/sensor.yaml", "spoilt");
+  EurocOptions options;
+  options.with_cameras = false;
+  EXPECT_TRUE(EurocSource(recording_.folder(), options, &diagnostics_).rig().cameras.empty());
 }
 
 TEST_F(EurocRigTest, BodyBecomesTheImuFrame) {
@@ -152,6 +181,13 @@ TEST_F(EurocRigTest, FindsTheMaskBesideTheCalibration) {
 TEST_F(EurocRigTest, EmptyCsvOfANeededSensorIsAnError) {
   recording_.write("imu0/data.csv", "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n");
   EXPECT_THAT(reading(), ThrowsMessage<InputError>(HasSubstr("imu0/data.csv: holds no usable row")));
+}
+
+TEST_F(EurocRigTest, UnusableRowsAreExplained) {
+  recording_.write("imu0/data.csv", "1,2,3\n2,2,3\n");
+  EXPECT_THAT(reading(),
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("imu0/data.csv:1: 3 columns where 7 are due"), HasSubstr("inertial"))));
 }
 
 TEST_F(EurocRigTest, EmptyCameraListIsAnError) {

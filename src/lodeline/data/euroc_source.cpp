@@ -18,10 +18,10 @@ bool next(std::optional<CsvReader>* reader, CsvRow* row) { return *reader && (*r
 
 EurocSource::EurocSource(const std::filesystem::path& data, const EurocOptions& options,
                          Diagnostics* diagnostics)
-    : layout_(findEurocLayout(data, options.camera_indices)),
+    : layout_(findEurocLayout(data, options)),
       diagnostics_(diagnostics),
-      rig_(readEurocRig(layout_, diagnostics)),
-      imu_(layout_.csv("imu0"), 6, diagnostics) {
+      rig_(readEurocRig(layout_, diagnostics)) {
+  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
     if (!std::filesystem::is_directory(images)) {
@@ -36,7 +36,7 @@ EurocSource::EurocSource(const std::filesystem::path& data, const EurocOptions& 
 }
 
 std::optional<ImuSample> EurocSource::nextImu() {
-  if (!imu_.next(&row_)) return std::nullopt;
+  if (!next(&imu_, &row_)) return std::nullopt;
   return ImuSample{row_.time, Vec3(row_.numbers.data()), Vec3(row_.numbers.data() + 3)};
 }
 

@@ -9,11 +9,6 @@
 
 namespace lodeline {
 
-struct EurocOptions {
-  /// N of the camN folders to use; the first one is the reference. Empty for all that the recording has.
-  std::vector<int> camera_indices;
-};
-
 /// A recording in the EuRoC ASL layout, read as a stream: whatever its length, only a few rows are in memory.
 ///
 ///     mav0/camN/data.csv       #timestamp [ns],filename      (the name may be missing: STAMP.png then)
@@ -42,7 +37,7 @@ class EurocSource : public MeasurementSource {
   EurocLayout layout_;
   Diagnostics* diagnostics_;
   Rig rig_;
-  CsvReader imu_;
+  std::optional<CsvReader> imu_;
   std::vector<CsvReader> cameras_;
   std::optional<CsvReader> magnetometer_;
   std::optional<CsvReader> pressure_;
