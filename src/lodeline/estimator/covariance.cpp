@@ -20,19 +20,24 @@ double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
                   along(newest.velocity_W(), covariance.block<3, 3>(6, 6)));
 }
 
-Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame) {
+Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks) {
   const Eigen::MatrixXd hessian = system.hessian();
-  const int pose_row = system.find(frame.pose.data())->offset;
-  const int motion_row = system.find(frame.motion.data())->offset;
   const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<Eigen::MatrixXd> factorised(scale.asDiagonal() * hessian * scale.asDiagonal());
-  Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(system.size(), 15);
-  for (int i = 0; i < 6; ++i) selection(pose_row + i, i) = scale[pose_row + i];
-  for (int i = 0; i < 9; ++i) selection(motion_row + i, 6 + i) = scale[motion_row + i];
+  std::vector<int> rows;
+  for (const double* value : blocks) {
+    const NormalEquations::Block& block = *system.find(value);
+    for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
+  }
+  Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(system.size(), static_cast<int>(rows.size()));
+  for (size_t i = 0; i < rows.size(); ++i) selection(rows[i], static_cast<int>(i)) = scale[rows[i]];
   const Eigen::MatrixXd columns = scale.asDiagonal() * factorised.solve(selection);
-  Eigen::Matrix<double, 15, 15> covariance;
-  covariance << columns.middleRows<6>(pose_row), columns.middleRows<9>(motion_row);
+  const Eigen::MatrixXd covariance = columns(rows, Eigen::all);
   return 0.5 * (covariance + covariance.transpose());
+}
+
+Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame) {
+  return covarianceOf(system, {frame.pose.data(), frame.motion.data()});
 }
 
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,

@@ -33,6 +33,19 @@ void factorise(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior)
   prior->offset = llt.matrixL().solve(scale.cwiseInverse().asDiagonal() * g);
 }
 
+/// The information (h, g) after the coordinates `row` to `row + size` have moved by an unknown step of
+/// `variance` each: P + E Q E^T in place of P = h^-1, by the matrix inversion lemma, which needs no inverse
+/// of h. The estimate h^-1 g stays where it was.
+void addNoise(int row, int size, double variance, Eigen::MatrixXd* h, Eigen::VectorXd* g) {
+  Eigen::MatrixXd inner = h->block(row, row, size, size);
+  inner.diagonal().array() += 1.0 / variance;
+  const Eigen::LLT<Eigen::MatrixXd> factorised(inner);
+  const Eigen::MatrixXd rows = h->middleRows(row, size);
+  const Eigen::VectorXd gradient = g->segment(row, size);
+  *g -= rows.transpose() * factorised.solve(gradient);
+  *h -= rows.transpose() * factorised.solve(rows);
+}
+
 /// The first estimate of the block at `value`, set to its present value where it has none.
 Eigen::VectorXd firstEstimate(Window& window, const double* value) {
   for (const auto& frame : window.frames()) {
@@ -45,7 +58,26 @@ Eigen::VectorXd firstEstimate(Window& window, const double* value) {
       return Eigen::Map<const Eigen::VectorXd>(frame->first_motion->data(), kMotionSize);
     }
   }
+  for (const auto& state : window.globals()) {
+    if (value != state->value.data()) continue;
+    if (!state->first) state->first = state->value;
+    return Eigen::Map<const Eigen::VectorXd>(state->first->data(), static_cast<int>(state->first->size()));
+  }
   return {};
+}
+
+/// The random walk of the global states among the prior's blocks over `elapsed_s`.
+void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, Eigen::MatrixXd* h,
+                    Eigen::VectorXd* g) {
+  int row = 0;
+  for (const Prior::Block& block : prior.blocks) {
+    for (const auto& state : window.globals()) {
+      const double variance = state->walk_per_sqrt_s * state->walk_per_sqrt_s * elapsed_s;
+      if (state->value.data() == block.value && variance > 0.0)
+        addNoise(row, block.tangentSize(), variance, h, g);
+    }
+    row += block.tangentSize();
+  }
 }
 
 }  // namespace
@@ -88,18 +120,26 @@ void Marginalizer::shorten(Window& window, int max_recent_frames, int max_keyfra
   while (window.poseOnlyCount() > max_keyframes) removeOldestKeyframe(window);
 }
 
+void Marginalizer::forget(Window& window, GlobalState& state) {
+  NormalEquations system;
+  if (!prior_.empty()) system.add(factors_.prior(prior_));
+  if (system.find(state.value.data())) eliminate(window, system, {state.value.data()});
+  state.first.reset();
+}
+
 void Marginalizer::retireOldestRecent(Window& window) {
   Frame& oldest = *window.oldestRecent();
   Frame& next = *window.after(oldest);
+  const double elapsed_s = (next.time - oldest.time).seconds();
   NormalEquations system;
   if (!prior_.empty()) system.add(factors_.prior(prior_));
   system.add(factors_.inertial(oldest, next));
   next.from_previous.reset();
   if (oldest.is_keyframe) {
-    eliminate(window, system, {oldest.motion.data()});
+    eliminate(window, system, {oldest.motion.data()}, elapsed_s);
     oldest.has_motion = false;
   } else {
-    eliminate(window, system, {oldest.motion.data(), oldest.pose.data()});
+    eliminate(window, system, {oldest.motion.data(), oldest.pose.data()}, elapsed_s);
     window.remove(oldest.id);
   }
 }
@@ -129,7 +169,7 @@ void Marginalizer::removeOldestKeyframe(Window& window) {
 }
 
 void Marginalizer::eliminate(Window& window, const NormalEquations& system,
-                             const std::vector<const double*>& eliminated) {
+                             const std::vector<const double*>& eliminated, double elapsed_s) {
   std::vector<int> gone;
   std::vector<int> kept;
   Prior next;
@@ -151,7 +191,9 @@ void Marginalizer::eliminate(Window& window, const NormalEquations& system,
   Eigen::VectorXd g_kept;
   schurComplement(system.hessian(), system.gradient(), gone, kept, &h_kept, &g_kept);
   // The system's gradient is taken at the current values; the prior wants it at the first estimates.
-  factorise(h_kept, g_kept - h_kept * from_first.head(kept_size), &next);
+  g_kept -= h_kept * from_first.head(kept_size);
+  letGlobalsWalk(window, next, elapsed_s, &h_kept, &g_kept);
+  factorise(h_kept, g_kept, &next);
   prior_ = std::move(next);
 }
 

@@ -24,6 +24,14 @@ class Marginalizer {
 
   const Prior& prior() const { return prior_; }
 
+  /// Adds what is known of a global state from elsewhere: `sigmas` about its present value.
+  void addKnowledge(GlobalState& state, const Eigen::VectorXd& sigmas) {
+    prior_.append(state.value.data(), static_cast<int>(state.value.size()), sigmas);
+  }
+  /// Takes a global state out of the prior without forgetting what it said of the others; no factor of the
+  /// window may mention the state any more. A later entry of it starts afresh.
+  void forget(Window& window, GlobalState& state);
+
   /// Landmarks that left the window since the last call, in order.
   std::vector<MapPoint> takeMapPoints() { return std::exchange(map_points_, {}); }
 
@@ -35,8 +43,10 @@ class Marginalizer {
   /// sightings; the others lose only their sightings there, and move to another host.
   void removeOldestKeyframe(Window& window);
 
-  /// New prior from `system`, which holds the old prior and all terms of the eliminated blocks.
-  void eliminate(Window& window, const NormalEquations& system, const std::vector<const double*>& eliminated);
+  /// New prior from `system`, which holds the old prior and all terms of the eliminated blocks. Global states
+  /// walk for `elapsed_s`.
+  void eliminate(Window& window, const NormalEquations& system, const std::vector<const double*>& eliminated,
+                 double elapsed_s = 0.0);
 
   const FactorMaker& factors_;
   Prior prior_;

@@ -12,11 +12,8 @@ Prior startPrior(Frame& first, const InitialStateOptions& options, double tilt_s
       Vec3::Constant(velocity_sigma), Vec3::Constant(options.gyroscope_bias_sigma_rad_per_s),
       Vec3::Constant(options.accelerometer_bias_sigma_m_per_s2);
   Prior prior;
-  prior.blocks.push_back({first.pose.data(), Eigen::Map<Eigen::VectorXd>(first.pose.data(), kPoseSize)});
-  prior.blocks.push_back(
-      {first.motion.data(), Eigen::Map<Eigen::VectorXd>(first.motion.data(), kMotionSize)});
-  prior.sqrt_information = sigmas.cwiseInverse().asDiagonal();
-  prior.offset = Eigen::VectorXd::Zero(15);
+  prior.append(first.pose.data(), kPoseSize, sigmas.head<kPoseTangentSize>());
+  prior.append(first.motion.data(), kMotionSize, sigmas.tail<kMotionSize>());
   return prior;
 }
 

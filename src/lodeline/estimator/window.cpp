@@ -73,6 +73,16 @@ Frame* Window::after(const Frame& frame) const {
   return found == frames_.end() ? nullptr : found->get();
 }
 
+GlobalState& Window::add(GlobalState state) {
+  return *globals_.emplace_back(std::make_unique<GlobalState>(std::move(state)));
+}
+
+GlobalState* Window::findGlobal(std::string_view name) const {
+  const auto found = std::find_if(globals_.begin(), globals_.end(),
+                                  [name](const auto& state) { return state->name == name; });
+  return found == globals_.end() ? nullptr : found->get();
+}
+
 void Window::remove(FrameId id) {
   for (auto& [track_id, track] : tracks_) {
     std::erase_if(track.sightings, [id](const Sighting& sighting) { return sighting.frame == id; });

@@ -5,9 +5,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "lodeline/base/time.h"
+#include "lodeline/estimator/global_state.h"
 #include "lodeline/factors/parameters.h"
 #include "lodeline/factors/reprojection_factor.h"
 #include "lodeline/features/tracks.h"
@@ -77,8 +79,8 @@ struct TrackHistory {
   bool seenIn(FrameId frame) const;
 };
 
-/// The sliding window: old keyframes (poses), then the most recent frames (poses and motions), and the tracks
-/// they see.
+/// The sliding window: old keyframes (poses), then the most recent frames (poses and motions), the tracks
+/// they see, and what belongs to no frame.
 class Window {
  public:
   Frame& add(std::unique_ptr<Frame> frame);
@@ -99,6 +101,13 @@ class Window {
   std::map<TrackId, TrackHistory>& tracks() { return tracks_; }
   const std::map<TrackId, TrackHistory>& tracks() const { return tracks_; }
 
+  /// Adds a state that belongs to no frame; the reference stays valid as long as the window's contents.
+  GlobalState& add(GlobalState state);
+  /// In the order in which they were added.
+  const std::vector<std::unique_ptr<GlobalState>>& globals() const { return globals_; }
+  /// Null where there is none of that name.
+  GlobalState* findGlobal(std::string_view name) const;
+
   /// Forgets a frame with all its sightings. No landmark may be hosted there any more.
   void remove(FrameId id);
   /// Tracks without sightings are forgotten.
@@ -107,6 +116,7 @@ class Window {
  private:
   std::deque<std::unique_ptr<Frame>> frames_;
   std::map<TrackId, TrackHistory> tracks_;
+  std::vector<std::unique_ptr<GlobalState>> globals_;
 };
 
 }  // namespace lodeline

@@ -78,6 +78,8 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
     copies.add(frame->pose.data(), kPoseSize);
     if (frame->has_motion) copies.add(frame->motion.data(), kMotionSize);
   }
+  for (const auto& state : window.globals())
+    copies.add(state->value.data(), static_cast<int>(state->value.size()));
 
   PoseManifold pose_manifold;
   ceres::Problem problem(problemOptions());
@@ -90,6 +92,12 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
     double* motion = copies.copyOf(frame->motion.data());
     problem.AddParameterBlock(motion, kMotionSize);
     options.linear_solver_ordering->AddElementToGroup(motion, 1);
+  }
+  for (const auto& state : window.globals()) {
+    double* value = copies.copyOf(state->value.data());
+    problem.AddParameterBlock(value, static_cast<int>(state->value.size()),
+                              state->isPose() ? &pose_manifold : nullptr);
+    options.linear_solver_ordering->AddElementToGroup(value, 1);
   }
   const auto add = [&](const Factor& factor) {
     std::vector<double*> blocks;

@@ -19,6 +19,8 @@ class Snapshot {
       save(frame->pose.data(), kPoseSize);
       save(frame->motion.data(), kMotionSize);
     }
+    for (const auto& state : window.globals())
+      save(state->value.data(), static_cast<int>(state->value.size()));
     for (auto& [id, track] : window.tracks()) {
       if (track.landmark) save(track.landmark->parameters.data(), kLandmarkSize);
     }

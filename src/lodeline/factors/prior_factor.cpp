@@ -8,6 +8,17 @@ int Prior::tangentSize() const {
   return size;
 }
 
+void Prior::append(double* value, int size, const Eigen::VectorXd& sigmas) {
+  const int before = tangentSize();
+  blocks.push_back({value, Eigen::Map<const Eigen::VectorXd>(value, size)});
+  const int after = tangentSize();
+  Eigen::MatrixXd grown = Eigen::MatrixXd::Zero(after, after);
+  grown.topLeftCorner(before, before) = sqrt_information;
+  grown.diagonal().tail(after - before) = sigmas.cwiseInverse();
+  sqrt_information = std::move(grown);
+  offset.conservativeResizeLike(Eigen::VectorXd::Zero(after));
+}
+
 Eigen::VectorXd Prior::difference(double const* const* values) const {
   Eigen::VectorXd d(tangentSize());
   int row = 0;

@@ -26,6 +26,10 @@ struct Prior {
   Eigen::MatrixXd sqrt_information;  ///< J
   Eigen::VectorXd offset;            ///< e
 
+  /// Adds a block that is known to `sigmas` (one per tangent coordinate) about its present value,
+  /// independently of the others.
+  void append(double* value, int size, const Eigen::VectorXd& sigmas);
+
   bool empty() const { return blocks.empty(); }
   int tangentSize() const;
 

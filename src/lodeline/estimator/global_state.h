@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/factors/parameters.h"
+
+namespace lodeline {
+
+/// A quantity that the window estimates but that belongs to no frame: a field vector, a sensor's offset, an
+/// extrinsic calibration, a time offset. Factors name its block like that of a frame; solver, normal
+/// equations, marginalisation (with its first estimates) and covariance treat it alike. It enters with an
+/// entry of its own in the prior (Prior::append), or with factors that determine it.
+struct GlobalState {
+  std::string name;
+  /// Parameter block, never resized, so that its address is the state's identity. A block of kPoseSize is a
+  /// pose with its 6 perturbation coordinates; any other moves by addition.
+  std::vector<double> value;
+  /// Where the marginalisation prior first linearised it; empty while the prior does not touch it.
+  std::optional<std::vector<double>> first;
+  /// Random walk of each coordinate, [unit of the block]/sqrt(s): what the prior knows of the state fades by
+  /// this as frames are marginalised. 0: a constant.
+  double walk_per_sqrt_s = 0.0;
+
+  bool isPose() const { return value.size() == kPoseSize; }
+  int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(value.size()); }
+  const double* firstEstimate() const { return first ? first->data() : nullptr; }
+};
+
+}  // namespace lodeline
