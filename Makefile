@@ -9,8 +9,8 @@ build: dependencies
 dependencies:
 	./scripts/install-dependencies.sh
 
-# Runs the program on a recording and compares the result with the reference. Its own recording in place of the
-# one looked for: RECORDING=/path/to/folder-with-mav0.
+# Simulates a dive, runs the program on it and compares the result with the truth, in pictures. A recording in
+# place of the simulated one: RECORDING=/path/to/folder-with-mav0.
 demo: build
 	./scripts/demo.sh
 

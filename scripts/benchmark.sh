@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs all microbenchmarks, then times the whole program on a recording: three runs each with both cameras and
-# with the left one alone.
+# with the left one alone. The recording is RECORDING (a folder with mav0), or EuRoC's MH_01_easy where the tests
+# look for it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,7 +12,12 @@ for benchmark in "$bin"/*_benchmark; do
   "$benchmark"
 done
 
-recording=$(scripts/find-recording.sh)
+data=${LODELINE_DATA_DIR:-../shared/data}
+recording=${RECORDING:-$data/euroc_mh01_stereo_14s}
+if [ ! -d "$recording/mav0" ]; then
+  echo "No recording at $recording: say where one is, make bench RECORDING=/path/to/folder-with-mav0." >&2
+  exit 1
+fi
 output=$(mktemp -d)
 trap 'rm -rf "$output"' EXIT
 for cameras in '[]' '[0]'; do

@@ -1,37 +1,51 @@
 #!/usr/bin/env bash
-# Runs the main job on a recording, with both cameras and with the left one alone, and compares the results with
-# the recording's reference. Results go to demo/.
+# Simulates a short cave dive as a diver would bring it home, estimates its trajectory and compares that with the
+# truth. With RECORDING=/path/to/folder-with-mav0 the same on a recording of yours, with all of its cameras and with
+# the first one alone. Everything goes to demo/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 lodeline=build/release/bin/lodeline
-recording=$(scripts/find-recording.sh)
 
-run() {  # NAME ALIGNMENT [SETTING...]
-  local name=$1 alignment=$2
+announce() { printf '\n== lodeline %s\n' "$*"; }
+
+estimate() {  # FOLDER ALIGNMENT [SETTING...]
+  local folder=$1 alignment=$2
   shift 2
-  echo
-  echo "== $name camera: lodeline run $recording -o demo/$name $*"
-  "$lodeline" run "$recording" -o "demo/$name" "$@"
+  announce run "$recording" -o "$folder" --draw-tracks 3 "$@"
+  "$lodeline" run "$recording" -o "$folder" --draw-tracks 3 "$@"
   [ -n "$reference" ] || return 0
-  echo
-  "$lodeline" evaluate "demo/$name" "$reference" --align "$alignment" --images "$recording/mav0/cam0" \
-    --json "demo/$name/evaluation.json" --plots "demo/$name/plots"
+  announce evaluate "$folder" "$reference" --align "$alignment" --plots "$folder/plots"
+  "$lodeline" evaluate "$folder" "$reference" --align "$alignment" --interpolate --images "$recording/mav0/cam0" \
+    --json "$folder/evaluation.json" --plots "$folder/plots"
 }
 
-truth=$recording/mav0/state_groundtruth_estimate0
-reference=
-for candidate in "$truth/data.csv" "$truth/gt_tum.txt"; do
-  [ -z "$reference" ] && [ -f "$candidate" ] && reference=$candidate
-done
+findReference() {
+  local truth=$recording/mav0/state_groundtruth_estimate0
+  for reference in "$truth/data.csv" "$truth/gt_tum.txt"; do
+    [ -f "$reference" ] && return 0
+  done
+  reference=
+}
 
 mkdir -p demo
-run stereo se3
-run single sim3 --set "source.cameras=[0]"
-
-echo
-echo "Results in demo/stereo and demo/single (left camera alone):"
-echo "  trajectory.tum  states.csv  landmarks.ply  config.yaml  run.json"
-if [ -n "$reference" ]; then
-  echo "Compared with the reference: evaluation.json, pictures in plots/, e.g. demo/stereo/plots/$(cd demo/stereo/plots && ls ./*.png | head -1 | cut -c3-)"
+if [ -n "${RECORDING:-}" ]; then
+  recording=$RECORDING
+  findReference
+  estimate demo/all_cameras se3
+  estimate demo/one_camera sim3 --set "source.cameras=[0]"
+  results=(demo/all_cameras demo/one_camera)
+else
+  recording=demo/recording
+  announce simulate demo --realism field -o "$recording"
+  "$lodeline" simulate demo --realism field -o "$recording"
+  findReference
+  estimate demo/result yaw
+  results=(demo/result)
 fi
+
+printf '\nPictures to look at:\n'
+for folder in "${results[@]}"; do
+  [ -z "$reference" ] || printf '  %s\n' "$folder"/plots/*.png
+  printf '  %s  tracks of one frame each 3 s, blue new to red old\n' "$folder/frames/*.png"
+done

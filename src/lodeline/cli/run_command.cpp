@@ -18,6 +18,7 @@
 #include "lodeline/report/output_file.h"
 #include "lodeline/report/run_summary.h"
 #include "lodeline/report/state_writer.h"
+#include "lodeline/report/track_pictures.h"
 
 namespace lodeline {
 namespace {
@@ -29,6 +30,7 @@ struct RunArguments {
   std::string output;
   std::string config;
   std::vector<std::string> overrides;
+  std::optional<double> draw_tracks_s;
   bool quiet = false;
 };
 
@@ -72,11 +74,14 @@ RunDescription describe(const RunArguments& arguments, const RunSettings& option
 
 /// Feeds all packets through the estimator; results are on disk at the end, whether the recording or the
 /// user ended it.
-void process(Synchronizer& synchronizer, Odometry& odometry, const std::filesystem::path& folder, bool quiet,
+void process(Synchronizer& synchronizer, Odometry& odometry, const RunArguments& arguments,
              RunSummary* summary) {
+  const std::filesystem::path folder = arguments.output;
   StateWriter states(folder);
   LandmarkWriter landmarks(folder);
-  RunProgress progress(quiet);
+  std::optional<TrackPictures> pictures;
+  if (arguments.draw_tracks_s) pictures.emplace(folder, *arguments.draw_tracks_s);
+  RunProgress progress(arguments.quiet);
   const StopRequest stop;
   const Clock::time_point start = Clock::now();
   const double start_processor_s = ProcessUsage::now().processor_s;
@@ -85,6 +90,7 @@ void process(Synchronizer& synchronizer, Odometry& odometry, const std::filesyst
     const FrameEstimate estimate = odometry.add(*packet);
     states.write(estimate);
     landmarks.write(odometry.estimator().takeMapPoints());
+    if (pictures) pictures->write(*packet, odometry.frontEnd());
     summary->add(estimate);
     for (const cv::Mat& image : packet->images) summary->images += image.empty() ? 0 : 1;
     summary->wall_s = secondsSince(start);
@@ -135,7 +141,7 @@ void run(const RunArguments& arguments) {
   Synchronizer synchronizer(&source, options.synchronizer, &diagnostics);
   Odometry odometry(source.rig(), options.odometry, &diagnostics);
   RunSummary summary(describe(arguments, options, source.rig()));
-  process(synchronizer, odometry, folder, arguments.quiet, &summary);
+  process(synchronizer, odometry, arguments, &summary);
   writeOutput(folder / "run.json", summary.json(diagnostics));
   if (!arguments.quiet) fmt::print("{}\n{}", folder.string(), summary.text(diagnostics));
   requireResult(arguments, summary);
@@ -154,12 +160,18 @@ void addRunCommand(CLI::App& program) {
                       "YAML configuration; without one, defaults serve all data");
   command->add_option("-s,--set", arguments->overrides,
                       "one setting, KEY=VALUE; goes over the configuration");
+  command
+      ->add_option("--draw-tracks", arguments->draw_tracks_s,
+                   "write pictures of the followed points, one frame each so many seconds")
+      ->type_name("SECONDS");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
   command->footer(
       "Examples:\n"
       "  lodeline run dive1 -o dive1_result\n"
       "  lodeline run dive1 -o left_only --set source.cameras=[0]\n"
-      "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json.");
+      "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
+      "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json;\n"
+      "pictures of tracks in frames.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -1,3 +1,6 @@
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
 #include "lodeline/cli/test_room.h"
 
 // `lodeline run` on images that are missing, damaged or of the wrong kind.
@@ -9,6 +12,14 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 using RunImages = RoomTest;
+
+int colouredPixels(const cv::Mat& bgr) {
+  cv::Mat hsv;
+  cv::cvtColor(bgr, hsv, cv::COLOR_BGR2HSV);
+  cv::Mat saturation;
+  cv::extractChannel(hsv, saturation, 1);
+  return cv::countNonZero(saturation > 100);
+}
 
 TEST_F(RunImages, MissingImageOfEitherCameraIsNamedAndBridged) {
   std::filesystem::remove(recording_.image(0, 12));
@@ -73,6 +84,27 @@ TEST_F(RunImages, AllImagesMissingIsBadInput) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("bad input"), HasSubstr("no image"), HasSubstr("run.json"),
                                    HasSubstr(recording_.image(0, 0).string())));
   EXPECT_EQ(findings("image_unreadable"), 2 * kRoomImages);
+}
+
+TEST_F(RunImages, TracksAreDrawnAsOftenAsAskedFor) {
+  expectGoodResult(run("--draw-tracks 0.5"));
+  for (int i = 0; i < kRoomImages; ++i) {
+    const std::filesystem::path picture = output_ / "frames" / fmt::format("{}.png", roomImageStamp_ns(i));
+    ASSERT_EQ(std::filesystem::exists(picture), i % 10 == 0) << i;
+    if (i % 10 != 0) continue;
+    const cv::Mat pixels = cv::imread(picture.string());
+    EXPECT_EQ(pixels.cols, 2 * 320);
+    EXPECT_GT(pixels.rows, 240);
+    EXPECT_GT(colouredPixels(pixels), 1000) << "dots of tracks";
+  }
+}
+
+TEST_F(RunImages, NoTracksAreDrawnUnasked) {
+  expectGoodResult(run());
+  EXPECT_FALSE(std::filesystem::exists(output_ / "frames"));
+  for (const char* period : {"-1", "nan"}) {
+    EXPECT_EQ(run(fmt::format("--draw-tracks {}", period)).exit_code, 2) << period;
+  }
 }
 
 TEST_F(RunImages, MissingFolderOfImagesIsNamed) {
