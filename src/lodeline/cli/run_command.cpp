@@ -9,6 +9,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/settings.h"
+#include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/process_usage.h"
 #include "lodeline/cli/run_progress.h"
 #include "lodeline/cli/run_settings.h"
@@ -31,6 +32,7 @@ struct RunArguments {
   std::string config;
   std::vector<std::string> overrides;
   std::optional<double> draw_tracks_s;
+  std::string magnetometer_calibration;
   bool quiet = false;
 };
 
@@ -54,6 +56,12 @@ void loadSettings(const RunArguments& arguments, Settings* settings) {
     if (equals == std::string::npos) throw UsageError(fmt::format("--set {}: expected KEY=VALUE", override));
     settings->set(override.substr(0, equals), override.substr(equals + 1));
   }
+}
+
+void calibrateMagnetometer(const std::filesystem::path& file, EurocSource* source) {
+  Rig rig = source->rig();
+  applyCalibration(readCalibrationFile(file), file, &rig);
+  source->setMagnetometer(*rig.magnetometer);
 }
 
 RunDescription describe(const RunArguments& arguments, const RunSettings& options, const Rig& rig) {
@@ -129,10 +137,16 @@ void run(const RunArguments& arguments) {
   Settings settings;
   bindRunSettings(&settings, &options);
   loadSettings(arguments, &settings);
+  if (!arguments.magnetometer_calibration.empty()) {
+    options.magnetometer_calibration = arguments.magnetometer_calibration;
+  }
 
   const std::filesystem::path folder = arguments.output;
   Diagnostics diagnostics;
   EurocSource source(arguments.data, options.source, &diagnostics);
+  if (!options.magnetometer_calibration.empty()) {
+    calibrateMagnetometer(options.magnetometer_calibration, &source);
+  }
   createFolder(folder);
   std::ofstream config = openOutput(folder / "config.yaml");
   settings.write(config);
@@ -164,6 +178,8 @@ void addRunCommand(CLI::App& program) {
       ->add_option("--draw-tracks", arguments->draw_tracks_s,
                    "write pictures of the followed points, one frame each so many seconds")
       ->type_name("SECONDS");
+  command->add_option("--mag-calibration", arguments->magnetometer_calibration,
+                      "what `lodeline calibrate magnetometer` wrote");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
   command->footer(
       "Examples:\n"

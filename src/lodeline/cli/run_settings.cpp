@@ -93,6 +93,8 @@ void bindRunSettings(Settings* settings, RunSettings* options) {
   bindStart(settings, &options->odometry.estimator.initial_state,
             &options->odometry.estimator.mono_initialization);
   bindEstimator(settings, &options->odometry.estimator);
+  settings->bind("magnetometer.calibration", &options->magnetometer_calibration,
+                 "file that `lodeline calibrate magnetometer` wrote; empty for none");
 }
 
 }  // namespace lodeline

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "lodeline/base/settings.h"
@@ -14,6 +15,7 @@ struct RunSettings {
   EurocOptions source;
   SynchronizerOptions synchronizer;
   OdometryOptions odometry;
+  std::string magnetometer_calibration;  ///< file of `lodeline calibrate magnetometer`; empty for none
 };
 
 void bindRunSettings(Settings* settings, RunSettings* options);

@@ -25,6 +25,8 @@ class EurocSource : public MeasurementSource {
   EurocSource(const std::filesystem::path& data, const EurocOptions& options, Diagnostics* diagnostics);
 
   const Rig& rig() const override { return rig_; }
+  /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
+  void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
   std::optional<ImuSample> nextImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;

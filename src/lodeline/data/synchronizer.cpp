@@ -36,8 +36,7 @@ Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions&
             diagnostics},
            options.history_s),
       magnetometer_(
-          expectation("magnetometer", "magnetometer", rateOf(source->rig().magnetometer)),
-          [source] { return source->nextMagnetometer(); }, diagnostics),
+          magnetometerExpectation(), [source] { return source->nextMagnetometer(); }, diagnostics),
       depth_(
           expectation("depth", "pressure sensor", rateOf(source->rig().pressure)),
           [source] { return source->nextDepth(); }, diagnostics),
@@ -62,6 +61,13 @@ StreamExpectation Synchronizer::expectation(const char* kind, const std::string&
   expected.name = name;
   expected.rate_hz = rate_hz;
   expected.max_gap_s = rate_hz > 0.0 ? options_.max_gap_periods / rate_hz : 0.0;
+  return expected;
+}
+
+StreamExpectation Synchronizer::magnetometerExpectation() const {
+  const std::optional<MagnetometerCalibration>& magnetometer = source_->rig().magnetometer;
+  StreamExpectation expected = expectation("magnetometer", "magnetometer", rateOf(magnetometer));
+  if (magnetometer) expected.offset_to_imu_clock = Duration::fromSeconds(magnetometer->time_offset_to_imu_s);
   return expected;
 }
 

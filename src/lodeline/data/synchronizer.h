@@ -58,6 +58,7 @@ class Synchronizer {
   };
 
   StreamExpectation expectation(const char* kind, const std::string& name, double rate_hz) const;
+  StreamExpectation magnetometerExpectation() const;
   std::optional<Draft> draftNext();
   bool coveredByImu(const PendingImage& image);
   std::optional<PendingImage> partnerOf(const PendingImage& reference, size_t camera);

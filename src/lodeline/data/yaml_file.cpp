@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "lodeline/base/edit_distance.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
@@ -51,6 +53,13 @@ CalibrationMap::CalibrationMap(YAML::Node node, std::filesystem::path file, std:
 
 std::string CalibrationMap::at(const std::string& key) const {
   return fmt::format("{}: key '{}{}'", file_.string(), section_.empty() ? "" : section_ + ".", key);
+}
+
+std::string CalibrationMap::atLine(const std::string& key) const {
+  const YAML::Node node = node_[key];
+  if (!node.IsDefined()) return at(key);
+  return fmt::format("{}:{}: key '{}{}'", file_.string(), node.Mark().line + 1,
+                     section_.empty() ? "" : section_ + ".", key);
 }
 
 bool CalibrationMap::has(const std::string& key) {
@@ -105,6 +114,22 @@ Rigid3 CalibrationMap::transform(const std::string& key) {
   return Rigid3::fromMatrix(matrix, at(key).c_str());
 }
 
+Mat3 CalibrationMap::matrix3(const std::string& key) {
+  const std::vector<double> values = numbers(key);
+  if (values.size() != 9) {
+    throw InputError(fmt::format("{} has {} numbers where a 3x3 matrix needs 9", atLine(key), values.size()));
+  }
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+}
+
+Vec3 CalibrationMap::vector3(const std::string& key) {
+  const std::vector<double> values = numbers(key);
+  if (values.size() != 3) {
+    throw InputError(fmt::format("{} has {} numbers where a vector needs 3", atLine(key), values.size()));
+  }
+  return Vec3(values.data());
+}
+
 void CalibrationMap::ignore(const std::vector<std::string>& keys) { known_.insert(keys.begin(), keys.end()); }
 
 void CalibrationMap::reportUnknownKeys(Diagnostics* diagnostics) const {
@@ -114,6 +139,19 @@ void CalibrationMap::reportUnknownKeys(Diagnostics* diagnostics) const {
     diagnostics->report(
         Severity::Notice, "calibration_key",
         fmt::format("{} (line {}) is not known and passed over", at(key), entry.first.Mark().line + 1));
+  }
+}
+
+void CalibrationMap::refuseUnknownKeys() const {
+  for (const auto& entry : node_) {
+    const std::string key = entry.first.Scalar();
+    if (known_.contains(key)) continue;
+    const auto nearest = std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
+      return editDistance(key, a) < editDistance(key, b);
+    });
+    throw InputError(fmt::format("{}:{}: unknown key '{}{}'{}", file_.string(), entry.first.Mark().line + 1,
+                                 section_.empty() ? "" : section_ + ".", key,
+                                 nearest == known_.end() ? "" : "; did you mean '" + *nearest + "'?"));
   }
 }
 

@@ -31,15 +31,21 @@ class CalibrationMap {
   std::vector<double> numbers(const std::string& key);
   /// A 4x4 matrix as EuRoC's map of cols, rows, data, or as 16 numbers, or as 4 rows of 4.
   Rigid3 transform(const std::string& key);
+  /// A 3x3 matrix, row by row.
+  Mat3 matrix3(const std::string& key);
+  Vec3 vector3(const std::string& key);
   double numberOr(const std::string& key, double fallback);
 
   /// Adds keys that are known but not needed.
   void ignore(const std::vector<std::string>& keys);
   /// Reports every key that was neither asked for nor ignored.
   void reportUnknownKeys(Diagnostics* diagnostics) const;
+  /// For files of our own: throws InputError for such a key, naming its line and the nearest known one.
+  void refuseUnknownKeys() const;
 
-  /// "FILE: key KEY", for messages.
+  /// "FILE: key KEY", for messages; "FILE:LINE: key KEY" where the key is there.
   std::string at(const std::string& key) const;
+  std::string atLine(const std::string& key) const;
   const std::filesystem::path& file() const { return file_; }
 
  private:

@@ -57,6 +57,13 @@ struct MagnetometerCalibration {
   Mat3 iron_correction = Mat3::Identity();
   Vec3 hard_iron_T = Vec3::Zero();
   bool is_calibrated = false;  ///< whether iron_correction and hard_iron_T come from a calibration
+  /// Stamps + this = IMU clock; negative where the magnetometer lags the gyroscope.
+  double time_offset_to_imu_s = 0.0;
+  /// What the calibration knows about itself, where it says so: the field's size that its corrected readings
+  /// have, and one sigma of the hard iron per axis and of the rotation of body_from_magnetometer.
+  std::optional<double> field_strength_T = std::nullopt;
+  std::optional<double> hard_iron_sigma_T = std::nullopt;
+  std::optional<double> rotation_sigma_rad = std::nullopt;
 
   /// A reading freed from soft and hard iron, T, in body axes.
   Vec3 corrected_B(const Vec3& reading_M) const {
