@@ -5,6 +5,7 @@
 
 #include "lodeline/base/time.h"
 #include "lodeline/geometry/types.h"
+#include "lodeline/inertial/rotation_increment.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
 
@@ -63,8 +64,9 @@ struct IntermediateRotation {
 ///
 /// Model: measured rate = true rate + b_g + noise, measured force = R_B_W (a_W - g_W) + b_a + noise; white
 /// noises and random walks of the biases with the densities of ImuNoise times `noise_inflation`. Over a step
-/// the rate is linear in time (rotation by the Magnus expansion to second order) and the specific force,
-/// turned into body k's axes, is linear in time.
+/// the rate is a cubic in time, its slopes at the readings those of the chords between their neighbours
+/// (rotation by the Magnus expansion to second order), and the specific force, turned into body k's axes, is
+/// linear in time.
 ///
 /// Error: e = [alpha, beta, theta, b_g, b_a] = truth minus integration with the biases of moment k, where
 /// gamma_true = exp(theta) * gamma and the last two are the biases' walk from k to k+1.
@@ -114,7 +116,10 @@ class Preintegration {
 
  private:
   void integrate();
-  void advance(const ImuSample& from, const ImuSample& to);
+  /// Over the step from sample i to the next.
+  void advance(size_t i);
+  /// At a sample, freed from the bias.
+  TurningRate turningRate(size_t i) const;
   Mat15 processNoise(double step_s, const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const;
 
   std::vector<ImuSample> samples_;

@@ -4,16 +4,32 @@
 
 namespace lodeline {
 
-/// Rotation over a stretch of time in which the body's rate (rad/s, body axes) runs linearly from `from` to
-/// `to`: exp(rotation_vector) = body then from body at its end. First two terms of the Magnus expansion
-/// (Blanes et al., "The Magnus expansion and some of its applications", Physics Reports 2009, section 2).
+/// The body's rate at one moment, body axes.
+struct TurningRate {
+  Vec3 rate_rad_per_s;
+  Vec3 slope_rad_per_s2;  ///< its change with time
+};
+
+/// Rotation over a stretch of time in which the rate runs as a cubic with the given ends and slopes:
+/// exp(rotation_vector) = body then from body at its end. First two terms of the Magnus expansion (Blanes et
+/// al., "The Magnus expansion and some of its applications", Physics Reports 2009, section 2), which leave an
+/// error of the fifth order in the stretch. The slopes matter where a rig turns about two axes out of phase
+/// (coning): without them the error of each stretch is of third order and adds up.
 struct RotationIncrement {
   Vec3 rotation_vector;  ///< rad
   Mat3 by_bias;          ///< derivative by a bias taken off both rates, s
 
+  /// Linear between the rates, rad/s.
   RotationIncrement(const Vec3& from, const Vec3& to, double stretch_s)
-      : rotation_vector(0.5 * stretch_s * (from + to) + stretch_s * stretch_s / 12.0 * from.cross(to)),
-        by_bias(-stretch_s * Mat3::Identity() + stretch_s * stretch_s / 12.0 * so3::skew(to - from)) {}
+      : RotationIncrement(TurningRate{from, Vec3::Zero()}, TurningRate{to, Vec3::Zero()}, stretch_s) {}
+
+  RotationIncrement(const TurningRate& from, const TurningRate& to, double stretch_s)
+      : rotation_vector(
+            0.5 * stretch_s * (from.rate_rad_per_s + to.rate_rad_per_s) +
+            stretch_s * stretch_s / 12.0 *
+                (from.slope_rad_per_s2 - to.slope_rad_per_s2 + from.rate_rad_per_s.cross(to.rate_rad_per_s))),
+        by_bias(-stretch_s * Mat3::Identity() +
+                stretch_s * stretch_s / 12.0 * so3::skew(to.rate_rad_per_s - from.rate_rad_per_s)) {}
 };
 
 }  // namespace lodeline
