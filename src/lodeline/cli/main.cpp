@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "lodeline/base/error.h"
+#include "lodeline/cli/allan_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   lodeline::addRunCommand(program);
   lodeline::addEvaluateCommand(program);
   lodeline::addSimulateCommand(program);
+  lodeline::addAllanCommand(program);
   try {
     program.parse(argc, argv);
     return kGood;

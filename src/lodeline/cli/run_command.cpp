@@ -40,15 +40,6 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void createFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("{}: cannot be created ({}); choose another folder with -o", folder.string(),
-                                 error.message()));
-  }
-}
-
 void loadSettings(const RunArguments& arguments, Settings* settings) {
   if (!arguments.config.empty()) settings->load(arguments.config);
   for (const std::string& override : arguments.overrides) {
@@ -147,7 +138,7 @@ void run(const RunArguments& arguments) {
   if (!options.magnetometer_calibration.empty()) {
     calibrateMagnetometer(options.magnetometer_calibration, &source);
   }
-  createFolder(folder);
+  createOutputFolder(folder);
   std::ofstream config = openOutput(folder / "config.yaml");
   settings.write(config);
   closeOutput(folder / "config.yaml", &config);

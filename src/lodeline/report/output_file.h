@@ -3,10 +3,21 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 #include "lodeline/base/error.h"
 
 namespace lodeline {
+
+/// Makes a folder for results where it is missing. Throws InputError naming it.
+inline void createOutputFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(folder.string() + ": cannot be created (" + error.message() +
+                     "); choose another folder with -o");
+  }
+}
 
 /// Opens a file of a run's output folder for writing, replacing what was there. Throws InputError naming it.
 inline std::ofstream openOutput(const std::filesystem::path& file) {

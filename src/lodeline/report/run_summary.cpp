@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lodeline/report/findings.h"
+
 namespace lodeline {
 namespace {
 
@@ -108,13 +110,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
                                {"front_end", coreMillisecondsPerFrame(front_end_s)},
                                {"estimator", coreMillisecondsPerFrame(estimator_s)}};
   json["peak_memory_MB"] = peak_memory_MB;
-  json["findings"] = nlohmann::ordered_json::array();
-  for (const Finding& finding : diagnostics.ranked()) {
-    json["findings"].push_back({{"severity", toString(finding.severity)},
-                                {"kind", finding.kind},
-                                {"message", finding.first_message},
-                                {"count", finding.count}});
-  }
+  json["findings"] = findingsJson(diagnostics);
   return json.dump(2) + "\n";
 }
 

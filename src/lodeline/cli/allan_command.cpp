@@ -1,0 +1,172 @@
+#include "lodeline/cli/allan_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "lodeline/base/error.h"
+#include "lodeline/data/csv_reader.h"
+#include "lodeline/data/euroc_rig.h"
+#include "lodeline/data/plain_csv.h"
+#include "lodeline/report/findings.h"
+#include "lodeline/report/noise_report.h"
+#include "lodeline/report/output_file.h"
+
+namespace lodeline {
+namespace {
+
+struct AllanArguments {
+  std::string data;
+  std::string output;
+  std::string json;
+  double skip_s = 0.0;
+  double duration_s = 0.0;
+};
+
+/// What of the record is to be looked at, counted from its first reading.
+class Part {
+ public:
+  explicit Part(const AllanArguments& arguments) : arguments_(arguments) {}
+  bool holds(Time time) {
+    if (!first_) first_ = time;
+    const double t = (time - *first_).seconds();
+    return t >= arguments_.skip_s &&
+           (arguments_.duration_s == 0.0 || t <= arguments_.skip_s + arguments_.duration_s);
+  }
+
+ private:
+  const AllanArguments& arguments_;
+  std::optional<Time> first_;
+};
+
+/// The three sensors, those that the recording has.
+class Analyses {
+ public:
+  explicit Analyses(Diagnostics* diagnostics)
+      : gyroscope(gyroscopeToAnalyse(), diagnostics),
+        accelerometer(accelerometerToAnalyse(), diagnostics),
+        magnetometer(magnetometerToAnalyse(), diagnostics) {}
+
+  SensorNoiseAnalysis gyroscope, accelerometer, magnetometer;
+  bool has_gyroscope = false, has_accelerometer = false, has_magnetometer = false;
+
+  std::vector<SensorNoise> finish() {
+    std::vector<SensorNoise> sensors;
+    if (has_gyroscope) sensors.push_back(gyroscope.finish());
+    if (has_accelerometer) sensors.push_back(accelerometer.finish());
+    if (has_magnetometer) sensors.push_back(magnetometer.finish());
+    return sensors;
+  }
+};
+
+void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
+  EurocOptions options;
+  options.with_cameras = false;
+  options.needs_imu = false;
+  const EurocLayout layout = findEurocLayout(arguments.data, options);
+  CsvRow row;
+  if (layout.has_imu) {
+    analyses->has_gyroscope = analyses->has_accelerometer = true;
+    CsvReader imu(layout.csv("imu0"), 6, diagnostics);
+    for (Part part(arguments); imu.next(&row);) {
+      if (!part.holds(row.time)) continue;
+      analyses->gyroscope.add(row.time, Vec3(row.numbers.data()));
+      analyses->accelerometer.add(row.time, Vec3(row.numbers.data() + 3));
+    }
+  }
+  if (!std::filesystem::exists(layout.csv("mag0"))) return;
+  analyses->has_magnetometer = true;
+  CsvReader magnetometer(layout.csv("mag0"), 3, diagnostics);
+  for (Part part(arguments); magnetometer.next(&row);) {
+    if (part.holds(row.time)) analyses->magnetometer.add(row.time, Vec3(row.numbers.data()));
+  }
+}
+
+void readFile(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
+  PlainCsv file(arguments.data, diagnostics);
+  analyses->has_gyroscope = file.hasGyroscope();
+  analyses->has_accelerometer = file.hasAccelerometer();
+  analyses->has_magnetometer = file.hasMagnetometer();
+  PlainReading reading;
+  for (Part part(arguments); file.next(&reading);) {
+    if (!part.holds(reading.time)) continue;
+    if (reading.angular_velocity) analyses->gyroscope.add(reading.time, *reading.angular_velocity);
+    if (reading.specific_force) analyses->accelerometer.add(reading.time, *reading.specific_force);
+    if (reading.field) analyses->magnetometer.add(reading.time, *reading.field);
+  }
+}
+
+void drawFigures(const std::vector<SensorNoise>& sensors, const std::filesystem::path& folder,
+                 Diagnostics* diagnostics) {
+  std::vector<gnuplot::Figure> figures;
+  for (const SensorNoise& noise : sensors) figures.push_back(allanFigure(noise));
+  const gnuplot::Result result = gnuplot::draw(figures, folder);
+  if (result.outcome == gnuplot::Outcome::Drawn) return;
+  const bool missing = result.outcome == gnuplot::Outcome::Missing;
+  diagnostics->report(Severity::Warning, missing ? "gnuplot_missing" : "gnuplot_failed",
+                      missing ? "no plots: the program gnuplot is not installed (Debian package gnuplot-nox)"
+                              : "no plots: gnuplot failed: " + result.message);
+}
+
+void allan(const AllanArguments& arguments) {
+  Diagnostics diagnostics;
+  Analyses analyses(&diagnostics);
+  if (std::filesystem::is_regular_file(arguments.data)) {
+    readFile(arguments, &diagnostics, &analyses);
+  } else {
+    readFolder(arguments, &diagnostics, &analyses);
+  }
+  const std::vector<SensorNoise> sensors = analyses.finish();
+  if (!arguments.output.empty()) {
+    const std::filesystem::path folder = arguments.output;
+    createOutputFolder(folder);
+    if (analyses.has_gyroscope && analyses.has_accelerometer) {
+      writeOutput(folder / "imu.yaml", kalibrImuYaml(sensors[0], sensors[1]));
+    }
+    if (analyses.has_magnetometer)
+      writeOutput(folder / "magnetometer.yaml", magnetometerYaml(sensors.back()));
+    drawFigures(sensors, folder, &diagnostics);
+  }
+  if (!arguments.json.empty()) {
+    nlohmann::ordered_json json = noiseJson(sensors);
+    json["findings"] = findingsJson(diagnostics);
+    writeOutput(arguments.json, json.dump(2) + "\n");
+  }
+  fmt::print("{}{}", noiseTable(sensors), findingsText(diagnostics));
+}
+
+}  // namespace
+
+void addAllanCommand(CLI::App& program) {
+  const auto arguments = std::make_shared<AllanArguments>();
+  CLI::App* command = program.add_subcommand(
+      "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
+  command
+      ->add_option(
+          "DATA", arguments->data,
+          "folder with mav0 (EuRoC ASL layout; cameras and calibration may be missing), or a CSV file")
+      ->required();
+  command->add_option("-o,--output", arguments->output,
+                      "folder for imu.yaml (Kalibr), magnetometer.yaml and plots; made where it is missing");
+  command->add_option("--json", arguments->json, "write all figures and curves to this file");
+  command
+      ->add_option("--skip", arguments->skip_s, "leave out the first so many seconds, while sensors warm up")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--duration", arguments->duration_s, "use so many seconds; 0 for all")
+      ->check(CLI::NonNegativeNumber);
+  command->footer(
+      "Record the rig lying still on solid ground, for hours: white noise takes minutes to know to 5 %, "
+      "bias\n"
+      "instability and random walk hours.\n"
+      "A CSV file has a header with units, `t [s], wx [rad/s], wy [rad/s], wz [rad/s], ax [m/s^2], … , mx "
+      "[uT], …`,\n"
+      "or no header and a time with 3 (magnetometer), 6 (gyroscope, accelerometer) or 9 numbers.\n"
+      "Examples:\n"
+      "  lodeline allan bench -o bench_noise --json bench_noise/figures.json\n"
+      "  lodeline allan rest.csv --skip 600");
+  command->callback([arguments] { allan(*arguments); });
+}
+
+}  // namespace lodeline
