@@ -43,11 +43,9 @@ void writeCsv(const std::filesystem::path& file, const CsvTable& table) {
 class Mh01Program : public testing::Test {
  protected:
   void SetUp() override {
-    const auto folder = testDataDir();
-    if (!folder || !std::filesystem::exists(*folder / "euroc_mh01_stereo_14s")) {
-      GTEST_SKIP() << "recording euroc_mh01_stereo_14s not found; set LODELINE_DATA_DIR";
-    }
-    data_ = *folder / "euroc_mh01_stereo_14s";
+    const std::optional<std::filesystem::path> recording = testData(kMh01Recording);
+    if (!recording) GTEST_SKIP() << missingTestData(kMh01Recording);
+    data_ = *recording;
     truth_ = data_ / "mav0" / "state_groundtruth_estimate0" / "gt_tum.txt";
   }
 

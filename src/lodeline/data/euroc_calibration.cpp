@@ -33,6 +33,20 @@ std::string maskOrNone(CalibrationMap* map) {
   return mask.string();
 }
 
+/// A sensor of which the file tells no more than place, rate and one figure of noise.
+template <typename Calibration>
+Calibration readSmallSensor(const std::filesystem::path& file, Rigid3 Calibration::*body_from_sensor,
+                            const std::string& noise_key, double Calibration::*noise,
+                            Diagnostics* diagnostics) {
+  CalibrationMap map = open(file);
+  Calibration calibration;
+  calibration.*body_from_sensor = map.transform("T_BS");
+  calibration.rate_hz = rateOrUnknown(&map);
+  calibration.*noise = positive(noise_key, &map);
+  map.reportUnknownKeys(diagnostics);
+  return calibration;
+}
+
 }  // namespace
 
 EurocImu readEurocImu(const std::filesystem::path& file, Diagnostics* diagnostics) {
@@ -65,33 +79,21 @@ CameraCalibration readEurocCamera(const std::filesystem::path& file, const std::
 }
 
 MagnetometerCalibration readEurocMagnetometer(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  CalibrationMap map = open(file);
-  MagnetometerCalibration magnetometer;
-  magnetometer.body_from_magnetometer = map.transform("T_BS");
-  magnetometer.rate_hz = rateOrUnknown(&map);
-  magnetometer.noise_density_T_per_sqrtHz = positive("magnetometer_noise_density", &map);
-  map.reportUnknownKeys(diagnostics);
-  return magnetometer;
+  using Calibration = MagnetometerCalibration;
+  return readSmallSensor(file, &Calibration::body_from_magnetometer, "magnetometer_noise_density",
+                         &Calibration::noise_density_T_per_sqrtHz, diagnostics);
 }
 
 PressureCalibration readEurocPressure(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  CalibrationMap map = open(file);
-  PressureCalibration pressure;
-  pressure.body_from_pressure = map.transform("T_BS");
-  pressure.rate_hz = rateOrUnknown(&map);
-  pressure.depth_noise_std_m = positive("depth_noise_std", &map);
-  map.reportUnknownKeys(diagnostics);
-  return pressure;
+  using Calibration = PressureCalibration;
+  return readSmallSensor(file, &Calibration::body_from_pressure, "depth_noise_std",
+                         &Calibration::depth_noise_std_m, diagnostics);
 }
 
 SonarCalibration readEurocSonar(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  CalibrationMap map = open(file);
-  SonarCalibration sonar;
-  sonar.body_from_sonar = map.transform("T_BS");
-  sonar.rate_hz = rateOrUnknown(&map);
-  sonar.range_noise_std_m = positive("range_noise_std", &map);
-  map.reportUnknownKeys(diagnostics);
-  return sonar;
+  using Calibration = SonarCalibration;
+  return readSmallSensor(file, &Calibration::body_from_sonar, "range_noise_std",
+                         &Calibration::range_noise_std_m, diagnostics);
 }
 
 }  // namespace lodeline

@@ -14,11 +14,9 @@ namespace {
 class Mh01 : public testing::Test {
  protected:
   void SetUp() override {
-    const auto folder = testDataDir();
-    if (!folder || !std::filesystem::exists(*folder / "euroc_mh01_stereo_14s")) {
-      GTEST_SKIP() << "recording euroc_mh01_stereo_14s not found; set LODELINE_DATA_DIR";
-    }
-    data_ = *folder / "euroc_mh01_stereo_14s";
+    const std::optional<std::filesystem::path> recording = testData(kMh01Recording);
+    if (!recording) GTEST_SKIP() << missingTestData(kMh01Recording);
+    data_ = *recording;
   }
 
   std::vector<FramePacket> readAll(const EurocOptions& euroc, const SynchronizerOptions& options) {

@@ -13,10 +13,9 @@ namespace {
 class ReferenceResults : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto data = testDataDir();
-    if (!data) GTEST_SKIP() << "no recordings: set LODELINE_DATA_DIR";
-    folder_ = *data / "trajectories";
-    if (!std::filesystem::is_directory(folder_)) GTEST_SKIP() << folder_ << " is missing";
+    const auto folder = testData("trajectories");
+    if (!folder) GTEST_SKIP() << missingTestData("trajectories");
+    folder_ = *folder;
   }
 
   Trajectory read(const std::string& name) { return readTrajectory(folder_ / name, {}, diagnostics_); }

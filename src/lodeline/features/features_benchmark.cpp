@@ -149,13 +149,13 @@ void renderedLeftFrameOpenCv(benchmark::State& state, const TestLight& light) {
 }
 
 void recordedStereoFrame(benchmark::State& state) {
-  const auto folder = testDataDir();
-  if (!folder || !std::filesystem::exists(*folder / "euroc_mh01_stereo_14s")) {
-    state.SkipWithError("recording euroc_mh01_stereo_14s not found; set LODELINE_DATA_DIR");
+  const std::optional<std::filesystem::path> recording = testData(kMh01Recording);
+  if (!recording) {
+    state.SkipWithError(missingTestData(kMh01Recording).c_str());
     return;
   }
   Diagnostics diagnostics;
-  EurocSource source(*folder / "euroc_mh01_stereo_14s", {}, &diagnostics);
+  EurocSource source(*recording, {}, &diagnostics);
   SynchronizerOptions options;
   options.duration_s = 5.0;
   Synchronizer synchronizer(&source, options, &diagnostics);

@@ -52,11 +52,9 @@ double median(std::vector<double> values) {
 class Mh01Tracks : public testing::Test {
  protected:
   void SetUp() override {
-    const auto folder = testDataDir();
-    if (!folder || !std::filesystem::exists(*folder / "euroc_mh01_stereo_14s")) {
-      GTEST_SKIP() << "recording euroc_mh01_stereo_14s not found; set LODELINE_DATA_DIR";
-    }
-    data_ = *folder / "euroc_mh01_stereo_14s";
+    const std::optional<std::filesystem::path> recording = testData(kMh01Recording);
+    if (!recording) GTEST_SKIP() << missingTestData(kMh01Recording);
+    data_ = *recording;
     trackAll();
   }
 

@@ -41,12 +41,10 @@ struct Consistency {
 class RealFlight : public testing::Test {
  protected:
   void SetUp() override {
-    const auto folder = testDataDir();
-    if (!folder || !std::filesystem::exists(*folder / "euroc_imu_gt")) {
-      GTEST_SKIP() << "no folder euroc_imu_gt under LODELINE_DATA_DIR or ../shared/data";
-    }
-    recording_ = readRealRecording(*folder / "euroc_imu_gt/V1_03_difficult_imu0.csv.gz",
-                                   *folder / "euroc_imu_gt/V1_03_difficult_groundtruth.csv.gz");
+    const auto folder = testData("euroc_imu_gt");
+    if (!folder) GTEST_SKIP() << missingTestData("euroc_imu_gt");
+    recording_ = readRealRecording(*folder / "V1_03_difficult_imu0.csv.gz",
+                                   *folder / "V1_03_difficult_groundtruth.csv.gz");
     // The recording's sensor.yaml.
     imu_.rate_hz = 200.0;
     imu_.noise = {1.6968e-4, 1.9393e-5, 2.0e-3, 3.0e-3};

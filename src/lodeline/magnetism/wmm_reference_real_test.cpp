@@ -17,10 +17,10 @@ double angleDifferenceDeg(double a_rad, double b_deg) {
 }
 
 TEST(WorldMagneticModelReference, ReproducesAllOfNoaasTestValues) {
-  const auto folder = testDataDir();
-  if (!folder) GTEST_SKIP() << "recordings are not there (LODELINE_DATA_DIR)";
-  std::ifstream file(*folder / "wmm" / "WMM2025_TestValues.txt");
-  if (!file) GTEST_SKIP() << "wmm/WMM2025_TestValues.txt is not among the recordings";
+  constexpr const char* kTestValues = "wmm/WMM2025_TestValues.txt";
+  const auto table = testData(kTestValues);
+  if (!table) GTEST_SKIP() << missingTestData(kTestValues);
+  std::ifstream file(*table);
   int points = 0;
   double largest_nT = 0.0, largest_deg = 0.0, largest_rate_nT = 0.0;
   for (std::string line; std::getline(file, line);) {
