@@ -38,6 +38,12 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
 void bindInertial(Settings* settings, PreintegrationOptions* options) {
   settings->bind("inertial.noise_inflation", &options->noise_inflation,
                  "factor on all noise densities of the IMU's calibration");
+  settings->bind("inertial.unresolved_share", &options->motion_noise.unresolved_share,
+                 "of the change between two readings that counts as unknown");
+  settings->bind("inertial.axis_error", &options->motion_noise.axis_error,
+                 "relative scale errors and misalignment of the IMU's axes");
+  settings->bind("inertial.axis_error_time_s", &options->motion_noise.axis_error_time_s,
+                 "for which an axis error keeps its effect");
   settings->bind("inertial.max_gap_s", &options->max_gap_s, "readings further apart count as lost data");
   settings->bind("inertial.gap_rate_sigma_rad_per_s", &options->gap_rate_sigma_rad_per_s,
                  "uncertainty of the rate over lost data");

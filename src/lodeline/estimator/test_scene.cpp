@@ -106,6 +106,7 @@ std::vector<SimulatedFrame> TestScene::all() {
 EstimatorOptions honestOptions(const TestSceneOptions& scene) {
   EstimatorOptions options;
   options.preintegration.noise_inflation = 1.0;
+  options.preintegration.motion_noise = MotionNoiseOptions::none();
   options.initial_state.gyroscope_bias_sigma_rad_per_s = scene.gyroscope_bias_sigma_rad_per_s;
   options.initial_state.accelerometer_bias_sigma_m_per_s2 = scene.accelerometer_bias_sigma_m_per_s2;
   return options;

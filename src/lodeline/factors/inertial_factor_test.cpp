@@ -148,6 +148,7 @@ TEST(InertialFactor, WhitenedNoiseHasUnitCovariance) {
   constexpr int kRuns = 300;
   PreintegrationOptions options;
   options.noise_inflation = 1.0;
+  options.motion_noise = MotionNoiseOptions::none();
   const ImuCalibration imu;
   const double root_rate = std::sqrt(imu.rate_hz);
   Gaussian gaussian;

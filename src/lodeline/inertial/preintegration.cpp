@@ -161,38 +161,34 @@ void Preintegration::advance(size_t i) {
   bias_jacobian_ =
       (transition.topLeftCorner<9, 9>() * bias_jacobian_ + transition.topRightCorner<9, 6>()).eval();
   covariance_ = (transition * covariance_ * transition.transpose() +
-                 processNoise(step.h, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
+                 processNoise(from, to, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
                     .eval();
 }
 
 Preintegration::Mat15 Preintegration::processNoise(
-    double step_s, const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const {
-  const double h = step_s;
-  const ImuNoise& noise = imu_.noise;
-  const auto squared = [&](double density) {
-    return density * density * options_.noise_inflation * options_.noise_inflation;
-  };
-  double gyroscope = squared(noise.gyroscope_density_rad_per_s_sqrtHz);
-  double accelerometer = squared(noise.accelerometer_density_m_per_s2_sqrtHz);
+    const ImuSample& from, const ImuSample& to,
+    const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const {
+  const double h = (to.time - from.time).seconds();
+  StepNoise noise =
+      stepNoise(from, to, gyroscope_bias_, imu_.noise, options_.noise_inflation, options_.motion_noise);
   if (h > std::max(options_.max_gap_s, 1.5 / imu_.rate_hz)) {
     // White noise of density sigma * sqrt(h) has, over the gap, a mean with exactly that sigma.
-    gyroscope += h * options_.gap_rate_sigma_rad_per_s * options_.gap_rate_sigma_rad_per_s;
-    accelerometer +=
+    noise.gyroscope += h * options_.gap_rate_sigma_rad_per_s * options_.gap_rate_sigma_rad_per_s;
+    noise.accelerometer +=
         h * options_.gap_specific_force_sigma_m_per_s2 * options_.gap_specific_force_sigma_m_per_s2;
   }
 
   Mat15 q = Mat15::Zero();
   // The gyroscope's noise enters where its bias does; its mean over the step has variance density^2 / h.
-  q.topLeftCorner<9, 9>() = gyroscope / h * motion_by_gyroscope_bias * motion_by_gyroscope_bias.transpose();
+  q.topLeftCorner<9, 9>() =
+      noise.gyroscope / h * motion_by_gyroscope_bias * motion_by_gyroscope_bias.transpose();
   // Exact for white noise on the force, and of full rank even for an interval of one step.
-  q.block<3, 3>(kAlpha, kAlpha).diagonal().array() += accelerometer * h * h * h / 3.0;
-  q.block<3, 3>(kAlpha, kBeta).diagonal().array() += accelerometer * h * h / 2.0;
-  q.block<3, 3>(kBeta, kAlpha).diagonal().array() += accelerometer * h * h / 2.0;
-  q.block<3, 3>(kBeta, kBeta).diagonal().array() += accelerometer * h;
-  q.diagonal().segment<3>(kGyroscopeBias).array() =
-      h * squared(noise.gyroscope_random_walk_rad_per_s2_sqrtHz);
-  q.diagonal().segment<3>(kAccelerometerBias).array() =
-      h * squared(noise.accelerometer_random_walk_m_per_s3_sqrtHz);
+  q.block<3, 3>(kAlpha, kAlpha).diagonal().array() += noise.accelerometer * h * h * h / 3.0;
+  q.block<3, 3>(kAlpha, kBeta).diagonal().array() += noise.accelerometer * h * h / 2.0;
+  q.block<3, 3>(kBeta, kAlpha).diagonal().array() += noise.accelerometer * h * h / 2.0;
+  q.block<3, 3>(kBeta, kBeta).diagonal().array() += noise.accelerometer * h;
+  q.diagonal().segment<3>(kGyroscopeBias).array() = h * noise.gyroscope_walk;
+  q.diagonal().segment<3>(kAccelerometerBias).array() = h * noise.accelerometer_walk;
   return q;
 }
 

@@ -6,6 +6,7 @@
 #include "lodeline/base/time.h"
 #include "lodeline/geometry/types.h"
 #include "lodeline/inertial/rotation_increment.h"
+#include "lodeline/inertial/step_noise.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
 
@@ -13,9 +14,9 @@ namespace lodeline {
 
 struct PreintegrationOptions {
   /// Factor on all four densities of ImuNoise. Datasheet and Allan figures hold for a sensor at rest on a
-  /// bench; this makes up for vibration, scale and alignment in motion. 10 is what fast flight needs (EuRoC
-  /// V1_03, intervals of 0.1 to 1 s, docs/inertial.md).
-  double noise_inflation = 10.0;
+  /// bench.
+  double noise_inflation = 2.0;
+  MotionNoiseOptions motion_noise;
 
   /// Two readings further apart than this, and further than 1.5 nominal periods, count as lost data.
   double max_gap_s = 0.02;
@@ -63,10 +64,10 @@ struct IntermediateRotation {
 /// IMU readings between two moments, integrated once so that the optimiser need not.
 ///
 /// Model: measured rate = true rate + b_g + noise, measured force = R_B_W (a_W - g_W) + b_a + noise; white
-/// noises and random walks of the biases with the densities of ImuNoise times `noise_inflation`. Over a step
-/// the rate is a cubic in time, its slopes at the readings those of the chords between their neighbours
-/// (rotation by the Magnus expansion to second order), and the specific force, turned into body k's axes, is
-/// linear in time.
+/// noises and random walks of the biases with the densities of ImuNoise times `noise_inflation`, and more
+/// where the motion asks for it (inertial/step_noise.h). Over a step the rate is a cubic in time, its slopes
+/// at the readings those of the chords between their neighbours (rotation by the Magnus expansion to second
+/// order), and the specific force, turned into body k's axes, is linear in time.
 ///
 /// Error: e = [alpha, beta, theta, b_g, b_a] = truth minus integration with the biases of moment k, where
 /// gamma_true = exp(theta) * gamma and the last two are the biases' walk from k to k+1.
@@ -120,7 +121,8 @@ class Preintegration {
   void advance(size_t i);
   /// At a sample, freed from the bias.
   TurningRate turningRate(size_t i) const;
-  Mat15 processNoise(double step_s, const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const;
+  Mat15 processNoise(const ImuSample& from, const ImuSample& to,
+                     const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const;
 
   std::vector<ImuSample> samples_;
   ImuCalibration imu_;

@@ -17,6 +17,7 @@ const TestMotion kMotion;
 PreintegrationOptions uninflated() {
   PreintegrationOptions options;
   options.noise_inflation = 1.0;
+  options.motion_noise = MotionNoiseOptions::none();
   return options;
 }
 
