@@ -8,6 +8,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/cli/allan_command.h"
+#include "lodeline/cli/attitude_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
   lodeline::addEvaluateCommand(program);
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);
+  lodeline::addAttitudeCommand(program);
   try {
     program.parse(argc, argv);
     return kGood;

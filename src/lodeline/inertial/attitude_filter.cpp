@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "lodeline/inertial/gravity.h"
 #include "lodeline/inertial/gravity_alignment.h"
@@ -186,19 +187,22 @@ void AttitudeFilter::takeField(const MagnetometerSample& sample) {
 }
 
 void AttitudeFilter::judge(FieldVerdict verdict, double measured_rad, double step_s) {
+  // A disturbance d, as a share of the field, of random direction changes strength and dip by d sqrt(2/3)
+  // together, and the horizontal part sideways by d sqrt(1/3).
+  const double horizontal_share = std::max(0.05, gate_.field().horizontal_T() / gate_.field().norm_T);
+  const double field_error_rad =
+      std::atan(std::numbers::sqrt2 / 2.0 * gate_.disturbance() / horizontal_share);
   const bool is_first = verdict == FieldVerdict::Settling && rejected_s_ == 0.0;
   const bool is_good = verdict == FieldVerdict::Good || is_first;
   if (is_good && heading_.accepts(measured_rad)) {
-    heading_.correct(measured_rad, 0.0, step_s);
+    heading_.correct(measured_rad, field_error_rad, false, step_s);
     status_ = HeadingStatus::Magnetic;
     rejected_s_ = 0.0;
     return;
   }
   rejected_s_ += step_s;
   if (rejected_s_ > options_.longest_rejection_s) {
-    // A field wrong by a share d of its strength turns the horizontal part by up to d over that part's share.
-    const double horizontal_share = std::max(0.05, gate_.field().horizontal_T() / gate_.field().norm_T);
-    heading_.correct(measured_rad, std::atan(gate_.disturbance() / horizontal_share), step_s);
+    heading_.correct(measured_rad, field_error_rad, true, step_s);
     status_ = HeadingStatus::Readmitted;
   } else if (is_good) {
     status_ = HeadingStatus::WrongHeading;

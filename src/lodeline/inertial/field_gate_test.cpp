@@ -65,7 +65,7 @@ TEST(HeadingFilter, StartsFromAnythingAndSettles) {
   EXPECT_TRUE(filter.accepts(3.0));
   for (int i = 0; i < 500; ++i) {
     filter.predict(1e-3, kStep_s);
-    filter.correct(3.0, 0.0, kStep_s);
+    filter.correct(3.0, 0.0, false, kStep_s);
   }
   EXPECT_NEAR(filter.offset_rad(), 3.0, 0.01);
   EXPECT_LT(filter.sigma_rad(), 0.05);
@@ -81,7 +81,7 @@ TEST(HeadingFilter, GrowsUncertainWithTheBiasAndHeedsDisturbedFieldsLittle) {
   // 60 s of a bias error of 1e-3 rad/s that changes every 10 s.
   EXPECT_NEAR(filter.sigma_rad(), 1e-3 * std::sqrt(60.0 * 10.0), 3e-3);
   const double before = filter.offset_rad();
-  filter.correct(1.0, 1.0, kStep_s);
+  filter.correct(1.0, 1.0, true, kStep_s);
   EXPECT_LT(filter.offset_rad() - before, 1e-3);
 }
 

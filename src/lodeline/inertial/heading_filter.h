@@ -12,7 +12,8 @@ struct HeadingFilterOptions {
   double sigma_rad = 0.05;  ///< 3 deg
   double correlation_s = 1.0;
   /// What no averaging takes away of it: hard iron left by the calibration, misalignment.
-  double systematic_sigma_rad = 0.026;  ///< 1.5 deg
+  double systematic_sigma_rad = 0.026;       ///< 1.5 deg
+  double systematic_time_constant_s = 30.0;  ///< of what is added where the field contradicts itself
   double disturbed_correlation_s = 10.0;
   double gate_sigmas = 3.0;
   /// The gyroscope's heading wanders by its noise, and by its bias error, which lasts for the time below.
@@ -40,14 +41,21 @@ class HeadingFilter {
     return innovation * innovation <= options_.gate_sigmas * options_.gate_sigmas * variance;
   }
 
-  /// `extra_sigma_rad`: error of a disturbed field, which lasts longer.
-  void correct(double measured_rad, double extra_sigma_rad, double step_s) {
+  /// `field_error_rad`: by how much strength and dip show the field to be off, as an angle of its horizontal
+  /// part. Where it counts as disturbed, that is part of the measurement's uncertainty. It is part of the
+  /// published uncertainty wherever a reading is used: iron that turns the field also changes its strength
+  /// and dip.
+  void correct(double measured_rad, double field_error_rad, bool is_disturbed, double step_s) {
+    const double field_variance = field_error_rad * field_error_rad;
     const double density = options_.sigma_rad * options_.sigma_rad * options_.correlation_s +
-                           extra_sigma_rad * extra_sigma_rad * options_.disturbed_correlation_s;
+                           (is_disturbed ? field_variance * options_.disturbed_correlation_s : 0.0);
     const double gain = variance_ / (variance_ + density / step_s);
     offset_rad_ += gain * std::remainder(measured_rad - offset_rad_, 2.0 * std::numbers::pi);
     variance_ *= 1.0 - gain;
-    systematic_variance_ = options_.systematic_sigma_rad * options_.systematic_sigma_rad;
+    const double systematic = options_.systematic_sigma_rad * options_.systematic_sigma_rad + field_variance;
+    used_s_ += step_s;
+    const double share = std::max(step_s / used_s_, step_s / options_.systematic_time_constant_s);
+    systematic_variance_ += std::min(1.0, share) * (systematic - systematic_variance_);
   }
 
   /// Adds to the uncertainty, as of a motion that nobody measured.
@@ -69,6 +77,7 @@ class HeadingFilter {
   double offset_rad_ = 0.0;
   double variance_ = kUnknown;
   double systematic_variance_ = 0.0;  ///< of the field, once it was used
+  double used_s_ = 0.0;
 };
 
 }  // namespace lodeline
