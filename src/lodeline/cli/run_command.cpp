@@ -15,6 +15,7 @@
 #include "lodeline/cli/run_settings.h"
 #include "lodeline/cli/stop_request.h"
 #include "lodeline/data/euroc_source.h"
+#include "lodeline/estimator/attitude_track.h"
 #include "lodeline/report/landmark_writer.h"
 #include "lodeline/report/output_file.h"
 #include "lodeline/report/run_summary.h"
@@ -73,8 +74,8 @@ RunDescription describe(const RunArguments& arguments, const RunSettings& option
 
 /// Feeds all packets through the estimator; results are on disk at the end, whether the recording or the
 /// user ended it.
-void process(Synchronizer& synchronizer, Odometry& odometry, const RunArguments& arguments,
-             RunSummary* summary) {
+void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* attitude,
+             const RunArguments& arguments, RunSummary* summary) {
   const std::filesystem::path folder = arguments.output;
   StateWriter states(folder);
   LandmarkWriter landmarks(folder);
@@ -87,7 +88,7 @@ void process(Synchronizer& synchronizer, Odometry& odometry, const RunArguments&
   std::optional<FramePacket> packet = synchronizer.next();
   for (; packet && !stop.made(); packet = synchronizer.next()) {
     const FrameEstimate estimate = odometry.add(*packet);
-    states.write(estimate);
+    states.write(estimate, attitude->add(*packet));
     landmarks.write(odometry.estimator().takeMapPoints());
     if (pictures) pictures->write(*packet, odometry.frontEnd());
     summary->add(estimate);
@@ -146,7 +147,8 @@ void run(const RunArguments& arguments) {
   Synchronizer synchronizer(&source, options.synchronizer, &diagnostics);
   Odometry odometry(source.rig(), options.odometry, &diagnostics);
   RunSummary summary(describe(arguments, options, source.rig()));
-  process(synchronizer, odometry, arguments, &summary);
+  AttitudeTrack attitude(source.rig(), {}, &diagnostics);
+  process(synchronizer, odometry, &attitude, arguments, &summary);
   writeOutput(folder / "run.json", summary.json(diagnostics));
   if (!arguments.quiet) fmt::print("{}\n{}", folder.string(), summary.text(diagnostics));
   requireResult(arguments, summary);

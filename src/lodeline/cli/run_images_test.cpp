@@ -123,6 +123,12 @@ TEST_F(RunImages, ImagesWithoutTextureEndInEstimationFailure) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("estimation failed"), HasSubstr("waiting for")));
   EXPECT_EQ(poses(), 0);
   EXPECT_EQ(summary()["completion"], 0.0);
+  // Roll and pitch are known all the same.
+  const std::string states = readText(output_ / "states.csv");
+  EXPECT_EQ(std::count(states.begin(), states.end(), '\n'), kRoomImages + 1);
+  EXPECT_THAT(states, HasSubstr(",attitude,0,"));
+  EXPECT_THAT(states, HasSubstr(",no_magnetometer\n"));
+  EXPECT_EQ(poses(), 0);
 }
 
 }  // namespace

@@ -73,6 +73,27 @@ TEST_F(RunFolder, WaitingFramesAreNotWritten) {
   EXPECT_EQ(read("trajectory.tum"), "# timestamp [s] x y z qx qy qz qw\n");
 }
 
+TEST_F(RunFolder, WaitingFramesWithAnAttitudeAreStatesButNoTrajectory) {
+  StateWriter writer(folder_);
+  FrameEstimate waiting = estimateAt(7, Vec3(1, 2, 3));
+  waiting.status = Status::Waiting;
+  AttitudeEstimate attitude;
+  attitude.world_from_body = Quat(0.6, 0.0, 0.0, 0.8);
+  attitude.heading_sigma_rad = 0.05;
+  attitude.status = HeadingStatus::Magnetic;
+  writer.write(waiting, attitude);
+  EXPECT_EQ(read("trajectory.tum"), "# timestamp [s] x y z qx qy qz qw\n");
+  std::istringstream states(read("states.csv"));
+  std::string header;
+  std::string row;
+  std::getline(states, header);
+  std::getline(states, row);
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
+  EXPECT_EQ(row.find("7,attitude,0,0,0,0,nan,nan,nan,0.6,0,0,0.8,nan,nan,nan,0,0,0,nan,nan,nan,"), 0U) << row;
+  EXPECT_NE(row.find(",nan,nan,0.05,nan"), std::string::npos) << row;
+  EXPECT_NE(row.find(",0.6,0,0,0.8,0.05,magnetic"), std::string::npos) << row;
+}
+
 TEST_F(RunFolder, UnwritableFolderIsNamed) {
   try {
     StateWriter writer(folder_ / "missing" / "folder");

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <cmath>
+#include <limits>
+
 #include "lodeline/geometry/so3.h"
 #include "lodeline/report/output_file.h"
 
@@ -27,6 +30,12 @@ void append(fmt::memory_buffer& line, const Vec3& v) {
   fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
 }
 
+constexpr const char* kAttitudeHeader =
+    ",attitude_q_w,attitude_q_x,attitude_q_y,attitude_q_z,attitude_sigma_heading [rad],attitude_status";
+
+/// One sigma of a variance that rounding may have made negative; nan stays nan.
+double sigma(double variance) { return variance < 0.0 ? 0.0 : std::sqrt(variance); }
+
 /// Header of the pose covariance's upper triangle, [p, theta] in world axes.
 std::string covarianceHeader() {
   std::string header;
@@ -36,6 +45,52 @@ std::string covarianceHeader() {
   return header;
 }
 
+void appendAttitude(fmt::memory_buffer& line, const std::optional<AttitudeEstimate>& attitude) {
+  if (!attitude) {
+    fmt::format_to(std::back_inserter(line), ",nan,nan,nan,nan,nan,none");
+    return;
+  }
+  const Quat& q = attitude->world_from_body;
+  fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}", q.w(), q.x(), q.y(),
+                 q.z(), attitude->heading_sigma_rad, toString(attitude->status));
+}
+
+/// A frame of which nothing is known but its attitude.
+FrameEstimate withAttitudeOnly(const FrameEstimate& frame, const AttitudeEstimate& attitude) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  FrameEstimate known = frame;
+  known.state.world_from_body = Rigid3(attitude.world_from_body, Vec3::Constant(kUnknown));
+  known.state.velocity_W.setConstant(kUnknown);
+  known.state.accelerometer_bias_B.setConstant(kUnknown);
+  known.state.gyroscope_bias_B = attitude.gyroscope_bias_B;
+  known.covariance.setConstant(kUnknown);
+  known.covariance(5, 5) = attitude.heading_sigma_rad * attitude.heading_sigma_rad;
+  return known;
+}
+
+/// Everything that is the estimator's, as one line without its end.
+fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) {
+  const NavigationState& state = estimate.state;
+  const Quat q = so3::canonical(state.world_from_body.rotation);
+  fmt::memory_buffer line;
+  fmt::format_to(std::back_inserter(line), "{},{},{},{},{},{:.4g}", estimate.time.nanoseconds(), status,
+                 estimate.is_keyframe ? 1 : 0, estimate.tracks, estimate.landmarks,
+                 estimate.reprojection_rms_sigmas);
+  append(line, state.world_from_body.translation);
+  fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g},{:.9g}", q.w(), q.x(), q.y(), q.z());
+  append(line, state.velocity_W);
+  append(line, state.gyroscope_bias_B);
+  append(line, state.accelerometer_bias_B);
+  for (int i = 0; i < 15; i += 3)
+    append(line, estimate.covariance.diagonal().segment<3>(i).unaryExpr(&sigma));
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(row, column));
+    }
+  }
+  return line;
+}
+
 }  // namespace
 
 StateWriter::StateWriter(const std::filesystem::path& folder)
@@ -43,41 +98,29 @@ StateWriter::StateWriter(const std::filesystem::path& folder)
       trajectory_(openOutput(folder / "trajectory.tum")),
       states_(openOutput(folder / "states.csv")) {
   trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
-  states_ << kStateHeader << covarianceHeader() << "\n" << std::flush;
+  states_ << kStateHeader << covarianceHeader() << kAttitudeHeader << "\n" << std::flush;
 }
 
-void StateWriter::write(const FrameEstimate& estimate) {
-  if (estimate.status == Status::Waiting) return;
-  const NavigationState& state = estimate.state;
-  const Vec3& p = state.world_from_body.translation;
-  const Quat q = so3::canonical(state.world_from_body.rotation);
-  fmt::print(trajectory_, "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", seconds(estimate.time),
-             p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-
-  fmt::memory_buffer line;
-  fmt::format_to(std::back_inserter(line), "{},{},{},{},{},{:.4g}", estimate.time.nanoseconds(),
-                 toString(estimate.status), estimate.is_keyframe ? 1 : 0, estimate.tracks, estimate.landmarks,
-                 estimate.reprojection_rms_sigmas);
-  append(line, p);
-  fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g},{:.9g}", q.w(), q.x(), q.y(), q.z());
-  append(line, state.velocity_W);
-  append(line, state.gyroscope_bias_B);
-  append(line, state.accelerometer_bias_B);
-  for (int i = 0; i < 15; i += 3) {
-    append(line, estimate.covariance.diagonal().segment<3>(i).cwiseMax(0.0).cwiseSqrt());
-  }
-  for (int row = 0; row < 6; ++row) {
-    for (int column = row; column < 6; ++column) {
-      fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(row, column));
-    }
-  }
-  states_ << fmt::to_string(line) << "\n";
-  trajectory_.flush();
-  states_.flush();
+void StateWriter::write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude) {
+  const bool has_pose = estimate.status != Status::Waiting;
+  if (!has_pose && !attitude) return;
+  if (has_pose) writeTrajectory(estimate);
+  fmt::memory_buffer line = has_pose ? stateLine(estimate, toString(estimate.status))
+                                     : stateLine(withAttitudeOnly(estimate, *attitude), "attitude");
+  appendAttitude(line, attitude);
+  states_ << fmt::to_string(line) << "\n" << std::flush;
   if (!trajectory_ || !states_) {
     throw InputError((folder_ / "trajectory.tum").string() + ": writing failed at " +
                      std::to_string(estimate.time.nanoseconds()) + " ns; is the disk full?");
   }
+}
+
+void StateWriter::writeTrajectory(const FrameEstimate& estimate) {
+  const Vec3& p = estimate.state.world_from_body.translation;
+  const Quat q = so3::canonical(estimate.state.world_from_body.rotation);
+  fmt::print(trajectory_, "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", seconds(estimate.time),
+             p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  trajectory_.flush();
 }
 
 }  // namespace lodeline

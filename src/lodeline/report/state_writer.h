@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "lodeline/estimator/estimator.h"
+#include "lodeline/inertial/attitude_filter.h"
 
 namespace lodeline {
 
@@ -14,10 +16,14 @@ class StateWriter {
   /// Throws InputError where the folder cannot be written to.
   explicit StateWriter(const std::filesystem::path& folder);
 
-  /// Frames without a pose are passed over. Throws InputError when the disk is full.
-  void write(const FrameEstimate& estimate);
+  /// `attitude`: what the attitude filter knows at the same time, in its own columns. A frame without a pose
+  /// is no line of the trajectory; in the states it has the status `attitude` and nan for what is not known,
+  /// or, with no attitude either, no line. Throws InputError when the disk is full.
+  void write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude = std::nullopt);
 
  private:
+  void writeTrajectory(const FrameEstimate& estimate);
+
   std::filesystem::path folder_;
   std::ofstream trajectory_;
   std::ofstream states_;
