@@ -10,33 +10,34 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_fields.h"
+#include "lodeline/inertial/gravity.h"
 
 namespace lodeline {
 namespace {
 
-constexpr double kGravity = 9.80665;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
+enum class Quantity { Time, Rate, Force, Field };
+
 struct Unit {
-  std::string_view name;
+  std::string_view name;  ///< lower case
   double to_si;
 };
-constexpr std::array<Unit, 16> kUnits = {{{"s", 1.0},
-                                          {"ms", 1e-3},
-                                          {"us", 1e-6},
-                                          {"ns", 1e-9},
-                                          {"rad/s", 1.0},
-                                          {"deg/s", kDegree},
-                                          {"dps", kDegree},
-                                          {"m/s^2", 1.0},
-                                          {"m/s2", 1.0},
-                                          {"g", kGravity},
-                                          {"mg", 1e-3 * kGravity},
-                                          {"t", 1.0},
-                                          {"ut", 1e-6},
-                                          {"nt", 1e-9},
-                                          {"gauss", 1e-4},
-                                          {"mgauss", 1e-7}}};
+
+std::vector<Unit> unitsOf(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::Time:
+      return {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
+    case Quantity::Rate:
+      return {{"rad/s", 1.0}, {"deg/s", kDegree}, {"dps", kDegree}};
+    case Quantity::Force:
+      return {{"m/s^2", 1.0}, {"m/s2", 1.0}, {"g", kStandardGravity}, {"mg", 1e-3 * kStandardGravity}};
+    case Quantity::Field:
+      return {{"t", 1.0},  {"ut", 1e-6},     {"nt", 1e-9}, {"gauss", 1e-4},
+              {"g", 1e-4}, {"mgauss", 1e-7}, {"mg", 1e-7}};
+  }
+  return {};
+}
 
 /// A unit by what its quantity is on Earth: the field is 20 to 70 uT, raw readings up to twice as much or
 /// half.
@@ -44,8 +45,9 @@ struct Guess {
   Unit unit;
   double least, most;
 };
-constexpr std::array<Guess, 3> kForceGuesses = {
-    {{{"m/s^2", 1.0}, 4.9, 19.7}, {{"g", kGravity}, 0.5, 2.0}, {{"mg", 1e-3 * kGravity}, 500.0, 2000.0}}};
+constexpr std::array<Guess, 3> kForceGuesses = {{{{"m/s^2", 1.0}, 4.9, 19.7},
+                                                 {{"g", kStandardGravity}, 0.5, 2.0},
+                                                 {{"mg", 1e-3 * kStandardGravity}, 500.0, 2000.0}}};
 constexpr std::array<Guess, 5> kFieldGuesses = {{{{"T", 1.0}, 1e-5, 1.4e-4},
                                                  {{"uT", 1e-6}, 10.0, 140.0},
                                                  {{"gauss", 1e-4}, 0.1, 1.4},
@@ -74,7 +76,7 @@ struct Column {
     unit = lower(csv::trimmed(header.substr(open + 1, close - open - 1)));
     for (const auto& [from, to] :
          {std::pair("\u00b5", "u"), std::pair("\u03bc", "u"), std::pair("\u00b0", "deg"),
-          std::pair(" s^-1", "/s"), std::pair(" s^-2", "/s^2"), std::pair("mgs", "mgauss")}) {
+          std::pair(" s^-1", "/s"), std::pair(" s^-2", "/s^2")}) {
       replaceAll(&unit, from, to);
     }
   }
@@ -82,7 +84,26 @@ struct Column {
     return std::any_of(with.begin(), with.end(), [this](std::string_view w) { return name.starts_with(w); });
   }
   /// 0, 1, 2 by the last letter; -1 for none.
-  int axis() const { return name.empty() ? -1 : static_cast<int>(std::string_view("xyz").find(name.back())); }
+  int axis() const {
+    const size_t axis = name.empty() ? std::string_view::npos : std::string_view("xyz").find(name.back());
+    return axis == std::string_view::npos ? -1 : static_cast<int>(axis);
+  }
+  bool isTime() const { return name == "t" || begins({"t_", "time", "stamp"}); }
+  /// What the sensor measures that a column with an axis belongs to.
+  std::optional<Quantity> quantity() const {
+    if (begins({"w", "g", "ang"})) return Quantity::Rate;
+    if (begins({"a", "f"})) return Quantity::Force;
+    if (begins({"m", "b"})) return Quantity::Field;
+    return std::nullopt;
+  }
+  /// Factor to SI; 0 where no unit is stated, nothing where it is not one of the quantity's.
+  std::optional<double> toSi(Quantity of) const {
+    if (unit.empty()) return 0.0;
+    for (const Unit& known : unitsOf(of)) {
+      if (known.name == unit) return known.to_si;
+    }
+    return std::nullopt;
+  }
 
   std::string name, unit;
 };
@@ -127,33 +148,34 @@ void PlainCsv::readHeader(std::string_view header) {
   if (header.front() == '#') header.remove_prefix(1);
   std::vector<std::string_view> names;
   csv::split(header, &names);
+  column_count_ = names.size();
   time_column_ = -1;
+  const auto triadOf = [this](Quantity quantity) -> Triad& {
+    return quantity == Quantity::Rate    ? gyroscope_
+           : quantity == Quantity::Force ? accelerometer_
+                                         : magnetometer_;
+  };
   for (size_t i = 0; i < names.size(); ++i) {
     const Column column(names[i]);
-    const auto unit =
-        std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.name == column.unit; });
-    if ((column.name == "t" || column.begins({"t_", "time", "stamp"})) && time_column_ < 0) {
+    const auto toSi = [&](Quantity quantity) {
+      const std::optional<double> factor = column.toSi(quantity);
+      if (factor) return *factor;
+      std::string known;
+      for (const Unit& unit : unitsOf(quantity)) known += fmt::format(" {}", unit.name);
+      throw InputError(fmt::format("{}: unit '{}' of column '{}' is not known; known for it are{}",
+                                   file_.string(), column.unit, names[i], known));
+    };
+    if (column.isTime() && time_column_ < 0) {
       time_column_ = static_cast<int>(i);
-      if (unit != kUnits.end()) time_to_s_ = unit->to_si;
+      time_to_s_ = toSi(Quantity::Time);
       continue;
     }
-    Triad* triad = column.begins({"w", "g", "ang"}) ? &gyroscope_
-                   : column.begins({"a", "f"})      ? &accelerometer_
-                   : column.begins({"m", "b"})      ? &magnetometer_
-                                                    : nullptr;
-    if (triad == nullptr || column.axis() < 0 || column.axis() > 2 || triad->column[column.axis()] >= 0)
-      continue;
-    triad->column[column.axis()] = static_cast<int>(i);
-    if (column.unit.empty()) continue;
-    // G is gauss where a field is meant, gravity where a force is.
-    const bool is_gauss = triad == &magnetometer_ && (column.unit == "g" || column.unit == "mg");
-    if (!is_gauss && unit == kUnits.end()) {
-      throw InputError(
-          fmt::format("{}: unit '{}' of column '{}' is not known; known are s, ms, us, ns, rad/s, deg/s, "
-                      "m/s^2, g, mg, T, uT, nT, gauss, mgauss",
-                      file_.string(), column.unit, names[i]));
-    }
-    triad->to_si = is_gauss ? (column.unit == "g" ? 1e-4 : 1e-7) : unit->to_si;
+    const std::optional<Quantity> quantity = column.quantity();
+    if (!quantity || column.axis() < 0) continue;
+    Triad& triad = triadOf(*quantity);
+    if (triad.column[column.axis()] >= 0) continue;  // the first of a name counts
+    triad.column[column.axis()] = static_cast<int>(i);
+    triad.to_si = toSi(*quantity);
   }
   if (time_column_ < 0 || !(hasGyroscope() || hasAccelerometer() || hasMagnetometer())) {
     throw InputError(

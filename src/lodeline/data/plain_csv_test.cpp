@@ -104,6 +104,8 @@ TEST_F(PlainCsvTest, RefusesWhatItCannotUnderstand) {
   expectRefused("mx [uT],my [uT],mz [uT]\n1,2,3\n", "names no time");
   expectRefused("t [s],x,y,z\n0,1,2,3\n", "names no time and sensor");
   expectRefused("t [s],mx [furlong],my [furlong],mz [furlong]\n0,1,2,3\n", "furlong");
+  expectRefused("t [s],mx [deg/s],my [deg/s],mz [deg/s]\n0,1,2,3\n", "known for it are t ut nt gauss");
+  expectRefused("t [min],mx [T],my [T],mz [T]\n0,1,2,3\n", "'min'");
   EXPECT_THROW(PlainCsv(file_.parent_path() / "absent.csv", &diagnostics_), InputError);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lodeline/inertial/gravity.h"
+
 namespace lodeline {
 namespace {
 
@@ -23,7 +25,7 @@ struct DataSheetUnits {
 
 DataSheetUnits dataSheetUnits(const AnalysedSensor& sensor) {
   const double degree = 180.0 / std::numbers::pi;
-  const double milli_g = 1e3 / 9.80665;
+  const double milli_g = 1e3 / kStandardGravity;
   if (sensor.name == "gyroscope")
     return {degree, 3600.0 * degree, 3600.0 * degree, "deg/s/sqrtHz", "deg/h", "deg/h/s/sqrtHz"};
   if (sensor.name == "accelerometer")
