@@ -173,6 +173,21 @@ TEST(Bench, DoesNotMove) {
   }
 }
 
+TEST(OpenWater, IsSwumAtOneSpeedAllTheWayRound) {
+  const Dive dive = makeDive(scenario("open_water", "clean"));
+  EXPECT_NEAR(pathLength(dive.motion, 0.0, 400.0), 100.0, 1.5);
+  // Halts and changes of pace average out over a minute, not so a parameter that crowds at bow and stern.
+  for (double t = 20.0; t < 320.0; t += 10.0)
+    EXPECT_NEAR(pathLength(dive.motion, t, t + 60.0), 15.0, 3.5) << t;
+}
+
+TEST(OpenWater, CanBeCutToAShortExcerpt) {
+  ScenarioChanges changes;
+  changes.seconds = 20.0;
+  const Dive dive = makeDive(makeScenario("open_water", changes));
+  EXPECT_NEAR(pathLength(dive.motion, 0.0, 20.0), 5.0, 0.5);
+}
+
 TEST(OpenWater, LooksAtTheWreckFromOutside) {
   const Dive dive = makeDive(scenario("open_water", "clean"));
   ASSERT_TRUE(dive.wreck.has_value());

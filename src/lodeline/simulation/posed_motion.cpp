@@ -1,8 +1,10 @@
 #include "lodeline/simulation/posed_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "lodeline/simulation/hand_motion.h"
 #include "lodeline/simulation/random.h"
@@ -30,16 +32,42 @@ MotionChannel constant(double duration_s, double value) {
   return channel;
 }
 
-// A ring about the hull, 3 m off, that rises and sinks.
-Vec3 ringPosition(const WreckLayout& wreck, const Waves& rise, double round) {
-  constexpr double kDistance_m = 3.0;
-  const double angle = kTurn * round;
-  const double along = (0.5 * wreck.length_m + kDistance_m) * std::cos(angle);
-  const double across = (0.5 * wreck.width_m + kDistance_m) * std::sin(angle);
-  const double c = std::cos(wreck.azimuth_rad), s = std::sin(wreck.azimuth_rad);
-  const double height = 0.5 * wreck.height_m + 1.0 + std::tanh(rise(8.0 * round));
-  return wreck.center_W + Vec3(c * along - s * across, s * along + c * across, height);
-}
+// A ring about the hull, 3 m off, that rises and sinks; swum round and round, by the length of the way.
+class WreckRing {
+ public:
+  WreckRing(const WreckLayout& wreck, uint64_t seed, double longest_m)
+      : wreck_(wreck), rise_(seed, "wreck/rise", 2.0, 8.0) {
+    for (int i = 0; length_m_.back() < longest_m; ++i) {
+      length_m_.push_back(length_m_.back() + (at(i + 1) - at(i)).norm());
+    }
+  }
+
+  /// Beyond both ends at the speed of the last piece.
+  Vec3 position(double along_m) const {
+    const auto above = std::upper_bound(length_m_.begin() + 1, length_m_.end() - 1, along_m);
+    const double begin_m = *(above - 1);
+    const auto piece = static_cast<double>(above - 1 - length_m_.begin());
+    return at(piece + (along_m - begin_m) / (*above - begin_m));
+  }
+
+ private:
+  static constexpr double kPiecesARound = 400.0;
+
+  Vec3 at(double piece) const {
+    constexpr double kDistance_m = 3.0;
+    const double round = piece / kPiecesARound;
+    const double angle = kTurn * round;
+    const double along = (0.5 * wreck_.length_m + kDistance_m) * std::cos(angle);
+    const double across = (0.5 * wreck_.width_m + kDistance_m) * std::sin(angle);
+    const double c = std::cos(wreck_.azimuth_rad), s = std::sin(wreck_.azimuth_rad);
+    const double height = 0.5 * wreck_.height_m + 1.0 + std::tanh(rise_(8.0 * round));
+    return wreck_.center_W + Vec3(c * along - s * across, s * along + c * across, height);
+  }
+
+  WreckLayout wreck_;
+  Waves rise_;
+  std::vector<double> length_m_ = {0.0};  ///< of the way to each piece
+};
 
 }  // namespace
 
@@ -80,14 +108,8 @@ Motion makeMotionAtRest(uint64_t seed, double duration_s, const Rigid3& diver_fr
 
 Motion makeWreckMotion(const WreckLayout& wreck, uint64_t seed, double duration_s, double path_length_m,
                        bool starts_at_rest, const Rigid3& diver_from_body) {
-  const Waves rise(seed, "wreck/rise", 2.0, 8.0);
+  const WreckRing ring(wreck, seed, path_length_m);
   const Waves tilt(seed, "wreck/roll", 6.0, 25.0);
-  double round_m = 0.0;
-  constexpr int kSteps = 400;
-  for (int i = 0; i < kSteps; ++i) {
-    round_m +=
-        (ringPosition(wreck, rise, (i + 1.0) / kSteps) - ringPosition(wreck, rise, 1.0 * i / kSteps)).norm();
-  }
   const auto make = [&](double length_m) {
     SwimPlanOptions options;
     options.seed = seed;
@@ -95,8 +117,9 @@ Motion makeWreckMotion(const WreckLayout& wreck, uint64_t seed, double duration_
     options.penetration_m = length_m;
     options.round_trip = false;
     options.starts_at_rest = starts_at_rest;
+    options.start_rest_s = std::min(options.start_rest_s, 0.06 * duration_s);
     const SwimPlan plan(options);
-    const auto position = [&](double t) { return ringPosition(wreck, rise, plan.arcLength(t) / round_m); };
+    const auto position = [&](double t) { return ring.position(plan.arcLength(t)); };
     const auto coordinate = [&](int axis) {
       MotionChannel channel;
       channel.splines.push_back(motionSpline(duration_s, 0.5, [&](double t) { return position(t)[axis]; }));
