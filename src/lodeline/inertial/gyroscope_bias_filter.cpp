@@ -1,6 +1,8 @@
 #include "lodeline/inertial/gyroscope_bias_filter.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 namespace lodeline {
 namespace {
@@ -20,11 +22,13 @@ GyroscopeBiasFilter::GyroscopeBiasFilter(const GyroscopeBiasOptions& options,
 void GyroscopeBiasFilter::follow(const Mat3& world_from_body, double step_s) {
   delayed_attitude_.update(world_from_body, step_s);
   delayed_bias_W_.update(world_from_body * bias_B_, step_s);
+  since_start_s_ += step_s;
 }
 
 void GyroscopeBiasFilter::restart() {
   delayed_attitude_.reset();
   delayed_bias_W_.reset();
+  since_start_s_ = 0.0;
 }
 
 bool GyroscopeBiasFilter::updateAtRest(const Vec3& mean_rate_B, double step_s) {
@@ -48,7 +52,8 @@ void GyroscopeBiasFilter::updateInMotion(const Vec3& correction_W, double step_s
   const Mat3& model = delayed_attitude_.value();
   Vec3 innovation = delayed_bias_W_.value() - correction_W / step_s - model * bias_B_;
   innovation.z() = 0.0;
-  const double density = options_.motion_density_rad_per_s_sqrtHz;
+  const double unsettled = options_.settling_s / std::max(since_start_s_, step_s);
+  const double density = options_.motion_density_rad_per_s_sqrtHz * std::sqrt(1.0 + unsettled * unsettled);
   const double variance = density * density / step_s;
   correct(innovation, model, Vec3(variance, variance, kNothingMeasured));
 }

@@ -14,6 +14,9 @@ struct GyroscopeBiasOptions {
   /// White noise of the measurements, as a density: bias of one second's worth of them, one sigma.
   double rest_density_rad_per_s_sqrtHz = 1.6e-3;
   double motion_density_rad_per_s_sqrtHz = 0.0175;
+  /// After a start in motion the corrections of inclination show the error of the first inclination more than
+  /// any bias; their uncertainty is that much larger (over the time since the start) for so long.
+  double settling_s = 20.0;
   /// A mean rate at rest is a slow turn, and no bias, when it is further than this from the bias, plus three
   /// sigmas of it.
   double slow_turn_rad_per_s = 5e-3;
@@ -52,6 +55,7 @@ class GyroscopeBiasFilter {
   Mat3 covariance_;
   LowPass<Mat3> delayed_attitude_;  ///< world from body
   LowPass<Vec3> delayed_bias_W_;
+  double since_start_s_ = 0.0;
 };
 
 }  // namespace lodeline
