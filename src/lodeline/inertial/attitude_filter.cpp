@@ -13,6 +13,7 @@ namespace lodeline {
 namespace {
 
 constexpr double kHistory_s = 0.5;
+constexpr double kSilent_s = 1.5;
 constexpr double kLongestFieldStep_s = 0.5;  ///< after silence a reading counts for no more
 
 std::optional<FieldShape> shapeOf(const std::optional<Vec3>& field_W) {
@@ -219,6 +220,7 @@ void AttitudeFilter::publish(Time time) {
   estimate.heading_sigma_rad = heading_.sigma_rad();
   estimate.gyroscope_bias_B = bias_.bias_B();
   estimate.at_rest = at_rest_;
+  if (last_field_ && (time - last_field_->time).seconds() > kSilent_s) status_ = HeadingStatus::Waiting;
   estimate.status = status_;
   estimate_ = estimate;
 }

@@ -28,7 +28,7 @@ struct AttitudeFilterOptions {
 /// What became of the magnetometer.
 enum class HeadingStatus {
   NoMagnetometer,  ///< heading counts from the first attitude
-  Waiting,         ///< there is a magnetometer, but no usable reading yet
+  Waiting,         ///< there is a magnetometer, but no new reading yet, or none for 1.5 s: frozen or silent
   Magnetic,        ///< held by the field
   WrongNorm,       ///< disturbed: carried by the gyroscope
   WrongDip,

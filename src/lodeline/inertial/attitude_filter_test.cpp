@@ -211,6 +211,24 @@ TEST_F(AttitudeFilterTest, GoesOnWithoutAMagnetometer) {
   EXPECT_GT(silent.estimate()->heading_sigma_rad, 90.0 * kDegree);
 }
 
+TEST_F(AttitudeFilterTest, SaysWhenTheMagnetometerFreezes) {
+  AttitudeFilter filter = filterWithMagnetometer();
+  double sigma_before = 0.0;
+  std::optional<Vec3> frozen_M;
+  for (int i = 0; i <= 40 * 200; ++i) {
+    const double t = i / kRate_hz;
+    filter.add(imu(t));
+    MagnetometerSample sample = field(t, kNorthField_W);
+    if (t > 20.0 && !frozen_M) frozen_M = sample.field_M;
+    if (frozen_M) sample.field_M = *frozen_M;
+    if (i % kEvery == 0) filter.add(sample);
+    if (t < 20.0) sigma_before = filter.estimate()->heading_sigma_rad;
+  }
+  EXPECT_EQ(filter.estimate()->status, HeadingStatus::Waiting);
+  EXPECT_GT(filter.estimate()->heading_sigma_rad, sigma_before);
+  EXPECT_LT(std::abs(headingError(filter.estimate()->world_from_body, truth(40.0))), 3.0 * kDegree);
+}
+
 TEST_F(AttitudeFilterTest, TakesLaggingReadingsAtTheirOwnTime) {
   // Stamps that were set back to when the field was: readings come in late, for moments before the last one.
   AttitudeFilter filter = filterWithMagnetometer();
