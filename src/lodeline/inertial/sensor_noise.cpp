@@ -14,6 +14,7 @@ namespace {
 constexpr size_t kReadingsForPeriod = 65;
 constexpr int64_t kFewestReadings = 256;
 constexpr double kGapPeriods = 3.0;
+constexpr double kGapPauses = 1.5;  ///< times the usual pause between bursts
 constexpr double kLongestFilledGap_s = 1.0;
 constexpr double kWorthReporting = 0.01;  ///< share of readings
 constexpr double kMovedTooMuch = 0.5;     ///< share of windows
@@ -51,11 +52,16 @@ void SensorNoiseAnalysis::add(Time time, const Vec3& reading) {
 
 void SensorNoiseAnalysis::learnPeriod() {
   std::vector<double> steps_s;
-  for (size_t i = 1; i < first_.size(); ++i)
+  for (size_t i = 1; i < first_.size(); ++i) {
     steps_s.push_back((first_[i].first - first_[i - 1].first).seconds());
-  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2),
-                   steps_s.end());
-  period_s_ = steps_s[steps_s.size() / 2];
+  }
+  std::sort(steps_s.begin(), steps_s.end());
+  // The mean, not the median: readings that come in bursts have mostly tiny steps. The longest may be a gap.
+  const double longest_s = steps_s.size() > 1 ? steps_s.back() : 0.0;
+  const double sum_s = (first_.back().first - first_.front().first).seconds() - longest_s;
+  period_s_ = sum_s / static_cast<double>(std::max<size_t>(1, steps_s.size() - (longest_s > 0.0 ? 1 : 0)));
+  const double usual_s = steps_s[steps_s.size() * 15 / 16];
+  gap_limit_s_ = std::max(kGapPeriods * period_s_, kGapPauses * usual_s);
   const auto waiting = std::exchange(first_, {});
   for (const auto& [time, reading] : waiting) take(time, reading);
 }
@@ -79,7 +85,7 @@ void SensorNoiseAnalysis::take(Time time, const Vec3& reading) {
 
 void SensorNoiseAnalysis::bridge(Time time, const Vec3& reading) {
   const double gap_s = (time - previous_time_).seconds();
-  if (gap_s < kGapPeriods * period_s_) return;
+  if (gap_s < gap_limit_s_) return;
   const bool is_filled = gap_s <= kLongestFilledGap_s;
   diagnostics_->report(Severity::Warning, sensor_.name + "_gap",
                        fmt::format("{}: {:.3f} s without readings after {} ns; {}", sensor_.name, gap_s,

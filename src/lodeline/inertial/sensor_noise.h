@@ -38,10 +38,11 @@ struct SensorNoise {
 
 /// Takes the readings of one sensor at rest, in order, and finds its noise; in one pass, whatever the length.
 ///
-/// Readings count as evenly spaced at their mean rate. A gap of more than three periods is filled by
-/// interpolation if it is shorter than a second, and splits the record if it is longer. A sensor that is
-/// logged faster than it measures repeats readings; these are left out, since a held value is not a
-/// measurement. Coarse resolution repeats values too, but each axis for itself: then all count.
+/// Readings count as evenly spaced at their mean rate. A gap of more than three periods (or half again as
+/// long as the pauses between bursts of readings) is filled by interpolation if it is shorter than a second,
+/// and splits the record if it is longer. A sensor that is logged faster than it measures repeats readings;
+/// these are left out, since a held value is not a measurement. Coarse resolution repeats values too, but
+/// each axis for itself: then all count.
 class SensorNoiseAnalysis {
  public:
   /// `diagnostics` must outlive the analysis.
@@ -69,6 +70,7 @@ class SensorNoiseAnalysis {
   Diagnostics* diagnostics_;
   std::vector<std::pair<Time, Vec3>> first_;  ///< until they have shown the period
   double period_s_ = 0.0;
+  double gap_limit_s_ = 0.0;
   std::optional<Time> begin_;
   Time last_time_;      ///< of everything added
   Time previous_time_;  ///< of what was taken

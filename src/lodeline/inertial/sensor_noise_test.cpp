@@ -84,6 +84,17 @@ TEST_F(SensorNoiseTest, BridgesShortGapsAndSplitsAtLongOnes) {
   EXPECT_EQ(noise.all.walk.resolved, false);
 }
 
+TEST_F(SensorNoiseTest, TakesReadingsThatComeInBurstsAsEvenlySpaced) {
+  const SensorNoise noise = analyse([](int i, Time* time, Vec3*) {
+    // Ten at a time, stamped when they arrive.
+    *time = at(i / 10 * 10 + 9) + Duration::fromNanoseconds(i % 10 * 100000);
+    return true;
+  });
+  EXPECT_EQ(diagnostics_.count("gyroscope_gap"), 0);
+  EXPECT_NEAR(noise.rate_hz, kRate_hz, 0.1);
+  EXPECT_NEAR(noise.all.white.value, kWhite, 0.01 * kWhite);
+}
+
 TEST_F(SensorNoiseTest, LeavesOutReadingsThatAreOnlyHeld) {
   Vec3 held = Vec3::Zero();
   const SensorNoise noise = analyse([&](int i, Time*, Vec3* reading) {
