@@ -54,7 +54,7 @@ struct MagnetometerFit {
 
   double residual_T = 0.0;        ///< RMS of |A (reading - h)| - F over the readings used
   double coverage_share = 0.0;    ///< of the sphere of directions
-  double condition_number = 0.0;  ///< of the full model's normal equations, columns scaled
+  double condition_number = 0.0;  ///< of the model's normal equations, columns scaled
   double rejected_share = 0.0;
   double heading_error_rad = 0.0;  ///< one sigma, from the covariance; see headingSigma()
   int readings = 0;                ///< that were used
