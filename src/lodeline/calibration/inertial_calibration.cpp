@@ -171,14 +171,15 @@ class Calibrator {
     }
   }
 
-  Eigen::MatrixXd covarianceWith(bool with_time_offset) const {
+  /// Widened for residuals that are alike from moment to moment.
+  Eigen::MatrixXd covarianceWith(bool with_time_offset, double correlation_factor = 1.0) const {
     InertialSmoother::Chain chain = smoother_.equations(noise_);
     Step left_out = Step::Zero();
     if (options_.model != IronModel::Full) left_out.segment<3>(3).setConstant(options_.left_out_skew_sigma);
     if (options_.model == IronModel::Scale || options_.model == IronModel::Offset) {
       left_out.head<3>().setConstant(options_.left_out_scale_sigma);
     }
-    return consideredCovariance(chain.eliminate().information,
+    return consideredCovariance(chain.eliminate().information / correlation_factor,
                                 activeBasis(options_, smoother_.parameters().soft_iron, with_time_offset),
                                 left_out.cwiseAbs2().asDiagonal().toDenseMatrix());
   }
@@ -200,7 +201,7 @@ class Calibrator {
     result->rejected_share = 1.0 - count / static_cast<double>(smoother_.moments().size());
     result->correlation_factor = 0.0;
     for (const auto& axis : axes) result->correlation_factor += correlationFactor(axis) / 3.0;
-    result->covariance = result->correlation_factor * covarianceWith(result->time_offset_significant);
+    result->covariance = covarianceWith(result->time_offset_significant, result->correlation_factor);
   }
 
   InertialCalibrationOptions options_;

@@ -9,6 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/cli/allan_command.h"
 #include "lodeline/cli/attitude_command.h"
+#include "lodeline/cli/calibrate_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);
   lodeline::addAttitudeCommand(program);
+  lodeline::addCalibrateCommand(program);
   try {
     program.parse(argc, argv);
     return kGood;

@@ -3,8 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/magnetism/iron_calibration.h"
 #include "lodeline/magnetism/sphere_coverage.h"
 
 namespace lodeline {
@@ -37,6 +39,14 @@ void forAllDirections(const Function& function) {
 }
 constexpr double kDirections = SphereCoverage::kZones * SphereCoverage::kSectors;
 
+/// Heading knows no scale, and one calibration may have it from a site where the other has its own.
+MagnetometerFit withUnitDeterminant(MagnetometerFit fit) {
+  const bool raw_readings = std::exchange(fit.raw_readings, false);
+  settleScale(std::nullopt, &fit);
+  fit.raw_readings = raw_readings;
+  return fit;
+}
+
 /// 99.7 % quantile of chi-square (Wilson & Hilferty, PNAS 1931).
 double chiSquareLimit(int degrees_of_freedom) {
   constexpr double kNormalQuantile = 2.748;
@@ -56,8 +66,10 @@ double headingSigma(const MagnetometerFit& fit, double dip_rad) {
   return std::sqrt(std::max(0.0, sum / kDirections)) / (fit.field_strength_T * std::cos(dip_rad));
 }
 
-CalibrationDifference compareCalibrations(const MagnetometerFit& first, const MagnetometerFit& second,
-                                          double dip_rad) {
+CalibrationDifference compareCalibrations(const MagnetometerFit& first_as_scaled,
+                                          const MagnetometerFit& second_as_scaled, double dip_rad) {
+  const MagnetometerFit first = withUnitDeterminant(first_as_scaled);
+  const MagnetometerFit second = withUnitDeterminant(second_as_scaled);
   CalibrationDifference result;
   result.hard_iron = second.hard_iron - first.hard_iron;
   result.iron_correction = second.iron_correction - first.iron_correction;

@@ -17,7 +17,7 @@ double headingSigma(const MagnetometerFit& fit, double dip_rad);
 /// How differently two calibrations correct the same readings.
 struct CalibrationDifference {
   Vec3 hard_iron = Vec3::Zero();        ///< second minus first, unit of the readings
-  Mat3 iron_correction = Mat3::Zero();  ///< second minus first
+  Mat3 iron_correction = Mat3::Zero();  ///< second minus first, both scaled to determinant 1
   std::optional<Vec3> rotation_rad;     ///< second = exp(this) first, body axes, where both know it
   Eigen::Matrix<double, fit_parameter::kSize, 1> sigmas;  ///< of the differences, from both covariances
   /// Equivalent difference of heading over all attitudes at a dip, as in headingSigma(): RMS and the largest

@@ -24,16 +24,6 @@ double SphereCoverage::share() const {
   return static_cast<double>(visited) / static_cast<double>(counts_.size());
 }
 
-Vec3 SphereCoverage::emptySide() const {
-  Vec3 sum = Vec3::Zero();
-  for (int zone = 0; zone < kZones; ++zone) {
-    for (int sector = 0; sector < kSectors; ++sector) {
-      if (count(zone, sector) == 0) sum += middle(zone, sector);
-    }
-  }
-  return sum.norm() > 1e-6 ? sum.normalized() : Vec3::Zero();
-}
-
 Vec3 SphereCoverage::middle(int zone, int sector) {
   const double z = (zone + 0.5) * 2.0 / kZones - 1.0;
   const double angle = ((sector + 0.5) / kSectors - 0.5) * 2.0 * std::numbers::pi;

@@ -21,9 +21,6 @@ class SphereCoverage {
   int count(int zone, int sector) const { return counts_[static_cast<size_t>(zone * kSectors + sector)]; }
   /// Share of the bins with at least one direction.
   double share() const;
-  /// Unit vector to the middle of the largest unvisited region: the mean direction of empty bins, or zero
-  /// where they balance or there is none.
-  Vec3 emptySide() const;
 
   /// Unit vector to the middle of a bin.
   static Vec3 middle(int zone, int sector);

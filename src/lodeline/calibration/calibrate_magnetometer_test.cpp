@@ -1,0 +1,176 @@
+#include "lodeline/calibration/calibrate_magnetometer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lodeline/base/error.h"
+#include "lodeline/calibration/calibration_report.h"
+#include "lodeline/calibration/test_turning_sensor.h"
+#include "lodeline/magnetism/test_cloud.h"
+
+// The whole way, with sensors that misbehave.
+
+namespace lodeline {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kField_T = 45e-6;
+
+/// TestMotion shows too little of the sphere; this one rolls over as well.
+test::TurningSensor rollingSensor() {
+  test::TurningSensor sensor;
+  sensor.duration_s = 40.0;
+  sensor.motion.a = Vec3(2.2, -0.9, 1.3);
+  sensor.motion.b = Vec3(-1.1, 1.9, 0.8);
+  sensor.imu_rate_hz = 400.0;
+  return sensor;
+}
+
+MagnetometerRecord recordOf(const test::TurningSensor& sensor, bool with_imu = true) {
+  MagnetometerRecord record;
+  for (const FieldSample& sample : sensor.field()) {
+    record.magnetometer.push_back({sample.time, kField_T * sample.field_M});
+  }
+  if (with_imu) record.imu = sensor.imu();
+  record.imu_noise.gyroscope_density_rad_per_s_sqrtHz = sensor.gyroscope_density;
+  return record;
+}
+
+/// Largest error of a corrected reading against the truth over all directions, in units of the field.
+double worstError(const MagnetometerFit& fit, const test::TurningSensor& sensor) {
+  double worst = 0.0;
+  test::CloudTruth every;
+  every.correction.setIdentity();
+  every.hard_iron.setZero();
+  for (const Vec3& direction : test::cloud(every, 100)) {
+    const Vec3 reading = kField_T * (sensor.truth.hard_iron + sensor.truth.soft_iron * direction);
+    const Vec3 corrected = fit.corrected_M(reading) / fit.field_strength_T;
+    worst = std::max(worst, (corrected - direction).norm());
+  }
+  return worst;
+}
+
+TEST(CalibrateMagnetometer, FindsEverythingAboutAHealthySensor) {
+  const test::TurningSensor sensor = rollingSensor();
+  Diagnostics diagnostics;
+  const auto result = calibrateMagnetometer(recordOf(sensor), {}, &diagnostics);
+  EXPECT_EQ(result.fit.model, IronModel::Full);
+  ASSERT_TRUE(result.inertial) << result.without_inertial;
+  EXPECT_LT(worstError(result.fit, sensor), 3e-3);
+  EXPECT_LT(result.fit.body_from_magnetometer->angularDistance(sensor.truth.body_from_magnetometer), 2e-3);
+  EXPECT_NEAR(*result.fit.time_offset_to_imu_s, sensor.truth.time_offset_s, 1e-3);
+  EXPECT_NEAR(*result.fit.dip_rad, sensor.truth.dip_rad, 0.02);
+  EXPECT_NEAR(*result.fit.noise_density_T_per_sqrtHz, kField_T * sensor.field_sigma / std::sqrt(50.0), 2e-10);
+  EXPECT_THAT(result.fit.verdict, HasSubstr("Good"));
+  EXPECT_EQ(diagnostics.ranked().size(), 0u);
+  EXPECT_THAT(calibrationText(result), HasSubstr("rotation to IMU"));
+  EXPECT_EQ(calibrationJson(result)["model"], "full");
+}
+
+TEST(CalibrateMagnetometer, WithoutImuTheRotationStaysUnknown) {
+  const test::TurningSensor sensor = rollingSensor();
+  Diagnostics diagnostics;
+  const auto result = calibrateMagnetometer(recordOf(sensor, false), {}, &diagnostics);
+  EXPECT_FALSE(result.inertial);
+  EXPECT_FALSE(result.fit.body_from_magnetometer);
+  EXPECT_LT(worstError(result.fit, sensor), 5e-3);
+  EXPECT_THAT(result.fit.verdict, HasSubstr("rotation to the IMU is not"));
+  EXPECT_NEAR(*result.fit.noise_density_T_per_sqrtHz, kField_T * sensor.field_sigma / std::sqrt(50.0), 1e-9);
+}
+
+TEST(CalibrateMagnetometer, WorksAtOneHertzAndAtOneKilohertz) {
+  for (const double rate_hz : {1.0, 1000.0}) {
+    test::TurningSensor sensor = rollingSensor();
+    sensor.field_rate_hz = rate_hz;
+    sensor.duration_s = rate_hz < 10.0 ? 90.0 : 40.0;
+    Diagnostics diagnostics;
+    const auto result = calibrateMagnetometer(recordOf(sensor), {}, &diagnostics);
+    EXPECT_EQ(result.fit.model, IronModel::Full) << rate_hz;
+    ASSERT_TRUE(result.inertial) << rate_hz << " " << result.without_inertial;
+    EXPECT_LT(worstError(result.fit, sensor), 6e-3) << rate_hz;
+    EXPECT_LT(result.fit.body_from_magnetometer->angularDistance(sensor.truth.body_from_magnetometer), 4e-3)
+        << rate_hz;
+  }
+}
+
+TEST(CalibrateMagnetometer, StandsRepetitionsNansAndAStretchOfFrozenReadings) {
+  const test::TurningSensor sensor = rollingSensor();
+  MagnetometerRecord record = recordOf(sensor);
+  for (size_t i = 3; i < record.magnetometer.size(); i += 3) {
+    record.magnetometer[i].field_M = record.magnetometer[i - 1].field_M;
+  }
+  for (size_t i = 500; i < 700; ++i) record.magnetometer[i].field_M = record.magnetometer[499].field_M;
+  record.magnetometer[50].field_M.x() = std::nan("");
+  Diagnostics diagnostics;
+  const auto result = calibrateMagnetometer(record, {}, &diagnostics);
+  EXPECT_EQ(result.fit.model, IronModel::Full);
+  EXPECT_LT(worstError(result.fit, sensor), 5e-3);
+  EXPECT_EQ(diagnostics.count("magnetometer_frozen"), 1);
+  EXPECT_EQ(diagnostics.count("magnetometer_not_finite"), 1);
+}
+
+TEST(CalibrateMagnetometer, LeavesOutSaturatedReadings) {
+  const test::TurningSensor sensor = rollingSensor();
+  MagnetometerRecord record = recordOf(sensor);
+  for (MagnetometerSample& sample : record.magnetometer) {
+    sample.field_M = sample.field_M.cwiseMin(0.9 * kField_T).cwiseMax(-0.9 * kField_T);
+  }
+  Diagnostics diagnostics;
+  const auto result = calibrateMagnetometer(record, {}, &diagnostics);
+  EXPECT_EQ(diagnostics.count("magnetometer_saturated"), 1);
+  EXPECT_LT(worstError(result.fit, sensor), 0.01);
+}
+
+TEST(CalibrateMagnetometer, RefusesAFrozenOrStillSensor) {
+  MagnetometerRecord record = recordOf(rollingSensor());
+  for (MagnetometerSample& sample : record.magnetometer) sample.field_M = Vec3(1e-5, 2e-5, 3e-5);
+  Diagnostics diagnostics;
+  EXPECT_THROW(calibrateMagnetometer(record, {}, &diagnostics), EstimationError);
+  test::TurningSensor still = rollingSensor();
+  still.motion.a.setZero();
+  still.motion.b.setZero();
+  EXPECT_THROW(calibrateMagnetometer(recordOf(still), {}, &diagnostics), EstimationError);
+}
+
+TEST(CalibrateMagnetometer, WarnsWhereTheSiteDisagrees) {
+  const test::TurningSensor sensor = rollingSensor();
+  CalibrationOptions options;
+  options.site_field_ENU = Vec3(0.0, 40e-6, -20e-6);
+  Diagnostics diagnostics;
+  const auto result = calibrateMagnetometer(recordOf(sensor), options, &diagnostics);
+  EXPECT_EQ(diagnostics.count("magnetometer_dip"), 1);
+  EXPECT_NEAR(result.fit.field_strength_T, options.site_field_ENU->norm(), 1e-12);
+  EXPECT_TRUE(result.fit.field_strength_known);
+}
+
+TEST(CalibrateMagnetometer, KeepsTheOldCalibrationWhereTheReadingsSayNothing) {
+  test::TurningSensor still = rollingSensor();
+  still.motion.a *= 0.05;
+  still.motion.b *= 0.05;
+  CalibrationOptions options;
+  options.old.emplace();
+  options.old->hard_iron = Vec3(1e-6, 0.0, 0.0);
+  options.old->field_strength_T = kField_T;
+  Diagnostics diagnostics;
+  const auto result = calibrateMagnetometer(recordOf(still), options, &diagnostics);
+  EXPECT_EQ(result.fit.model, IronModel::Kept);
+  EXPECT_EQ(result.fit.hard_iron, options.old->hard_iron);
+  EXPECT_THAT(result.fit.verdict, HasSubstr("kept"));
+}
+
+TEST(ComparisonText, SaysWhetherADifferenceMatters) {
+  const test::TurningSensor sensor = rollingSensor();
+  Diagnostics diagnostics;
+  const MagnetometerFit before = calibrateMagnetometer(recordOf(sensor), {}, &diagnostics).fit;
+  test::TurningSensor later = sensor;
+  later.seed = 77;
+  const MagnetometerFit again = calibrateMagnetometer(recordOf(later), {}, &diagnostics).fit;
+  EXPECT_THAT(comparisonText(before, again, 1.0), HasSubstr("not significant"));
+  later.truth.hard_iron += Vec3(0.01, 0.0, 0.0);
+  const MagnetometerFit moved = calibrateMagnetometer(recordOf(later), {}, &diagnostics).fit;
+  EXPECT_THAT(comparisonText(before, moved, 1.0), HasSubstr("is significant"));
+}
+
+}  // namespace
+}  // namespace lodeline

@@ -1,0 +1,238 @@
+#include "lodeline/calibration/magnetometer_record.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "lodeline/base/error.h"
+#include "lodeline/data/csv_fields.h"
+#include "lodeline/data/csv_reader.h"
+#include "lodeline/data/euroc_calibration.h"
+#include "lodeline/data/euroc_rig.h"
+#include "lodeline/data/kalibr_calibration.h"
+#include "lodeline/data/plain_csv.h"
+#include "lodeline/evaluation/text_table.h"
+
+namespace lodeline {
+namespace {
+
+/// What a reader knows about the unit: as written in the file, or the user's word, or nothing.
+struct Reading {
+  MagnetometerRecord record;
+  std::optional<FieldUnit> unit;
+};
+
+void readImu(const EurocLayout& layout, Quat* imu_from_body, MagnetometerRecord* record,
+             Diagnostics* diagnostics) {
+  const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
+  const KalibrFiles kalibr = findKalibrFiles({layout.mav0.parent_path(), layout.mav0});
+  if (std::filesystem::exists(yaml)) {
+    const EurocImu imu = readEurocImu(yaml, diagnostics);
+    record->imu_noise = imu.calibration.noise;
+    *imu_from_body = imu.euroc_body_from_imu.rotation.conjugate();
+  }
+  if (kalibr.imu) {
+    record->imu_noise = readKalibrImu(*kalibr.imu, diagnostics).noise;
+  } else if (!std::filesystem::exists(yaml)) {
+    diagnostics->report(Severity::Notice, "imu_noise_assumed",
+                        yaml.string() + ": missing; the noise of a usual IMU is assumed");
+  }
+  CsvReader csv(layout.csv("imu0"), 6, diagnostics);
+  for (CsvRow row; csv.next(&row);) {
+    if (!record->imu.empty() && row.time <= record->imu.back().time) {
+      diagnostics->report(Severity::Warning, "imu_order",
+                          fmt::format("{}:{}: not later than the reading before; passed over",
+                                      csv.file().string(), csv.line()));
+      continue;
+    }
+    record->imu.push_back({row.time, Vec3(row.numbers.data()), Vec3(row.numbers.data() + 3)});
+  }
+}
+
+Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) {
+  EurocOptions options;
+  options.with_cameras = false;
+  options.needs_imu = false;
+  const EurocLayout layout = findEurocLayout(data, options);
+  const std::filesystem::path csv = layout.csv("mag0");
+  if (!std::filesystem::exists(csv)) {
+    throw InputError(csv.string() + ": missing; there are no magnetometer readings to calibrate from");
+  }
+  Reading reading;
+  reading.unit = FieldUnit::Tesla;
+  Quat imu_from_body = Quat::Identity();
+  if (layout.has_imu) readImu(layout, &imu_from_body, &reading.record, diagnostics);
+  const std::filesystem::path yaml = layout.sensor("mag0") / "sensor.yaml";
+  if (std::filesystem::exists(yaml)) {
+    reading.record.body_from_magnetometer =
+        imu_from_body * readEurocMagnetometer(yaml, diagnostics).body_from_magnetometer.rotation;
+  }
+  CsvReader rows(csv, 3, diagnostics);
+  for (CsvRow row; rows.next(&row);) {
+    reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
+  }
+  return reading;
+}
+
+Reading readTable(const std::filesystem::path& file, Diagnostics* diagnostics) {
+  PlainCsv csv(file, diagnostics);
+  if (!csv.hasMagnetometer()) {
+    throw InputError(file.string() + ": its header names no magnetometer columns (mx, my, mz)");
+  }
+  Reading reading;
+  reading.unit = FieldUnit::Tesla;
+  const bool has_imu = csv.hasGyroscope() && csv.hasAccelerometer();
+  for (PlainReading row; csv.next(&row);) {
+    if (row.field) reading.record.magnetometer.push_back({row.time, *row.field});
+    if (!has_imu || !row.angular_velocity || !row.specific_force) continue;
+    if (!reading.record.imu.empty() && row.time <= reading.record.imu.back().time) continue;
+    reading.record.imu.push_back({row.time, *row.angular_velocity, *row.specific_force});
+  }
+  return reading;
+}
+
+std::vector<double> numbersOf(std::string line) {
+  for (char& c : line) {
+    if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
+  }
+  std::istringstream words(line);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    double number = 0.0;
+    if (!csv::parse(word, &number)) return {};
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+/// Seconds, or whole milli-, micro- or nanoseconds: told by the digits that times since 1970 have in each.
+Time timeOf(double stamp) {
+  const double size = std::abs(stamp);
+  const double ns = size > 1e16 ? 1.0 : size > 1e13 ? 1e3 : size > 1e10 ? 1e6 : 1e9;
+  return Time::fromNanoseconds(std::llround(stamp * ns));
+}
+
+Reading readRows(const std::filesystem::path& file, const std::string& text, Diagnostics* diagnostics) {
+  Reading reading;
+  std::istringstream lines(text);
+  size_t columns = 0;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos || line.starts_with('#')) continue;
+    const std::vector<double> row = numbersOf(line);
+    if (columns == 0 && (row.size() == 3 || row.size() == 4)) columns = row.size();
+    if (row.empty() || (columns != 0 && row.size() != columns)) {
+      diagnostics->report(Severity::Warning, "csv_row",
+                          fmt::format("{}:{}: not a row of {} numbers; passed over", file.string(), number,
+                                      columns == 0 ? "3 or 4" : std::to_string(columns)));
+    } else if (columns == 0) {
+      throw InputError(
+          fmt::format("{}:{}: {} columns without a header; expected t, mx, my, mz, or mx, my, mz",
+                      file.string(), number, row.size()));
+    } else {
+      const double stamp = columns == 4 ? row[0] : 0.0;
+      const Time time = columns == 4 ? timeOf(stamp) : Time::fromNanoseconds(10'000'000LL * number);
+      reading.record.magnetometer.push_back({time, Vec3(row.data() + columns - 3)});
+    }
+  }
+  reading.record.has_times = columns == 4;
+  return reading;
+}
+
+/// Whether the first row that is no comment begins with a word.
+bool hasHeader(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find_first_not_of(" \t\r,") == std::string::npos) continue;
+    if (line.starts_with('#')) {
+      if (line.find(',') != std::string::npos) return true;
+      continue;
+    }
+    return numbersOf(line).empty();
+  }
+  return false;
+}
+
+Reading readFile(const std::filesystem::path& file, const RecordOptions& options, Diagnostics* diagnostics) {
+  const std::string text = readFileBytes(file);
+  if (!hasHeader(text)) return readRows(file, text, diagnostics);
+  if (options.unit) {
+    throw UsageError(file.string() +
+                     ": --unit is for files without a header; write the unit into the header, mx [uT]");
+  }
+  return readTable(file, diagnostics);
+}
+
+void cut(const RecordOptions& options, MagnetometerRecord* record) {
+  if (options.from_s == 0.0 && !options.to_s) return;
+  if (!record->has_times) throw UsageError("--from and --to need a file with times; this one has none");
+  const Time begin = record->magnetometer.front().time + Duration::fromSeconds(options.from_s);
+  const Time end = options.to_s ? record->magnetometer.front().time + Duration::fromSeconds(*options.to_s)
+                                : record->magnetometer.back().time;
+  std::erase_if(record->magnetometer,
+                [&](const auto& sample) { return sample.time < begin || sample.time > end; });
+  // The inertial readings reach a little further, for a magnetometer that lags.
+  const Duration margin = Duration::fromSeconds(0.5);
+  std::erase_if(record->imu, [&](const auto& sample) {
+    return sample.time < begin - margin || sample.time > end + margin;
+  });
+  if (record->magnetometer.empty()) throw UsageError("--from and --to leave no magnetometer reading");
+}
+
+/// The unit in which the readings make sense, with a warning where that is not what was said.
+void settleUnit(const std::string& data, const RecordOptions& options, std::optional<FieldUnit> stated,
+                MagnetometerRecord* record, Diagnostics* diagnostics) {
+  std::vector<Vec3> finite;
+  for (const MagnetometerSample& sample : record->magnetometer) {
+    if (sample.field_M.allFinite()) finite.push_back(sample.field_M);
+  }
+  const double size = fieldSize(finite);
+  const FieldUnit by_size = unitBySize(size);
+  FieldUnit unit = options.unit.value_or(stated.value_or(by_size));
+  if (options.unit) {
+    if (*options.unit != by_size && by_size != FieldUnit::Raw && *options.unit != FieldUnit::Raw) {
+      diagnostics->report(Severity::Warning, "magnetometer_unit",
+                          fmt::format("{}: a field of {:.4g} {} as asked for; by its size it is in {}", data,
+                                      size, toString(unit), toString(by_size)));
+    }
+  } else if (!stated) {
+    diagnostics->report(
+        Severity::Warning, "magnetometer_unit",
+        by_size == FieldUnit::Raw
+            ? fmt::format("{}: no unit stated and a size, {:.4g}, that fits none; taken for raw counts "
+                          "(--unit says otherwise)",
+                          data, size)
+            : fmt::format("{}: no unit stated; by the field's size, {:.4g}, it is {} (--unit says "
+                          "otherwise)",
+                          data, size, toString(by_size)));
+  } else if (by_size != *stated) {
+    const bool other = by_size != FieldUnit::Raw;
+    if (other) unit = by_size;
+    diagnostics->report(Severity::Warning, "magnetometer_unit",
+                        fmt::format("{}: a field of {:.4g} {}, while the Earth's is 22 to 67 uT; {}", data,
+                                    size, toString(*stated),
+                                    other ? fmt::format("it is taken to be in {}", toString(by_size))
+                                          : std::string("check the unit, and for iron nearby")));
+  }
+  record->is_raw = unit == FieldUnit::Raw;
+  for (MagnetometerSample& sample : record->magnetometer) sample.field_M *= teslaPer(unit);
+}
+
+}  // namespace
+
+MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
+                                          Diagnostics* diagnostics) {
+  Reading reading = std::filesystem::is_regular_file(data) ? readFile(data, options, diagnostics)
+                                                           : readFolder(data, diagnostics);
+  if (reading.record.magnetometer.empty()) {
+    throw InputError(data.string() + ": holds no magnetometer reading that can be used");
+  }
+  cut(options, &reading.record);
+  settleUnit(data.string(), options, reading.unit, &reading.record, diagnostics);
+  return std::move(reading.record);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,135 @@
+#include "lodeline/calibration/magnetometer_record.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lodeline/base/error.h"
+#include "lodeline/evaluation/test_trajectories.h"
+#include "lodeline/magnetism/test_cloud.h"
+
+namespace lodeline {
+namespace {
+
+class MagnetometerRecordTest : public ::testing::Test {
+ protected:
+  MagnetometerRecord read(const std::string& name, const RecordOptions& options = {}) {
+    return readMagnetometerRecord(folder_.path() / name, options, &diagnostics_);
+  }
+
+  /// Rows of readings of a 45 uT field, in a unit, with the row's beginning from `stamp`.
+  template <typename Stamp>
+  static std::string rows(double factor, const Stamp& stamp) {
+    std::string text;
+    int i = 0;
+    for (const Vec3& reading : test::cloud({}, 100)) {
+      const Vec3 m = 45e-6 * factor * reading;
+      text += fmt::format("{}{},{},{}\n", stamp(i++), m.x(), m.y(), m.z());
+    }
+    return text;
+  }
+  static std::string none(int) { return ""; }
+  static std::string nanoseconds(int i) {
+    return fmt::format("{},", 1'700'000'000'000'000'000LL + i * 20'000'000LL);
+  }
+
+  test::TemporaryFolder folder_;
+  Diagnostics diagnostics_;
+};
+
+TEST_F(MagnetometerRecordTest, TellsTheUnitOfBareRowsByTheirSize) {
+  for (const auto& [factor, name] : {std::pair(1.0, "T"), std::pair(1e6, "uT"), std::pair(1e9, "nT"),
+                                     std::pair(1e4, "G"), std::pair(1e7, "mG")}) {
+    folder_.write("rows.txt", rows(factor, none));
+    Diagnostics diagnostics;
+    const MagnetometerRecord record = readMagnetometerRecord(folder_.path() / "rows.txt", {}, &diagnostics);
+    EXPECT_FALSE(record.has_times);
+    EXPECT_FALSE(record.is_raw);
+    ASSERT_EQ(record.magnetometer.size(), 100u);
+    EXPECT_NEAR(record.magnetometer[7].field_M.x(), 45e-6 * test::cloud({}, 100)[7].x(), 1e-12) << name;
+    EXPECT_EQ(diagnostics.count("magnetometer_unit"), 1);
+    EXPECT_THAT(diagnostics.ranked()[0].first_message, ::testing::HasSubstr(name));
+  }
+}
+
+TEST_F(MagnetometerRecordTest, TakesTheUnitThatIsGiven) {
+  folder_.write("rows.txt", rows(1e6, none));
+  RecordOptions options;
+  options.unit = FieldUnit::Raw;
+  EXPECT_TRUE(read("rows.txt", options).is_raw);
+  options.unit = FieldUnit::Microtesla;
+  EXPECT_LT(read("rows.txt", options).magnetometer[0].field_M.norm(), 1e-4);
+  EXPECT_EQ(diagnostics_.count("magnetometer_unit"), 0);
+  options.unit = FieldUnit::Milligauss;
+  read("rows.txt", options);
+  EXPECT_EQ(diagnostics_.count("magnetometer_unit"), 1);
+}
+
+TEST_F(MagnetometerRecordTest, ReadsStampsAndCutsAPart) {
+  folder_.write("ns.csv", rows(1e6, nanoseconds));
+  folder_.write("s.txt", rows(1e6, [](int i) { return fmt::format("{} ", 12.5 + 0.02 * i); }));
+  for (const char* name : {"ns.csv", "s.txt"}) {
+    RecordOptions options;
+    options.from_s = 0.5;
+    options.to_s = 1.0;
+    const MagnetometerRecord record = read(name, options);
+    EXPECT_TRUE(record.has_times);
+    EXPECT_EQ(record.magnetometer.size(), 26u) << name;
+    options.from_s = 5.0;
+    options.to_s = 6.0;
+    EXPECT_THROW(read(name, options), UsageError);
+  }
+  folder_.write("none.txt", rows(1e6, none));
+  RecordOptions options;
+  options.to_s = 1.0;
+  EXPECT_THROW(read("none.txt", options), UsageError);
+}
+
+TEST_F(MagnetometerRecordTest, ReadsATableWithInertialReadings) {
+  std::string text = "t [s],wx [deg/s],wy [deg/s],wz [deg/s],ax [g],ay [g],az [g],mx [uT],my [uT],mz [uT]\n";
+  for (int i = 0; i < 50; ++i) text += fmt::format("{},1,2,3,0,0,1,20,{},-40\n", 0.01 * i, i);
+  folder_.write("table.csv", text);
+  const MagnetometerRecord record = read("table.csv");
+  EXPECT_EQ(record.imu.size(), 50u);
+  EXPECT_NEAR(record.imu[3].specific_force_B.z(), 9.80665, 1e-9);
+  EXPECT_NEAR(record.magnetometer[3].field_M.x(), 20e-6, 1e-12);
+  RecordOptions options;
+  options.unit = FieldUnit::Gauss;
+  EXPECT_THROW(read("table.csv", options), UsageError);
+}
+
+TEST_F(MagnetometerRecordTest, ReadsAFolderWithAndWithoutImuAndCorrectsItsUnit) {
+  folder_.write("dive/mav0/mag0/data.csv",
+                "#timestamp [ns],m_x [T],m_y [T],m_z [T]\n" + rows(1e6, nanoseconds));
+  MagnetometerRecord record = read("dive");
+  EXPECT_TRUE(record.imu.empty());
+  EXPECT_FALSE(record.body_from_magnetometer);
+  EXPECT_LT(record.magnetometer[0].field_M.norm(), 1e-4);
+  EXPECT_EQ(diagnostics_.count("magnetometer_unit"), 1);
+
+  folder_.write("dive/mav0/imu0/data.csv",
+                "1700000000000000000,0,0,0,0,0,9.8\n1700000000005000000,0,0,0,0,0,9.8\n");
+  folder_.write("dive/mav0/mag0/sensor.yaml",
+                "T_BS: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nrate_hz: 50\n"
+                "magnetometer_noise_density: 1.0e-8\n");
+  record = read("dive");
+  EXPECT_EQ(record.imu.size(), 2u);
+  ASSERT_TRUE(record.body_from_magnetometer);
+  EXPECT_LT((*record.body_from_magnetometer * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
+}
+
+TEST_F(MagnetometerRecordTest, ExplainsWhatItCannotRead) {
+  EXPECT_THROW(read("absent"), InputError);
+  folder_.write("dive/mav0/imu0/data.csv", "1,0,0,0,0,0,9.8\n");
+  EXPECT_THROW(read("dive"), InputError);
+  folder_.write("five.txt", "1 2 3 4 5\n");
+  EXPECT_THROW(read("five.txt"), InputError);
+  folder_.write("empty.txt", "\n");
+  EXPECT_THROW(read("empty.txt"), InputError);
+  folder_.write("odd.txt", rows(1e6, none) + "1,2\nnan,1,2\nx,1,2\n");
+  EXPECT_EQ(read("odd.txt").magnetometer.size(), 101u);  // what is no number is screened later
+  EXPECT_EQ(diagnostics_.count("csv_row"), 2);
+}
+
+}  // namespace
+}  // namespace lodeline
