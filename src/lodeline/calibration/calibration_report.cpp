@@ -57,8 +57,8 @@ std::string inertialRows(const MagnetometerCalibrationResult& result) {
   text += fmt::format("  {:<18}{:.2f} degrees\n", "dip", *fit.dip_rad / kDegree);
   if (inertial.gyroscope_noise_factor > 3.0) {
     text += fmt::format(
-        "  the gyroscope errs {:.0f} times as much as its noise density says (scale, vibration)\n",
-        inertial.gyroscope_noise_factor);
+        "  {:<18}{:.0f} times what its noise density explains (scale, vibration, or an uneven field)\n",
+        "gyroscope errors", inertial.gyroscope_noise_factor);
   }
   return text;
 }

@@ -86,6 +86,19 @@ TEST_F(SynchronizerTest, MovesCameraStampsToTheImuClock) {
   EXPECT_NEAR(packets[3].imu.back().angular_velocity_B.x(), 1.152, 1e-9);
 }
 
+TEST_F(SynchronizerTest, MovesMagnetometerStampsToTheImuClock) {
+  const std::vector<FramePacket> packets = readAll();
+  EurocSource source(recording_.folder(), {}, &diagnostics_);
+  MagnetometerCalibration magnetometer = *source.rig().magnetometer;
+  magnetometer.time_offset_to_imu_s = -0.015;
+  source.setMagnetometer(magnetometer);
+  Synchronizer synchronizer(&source, {}, &diagnostics_);
+  const std::optional<FramePacket> late = synchronizer.next();
+  ASSERT_TRUE(late);
+  EXPECT_EQ(late->magnetometer[1].time, packets[0].magnetometer[1].time - Duration::fromSeconds(0.015));
+  EXPECT_EQ(late->magnetometer[1].field_M, packets[0].magnetometer[1].field_M);
+}
+
 TEST_F(SynchronizerTest, CrlfChangesNothing) {
   for (const char* csv : {"cam0/data.csv", "cam1/data.csv", "imu0/data.csv", "mag0/data.csv"}) {
     std::string crlf;
