@@ -88,7 +88,7 @@ gnuplot::Figure cloudFigure(const MagnetometerCalibrationResult& result) {
                     block("corrected_used", corrected.used) + block("corrected_rejected", corrected.rejected);
   figure.commands +=
       "set multiplot layout 2,3\nset parametric\nset trange [0:2*pi]\nset samples 200\nset size ratio -1\n"
-      "set grid lc '#dddddd' lt 1 lw 0.7\nset border lw 0.8\nset tics nomirror out\n";
+      "set grid lc '#dddddd' lt 1 lw 0.7\nset border lw 0.8\nset tics nomirror out font ',12'\n";
   figure.commands +=
       panels("raw", "as read", fit.raw_readings ? "counts" : "uT", centre, reach(raw, centre), 0.0);
   figure.commands +=

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -113,6 +114,32 @@ TEST_F(RealCloud, NeverFitsTheFullModelToARecordWithoutTurns) {
   } catch (const EstimationError& error) {
     EXPECT_THAT(error.what(), HasSubstr("cannot calibrate"));
   }
+}
+
+// BROAD's magnetometer lags and repeats 29 % of its rows; its field has a size of 43 to 45 uT and dips by 69
+// degrees.
+TEST_F(RealCloud, FindsTheLagAndTheRotationOfARecordingWithGyroscope) {
+  std::istringstream lines(readFileBytes(*testDataDir() / "broad" / "02_undisturbed_slow_rotation_B.csv.gz"));
+  std::string rows =
+      "t [s],wx [rad/s],wy [rad/s],wz [rad/s],ax [m/s^2],ay [m/s^2],az [m/s^2],mx [uT],my [uT],mz [uT]\n";
+  std::string line;
+  std::getline(lines, line);  // the header
+  for (int i = 0; std::getline(lines, line); ++i) {
+    size_t end = 0;
+    for (int column = 0; column < 9; ++column) end = line.find(',', end + 1);
+    rows += fmt::format("{:.7f},{}\n", i / 285.7142857, line.substr(0, end));
+  }
+  const auto result = calibrated(folder_.write("broad.csv", rows));
+  EXPECT_EQ(result.fit.model, IronModel::Full);
+  ASSERT_TRUE(result.inertial) << result.without_inertial;
+  EXPECT_TRUE(result.inertial->time_offset_significant);
+  EXPECT_LT(*result.fit.time_offset_to_imu_s, -0.009);
+  EXPECT_GT(*result.fit.time_offset_to_imu_s, -0.017);
+  // Both sensors sit on one chip carrier, and it comes calibrated from the factory.
+  EXPECT_LT(result.fit.body_from_magnetometer->angularDistance(Quat::Identity()), 0.03);
+  EXPECT_LT(result.fit.hard_iron.norm(), 1e-6);
+  EXPECT_NEAR(*result.fit.dip_rad, 1.21, 0.05);
+  EXPECT_NEAR(result.fit.field_strength_T, 44e-6, 1.5e-6);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/test_program.h"
+#include "lodeline/cli/test_room.h"
 #include "lodeline/data/yaml_file.h"
 #include "lodeline/evaluation/test_trajectories.h"
 #include "lodeline/geometry/so3.h"
@@ -114,6 +115,20 @@ TEST_F(CalibrateTest, TellsWrongUseFromBadInput) {
   EXPECT_EQ(calibrate(file("rows.txt")).exit_code, 3);
   EXPECT_EQ(calibrate(file("absent")).exit_code, 1);
   EXPECT_EQ(calibrate(file("rows.txt") + " --old " + file("absent.yaml")).exit_code, 1);
+}
+
+using CalibratedRun = test::RoomTest;
+
+TEST_F(CalibratedRun, NeedsAMagnetometerAndAReadableCalibration) {
+  const std::filesystem::path file = folder_.path() / "mag.yaml";
+  writeCalibrationFile({}, file);
+  Execution result = run("--mag-calibration " + test::quoted(file));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr("no magnetometer readings"));
+  folder_.write("mag.yaml", "iron_correction: [1, 2]\nhard_iron_T: [0, 0, 0]\n");
+  result = run("--mag-calibration " + test::quoted(file));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr(file.string() + ":1"));
 }
 
 }  // namespace
