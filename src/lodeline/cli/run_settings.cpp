@@ -84,6 +84,19 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "nearer ones are taken for errors");
   settings->bind("landmark.max_error_sigmas", &options->landmark.max_error_sigmas,
                  "sightings beyond are outliers");
+  CameraCalibrationOptions* cameras = &options->camera_calibration;
+  settings->bind("camera_calibration.enabled", &cameras->enabled,
+                 "refine the cameras' calibration on the way");
+  settings->bind("camera_calibration.rotation_sigma_rad", &cameras->rotation_sigma_rad,
+                 "of camera 0 to the IMU; 0 holds it");
+  settings->bind("camera_calibration.position_sigma_m", &cameras->position_sigma_m,
+                 "of camera 0 to the IMU; 0 holds it");
+  settings->bind("camera_calibration.time_offset_sigma_s", &cameras->time_offset_sigma_s,
+                 "of the images' stamps; 0 holds it");
+  settings->bind("camera_calibration.stereo_rotation_sigma_rad", &cameras->stereo_rotation_sigma_rad,
+                 "of further cameras to camera 0; 0 holds it");
+  settings->bind("camera_calibration.stereo_position_sigma_m", &cameras->stereo_position_sigma_m,
+                 "of further cameras to camera 0; 0 holds it");
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "of the Cauchy loss");
   settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,

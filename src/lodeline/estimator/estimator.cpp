@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/base/error.h"
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
@@ -126,7 +127,9 @@ bool Estimator::startMonocular(Time time, SightingList sightings, std::span<cons
   std::erase_if(sightings, [](const auto& entry) { return entry.second.camera > 0; });
   if (!mono_initializer_.add(time, sightings, imu, next_frame_id_++)) return false;
   window_ = mono_initializer_.takeWindow();
-  marginalizer_.start(mono_initializer_.takePrior());
+  Prior prior = mono_initializer_.takePrior();
+  addCameraStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  marginalizer_.start(std::move(prior));
   frames_since_start_ = static_cast<int>(window_.frames().size());
   return true;
 }
@@ -150,9 +153,12 @@ bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstim
   auto frame = std::make_unique<Frame>();
   frame->id = next_frame_id_++;
   frame->setState(state);
+  frame->gyroscope_B = imu_before_start_.back().angular_velocity_B;
   Frame& first = window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
-  marginalizer_.start(startPrior(first, options_.initial_state, up.tilt_sigma_rad, up.still));
+  Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_rad, up.still);
+  addCameraStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  marginalizer_.start(std::move(prior));
   return true;
 }
 
@@ -164,6 +170,7 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
       imu, before.gyroscope_bias_B, before.accelerometer_bias_B, rig_.imu, options_.preintegration);
   frame->setState(predict(before, *frame->from_previous, options_.gravity_W));
   frame->time = time;
+  frame->gyroscope_B = imu.back().angular_velocity_B;
   window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
 }
@@ -195,6 +202,7 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   const Frame& newest = window_.newest();
   const ReprojectionStatistics statistics = reprojectionStatistics(window_, factors_, newest.id);
   estimate->state = newest.state();
+  estimate->camera_corrections = cameraCorrections(window_);
   estimate->landmarks = statistics.landmarks;
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
   for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;
@@ -207,8 +215,7 @@ std::vector<MapPoint> Estimator::currentMapPoints() const {
   std::vector<MapPoint> points;
   for (const auto& [id, track] : window_.tracks()) {
     if (!track.landmark) continue;
-    if (const auto point = mapPointOf(window_, id, track, factors_.bodyFromCamera(0)))
-      points.push_back(*point);
+    if (const auto point = mapPointOf(window_, id, track, factors_)) points.push_back(*point);
   }
   return points;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/estimator/mono_initializer.h"
@@ -34,6 +35,8 @@ struct FrameEstimate {
   int landmarks = 0;  ///< of which have a position
   double reprojection_rms_sigmas = 0.0;
   int solver_iterations = 0;
+  /// Nothing where the calibration is taken as the files give it.
+  std::optional<CameraCorrections> camera_corrections;
 };
 
 /// Visual-inertial odometry over a sliding window of keyframes and recent frames (paper section III).

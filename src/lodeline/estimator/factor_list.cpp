@@ -1,5 +1,6 @@
 #include "lodeline/estimator/factor_list.h"
 
+#include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
 
 namespace lodeline {
@@ -7,7 +8,10 @@ namespace lodeline {
 FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
     : gravity_W_(options.gravity_W),
       reprojection_loss_(std::make_unique<ceres::CauchyLoss>(options.solver.robust_scale_sigmas)) {
-  for (const CameraCalibration& camera : rig.cameras) body_from_camera_.push_back(camera.body_from_camera);
+  for (const CameraCalibration& camera : rig.cameras) {
+    body_from_camera_.push_back(camera.body_from_camera);
+    camera0_from_camera_.push_back(body_from_camera_.front().inverse() * camera.body_from_camera);
+  }
 }
 
 Factor FactorMaker::inertial(Frame& before, Frame& frame) const {
@@ -26,7 +30,61 @@ Factor FactorMaker::prior(const Prior& prior) const {
   return factor;
 }
 
+Rigid3 FactorMaker::worldFromCamera(const Window& window, const Frame& frame, int camera) const {
+  const CameraStates states = cameraStates(window);
+  if (!states) return frame.worldFromBody() * body_from_camera_[camera];
+  const Rigid3 world_from_camera0 =
+      frame.image_motion.poseAfter(frame.worldFromBody(), states.timeOffset_s()) *
+      correctedExtrinsics(body_from_camera_[0], states.camera0->value.data());
+  if (camera == 0) return world_from_camera0;
+  return world_from_camera0 *
+         correctedExtrinsics(camera0_from_camera_[camera], states.further[camera - 1]->value.data());
+}
+
 LandmarkFactors FactorMaker::landmark(Window& window, TrackHistory& track) const {
+  const CameraStates states = cameraStates(window);
+  return states ? calibratedLandmark(window, track, states) : plainLandmark(window, track);
+}
+
+LandmarkFactors FactorMaker::calibratedLandmark(Window& window, TrackHistory& track,
+                                                const CameraStates& states) const {
+  Landmark& landmark = *track.landmark;
+  Frame& host = *window.find(landmark.host);
+  LandmarkFactors result;
+  result.landmark = landmark.parameters.data();
+  result.factors.reserve(track.sightings.size());
+  for (const Sighting& sighting : track.sightings) {
+    Factor& factor = result.factors.emplace_back();
+    factor.loss = reprojection_loss_.get();
+    const bool in_host = sighting.frame == landmark.host;
+    GlobalState* further = sighting.camera > 0 ? states.further[sighting.camera - 1] : nullptr;
+    if (in_host && !further) {
+      factor.function =
+          std::make_unique<HostReprojectionFactor>(sighting.measurement, landmark.base, Rigid3());
+      factor.blocks = {result.landmark};
+    } else if (in_host) {
+      factor.function = std::make_unique<CalibratedStereoFactor>(sighting.measurement, landmark.base,
+                                                                 camera0_from_camera_[sighting.camera],
+                                                                 further->firstEstimate());
+      factor.blocks = {result.landmark, further->value.data()};
+    } else {
+      Frame& target = *window.find(sighting.frame);
+      CameraPlacement placement{body_from_camera_[0], std::nullopt};
+      if (further) placement.camera0_from_target = camera0_from_camera_[sighting.camera];
+      const CalibratedFirstEstimates first{
+          host.firstPose(), target.firstPose(), states.camera0->firstEstimate(),
+          states.time_offset->firstEstimate(), further ? further->firstEstimate() : nullptr};
+      factor.function = std::make_unique<CalibratedReprojectionFactor>(
+          sighting.measurement, landmark.base, placement, host.image_motion, target.image_motion, first);
+      factor.blocks = {host.pose.data(), target.pose.data(), result.landmark, states.camera0->value.data(),
+                       states.time_offset->value.data()};
+      if (further) factor.blocks.push_back(further->value.data());
+    }
+  }
+  return result;
+}
+
+LandmarkFactors FactorMaker::plainLandmark(Window& window, TrackHistory& track) const {
   Landmark& landmark = *track.landmark;
   Frame& host = *window.find(landmark.host);
   LandmarkFactors result;

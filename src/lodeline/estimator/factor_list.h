@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lodeline/cameras/camera.h"
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/window.h"
 #include "lodeline/factors/prior_factor.h"
@@ -38,10 +39,17 @@ class FactorMaker {
   /// All sightings of a track that has a landmark.
   LandmarkFactors landmark(Window& window, TrackHistory& track) const;
 
+  /// As the calibration files say.
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
+  /// At the true time of a frame's images, with the calibration as estimated so far.
+  Rigid3 worldFromCamera(const Window& window, const Frame& frame, int camera) const;
 
  private:
+  LandmarkFactors plainLandmark(Window& window, TrackHistory& track) const;
+  LandmarkFactors calibratedLandmark(Window& window, TrackHistory& track, const CameraStates& states) const;
+
   std::vector<Rigid3> body_from_camera_;
+  std::vector<Rigid3> camera0_from_camera_;
   Vec3 gravity_W_;
   std::unique_ptr<ceres::LossFunction> reprojection_loss_;
 };

@@ -34,11 +34,11 @@ InverseDistance solveInverseDistance(const Window& window, const TrackHistory& t
     const DirectionMeasurement* measurement;
   };
   std::vector<Equation> equations;
-  const Rigid3 world_from_host = window.find(host.frame)->worldFromBody() * factors.bodyFromCamera(0);
+  const Rigid3 world_from_host = factors.worldFromCamera(window, *window.find(host.frame), 0);
   for (const Sighting& sighting : track.sightings) {
     if (&sighting == &host) continue;
     const Rigid3 target_from_host =
-        (window.find(sighting.frame)->worldFromBody() * factors.bodyFromCamera(sighting.camera)).inverse() *
+        factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera).inverse() *
         world_from_host;
     equations.push_back({target_from_host.rotation * host.measurement.bearing_C, target_from_host.translation,
                          &sighting.measurement});

@@ -83,23 +83,22 @@ void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, 
 }  // namespace
 
 std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
-                                   const Rigid3& body_from_host_camera) {
+                                   const FactorMaker& factors) {
   constexpr double kMinInverseDistance = 1e-3;
   const Landmark& landmark = *track.landmark;
   if (landmark.inverseDistance() < kMinInverseDistance) return std::nullopt;
   const Vec3 point_C = landmark.base.direction(landmark.parameters.data()) / landmark.inverseDistance();
-  const Rigid3 world_from_camera = window.find(landmark.host)->worldFromBody() * body_from_host_camera;
+  const Rigid3 world_from_camera = factors.worldFromCamera(window, *window.find(landmark.host), 0);
   return MapPoint{id, world_from_camera * point_C, static_cast<int>(track.sightings.size())};
 }
 
-void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded,
-                   const Rigid3& body_from_host_camera) {
+void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded, const FactorMaker& factors) {
   Landmark& landmark = *track.landmark;
-  const Rigid3 world_from_old = window.find(landmark.host)->worldFromBody() * body_from_host_camera;
+  const Rigid3 world_from_old = factors.worldFromCamera(window, *window.find(landmark.host), 0);
   for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
     const Frame* frame = window.find(sighting->frame);
     if (sighting->camera != 0 || !frame->is_keyframe || frame->id == excluded) continue;
-    const Rigid3 new_from_old = (frame->worldFromBody() * body_from_host_camera).inverse() * world_from_old;
+    const Rigid3 new_from_old = factors.worldFromCamera(window, *frame, 0).inverse() * world_from_old;
     // Homogeneous, so that points at infinity move too.
     const Vec3 point_new = new_from_old.rotation * landmark.base.direction(landmark.parameters.data()) +
                            landmark.inverseDistance() * new_from_old.translation;
@@ -153,12 +152,11 @@ void Marginalizer::removeOldestKeyframe(Window& window) {
     if (!track.landmark || !track.seenIn(oldest.id)) continue;
     if (track.seenIn(newest_keyframe->id)) {
       if (track.landmark->host == oldest.id) {
-        moveToNewHost(window, track, oldest.id, factors_.bodyFromCamera(0));
+        moveToNewHost(window, track, oldest.id, factors_);
       }
     } else {
       system.addEliminated(factors_.landmark(window, track));
-      if (const auto point = mapPointOf(window, id, track, factors_.bodyFromCamera(0)))
-        map_points_.push_back(*point);
+      if (const auto point = mapPointOf(window, id, track, factors_)) map_points_.push_back(*point);
       track.landmark.reset();
       track.sightings.clear();
     }

@@ -55,11 +55,10 @@ class Marginalizer {
 
 /// Where a track's landmark is now; nothing for points too far away to have a position (beyond 1 km).
 std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
-                                   const Rigid3& body_from_host_camera);
+                                   const FactorMaker& factors);
 
 /// Moves a landmark to the newest keyframe that sees it, other than `excluded`, keeping its position. Without
 /// such a keyframe, or when the point would lie behind it, the track loses its landmark.
-void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded,
-                   const Rigid3& body_from_host_camera);
+void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded, const FactorMaker& factors);
 
 }  // namespace lodeline

@@ -51,6 +51,7 @@ void MonoInitializer::insert(Time time, const SightingList& sightings, FrameId i
     intervals_[id] = std::make_unique<Preintegration>(pending_imu_, Vec3::Zero(), Vec3::Zero(), rig_.imu,
                                                       options_.preintegration);
   }
+  if (!pending_imu_.empty()) frame->gyroscope_B = pending_imu_.back().angular_velocity_B;
   pending_imu_.clear();
   window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);

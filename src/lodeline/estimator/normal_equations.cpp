@@ -8,7 +8,6 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Mat63 = Eigen::Matrix<double, 6, 3>;
-using Mat26 = Eigen::Matrix<double, 2, 6>;
 
 // Eigenvalues of a landmark's scaled 3x3 system below this share of the largest count as unobserved.
 constexpr double kRankTolerance = 1e-10;
@@ -95,53 +94,90 @@ void NormalEquations::add(const Factor& factor) {
   }
 }
 
+/// One factor of a landmark, linearised: the residual, its derivative by the landmark and by every other
+/// block, all scaled by the loss.
+struct NormalEquations::LandmarkTerm {
+  static constexpr int kMaxBlocks = 6;
+  struct Part {
+    int offset, size;
+    Eigen::Matrix<double, 2, 6> jacobian;  // columns beyond `size` are zero
+  };
+  Vec2 residual;
+  Eigen::Matrix<double, 2, kLandmarkSize, Eigen::RowMajor> by_landmark;
+  Part parts[kMaxBlocks];
+  int part_count = 0;
+};
+
+NormalEquations::LandmarkTerm NormalEquations::linearised(const Factor& factor, const double* landmark) {
+  const std::vector<int>& sizes = factor.function->parameter_block_sizes();
+  LandmarkTerm term;
+  Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor> by_block[LandmarkTerm::kMaxBlocks];
+  double* pointers[LandmarkTerm::kMaxBlocks];
+  for (size_t b = 0; b < sizes.size(); ++b)
+    pointers[b] = factor.blocks[b] == landmark ? term.by_landmark.data() : by_block[b].data();
+  factor.function->Evaluate(factor.blocks.data(), term.residual.data(), pointers);
+  const double scale = robustScale(factor.loss, term.residual.squaredNorm());
+  term.residual *= scale;
+  term.by_landmark *= scale;
+  for (size_t b = 0; b < sizes.size(); ++b) {
+    if (factor.blocks[b] == landmark) continue;
+    LandmarkTerm::Part& part = term.parts[term.part_count++];
+    part.offset = offsetOf(factor.blocks[b], sizes[b]);
+    part.size = std::min(sizes[b], kPoseTangentSize);
+    part.jacobian.setZero();
+    const Eigen::Map<RowMajor> given(pointers[b], 2, sizes[b]);
+    if (part.size == kPoseTangentSize) {
+      part.jacobian = scale * given.leftCols<kPoseTangentSize>();
+    } else {
+      part.jacobian.leftCols(part.size) = scale * given.leftCols(part.size);
+    }
+  }
+  return term;
+}
+
+void NormalEquations::addProduct(int row, int row_size, int column, int column_size, const Mat66& product) {
+  if (row_size == kPoseTangentSize && column_size == kPoseTangentSize) {
+    h_.block<kPoseTangentSize, kPoseTangentSize>(row, column) += product;
+  } else {
+    h_.block(row, column, row_size, column_size) += product.topLeftCorner(row_size, column_size);
+  }
+}
+
 void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
   std::vector<Coupling> couplings;
-  const auto couplingOf = [&](int offset) -> Coupling& {
+  const auto couplingOf = [&](int offset, int size) -> Coupling& {
     for (Coupling& coupling : couplings) {
       if (coupling.offset == offset) return coupling;
     }
-    return couplings.emplace_back(Coupling{offset});
+    return couplings.emplace_back(Coupling{offset, size});
   };
   Mat3 h_landmark = Mat3::Zero();
   Vec3 g_landmark = Vec3::Zero();
-
   for (const Factor& factor : landmark.factors) {
-    Vec2 residual;
-    Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor> by_pose[2];
-    Eigen::Matrix<double, 2, kLandmarkSize, Eigen::RowMajor> by_landmark;
-    const bool in_host = factor.blocks.size() == 1;
-    double* host_pointers[] = {by_landmark.data()};
-    double* pointers[] = {by_pose[0].data(), by_pose[1].data(), by_landmark.data()};
-    factor.function->Evaluate(factor.blocks.data(), residual.data(), in_host ? host_pointers : pointers);
-    const double scale = robustScale(factor.loss, residual.squaredNorm());
-    residual *= scale;
-    by_landmark *= scale;
-    h_landmark.noalias() += by_landmark.transpose() * by_landmark;
-    g_landmark.noalias() += by_landmark.transpose() * residual;
-    if (in_host) continue;
-
-    int offsets[2];
-    Mat26 jacobians[2];
-    for (int k = 0; k < 2; ++k) {
-      offsets[k] = offsetOf(factor.blocks[k], kPoseSize);
-      jacobians[k] = scale * by_pose[k].leftCols<6>();
-      g_.segment<6>(offsets[k]) += jacobians[k].transpose() * residual;
-      h_.block<6, 6>(offsets[k], offsets[k]).noalias() += jacobians[k].transpose() * jacobians[k];
-      couplingOf(offsets[k]).pose_by_landmark.noalias() += jacobians[k].transpose() * by_landmark;
+    const LandmarkTerm term = linearised(factor, landmark.landmark);
+    h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
+    g_landmark.noalias() += term.by_landmark.transpose() * term.residual;
+    for (int i = 0; i < term.part_count; ++i) {
+      const LandmarkTerm::Part& row = term.parts[i];
+      g_.segment(row.offset, row.size) += (row.jacobian.transpose() * term.residual).head(row.size);
+      couplingOf(row.offset, row.size).by_landmark.noalias() += row.jacobian.transpose() * term.by_landmark;
+      for (int j = 0; j < term.part_count; ++j) {
+        const LandmarkTerm::Part& column = term.parts[j];
+        if (column.offset > row.offset) continue;
+        addProduct(row.offset, row.size, column.offset, column.size,
+                   row.jacobian.transpose() * column.jacobian);
+      }
     }
-    const int low = offsets[0] > offsets[1] ? 0 : 1;
-    h_.block<6, 6>(offsets[low], offsets[1 - low]).noalias() +=
-        jacobians[low].transpose() * jacobians[1 - low];
   }
 
   const Mat3 inverse = pseudoInverse(h_landmark);
   for (const Coupling& row : couplings) {
-    const Mat63 weighted = row.pose_by_landmark * inverse;
-    g_.segment<6>(row.offset).noalias() -= weighted * g_landmark;
+    const Mat63 weighted = row.by_landmark * inverse;
+    g_.segment(row.offset, row.size) -= (weighted * g_landmark).head(row.size);
     for (const Coupling& column : couplings) {
       if (column.offset > row.offset) continue;
-      h_.block<6, 6>(row.offset, column.offset).noalias() -= weighted * column.pose_by_landmark.transpose();
+      addProduct(row.offset, row.size, column.offset, column.size,
+                 -weighted * column.by_landmark.transpose());
     }
   }
   eliminated_.push_back({landmark.landmark, inverse, g_landmark, std::move(couplings)});
@@ -151,7 +187,8 @@ void NormalEquations::stepLandmarks(const Eigen::VectorXd& step) const {
   for (const EliminatedLandmark& landmark : eliminated_) {
     Vec3 gradient = landmark.gradient;
     for (const Coupling& coupling : landmark.couplings) {
-      gradient.noalias() += coupling.pose_by_landmark.transpose() * step.segment<6>(coupling.offset);
+      gradient.noalias() += coupling.by_landmark.topRows(coupling.size).transpose() *
+                            step.segment(coupling.offset, coupling.size);
     }
     Eigen::Map<Eigen::Matrix<double, kLandmarkSize, 1>> value(landmark.value);
     value -= landmark.inverse_hessian * gradient;

@@ -22,7 +22,8 @@ class NormalEquations {
   /// Blocks that factors mention get their rows in the order of the first mention.
   void add(const Factor& factor);
 
-  /// Adds the terms of one landmark and eliminates it (Schur complement).
+  /// Adds the terms of one landmark and eliminates it (Schur complement). Apart from the landmark its factors
+  /// may have blocks of at most 6 tangent coordinates.
   void addEliminated(const LandmarkFactors& landmark);
 
   /// Moves the eliminated landmarks along with a step d of the blocks.
@@ -37,9 +38,12 @@ class NormalEquations {
   const Eigen::VectorXd gradient() const { return g_.head(size_); }
 
  private:
+  using Mat66 = Eigen::Matrix<double, 6, 6>;
+  struct LandmarkTerm;
+  /// Between a block and the landmark; rows beyond the block's size are zero.
   struct Coupling {
-    int offset;
-    Eigen::Matrix<double, 6, 3> pose_by_landmark = Eigen::Matrix<double, 6, 3>::Zero();
+    int offset, size;
+    Eigen::Matrix<double, 6, 3> by_landmark = Eigen::Matrix<double, 6, 3>::Zero();
   };
   /// What back-substitution needs.
   struct EliminatedLandmark {
@@ -49,6 +53,8 @@ class NormalEquations {
     std::vector<Coupling> couplings;
   };
   int offsetOf(double* value, int ambient_size);
+  LandmarkTerm linearised(const Factor& factor, const double* landmark);
+  void addProduct(int row, int row_size, int column, int column_size, const Mat66& product);
   void reserve(int size);
 
   std::vector<Block> blocks_;

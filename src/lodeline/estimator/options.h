@@ -70,6 +70,18 @@ struct SolverOptions {
   double robust_scale_sigmas = 2.0;  ///< Cauchy
 };
 
+/// How far the camera calibration of the files may be off, one sigma; a sigma of 0 holds it. The lens itself
+/// is left alone: a wrong principal point looks like a turned camera, and is made good as one.
+struct CameraCalibrationOptions {
+  bool enabled = true;
+  double rotation_sigma_rad = 0.01;  ///< camera 0 to the IMU, each axis
+  double position_sigma_m = 0.01;
+  double time_offset_sigma_s = 0.005;
+  /// Further cameras to camera 0. Their distance is the only ruler a stereo rig has; files state it well.
+  double stereo_rotation_sigma_rad = 0.003;
+  double stereo_position_sigma_m = 3e-4;
+};
+
 struct EstimatorOptions {
   Vec3 gravity_W = standardGravity_W();  ///< m/s^2
   InitialStateOptions initial_state;
@@ -78,6 +90,7 @@ struct EstimatorOptions {
   KeyframeOptions keyframe;
   LandmarkOptions landmark;
   SolverOptions solver;
+  CameraCalibrationOptions camera_calibration;
   PreintegrationOptions preintegration;
   GravityAlignmentOptions gravity_alignment;
   int min_landmarks_for_vision = 8;  ///< fewer seen landmarks mean that a frame is carried inertially

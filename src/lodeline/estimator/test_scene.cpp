@@ -129,10 +129,11 @@ Comparison ComparedEstimator::add(const SimulatedFrame& frame) {
   result.estimate = estimator_.add(frame.tracks, frame.imu);
   if (!result.initialized()) return result;
   if (!estimate_from_truth_) {
-    // Nothing has been marginalised yet: the prior is still the one on the first frame.
-    const Rigid3 first_estimate = poseFromBlock(estimator_.prior().blocks.front().first_estimate.data());
-    const Time first_time = estimator_.window().frames().front()->time;
-    estimate_from_truth_ = estimateFromTruth(first_estimate, true_poses_.at(first_time));
+    // The prior knows the oldest frame best, at its first estimate.
+    const Frame& oldest = *estimator_.window().frames().front();
+    const Rigid3 first_estimate =
+        oldest.firstPose() ? poseFromBlock(oldest.firstPose()) : oldest.worldFromBody();
+    estimate_from_truth_ = estimateFromTruth(first_estimate, true_poses_.at(oldest.time));
     true_poses_.clear();
   }
   result.true_world_from_body = *estimate_from_truth_ * truth;

@@ -21,6 +21,10 @@ void Frame::setState(const NavigationState& state) {
   block << state.velocity_W, state.gyroscope_bias_B, state.accelerometer_bias_B;
 }
 
+void Frame::updateImageMotion() {
+  if (has_motion) image_motion = {velocity_W(), gyroscope_B - gyroscopeBias()};
+}
+
 const Sighting* TrackHistory::find(FrameId frame, int camera) const {
   for (const Sighting& sighting : sightings) {
     if (sighting.frame == frame && sighting.camera == camera) return &sighting;

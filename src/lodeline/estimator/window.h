@@ -10,6 +10,7 @@
 
 #include "lodeline/base/time.h"
 #include "lodeline/estimator/global_state.h"
+#include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/parameters.h"
 #include "lodeline/factors/reprojection_factor.h"
 #include "lodeline/features/tracks.h"
@@ -30,6 +31,9 @@ struct Frame {
   PoseBlock pose{};
   bool has_motion = true;
   MotionBlock motion{};
+  Vec3 gyroscope_B = Vec3::Zero();  ///< the gyroscope's reading at `time`, rad/s
+  /// As of the last time that the frame had its motion, see updateImageMotion().
+  ImageMotion image_motion;
   /// Where the block was first linearised by the marginalisation prior; empty while the prior does not touch
   /// it.
   std::optional<PoseBlock> first_pose;
@@ -43,6 +47,8 @@ struct Frame {
   Vec3 accelerometerBias() const { return Vec3(motion.data() + 6); }
   NavigationState state() const;
   void setState(const NavigationState& state);
+  /// Brings `image_motion` up to date, which old keyframes keep.
+  void updateImageMotion();
   const double* firstPose() const { return first_pose ? first_pose->data() : nullptr; }
   const double* firstMotion() const { return first_motion ? first_motion->data() : nullptr; }
 };

@@ -16,6 +16,7 @@ WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& 
   if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
+    frame->updateImageMotion();
     if (before && frame->from_previous) {
       repropagateIfNeeded(*before, *frame->from_previous);
       terms.dense.push_back(factors.inertial(*before, *frame));

@@ -21,6 +21,26 @@ nlohmann::ordered_json toJson(const RunDescription& run) {
             {"other_sensors", run.other_sensors}}}};
 }
 
+std::string describe(const CameraCorrections& corrections) {
+  std::string text = fmt::format("images {:+.1f} ms", 1e3 * corrections.time_offset_s);
+  for (size_t i = 0; i < corrections.extrinsics.size(); ++i) {
+    const auto& extrinsics = corrections.extrinsics[i];
+    text += fmt::format(", camera {}{} {:.2f} deg {:.1f} mm", i, i > 0 ? " to camera 0" : "",
+                        extrinsics.head<3>().norm() * 180.0 / M_PI, 1e3 * extrinsics.tail<3>().norm());
+  }
+  return text + " off the files";
+}
+
+nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
+  nlohmann::ordered_json json;
+  json["time_offset_s"] = corrections.time_offset_s;
+  for (const auto& extrinsics : corrections.extrinsics) {
+    json["cameras"].push_back({{"rotation_rad", {extrinsics[0], extrinsics[1], extrinsics[2]}},
+                               {"position_m", {extrinsics[3], extrinsics[4], extrinsics[5]}}});
+  }
+  return json;
+}
+
 }  // namespace
 
 void RunSummary::add(const FrameEstimate& estimate) {
@@ -72,6 +92,7 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
     line("end uncertainty", fmt::format("{:.3f} m, heading {:.2f} deg (one sigma)", sigma.head<3>().norm(),
                                         sigma[5] * 180.0 / M_PI));
   }
+  if (last_.camera_corrections) line("calibration", describe(*last_.camera_corrections));
   line("time",
        fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (files {:.1f}, front end {:.1f}, "
                    "estimator {:.1f})",
@@ -103,6 +124,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["mean_landmarks"] = meanLandmarks();
   json["mean_reprojection_rms_px"] = meanReprojection_sigmas() * description_.observation_sigma_px;
   json["mean_reprojection_rms_sigmas"] = meanReprojection_sigmas();
+  if (last_.camera_corrections) json["camera_corrections"] = toJson(*last_.camera_corrections);
   json["wall_s"] = wall_s;
   json["real_time_factor"] = realTimeFactor();
   json["core_ms_per_frame"] = {{"total", coreMillisecondsPerFrame(process_s)},

@@ -1,0 +1,66 @@
+#include "lodeline/estimator/camera_states.h"
+
+#include <algorithm>
+
+#include "lodeline/factors/calibrated_reprojection_factor.h"
+
+namespace lodeline {
+namespace {
+
+constexpr const char* kTimeOffset = "camera.dt";
+
+// Short enough to need no memory of their own: they are looked up for every landmark.
+std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".T_BC"; }
+
+void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas) {
+  // Small enough to hold a state, large enough to keep the prior well conditioned.
+  constexpr double kHeld = 1e-7;
+  GlobalState state;
+  state.name = name;
+  state.value.assign(static_cast<size_t>(sigmas.size()), 0.0);
+  GlobalState& added = window.add(std::move(state));
+  prior.append(added.value.data(), static_cast<int>(sigmas.size()), sigmas.cwiseMax(kHeld));
+}
+
+Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
+  Eigen::VectorXd sigmas(kExtrinsicsSize);
+  sigmas << Vec3::Constant(rotation_rad), Vec3::Constant(position_m);
+  return sigmas;
+}
+
+}  // namespace
+
+void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
+  if (!options.enabled) return;
+  addState(window, prior, extrinsicsName(0),
+           extrinsicsSigmas(options.rotation_sigma_rad, options.position_sigma_m));
+  addState(window, prior, kTimeOffset, Eigen::VectorXd::Constant(1, options.time_offset_sigma_s));
+  for (int camera = 1; camera < cameras; ++camera) {
+    addState(window, prior, extrinsicsName(static_cast<size_t>(camera)),
+             extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m));
+  }
+}
+
+CameraStates cameraStates(const Window& window) {
+  CameraStates states;
+  states.camera0 = window.findGlobal(extrinsicsName(0));
+  if (!states.camera0) return states;
+  states.time_offset = window.findGlobal(kTimeOffset);
+  while (GlobalState* further = window.findGlobal(extrinsicsName(states.further.size() + 1)))
+    states.further.push_back(further);
+  return states;
+}
+
+std::optional<CameraCorrections> cameraCorrections(const Window& window) {
+  using Correction = Eigen::Matrix<double, 6, 1>;
+  const CameraStates states = cameraStates(window);
+  if (!states) return std::nullopt;
+  CameraCorrections corrections;
+  corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(states.camera0->value.data()));
+  for (const GlobalState* further : states.further)
+    corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(further->value.data()));
+  corrections.time_offset_s = states.timeOffset_s();
+  return corrections;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lodeline/estimator/options.h"
+#include "lodeline/estimator/window.h"
+#include "lodeline/factors/prior_factor.h"
+
+namespace lodeline {
+
+/// The global states of the camera calibration, see factors/calibrated_reprojection_factor.h; null and empty
+/// where it is not estimated.
+struct CameraStates {
+  GlobalState* camera0 = nullptr;
+  GlobalState* time_offset = nullptr;
+  std::vector<GlobalState*> further;  ///< of camera 1, 2, ...
+
+  explicit operator bool() const { return camera0 != nullptr; }
+  double timeOffset_s() const { return time_offset ? time_offset->value[0] : 0.0; }
+};
+
+/// Adds the states for as many cameras as the rig has, and to the prior what `options` say of them.
+void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
+
+CameraStates cameraStates(const Window& window);
+
+/// What the states say at present.
+struct CameraCorrections {
+  std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m
+  double time_offset_s = 0.0;                           ///< to add to the images' stamps
+};
+std::optional<CameraCorrections> cameraCorrections(const Window& window);
+
+}  // namespace lodeline

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <optional>
+
+#include "lodeline/factors/reprojection_factor.h"
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+// Parameter blocks of the camera calibration that the window estimates, all zero where the calibration files
+// are right:
+//   extrinsics of camera 0          [phi, xi] (rad, m), body axes
+//   extrinsics of a further camera  [phi, xi] (rad, m), axes of camera 0
+//   time offset                     dt (s), the images' stamps + dt = IMU clock
+// Each further camera is placed relative to camera 0, since a stereo calibration knows the cameras' places to
+// each other far better than to the IMU.
+
+constexpr int kExtrinsicsSize = 6;  ///< [phi, xi]
+constexpr int kTimeOffsetSize = 1;
+
+/// The pose of a sensor with the correction [phi, xi] of a calibration block: exp(phi) * R, p + xi.
+Rigid3 correctedExtrinsics(const Rigid3& nominal, const double* correction);
+
+/// How the body moves at an image; extrapolates its pose by a time offset. The velocity is taken as known:
+/// over the few milliseconds that matter its error is beyond notice.
+struct ImageMotion {
+  Vec3 velocity_W = Vec3::Zero();          ///< m/s
+  Vec3 angular_velocity_B = Vec3::Zero();  ///< rad/s, bias removed
+
+  Rigid3 poseAfter(const Rigid3& world_from_body, double dt_s) const;
+};
+
+/// The cameras as their calibration files place them.
+struct CameraPlacement {
+  Rigid3 body_from_camera0;
+  std::optional<Rigid3> camera0_from_target;  ///< nothing where camera 0 is the target
+};
+
+/// Where the Jacobian is taken; null: at the current value (factors/parameters.h).
+struct CalibratedFirstEstimates {
+  const double* host = nullptr;
+  const double* target = nullptr;
+  const double* camera0 = nullptr;
+  const double* time_offset = nullptr;
+  const double* target_camera = nullptr;
+};
+
+/// ReprojectionFactor with the camera calibration as variables.
+///
+/// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3), extrinsics of camera 0
+/// (6), time offset (1) and, where the target camera is a further one, its extrinsics (6). With the poses
+/// R_h, p_h, R_t, p_t carried to the images' true time (R exp(w dt), p + v dt), camera 0 at R_0, p_0 in the
+/// body, the target camera at R_r, p_r in camera 0,
+///   m   = R_t^T (R_h (R_0 d + rho p_0) + rho (p_h - p_t)) - rho p_0
+///   q_0 = R_0^T m,   q = R_r^T (q_0 - rho p_r)
+///   e   = sqrt_information * B^T q / (z^T q).
+class CalibratedReprojectionFactor final : public ceres::CostFunction {
+ public:
+  CalibratedReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
+                               const CameraPlacement& placement, const ImageMotion& host_motion,
+                               const ImageMotion& target_motion,
+                               const CalibratedFirstEstimates& first_estimates = {});
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  struct Chain;
+  DirectionMeasurement measurement_;
+  LandmarkBase base_;
+  CameraPlacement placement_;
+  ImageMotion host_motion_, target_motion_;
+  CalibratedFirstEstimates first_estimates_;
+};
+
+/// The same in the host frame itself, by a camera beside the host camera. Blocks: landmark (3), extrinsics of
+/// that camera (6).
+class CalibratedStereoFactor final : public ceres::SizedCostFunction<2, kLandmarkSize, kExtrinsicsSize> {
+ public:
+  /// `first_estimate` of the extrinsics may be null.
+  CalibratedStereoFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
+                         const Rigid3& camera0_from_target, const double* first_estimate = nullptr);
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  DirectionMeasurement measurement_;
+  LandmarkBase base_;
+  Rigid3 camera0_from_target_;
+  const double* first_estimate_;
+};
+
+}  // namespace lodeline
