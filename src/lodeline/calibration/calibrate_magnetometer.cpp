@@ -197,6 +197,9 @@ std::string verdictOf(const MagnetometerCalibrationResult& result) {
 MagnetometerCalibrationResult calibrateMagnetometer(const MagnetometerRecord& record,
                                                     const CalibrationOptions& options,
                                                     Diagnostics* diagnostics) {
+  if (options.old && options.old->raw_readings != record.is_raw) {
+    throw InputError("of the readings and the old calibration one is in raw counts and the other in tesla");
+  }
   const ReadingScreen screen = screenReadings(record.magnetometer, diagnostics);
   if (screen.usable.size() < 2 && screen.repeated > 0) {
     throw EstimationError("the magnetometer was frozen: it gave the same reading all the time");

@@ -31,7 +31,8 @@ struct MagnetometerCalibrationResult {
 
 /// The whole way from readings to a verdict: screening, ellipsoid and ladder (calibrateIron), rotation and
 /// time offset (alignField), maximum likelihood (calibrateWithInertialSensors), scale and heading error.
-/// Throws EstimationError, with the reasons and what to do, where the readings cannot calibrate anything.
+/// Throws EstimationError, with the reasons and what to do, where the readings cannot calibrate anything, and
+/// InputError for an old calibration of readings in another unit.
 MagnetometerCalibrationResult calibrateMagnetometer(const MagnetometerRecord& record,
                                                     const CalibrationOptions& options,
                                                     Diagnostics* diagnostics);

@@ -158,6 +158,8 @@ TEST(CalibrateMagnetometer, KeepsTheOldCalibrationWhereTheReadingsSayNothing) {
   EXPECT_EQ(result.fit.model, IronModel::Kept);
   EXPECT_EQ(result.fit.hard_iron, options.old->hard_iron);
   EXPECT_THAT(result.fit.verdict, HasSubstr("kept"));
+  options.old->raw_readings = true;
+  EXPECT_THROW(calibrateMagnetometer(recordOf(still), options, &diagnostics), InputError);
 }
 
 TEST(ComparisonText, SaysWhetherADifferenceMatters) {
