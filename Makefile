@@ -18,8 +18,9 @@ demo: build
 test: build check-format
 	ctest --test-dir build/release --output-on-failure -j2
 
-# The fast tests of these layers under address and undefined-behaviour sanitizers; the estimator's, the simulator's
-# and the program's have not been run through them yet as a whole.
+# The fast tests of these layers under address and undefined-behaviour sanitizers. The estimator's work through
+# whole simulated scenes and take too long; the simulator's and the program's have not been run through them as a
+# whole.
 SANITIZED = base geometry cameras inertial data features factors evaluation report
 test-sanitized: dependencies
 	cmake --preset asan
