@@ -35,7 +35,12 @@ PointSimulation::PointSimulation(const Motion& motion, const LandmarkField& land
       given_cameras_(makeCameras(given_rig)),
       imu_(options.imu, true_rig.imu.rate_hz, options.seed),
       pixel_noise_(options.seed, "points/pixel"),
-      choice_(options.seed, "points/choice") {}
+      choice_(options.seed, "points/choice") {
+  if (!options.magnetometer) return;
+  const PointMagnetometer& magnetometer = *options.magnetometer;
+  magnetometer_.emplace(motion, magnetometer.field_W, magnetometer.disturbances, magnetometer.errors,
+                        true_rig.magnetometer.value().rate_hz, options.seed);
+}
 
 std::optional<SimulatedFrame> PointSimulation::next() {
   while (choice_.chance(options_.dropped_frame_share) && next_frame_ > 0) ++next_frame_;
@@ -47,6 +52,7 @@ std::optional<SimulatedFrame> PointSimulation::next() {
   frame.truth.motion = motion_.at(time_s);
   frame.tracks.time = frame.truth.time;
   takeImu(frame);
+  takeMagnetometer(frame);
 
   const bool dark = std::any_of(options_.blackouts.begin(), options_.blackouts.end(),
                                 [&](const TimeSpan& span) { return span.contains(time_s); });
@@ -89,6 +95,16 @@ void PointSimulation::takeImu(SimulatedFrame& frame) {
   border_ = frame.imu.back();
   frame.truth.gyroscope_bias_B = before_->gyroscope_bias;
   frame.truth.accelerometer_bias_B = before_->accelerometer_bias;
+}
+
+void PointSimulation::takeMagnetometer(SimulatedFrame& frame) {
+  while (magnetometer_) {
+    const double t = static_cast<double>(next_magnetometer_) / true_rig_.magnetometer->rate_hz;
+    const Time stamp = options_.start + Duration::fromSeconds(t);
+    if (stamp > frame.truth.time) return;
+    frame.magnetometer.push_back({stamp, magnetometer_->measure(t)});
+    ++next_magnetometer_;
+  }
 }
 
 std::optional<Vec2> PointSimulation::seen(int camera, const Rigid3& world_from_body,

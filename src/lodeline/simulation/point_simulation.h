@@ -8,6 +8,7 @@
 #include "lodeline/features/tracks.h"
 #include "lodeline/simulation/imu_model.h"
 #include "lodeline/simulation/landmark_field.h"
+#include "lodeline/simulation/magnetometer_model.h"
 #include "lodeline/simulation/motion.h"
 
 namespace lodeline {
@@ -17,6 +18,13 @@ struct TimeSpan {
   double begin_s = 0.0;
   double duration_s = 0.0;
   bool contains(double t) const { return t >= begin_s && t < begin_s + duration_s; }
+};
+
+/// A magnetometer on board; its rate is that of the rig's calibration.
+struct PointMagnetometer {
+  Vec3 field_W = Vec3(0.0, 24e-6, -38e-6);  ///< of the Earth, T
+  MagneticDisturbances disturbances;
+  MagnetometerErrors errors;
 };
 
 struct PointSimulationOptions {
@@ -38,6 +46,7 @@ struct PointSimulationOptions {
   std::vector<TimeSpan> blackouts;  ///< frames come, with nothing to track in them
 
   ImuErrors imu;
+  std::optional<PointMagnetometer> magnetometer;  ///< takes a rig with one
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
 };
 
@@ -55,6 +64,8 @@ struct SimulatedFrame {
   /// From the frame before to this one, both ends on the frames' times; the first from the motion's start. A
   /// border between two readings is interpolated, as a synchroniser would.
   std::vector<ImuSample> imu;
+  /// After the frame before and up to this one; the first from the motion's start.
+  std::vector<MagnetometerSample> magnetometer;
   TrueState truth;
 };
 
@@ -90,6 +101,7 @@ class PointSimulation {
 
   double secondsOf(int frame) const { return options_.first_frame_s + frame / options_.frame_rate_hz; }
   void takeImu(SimulatedFrame& frame);
+  void takeMagnetometer(SimulatedFrame& frame);
   void renewTracks(double time_s, const Rigid3& world_from_body);
   std::optional<Vec2> seen(int camera, const Rigid3& world_from_body, const LandmarkPoint& point) const;
   void observe(const Rigid3& world_from_body, FrameTracks& tracks);
@@ -101,9 +113,11 @@ class PointSimulation {
   PointSimulationOptions options_;
   std::vector<std::shared_ptr<const Camera>> true_cameras_, given_cameras_;
   ImuModel imu_;
+  std::optional<MagnetometerModel> magnetometer_;
   Random pixel_noise_, choice_;
   int next_frame_ = 0;
   int64_t next_imu_ = 0;
+  int64_t next_magnetometer_ = 0;
   std::optional<Reading> before_, after_;  // readings around the last border
   std::optional<ImuSample> border_;
   std::vector<Track> tracks_;
