@@ -40,6 +40,31 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
   return covarianceOf(system, {frame.pose.data(), frame.motion.data()});
 }
 
+JointCovariance::JointCovariance(const NormalEquations& system, const Window& window) {
+  const Frame& newest = window.newest();
+  std::vector<const double*> blocks = {newest.pose.data(), newest.motion.data()};
+  for (const auto& state : window.globals()) {
+    if (system.find(state->value.data())) blocks.push_back(state->value.data());
+  }
+  int row = 0;
+  for (const double* value : blocks) {
+    const int size = system.find(value)->tangentSize();
+    offsets_[value] = {row, size};
+    row += size;
+  }
+  matrix_ = covarianceOf(system, blocks);
+}
+
+Eigen::MatrixXd JointCovariance::between(const double* rows, const double* columns) const {
+  const auto& [row, height] = offsets_.at(rows);
+  const auto& [column, width] = offsets_.at(columns);
+  return matrix_.block(row, column, height, width);
+}
+
+JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors) {
+  return JointCovariance(linearise(collectTerms(window, prior, factors)), window);
+}
+
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
                                                const FactorMaker& factors) {
   return covarianceOf(linearise(collectTerms(window, prior, factors)), window.newest());

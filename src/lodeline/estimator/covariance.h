@@ -1,5 +1,9 @@
 #pragma once
 
+#include <map>
+#include <utility>
+#include <vector>
+
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/normal_equations.h"
 
@@ -11,6 +15,24 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
 /// Joint covariance of some of the blocks that a system holds, stacked in the order given.
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks);
 
+/// Covariance of the newest frame together with the global states that the system knows.
+class JointCovariance {
+ public:
+  JointCovariance() = default;
+  JointCovariance(const NormalEquations& system, const Window& window);
+
+  bool empty() const { return offsets_.empty(); }
+  bool knows(const double* block) const { return offsets_.count(block) > 0; }
+  /// Of two blocks' tangent coordinates; both must be known.
+  Eigen::MatrixXd between(const double* rows, const double* columns) const;
+  /// Of the newest frame's [dp, dtheta, dv, db_g, db_a].
+  Eigen::Matrix<double, 15, 15> newest() const { return matrix_.topLeftCorner<15, 15>(); }
+
+ private:
+  Eigen::MatrixXd matrix_;
+  std::map<const double*, std::pair<int, int>> offsets_;  ///< first row and size
+};
+
 /// Relative standard deviation of the scale as the newest frame shows it: of its distance from the origin or
 /// of its speed along their directions, whichever is known better. `covariance` as from newestCovariance().
 double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
@@ -18,5 +40,7 @@ double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
 /// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
                                                const FactorMaker& factors);
+/// The same with the global states.
+JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors);
 
 }  // namespace lodeline

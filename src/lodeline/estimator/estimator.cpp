@@ -33,22 +33,26 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       diagnostics_(diagnostics),
       factors_(rig_, options_),
       marginalizer_(factors_),
-      mono_initializer_(rig_, options_, factors_) {
+      mono_initializer_(rig_, options_, factors_),
+      magnetometer_(rig_, options_, diagnostics) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
 
-FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu) {
+FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu,
+                             std::span<const MagnetometerSample> magnetometer) {
   FrameEstimate estimate;
   estimate.time = tracks.time;
   checkOrder(tracks.time, imu);
   const SightingList sightings = sightingsOf(tracks);
   const bool carries_on = initialized();
+  magnetometer_.take(magnetometer, imu, carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero());
   if (carries_on) insertFrame(tracks.time, sightings, imu);
   last_time_ = tracks.time;
   if (carries_on) {
     optimize(&estimate);
   } else if (initialize(tracks, sightings, imu, &estimate)) {
-    estimate.covariance = newestCovariance(window_, marginalizer_.prior(), factors_);
+    startMagnetometer();
+    rememberCovariance(jointCovariance(window_, marginalizer_.prior(), factors_), &estimate);
   } else {
     return estimate;
   }
@@ -173,6 +177,18 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
   frame->gyroscope_B = imu.back().angular_velocity_B;
   window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+  magnetometer_.addToNewest(window_, marginalizer_);
+}
+
+void Estimator::startMagnetometer() {
+  Prior prior = marginalizer_.prior();
+  magnetometer_.start(&window_, &prior);
+  marginalizer_.start(std::move(prior));
+}
+
+void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
+  estimate->covariance = covariance.newest();
+  magnetometer_.remember(std::move(covariance));
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
@@ -180,12 +196,12 @@ void Estimator::optimize(FrameEstimate* estimate) {
   if (starting_up_) {
     summary =
         solveWindow(window_, marginalizer_.prior(), factors_, {options_.solver.max_iterations_startup, 1e-6});
-    estimate->covariance = newestCovariance(window_, marginalizer_.prior(), factors_);
+    rememberCovariance(jointCovariance(window_, marginalizer_.prior(), factors_), estimate);
   } else {
-    const WindowUpdate update =
+    WindowUpdate update =
         updateWindow(window_, marginalizer_.prior(), factors_, {options_.solver.max_iterations, 1e-4});
     summary = update.summary;
-    estimate->covariance = update.newest_covariance;
+    rememberCovariance(std::move(update.covariance), estimate);
   }
   estimate->solver_iterations = summary.iterations;
   if (!summary.usable) {
@@ -203,6 +219,7 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   const ReprojectionStatistics statistics = reprojectionStatistics(window_, factors_, newest.id);
   estimate->state = newest.state();
   estimate->camera_corrections = cameraCorrections(window_);
+  estimate->magnetometer = magnetometer_.estimate(window_);
   estimate->landmarks = statistics.landmarks;
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
   for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;

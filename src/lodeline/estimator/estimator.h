@@ -7,6 +7,7 @@
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/magnetometer_fusion.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/estimator/mono_initializer.h"
 #include "lodeline/estimator/options.h"
@@ -37,6 +38,7 @@ struct FrameEstimate {
   int solver_iterations = 0;
   /// Nothing where the calibration is taken as the files give it.
   std::optional<CameraCorrections> camera_corrections;
+  MagnetometerEstimate magnetometer;
 };
 
 /// Visual-inertial odometry over a sliding window of keyframes and recent frames (paper section III).
@@ -45,9 +47,11 @@ class Estimator {
   Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
   /// Adds one frame: what the front end tracked, and the inertial readings since the frame before (both ends
-  /// on the frames' times; for the first frame all readings there are). Throws InputError, and leaves the
-  /// estimator as it was, where frame or readings do not follow on the frame before.
-  FrameEstimate add(const FrameTracks& tracks, std::span<const ImuSample> imu);
+  /// on the frames' times; for the first frame all readings there are), and the magnetometer's since the
+  /// frame before. Throws InputError, and leaves the estimator as it was, where frame or inertial readings do
+  /// not follow on the frame before.
+  FrameEstimate add(const FrameTracks& tracks, std::span<const ImuSample> imu,
+                    std::span<const MagnetometerSample> magnetometer = {});
 
   bool initialized() const { return !window_.empty(); }
   const Window& window() const { return window_; }
@@ -69,6 +73,9 @@ class Estimator {
   void optimize(FrameEstimate* estimate);
   /// Whether the window may begin to be marginalised.
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
+  /// Turns a window that has just started to north.
+  void startMagnetometer();
+  void rememberCovariance(JointCovariance covariance, FrameEstimate* estimate);
   void report(const FrameTracks& tracks, FrameEstimate* estimate);
 
   Rig rig_;
@@ -78,6 +85,7 @@ class Estimator {
   FactorMaker factors_;
   Marginalizer marginalizer_;
   MonoInitializer mono_initializer_;
+  MagnetometerFusion magnetometer_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
   std::optional<Time> last_time_;

@@ -1,7 +1,9 @@
 #include "lodeline/estimator/factor_list.h"
 
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/factors/inertial_factor.h"
+#include "lodeline/factors/magnetometer_relative_factor.h"
 
 namespace lodeline {
 
@@ -20,6 +22,32 @@ Factor FactorMaker::inertial(Frame& before, Frame& frame) const {
                                                frame.firstMotion()};
   factor.function = std::make_unique<InertialFactor>(frame.from_previous.get(), gravity_W_, first_estimates);
   factor.blocks = {before.pose.data(), before.motion.data(), frame.pose.data(), frame.motion.data()};
+  return factor;
+}
+
+std::optional<Factor> FactorMaker::magnetometer(const Window& window, Frame* before, Frame& frame) const {
+  if (!frame.magnetometer) return std::nullopt;
+  const FieldMeasurement& measured = *frame.magnetometer;
+  Factor factor;
+  if (measured.relative) {
+    if (!before || !frame.from_previous) return std::nullopt;
+    const Quat gamma =
+        frame.from_previous->correctedFor(before->gyroscopeBias(), before->accelerometerBias()).gamma;
+    factor.function = std::make_unique<MagnetometerRelativeFactor>(
+        measured.mean.newest_B, gamma * measured.mean.field_B, measured.mean.readings, measured.noise.sigma_T,
+        before->firstPose(), frame.firstPose());
+    factor.blocks = {before->pose.data(), frame.pose.data()};
+    return factor;
+  }
+  const MagnetometerStates states(window);
+  const double* first_pose = frame.firstPose();
+  const Quat reference = poseFromBlock(first_pose ? first_pose : frame.pose.data()).rotation;
+  const Vec3 field_W = states.field_W() + (measured.disturbed ? states.disturbance_W() : Vec3::Zero());
+  factor.function = std::make_unique<MagnetometerFieldFactor>(
+      measured.mean.field_B, measured.mean.carried, reference, field_W, measured.noise, measured.disturbed,
+      first_pose, states.field->firstEstimate());
+  factor.blocks = {frame.pose.data(), states.field->value.data(), states.offset->value.data()};
+  if (measured.disturbed) factor.blocks.push_back(states.disturbance->value.data());
   return factor;
 }
 

@@ -4,6 +4,7 @@
 #include <ceres/loss_function.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lodeline/cameras/camera.h"
@@ -35,6 +36,8 @@ class FactorMaker {
 
   /// Inertial term between `frame` and the frame before it.
   Factor inertial(Frame& before, Frame& frame) const;
+  /// Term of the frame's magnetometer, if it has one; `before` is the frame before (null for the first).
+  std::optional<Factor> magnetometer(const Window& window, Frame* before, Frame& frame) const;
   Factor prior(const Prior& prior) const;
   /// All sightings of a track that has a landmark.
   LandmarkFactors landmark(Window& window, TrackHistory& track) const;

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "lodeline/estimator/magnetometer_states.h"
+
 namespace lodeline {
 namespace {
 
@@ -133,6 +135,7 @@ void Marginalizer::retireOldestRecent(Window& window) {
   NormalEquations system;
   if (!prior_.empty()) system.add(factors_.prior(prior_));
   system.add(factors_.inertial(oldest, next));
+  addMagnetometer(window, oldest, next, &system);
   next.from_previous.reset();
   if (oldest.is_keyframe) {
     eliminate(window, system, {oldest.motion.data()}, elapsed_s);
@@ -140,6 +143,20 @@ void Marginalizer::retireOldestRecent(Window& window) {
   } else {
     eliminate(window, system, {oldest.motion.data(), oldest.pose.data()}, elapsed_s);
     window.remove(oldest.id);
+  }
+}
+
+void Marginalizer::addMagnetometer(const Window& window, Frame& oldest, Frame& next,
+                                   NormalEquations* system) const {
+  for (Frame* frame : {&oldest, &next}) {
+    // A term against the frame before goes with that frame, one against the field with its own.
+    if (!frame->magnetometer || frame->magnetometer->relative != (frame == &next)) continue;
+    Frame* before = frame == &next ? &oldest : nullptr;
+    // Its Jacobian is to be taken where the field will have its first estimate from now on.
+    if (GlobalState* field = MagnetometerStates(window).field; field && !field->first)
+      field->first = field->value;
+    if (const auto factor = factors_.magnetometer(window, before, *frame)) system->add(*factor);
+    frame->magnetometer.reset();
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lodeline/estimator/magnetometer_options.h"
 #include "lodeline/geometry/types.h"
 #include "lodeline/inertial/gravity.h"
 #include "lodeline/inertial/gravity_alignment.h"
@@ -92,6 +93,7 @@ struct EstimatorOptions {
   SolverOptions solver;
   CameraCalibrationOptions camera_calibration;
   PreintegrationOptions preintegration;
+  MagnetometerOptions magnetometer;
   GravityAlignmentOptions gravity_alignment;
   int min_landmarks_for_vision = 8;  ///< fewer seen landmarks mean that a frame is carried inertially
 };

@@ -11,9 +11,11 @@
 #include "lodeline/base/time.h"
 #include "lodeline/estimator/global_state.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/magnetometer_field_factor.h"
 #include "lodeline/factors/parameters.h"
 #include "lodeline/factors/reprojection_factor.h"
 #include "lodeline/features/tracks.h"
+#include "lodeline/inertial/magnetometer_mean.h"
 #include "lodeline/inertial/preintegration.h"
 #include "lodeline/inertial/propagation.h"
 
@@ -22,6 +24,14 @@ namespace lodeline {
 using FrameId = int64_t;
 using PoseBlock = std::array<double, kPoseSize>;
 using MotionBlock = std::array<double, kMotionSize>;
+
+/// What the magnetometer says of a frame.
+struct FieldMeasurement {
+  MagnetometerMean mean;
+  bool relative = false;  ///< against the frame before (MagnetometerRelativeFactor), not against the field
+  FieldNoise noise;
+  bool disturbed = false;  ///< the field has a disturbance to be estimated
+};
 
 /// The state at one image time. Old keyframes keep their pose only.
 struct Frame {
@@ -40,6 +50,8 @@ struct Frame {
   std::optional<MotionBlock> first_motion;
   /// Inertial readings since the frame before, while that frame has its motion too.
   std::unique_ptr<Preintegration> from_previous;
+  /// Until it has become part of the prior.
+  std::optional<FieldMeasurement> magnetometer;
 
   Rigid3 worldFromBody() const { return poseFromBlock(pose.data()); }
   Vec3 velocity_W() const { return Vec3(motion.data()); }

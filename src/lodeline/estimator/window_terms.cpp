@@ -23,6 +23,11 @@ WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& 
     }
     before = frame.get();
   }
+  before = nullptr;
+  for (const auto& frame : window.frames()) {
+    if (auto factor = factors.magnetometer(window, before, *frame)) terms.dense.push_back(std::move(*factor));
+    before = frame.get();
+  }
   for (auto& [id, track] : window.tracks()) {
     if (track.landmark) terms.landmarks.push_back(factors.landmark(window, track));
   }

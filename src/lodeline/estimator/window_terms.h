@@ -9,12 +9,12 @@ namespace lodeline {
 
 /// Every term of the window's cost.
 struct WindowTerms {
-  std::vector<Factor> dense;  ///< prior and inertial terms
+  std::vector<Factor> dense;  ///< prior, inertial and magnetometer terms
   std::vector<LandmarkFactors> landmarks;
 };
 
-/// In a fixed order: prior, inertial terms by time, landmarks by track. Inertial terms whose biases moved too
-/// far are integrated again first.
+/// In a fixed order: prior, inertial terms by time, magnetometer terms by time, landmarks by track. Inertial
+/// terms whose biases moved too far are integrated again first.
 WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors);
 
 /// The linear system of all terms at the window's present values, landmarks eliminated.

@@ -119,7 +119,7 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
   }
   update.summary.final_cost = cost;
   update.summary.usable = std::isfinite(cost);
-  update.newest_covariance = covarianceOf(system, window.newest());
+  update.covariance = JointCovariance(system, window);
   return update;
 }
 

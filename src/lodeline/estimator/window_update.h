@@ -8,8 +8,8 @@ namespace lodeline {
 
 struct WindowUpdate {
   SolveSummary summary;
-  /// Of the newest frame, as from newestCovariance(), with the Jacobians that the last step was made from.
-  Eigen::Matrix<double, 15, 15> newest_covariance = Eigen::Matrix<double, 15, 15>::Zero();
+  /// As from jointCovariance(), with the Jacobians that the last step was made from.
+  JointCovariance covariance;
 };
 
 /// The per-frame counterpart of solveWindow(): the same terms, but a few Levenberg-Marquardt steps on normal

@@ -1,0 +1,79 @@
+#include "lodeline/estimator/heading_alignment.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kLeastField_T = 15e-6;  // the Earth's has 22 to 67 uT; hard iron may take some away
+constexpr double kMostField_T = 90e-6;
+
+double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
+double dipOf(const Vec3& field_W) { return std::asin(-field_W.z() / field_W.norm()); }
+double azimuthOf(const Vec3& field_W) { return std::atan2(field_W.y(), field_W.x()); }
+
+/// Why no heading can be had from the field; empty where it can.
+std::string refusalOf(const Vec3& field_W, const MagnetometerOptions& options) {
+  const double norm_T = field_W.norm();
+  if (!(norm_T > kLeastField_T && norm_T < kMostField_T))
+    return fmt::format("field of {:.1f} uT; the Earth's has 22 to 67", 1e6 * norm_T);
+  if (field_W.head<2>().norm() < options.min_horizontal_field_T) {
+    return fmt::format("horizontal field of {:.1f} uT; a heading takes {:.1f}",
+                       1e6 * field_W.head<2>().norm(), 1e6 * options.min_horizontal_field_T);
+  }
+  if (!options.site_field_W) return {};
+  const Vec3& site_W = *options.site_field_W;
+  if (std::abs(norm_T / site_W.norm() - 1.0) > options.max_start_norm_error) {
+    return fmt::format("field of {:.1f} uT where the site has {:.1f}", 1e6 * norm_T, 1e6 * site_W.norm());
+  }
+  if (std::abs(dipOf(field_W) - dipOf(site_W)) > options.max_start_dip_error_rad) {
+    return fmt::format("dip of {:.1f} degrees where the site has {:.1f}", degrees(dipOf(field_W)),
+                       degrees(dipOf(site_W)));
+  }
+  return {};
+}
+
+}  // namespace
+
+HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options) {
+  HeadingAlignment alignment;
+  alignment.field_W = level_field_W;
+  HeadingReference wanted = options.heading_reference;
+  if (wanted == HeadingReference::Automatic)
+    wanted = options.site_field_W ? HeadingReference::True : HeadingReference::Magnetic;
+  if (wanted == HeadingReference::Start) return alignment;
+  alignment.refusal = refusalOf(level_field_W, options);
+  if (wanted == HeadingReference::True && !options.site_field_W)
+    alignment.refusal = "true north takes the place and date of the recording";
+  if (!alignment.refusal.empty()) return alignment;
+  alignment.reference = wanted;
+  const double north = 0.5 * std::numbers::pi;  // azimuths count from east to north
+  const double azimuth = wanted == HeadingReference::True ? azimuthOf(*options.site_field_W) : north;
+  alignment.yaw_rad = azimuth - azimuthOf(level_field_W);
+  alignment.field_W = so3::exp(alignment.yaw_rad * Vec3::UnitZ()) * level_field_W;
+  return alignment;
+}
+
+void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior) {
+  const Rigid3 turned_from_world(so3::exp(yaw_rad * Vec3::UnitZ()), Vec3::Zero());
+  for (const auto& frame : window->frames()) {
+    NavigationState state = frame->state();
+    state.world_from_body = turned_from_world * state.world_from_body;
+    state.velocity_W = turned_from_world.rotation * state.velocity_W;
+    frame->setState(state);
+  }
+  // Position, roll and pitch, and velocity have one sigma for all horizontal directions: only the values
+  // turn.
+  double* pose = prior->blocks[0].first_estimate.data();
+  poseToBlock(turned_from_world * poseFromBlock(pose), pose);
+  prior->blocks[1].first_estimate.head<3>() =
+      turned_from_world.rotation * Vec3(prior->blocks[1].first_estimate.head<3>());
+  prior->sqrt_information(5, 5) = 1.0 / yaw_sigma_rad;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "lodeline/estimator/magnetometer_options.h"
+#include "lodeline/estimator/window.h"
+#include "lodeline/factors/prior_factor.h"
+
+namespace lodeline {
+
+/// Which way a window that has just started looks, from the field it measured.
+struct HeadingAlignment {
+  /// Start where the field says nothing of north; `refusal` then says why, in words.
+  HeadingReference reference = HeadingReference::Start;
+  std::string refusal;
+  double yaw_rad = 0.0;         ///< by which the world is to be turned about its vertical
+  Vec3 field_W = Vec3::Zero();  ///< T, in the turned world
+};
+
+/// `level_field_W`: mean of the start's fields, T, in a world whose vertical is right and whose yaw is not.
+/// East is field x up, north up x east; true north further by the declination of the field at the site.
+/// Refused where size or dip are not the Earth's, or not those of the site, and where the field is all but
+/// vertical.
+HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options);
+
+/// Turns the world under a window of which nothing has been marginalised yet, and under the prior on its
+/// first frame (startPrior), whose heading is then known to `yaw_sigma_rad` only.
+void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior);
+
+}  // namespace lodeline

@@ -1,0 +1,187 @@
+#include "lodeline/estimator/heading_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/base/thread_clock.h"
+#include "lodeline/geometry/so3.h"
+#include "lodeline/simulation/point_dive.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+const Vec3 kField_W(0.0, 24.2e-6, -38.6e-6);  // to magnetic north, as in Florida
+constexpr const char* kGrade = "gx5-25";
+
+MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Motion& motion) {
+  DisturbanceOptions wanted;
+  wanted.seed = options.seed;
+  MagneticDisturbances drawn;
+  switch (options.trouble) {
+    case FieldTrouble::Disturbances:
+      wanted.mean_interval_s = options.duration_s / 7.0;
+      wanted.least_deflection_rad = 3.0 * kDegree;
+      wanted.most_deflection_rad = 10.0 * kDegree;
+      wanted.shortest_s = wanted.longest_s = 20.0;
+      return drawDisturbances(motion, kField_W, wanted);
+    case FieldTrouble::Tank:
+      wanted.mean_interval_s = 0.5 * options.duration_s;
+      wanted.least_deflection_rad = wanted.most_deflection_rad = 8.0 * kDegree;
+      wanted.shortest_s = wanted.longest_s = 0.15 * options.duration_s;
+      drawn = drawDisturbances(motion, kField_W, wanted);
+      drawn.lying.clear();
+      return drawn;
+    case FieldTrouble::Dipole:
+      wanted.mean_interval_s = options.duration_s / 8.0;
+      wanted.least_deflection_rad = wanted.most_deflection_rad = 15.0 * kDegree;
+      drawn = drawDisturbances(motion, kField_W, wanted);
+      drawn.passing.clear();
+      return drawn;
+    case FieldTrouble::Lamp:
+      drawn.switched = drawLampSwitching(options.duration_s, options.seed);
+      return drawn;
+    default:
+      return drawn;
+  }
+}
+
+/// The calibration that the rig is given for a magnetometer with these errors.
+void calibrate(const MagnetometerErrors& errors, FieldTrouble trouble, uint64_t seed,
+               MagnetometerCalibration* calibration) {
+  Random random(seed, "heading trial/calibration");
+  const Vec3 direction = random.direction();
+  calibration->noise_density_T_per_sqrtHz = errors.noise_density_T_per_sqrtHz;
+  calibration->body_from_magnetometer = errors.body_from_magnetometer;
+  calibration->iron_correction = errors.soft_iron.inverse();
+  calibration->hard_iron_T = errors.hard_iron_T;
+  calibration->is_calibrated = true;
+  if (trouble == FieldTrouble::HardIron) calibration->hard_iron_T += 0.3e-6 * direction;
+  if (trouble == FieldTrouble::Calibration) {
+    calibration->hard_iron_T += 8e-6 * direction;
+    calibration->iron_correction = Mat3::Identity();
+  }
+}
+
+PointDive diveOf(const HeadingTrialOptions& options, const ImuErrors& imu) {
+  DiveMotionOptions motion;
+  motion.seed = options.seed;
+  motion.duration_s = options.duration_s;
+  motion.path_length_m = 0.25 * options.duration_s;
+  StandardRigOptions rig;
+  rig.cameras = options.cameras;
+  return makePointDive(motion, standardRig(rig), imu);
+}
+
+EstimatorOptions estimatorOptions(const HeadingTrialOptions& options) {
+  EstimatorOptions estimator = options.estimator;
+  if (!options.honest_imu) return estimator;
+  const ImuGrade& grade = imuGrade(kGrade);
+  estimator.preintegration.noise_inflation = 1.0;
+  estimator.preintegration.motion_noise = MotionNoiseOptions::none();
+  estimator.initial_state.gyroscope_bias_sigma_rad_per_s = std::max(1e-3, grade.gyroscope_turn_on_rad_per_s);
+  estimator.initial_state.accelerometer_bias_sigma_m_per_s2 =
+      std::max(1e-2, grade.accelerometer_turn_on_m_per_s2);
+  return estimator;
+}
+
+template <typename Figure>
+double rootMeanSquare(const std::vector<HeadingSample>& samples, double begin_s, const Figure& figure) {
+  double squares = 0.0;
+  int count = 0;
+  for (const HeadingSample& sample : samples) {
+    if (sample.time_s < begin_s) continue;
+    squares += std::pow(figure(sample), 2);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : std::nan("");
+}
+
+}  // namespace
+
+const char* toString(FieldTrouble trouble) {
+  constexpr std::array kNames = {"none",   "hard iron",   "disturbances", "tank",
+                                 "dipole", "calibration", "lamp"};
+  return kNames[static_cast<size_t>(trouble)];
+}
+
+double HeadingTrial::rms(double begin_s) const {
+  return rootMeanSquare(samples, begin_s, [](const HeadingSample& s) { return s.error_rad; });
+}
+
+double HeadingTrial::claimed(double begin_s) const {
+  return rootMeanSquare(samples, begin_s, [](const HeadingSample& s) { return s.sigma_rad; });
+}
+
+double HeadingTrial::largest(double begin_s) const {
+  double largest = 0.0;
+  for (const HeadingSample& sample : samples) {
+    if (sample.time_s >= begin_s) largest = std::max(largest, std::abs(sample.error_rad));
+  }
+  return largest;
+}
+
+double HeadingTrial::alignedRms(double begin_s) const {
+  double sum = 0.0;
+  int count = 0;
+  for (const HeadingSample& sample : samples) {
+    if (sample.time_s < begin_s) continue;
+    sum += sample.error_rad;
+    ++count;
+  }
+  const double mean = count > 0 ? sum / count : 0.0;
+  return rootMeanSquare(samples, begin_s, [mean](const HeadingSample& s) { return s.error_rad - mean; });
+}
+
+double HeadingTrial::share(MagnetometerStatus status) const {
+  const auto count = std::count_if(samples.begin(), samples.end(),
+                                   [status](const HeadingSample& sample) { return sample.status == status; });
+  return samples.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(samples.size());
+}
+
+HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
+  SpecimenOptions specimen;
+  const ImuErrors imu = drawImuErrors(imuGrade(kGrade), specimen, options.seed);
+  PointDive dive = diveOf(options, imu);
+  PointMagnetometer magnetometer;
+  magnetometer.field_W = kField_W;
+  magnetometer.errors = drawMagnetometerErrors(kGrade, {}, options.seed);
+  magnetometer.disturbances = disturbancesOf(options, dive.motion);
+  calibrate(magnetometer.errors, options.trouble, options.seed, &*dive.mounted.rig.magnetometer);
+
+  PointSimulationOptions points;
+  points.seed = options.seed;
+  points.frame_rate_hz = options.frame_rate_hz;
+  points.tracks = options.tracks;
+  points.imu = imu;
+  points.magnetometer = magnetometer;
+  PointSimulation simulation = dive.simulate(points);
+
+  Diagnostics diagnostics;
+  Estimator estimator(dive.mounted.rig, estimatorOptions(options), &diagnostics);
+  HeadingTrial trial;
+  std::optional<Quat> estimate_from_truth;
+  while (const auto frame = simulation.next()) {
+    const double before_s = threadSeconds();
+    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, frame->magnetometer);
+    trial.estimator_s += threadSeconds() - before_s;
+    if (estimate.status == Status::Waiting) continue;
+    const Quat& estimated = estimate.state.world_from_body.rotation;
+    const Quat& truth = frame->truth.motion.world_from_body.rotation;
+    trial.reference = estimate.magnetometer.heading_reference;
+    if (!estimate_from_truth) {
+      estimate_from_truth = Quat::Identity();
+      if (trial.reference == HeadingReference::Start)
+        *estimate_from_truth = so3::exp(so3::log(estimated * truth.conjugate()).z() * Vec3::UnitZ());
+    }
+    const Vec3 error = so3::log(estimated * (*estimate_from_truth * truth).conjugate());
+    const double sigma_rad = estimate.magnetometer.status == MagnetometerStatus::Off
+                                 ? std::sqrt(estimate.covariance(5, 5))
+                                 : estimate.magnetometer.heading_sigma_rad;
+    trial.samples.push_back(
+        {(frame->truth.time - points.start).seconds(), error.z(), sigma_rad, estimate.magnetometer.status});
+  }
+  return trial;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "lodeline/estimator/estimator.h"
+#include "lodeline/simulation/magnetometer_model.h"
+
+namespace lodeline {
+
+/// What the magnetometer of a simulated dive suffers from. In all cases it has soft and hard iron and 1
+/// degree of misalignment, which its calibration knows.
+enum class FieldTrouble {
+  None,          ///< white noise alone
+  HardIron,      ///< 0.3 uT that the calibration does not know
+  Disturbances,  ///< six of 20 s, 3 to 10 degrees each
+  Tank,          ///< a companion's tank near for minutes, 8 degrees
+  Dipole,        ///< iron lying in the passage, 15 degrees, passed both ways
+  Calibration,   ///< hard iron wrong by 8 uT, soft iron by some per cent
+  Lamp,          ///< a current of 0.1 to 0.4 uT, switched
+};
+const char* toString(FieldTrouble trouble);
+
+/// A dive of points out and back, of which only the heading counts.
+struct HeadingTrialOptions {
+  uint64_t seed = 1;
+  double duration_s = 1800.0;
+  double frame_rate_hz = 5.0;
+  int tracks = 60;
+  int cameras = 2;
+  FieldTrouble trouble = FieldTrouble::None;
+  EstimatorOptions estimator;
+  bool honest_imu = true;  ///< the estimator takes the IMU's noise for what it is (noise_inflation 1)
+};
+
+struct HeadingSample {
+  double time_s = 0.0;
+  double error_rad = 0.0;  ///< against the estimate's own reference: north, or the first heading
+  double sigma_rad = 0.0;  ///< claimed
+  MagnetometerStatus status = MagnetometerStatus::Off;
+};
+
+struct HeadingTrial {
+  std::vector<HeadingSample> samples;  ///< of every frame
+  HeadingReference reference = HeadingReference::Start;
+  double estimator_s = 0.0;  ///< processor time
+
+  /// Root mean square over the samples from `begin_s` on.
+  double rms(double begin_s = 60.0) const;
+  double largest(double begin_s = 60.0) const;
+  double claimed(double begin_s = 60.0) const;
+  /// The same for what is left when the mean error is taken off, as by aligning the trajectory.
+  double alignedRms(double begin_s = 60.0) const;
+  /// Of the frames, with a status.
+  double share(MagnetometerStatus status) const;
+};
+
+HeadingTrial runHeadingTrial(const HeadingTrialOptions& options);
+
+}  // namespace lodeline

@@ -1,0 +1,341 @@
+#include "lodeline/estimator/magnetometer_fusion.h"
+
+#include <fmt/core.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+// A rig that has just been switched on does not know its gyroscope's bias: the less time it is carried over
+// the better, as long as there are readings.
+constexpr double kShortMean_s = 0.25;
+constexpr double kLongMean_s = 1.0;
+constexpr int kEnoughReadings = 3;
+constexpr double kLongestWait_s = 5.0;  // of means for their window
+
+MagnetometerUse useOf(const std::optional<MagnetometerCalibration>& magnetometer, MagnetometerUse wanted) {
+  if (!magnetometer || wanted == MagnetometerUse::Off) return MagnetometerUse::Off;
+  if (wanted != MagnetometerUse::Automatic) return wanted;
+  return magnetometer->is_calibrated ? MagnetometerUse::Absolute : MagnetometerUse::Off;
+}
+
+/// The part of the readings that a mean is made of: within the IMU's readings and not too old.
+std::span<const FieldSample> recent(std::span<const FieldSample> samples, std::span<const ImuSample> imu) {
+  const auto since = [&](Time begin) {
+    return samples.subspan(static_cast<size_t>(std::count_if(
+        samples.begin(), samples.end(), [&](const FieldSample& sample) { return sample.time < begin; })));
+  };
+  const Time end = imu.back().time;
+  while (!samples.empty() && samples.back().time > end) samples = samples.first(samples.size() - 1);
+  const auto last = since(std::max(imu.front().time, end - Duration::fromSeconds(kShortMean_s)));
+  if (static_cast<int>(last.size()) >= kEnoughReadings) return last;
+  return since(std::max(imu.front().time, end - Duration::fromSeconds(kLongMean_s)));
+}
+
+/// Upper triangular root of the information of a field whose azimuth is all but known.
+Mat3 fieldPrior(const Vec3& field_W, double sigma_T, double azimuth_sigma_rad) {
+  const double horizontal_T = field_W.head<2>().norm();
+  const Vec3 across = Vec3::UnitZ().cross(field_W) / horizontal_T;
+  const double across_sigma_T = azimuth_sigma_rad * horizontal_T;
+  const Mat3 information = Mat3::Identity() / (sigma_T * sigma_T) +
+                           across * across.transpose() / (across_sigma_T * across_sigma_T);
+  return information.llt().matrixU();
+}
+
+}  // namespace
+
+MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& options,
+                                       Diagnostics* diagnostics)
+    : options_(options),
+      diagnostics_(diagnostics),
+      use_(useOf(rig.magnetometer, options.magnetometer.use)),
+      calibration_(rig.magnetometer.value_or(MagnetometerCalibration())),
+      gyroscope_density_(options.preintegration.noise_inflation *
+                         rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz),
+      readings_(calibration_, diagnostics),
+      gate_(options.magnetometer.gate) {
+  if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
+    return;
+  if (use_ == MagnetometerUse::Off) {
+    status_ = MagnetometerStatus::Uncalibrated;
+    diagnostics->report(
+        Severity::Warning, "magnetometer_uncalibrated",
+        "magnetometer: not calibrated, hence not used; `lodeline calibrate magnetometer` makes "
+        "a calibration for --mag-calibration, and --magnetometer absolute uses it as it is");
+  } else {
+    diagnostics->report(
+        Severity::Warning, "magnetometer_uncalibrated",
+        "magnetometer: used without a calibration; heading may be wrong by tens of degrees until "
+        "the rig has turned");
+  }
+}
+
+void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
+                              const Vec3& gyroscope_bias_B) {
+  if (use_ == MagnetometerUse::Off || imu.empty()) return;
+  const std::vector<FieldSample> fields = readings_.add(readings);
+  const std::span<const FieldSample> samples = recent(fields, imu);
+  const Time time = imu.back().time;
+  std::erase_if(means_, [&](const auto& entry) { return (time - entry.first).seconds() > kLongestWait_s; });
+  if (!samples.empty()) means_[time] = carryToFrame(samples, imu, gyroscope_bias_B, gyroscope_density_);
+}
+
+void MagnetometerFusion::start(Window* window, Prior* prior) {
+  if (use_ == MagnetometerUse::Off) return;
+  status_ = MagnetometerStatus::NoData;
+  align(window, prior);
+  for (const auto& frame : window->frames()) {
+    const auto mean = means_.find(frame->time);
+    if (mean == means_.end()) continue;
+    frame->magnetometer = measurementOf(mean->second, 1.0, false);
+    status_ = MagnetometerStatus::Used;
+  }
+  means_.clear();
+}
+
+void MagnetometerFusion::align(Window* window, Prior* prior) {
+  Vec3 sum_W = Vec3::Zero();
+  int count = 0;
+  for (const auto& frame : window->frames()) {
+    const auto mean = means_.find(frame->time);
+    if (mean == means_.end()) continue;
+    sum_W += frame->worldFromBody().rotation * mean->second.field_B;
+    ++count;
+  }
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  HeadingAlignment alignment;
+  alignment.refusal = "no magnetometer reading at the start";
+  if (count > 0) alignment = alignHeading(sum_W / count, wanted);
+  if (!alignment.refusal.empty()) {
+    diagnostics_->report(Severity::Warning, "heading_not_aligned",
+                         "heading counts from the first pose, not from north: " + alignment.refusal);
+  }
+  heading_reference_ = alignment.reference;
+  if (heading_reference_ != HeadingReference::Start) {
+    const double offset_sigma_rad =
+        std::hypot(offsetSigma(), floorSigma(alignment.field_W)) / alignment.field_W.head<2>().norm();
+    turnWorld(alignment.yaw_rad, absolute() ? wanted.start_yaw_sigma_rad : offset_sigma_rad, window, prior);
+  }
+  if (absolute() && count > 0) addStates(alignment, window, prior);
+}
+
+double MagnetometerFusion::offsetSigma() const {
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  if (!calibration_.is_calibrated) return wanted.uncalibrated_offset_sigma_T;
+  return std::hypot(wanted.offset_sigma_T, calibration_.hard_iron_sigma_T.value_or(0.0));
+}
+
+double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
+  return std::hypot(options_.magnetometer.floor_T,
+                    calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
+}
+
+void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const {
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  const auto add = [&](const char* name, const Vec3& value, double walk) -> GlobalState& {
+    return window->add({name, {value.x(), value.y(), value.z()}, std::nullopt, walk});
+  };
+  GlobalState& field = add(MagnetometerStates::kField, alignment.field_W, 0.0);
+  GlobalState& offset = add(MagnetometerStates::kOffset, Vec3::Zero(), wanted.offset_walk_T_per_sqrt_s);
+  add(MagnetometerStates::kDisturbance, Vec3::Zero(), wanted.disturbance_walk_T_per_sqrt_s);
+  prior->append(field.value.data(), 3, Vec3::Constant(wanted.field_sigma_T));
+  if (alignment.reference != HeadingReference::Start) {
+    prior->sqrt_information.bottomRightCorner<3, 3>() =
+        fieldPrior(alignment.field_W, wanted.field_sigma_T, options_.initial_state.yaw_sigma_rad);
+  }
+  prior->append(offset.value.data(), 3, Vec3::Constant(offsetSigma()));
+}
+
+FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean, double variance_scale,
+                                                   bool disturbed) {
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  FieldMeasurement measurement;
+  measurement.mean = mean;
+  measurement.relative = !absolute();
+  measurement.disturbed = disturbed;
+  const double reading_sigma_T =
+      wanted.noise_inflation * calibration_.noise_density_T_per_sqrtHz * std::sqrt(calibration_.rate_hz);
+  if (measurement.relative) {
+    measurement.noise.sigma_T = reading_sigma_T;
+    return measurement;
+  }
+  // Errors that stay the same for a time tau weigh on averages like white noise of density sigma sqrt(2 tau).
+  const double longest_s = 2.0 * wanted.floor_correlation_s;
+  const double since_s = last_seen_ ? (mean.time - *last_seen_).seconds() : longest_s;
+  const double shared = longest_s / std::clamp(since_s, 1e-3, longest_s);
+  const double variance_T2 =
+      std::pow(reading_sigma_T, 2) / mean.readings + shared * std::pow(floorSigma(mean.field_B), 2);
+  measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
+  measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
+  measurement.noise.tilt_sigma_rad = wanted.tilt_sigma_rad * std::sqrt(variance_scale * shared);
+  last_seen_ = mean.time;
+  return measurement;
+}
+
+void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
+  if (use_ == MagnetometerUse::Off) return;
+  Frame& newest = window.newest();
+  const auto found = means_.find(newest.time);
+  status_ = MagnetometerStatus::NoData;
+  if (found == means_.end()) return;
+  const MagnetometerMean mean = found->second;
+  means_.clear();
+  if (!absolute()) {
+    status_ = MagnetometerStatus::Used;
+    newest.magnetometer = measurementOf(mean, 1.0, false);
+    return;
+  }
+  if (MagnetometerStates(window).field == nullptr) startLate(mean, window, marginalizer);
+  judge(mean, window, marginalizer);
+}
+
+void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
+  HeadingAlignment alignment;
+  alignment.field_W = window.newest().worldFromBody().rotation * mean.field_B;
+  Prior states;
+  addStates(alignment, &window, &states);
+  const MagnetometerStates added(window);
+  marginalizer.addKnowledge(*added.field, Vec3::Constant(options_.magnetometer.field_sigma_T));
+  marginalizer.addKnowledge(*added.offset, Vec3::Constant(offsetSigma()));
+}
+
+void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
+  Frame& newest = window.newest();
+  const MagnetometerStates states(window);
+  const FieldCheck earth = check(mean, window, false);
+  std::optional<FieldCheck> with_disturbance;
+  if (disturbed_) with_disturbance = check(mean, window, true);
+  const GateDecision decision = gate_.decide(mean.time, earth, with_disturbance);
+  reportDecision(decision, mean.time);
+  status_ = decision.status;
+  if (decision.end_disturbance || (decision.begin_disturbance && disturbed_))
+    endDisturbance(window, marginalizer);
+  if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
+  if (!decision.use) {
+    // A field that was rejected a moment ago is no fresh witness: what disturbed it fades.
+    last_seen_ = mean.time;
+    return;
+  }
+  const bool disturbed = decision.status == MagnetometerStatus::Readmitted;
+  newest.magnetometer = measurementOf(mean, decision.variance_scale, disturbed);
+}
+
+FieldCheck MagnetometerFusion::check(const MagnetometerMean& mean, const Window& window,
+                                     bool disturbed) const {
+  const MagnetometerStates states(window);
+  const Mat3 world_from_body = window.newest().worldFromBody().rotation.toRotationMatrix();
+  const Vec3 expected_W = states.field_W() + (disturbed ? states.disturbance_W() : Vec3::Zero());
+  const Vec3 measured_W = world_from_body * (mean.field_B - mean.carried * states.offset_B());
+  const Mat3 covariance = differenceCovariance(mean, window, disturbed);
+  const double norm_T = expected_W.norm(), horizontal_T = expected_W.head<2>().norm();
+  const auto dip = [](const Vec3& field_W) { return std::atan2(-field_W.z(), field_W.head<2>().norm()); };
+  const auto sigmaAlong = [&](const Vec3& direction) {
+    return std::sqrt(direction.dot(covariance * direction));
+  };
+  const Vec3 along = expected_W / norm_T;
+  const Vec3 across = Vec3::UnitZ().cross(expected_W) / horizontal_T;
+  FieldCheck result;
+  result.norm_error = measured_W.norm() / norm_T - 1.0;
+  result.norm_sigma = sigmaAlong(along) / norm_T;
+  result.dip_error_rad = dip(measured_W) - dip(expected_W);
+  result.dip_sigma_rad = sigmaAlong(along.cross(across)) / norm_T;
+  result.heading_error_rad =
+      std::atan2(across.dot(measured_W), measured_W.head<2>().dot(expected_W.head<2>()) / horizontal_T);
+  result.heading_sigma_rad = sigmaAlong(across) / horizontal_T;
+  return result;
+}
+
+Mat3 MagnetometerFusion::differenceCovariance(const MagnetometerMean& mean, const Window& window,
+                                              bool disturbed) const {
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  const MagnetometerStates states(window);
+  const Mat3 world_from_body = window.newest().worldFromBody().rotation.toRotationMatrix();
+  const double reading_variance_T2 =
+      std::pow(calibration_.noise_density_T_per_sqrtHz * wanted.noise_inflation, 2) * calibration_.rate_hz /
+      mean.readings;
+  FieldNoise noise;
+  noise.sigma_T = std::hypot(wanted.gate.field_sigma_T, std::sqrt(reading_variance_T2));
+  noise.rotation_sigma_rad = mean.rotation_sigma_rad;
+  Mat3 covariance = fieldCovariance_W(states.field_W(), noise);
+
+  // What was known a frame ago; the gyroscope's error since then is small beside it.
+  const double* pose = window.frames()[window.frames().size() - 2]->pose.data();
+  std::vector<std::pair<const double*, Mat3>> derivatives = {
+      {pose, -so3::skew(world_from_body * mean.field_B)},
+      {states.field->value.data(), -Mat3::Identity()},
+      {states.offset->value.data(), -world_from_body * mean.carried}};
+  if (disturbed) derivatives.emplace_back(states.disturbance->value.data(), -Mat3::Identity());
+  for (const auto& [row, by_row] : derivatives) {
+    for (const auto& [column, by_column] : derivatives) {
+      if (!covariance_.knows(row) || !covariance_.knows(column)) continue;
+      // The rotation is the last part of a pose.
+      covariance +=
+          by_row * covariance_.between(row, column).bottomRightCorner<3, 3>() * by_column.transpose();
+    }
+  }
+  return covariance;
+}
+
+void MagnetometerFusion::beginDisturbance(const MagnetometerMean& mean, Window& window,
+                                          Marginalizer& marginalizer) {
+  const MagnetometerStates states(window);
+  const Vec3 measured_W =
+      window.newest().worldFromBody().rotation * (mean.field_B - mean.carried * states.offset_B());
+  const Vec3 disturbance_W = measured_W - states.field_W();
+  std::copy_n(disturbance_W.data(), 3, states.disturbance->value.begin());
+  marginalizer.addKnowledge(*states.disturbance, Vec3::Constant(options_.magnetometer.disturbance_sigma_T));
+  disturbed_ = true;
+}
+
+void MagnetometerFusion::endDisturbance(Window& window, Marginalizer& marginalizer) {
+  for (const auto& frame : window.frames()) {
+    if (frame->magnetometer && frame->magnetometer->disturbed) frame->magnetometer.reset();
+  }
+  GlobalState& disturbance = *MagnetometerStates(window).disturbance;
+  marginalizer.forget(window, disturbance);
+  std::fill(disturbance.value.begin(), disturbance.value.end(), 0.0);
+  disturbed_ = false;
+}
+
+void MagnetometerFusion::reportDecision(const GateDecision& decision, Time time) {
+  if (!decision.use && !rejecting_) {
+    diagnostics_->report(
+        Severity::Warning, "magnetometer_rejected",
+        fmt::format("magnetometer: not the Earth's field ({}) from {} ns on; heading is carried by gyroscope "
+                    "and images",
+                    toString(decision.status), time.nanoseconds()));
+  }
+  if (decision.begin_disturbance) {
+    diagnostics_->report(
+        Severity::Warning, "magnetometer_readmitted",
+        fmt::format("magnetometer: its field at {} ns has been another for {:.0f} s; used from "
+                    "now on with a disturbance that is estimated",
+                    time.nanoseconds(), options_.magnetometer.gate.readmission_s));
+  }
+  rejecting_ = !decision.use;
+}
+
+MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
+  MagnetometerEstimate estimate;
+  estimate.status = status_;
+  estimate.heading_reference = heading_reference_;
+  if (!covariance_.empty()) {
+    const double declination_sigma_rad =
+        heading_reference_ == HeadingReference::True ? options_.magnetometer.declination_sigma_rad : 0.0;
+    estimate.heading_sigma_rad =
+        std::hypot(std::sqrt(std::max(0.0, covariance_.newest()(5, 5))), declination_sigma_rad);
+  }
+  const MagnetometerStates states(window);
+  if (states.field != nullptr) {
+    estimate.field_W = states.field_W();
+    estimate.offset_B = states.offset_B();
+  }
+  return estimate;
+}
+
+}  // namespace lodeline

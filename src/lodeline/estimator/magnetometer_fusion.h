@@ -1,0 +1,87 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/heading_alignment.h"
+#include "lodeline/estimator/magnetometer_gate.h"
+#include "lodeline/estimator/magnetometer_states.h"
+#include "lodeline/estimator/marginalizer.h"
+#include "lodeline/estimator/options.h"
+#include "lodeline/inertial/magnetometer_readings.h"
+
+namespace lodeline {
+
+/// What the magnetometer gave a frame, and what is known of its field.
+struct MagnetometerEstimate {
+  MagnetometerStatus status = MagnetometerStatus::Off;
+  HeadingReference heading_reference = HeadingReference::Start;
+  /// Of the heading against that reference, rad.
+  double heading_sigma_rad = 0.0;
+  /// Estimated field of the Earth and offset of the corrected readings, T; nothing unless fused absolutely.
+  std::optional<Vec3> field_W;
+  std::optional<Vec3> offset_B;
+};
+
+/// Brings the magnetometer into a window: sorts its readings, turns the world to north at the start, keeps
+/// the global states, asks the gate, and hands each frame its mean field (Frame::magnetometer), of which
+/// FactorMaker makes a factor. Without a magnetometer, or switched off, it leaves everything as it is.
+class MagnetometerFusion {
+ public:
+  /// `options` and `diagnostics` must outlive it. Says so where a magnetometer is on board but not used.
+  MagnetometerFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
+
+  /// Takes the readings that belong to the frame at the end of `imu`; `imu` as in Estimator::add.
+  void take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
+            const Vec3& gyroscope_bias_B);
+
+  /// The window has just started, with `prior` on its first frame: turns both to north where the field
+  /// allows, adds the global states to both and gives the frames their fields.
+  void start(Window* window, Prior* prior);
+
+  /// The newest frame has just been added.
+  void addToNewest(Window& window, Marginalizer& marginalizer);
+
+  /// Joint covariance after the window was solved; the next frame's field is judged by it.
+  void remember(JointCovariance covariance) { covariance_ = std::move(covariance); }
+
+  MagnetometerEstimate estimate(const Window& window) const;
+
+ private:
+  bool absolute() const { return use_ == MagnetometerUse::Absolute; }
+
+  double offsetSigma() const;
+  double floorSigma(const Vec3& field_B) const;
+  void align(Window* window, Prior* prior);
+  /// Where the first reading comes only after the start.
+  void startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  void addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const;
+  FieldMeasurement measurementOf(const MagnetometerMean& mean, double variance_scale, bool disturbed);
+  void judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  /// The newest frame's field against the expected one, and the covariance of their difference, T^2.
+  FieldCheck check(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
+  Mat3 differenceCovariance(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
+  void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  void endDisturbance(Window& window, Marginalizer& marginalizer);
+  void reportDecision(const GateDecision& decision, Time time);
+
+  const EstimatorOptions& options_;
+  Diagnostics* diagnostics_;
+  MagnetometerUse use_ = MagnetometerUse::Off;
+  MagnetometerStatus status_ = MagnetometerStatus::Off;
+  MagnetometerCalibration calibration_;
+  double gyroscope_density_ = 0.0;  ///< rad/s/sqrt(Hz), inflated
+  MagnetometerReadings readings_;
+  MagnetometerGate gate_;
+  std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
+  HeadingReference heading_reference_ = HeadingReference::Start;
+  JointCovariance covariance_;
+  bool disturbed_ = false;         ///< the disturbance is among the window's states
+  std::optional<Time> last_seen_;  ///< frame with a field, used or not
+  bool rejecting_ = false;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,293 @@
+#include "lodeline/estimator/magnetometer_fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lodeline/estimator/heading_trial.h"
+#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/start.h"
+#include "lodeline/estimator/test_window.h"
+#include "lodeline/estimator/window_solver.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+const Vec3 kField_W(4e-6, 24e-6, -38e-6);
+
+TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {
+  TestSceneOptions options;
+  options.duration_s = duration_s;
+  options.points.tracks = 40;
+  options.points.frame_rate_hz = frame_rate_hz;
+  return options;
+}
+
+FieldMeasurement measurementOf(const SimulatedFrame& frame) {
+  FieldMeasurement measurement;
+  measurement.mean.time = frame.truth.time;
+  measurement.mean.field_B = frame.truth.motion.world_from_body.rotation.conjugate() * kField_W;
+  measurement.mean.newest_B = measurement.mean.field_B;
+  measurement.mean.readings = 3;
+  measurement.noise = {0.1e-6, 1e-4, 2e-3};
+  return measurement;
+}
+
+// Runs a window with a magnetometer and without any prior, and returns what its marginalisations claim to
+// know of a turn of everything about gravity, 1/rad^2.
+double yawInformationAfter(int frames, bool relative, bool keep_first_estimates) {
+  TestWindow test(2);
+  Marginalizer marginalizer(test.factors);
+  TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
+  test.window.add({MagnetometerStates::kField, {5e-6, 23e-6, -37e-6}, std::nullopt, 0.0});
+  test.window.add({MagnetometerStates::kOffset, {0.0, 0.0, 0.0}, std::nullopt, 0.0});
+  test.window.add({MagnetometerStates::kDisturbance, {0.0, 0.0, 0.0}, std::nullopt, 0.0});
+  marginalizer.addKnowledge(*test.window.findGlobal(MagnetometerStates::kOffset), Vec3::Constant(1e-6));
+  for (int k = 0; k < frames; ++k) {
+    const SimulatedFrame simulated = *scene.next();
+    Frame& frame = test.add(simulated, k % 2 == 0);
+    frame.magnetometer = measurementOf(simulated);
+    frame.magnetometer->relative = relative;
+    createLandmarks(test.window, test.factors, test.options.landmark);
+    if (k < 3) continue;
+    EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
+    removeOutliers(test.window, test.factors, test.options.landmark);
+    marginalizer.shorten(test.window, 3, 3);
+    if (keep_first_estimates) continue;
+    for (const auto& state : test.window.globals()) state->first.reset();
+    for (const auto& other : test.window.frames()) {
+      other->first_pose.reset();
+      other->first_motion.reset();
+    }
+  }
+  const Prior& prior = marginalizer.prior();
+  Eigen::VectorXd yaw = Eigen::VectorXd::Zero(prior.tangentSize());
+  int row = 0;
+  bool has_field = false;
+  for (const Prior::Block& block : prior.blocks) {
+    const bool is_field = block.value == MagnetometerStates(test.window).field->value.data();
+    const bool is_offset = block.value == MagnetometerStates(test.window).offset->value.data();
+    has_field = has_field || is_field;
+    // Position, velocity or field.
+    if (!is_offset) yaw.segment<3>(row) = Vec3::UnitZ().cross(Vec3(block.first_estimate.head<3>()));
+    if (block.isPose()) yaw[row + 5] = 1.0;
+    row += block.tangentSize();
+  }
+  EXPECT_EQ(has_field, !relative);
+  return (prior.sqrt_information * yaw).squaredNorm();
+}
+
+TEST(MagnetometerInTheWindow, LeavesTheYawOfTheWorldUnobservable) {
+  // As without a magnetometer (marginalizer_test.cpp): less than 0.1 rad once.
+  EXPECT_LT(yawInformationAfter(30, false, true), 1e2);
+  EXPECT_LT(yawInformationAfter(30, true, true), 1e2);
+  EXPECT_GT(yawInformationAfter(30, false, false), 1e4) << "first estimates are not needed here?";
+}
+
+HeadingTrialOptions trialOptions(double duration_s) {
+  HeadingTrialOptions options;
+  options.duration_s = duration_s;
+  options.frame_rate_hz = 4.0;
+  options.tracks = 30;
+  options.estimator.magnetometer.use = MagnetometerUse::Absolute;
+  return options;
+}
+
+HeadingTrial withoutMagnetometer(HeadingTrialOptions options) {
+  options.estimator.magnetometer.use = MagnetometerUse::Off;
+  return runHeadingTrial(options);
+}
+
+TEST(MagnetometerFusion, FindsNorthAndKeepsIt) {
+  for (const int cameras : {2, 1}) {
+    HeadingTrialOptions options = trialOptions(40.0);
+    options.cameras = cameras;
+    if (cameras == 1) options.frame_rate_hz = 10.0;
+    if (cameras == 1) options.tracks = 80;
+    const HeadingTrial trial = runHeadingTrial(options);
+    ASSERT_GT(trial.samples.size(), 120u);
+    EXPECT_EQ(trial.reference, HeadingReference::Magnetic);
+    EXPECT_GT(trial.share(MagnetometerStatus::Used), 0.95);
+    EXPECT_LT(trial.largest(5.0), 0.8 * kDegree) << cameras;
+    // The offset alone is worth a degree before the rig has turned.
+    EXPECT_LT(trial.claimed(5.0), 1.2 * kDegree);
+    EXPECT_GT(trial.claimed(5.0), 0.1 * kDegree);
+  }
+}
+
+TEST(MagnetometerFusion, StaysOutOfAHeadingThatItCannotImprove) {
+  HeadingTrialOptions options = trialOptions(110.0);
+  const HeadingTrial off = withoutMagnetometer(options);
+  options.trouble = FieldTrouble::Tank;
+  const HeadingTrial tank = runHeadingTrial(options);
+  EXPECT_LT(tank.alignedRms(10.0), 1.1 * off.alignedRms(10.0) + 0.05 * kDegree);
+  EXPECT_LT(tank.share(MagnetometerStatus::Used), 0.95) << "nothing was rejected";
+  // Six of 3 to 10 degrees in less than two minutes, before the offset is known.
+  options.trouble = FieldTrouble::Disturbances;
+  const HeadingTrial disturbed = runHeadingTrial(options);
+  EXPECT_LT(disturbed.largest(10.0), 0.8 * kDegree);
+  EXPECT_LT(disturbed.share(MagnetometerStatus::Used), 0.8) << "nothing was rejected";
+}
+
+TEST(MagnetometerFusion, LearnsAnOffsetThatCalibrationLeft) {
+  HeadingTrialOptions options = trialOptions(100.0);
+  options.trouble = FieldTrouble::HardIron;
+  const HeadingTrial trial = runHeadingTrial(options);
+  EXPECT_LT(trial.rms(70.0), 0.3 * kDegree);
+}
+
+TEST(MagnetometerFusion, OffChangesNotABit) {
+  TestSceneOptions scene_options = sceneOptions(4.0, 10.0);
+  std::vector<FrameEstimate> last;
+  for (const bool on_board : {false, true}) {
+    TestScene scene(scene_options);
+    Rig rig = scene.rig();
+    EstimatorOptions options;
+    if (on_board) {
+      rig.magnetometer = MagnetometerCalibration();
+      rig.magnetometer->is_calibrated = true;
+      options.magnetometer.use = MagnetometerUse::Off;
+    }
+    Diagnostics diagnostics;
+    Estimator estimator(rig, options, &diagnostics);
+    FrameEstimate estimate;
+    while (const auto frame = scene.next()) {
+      const MagnetometerSample reading{frame->truth.time, kField_W};
+      estimate = estimator.add(frame->tracks, frame->imu, std::span(&reading, on_board ? 1 : 0));
+    }
+    last.push_back(estimate);
+    EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Off);
+    EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Start);
+    EXPECT_TRUE(diagnostics.ranked().empty());
+  }
+  EXPECT_EQ(last[0].covariance, last[1].covariance);
+  EXPECT_EQ(last[0].state.world_from_body.translation, last[1].state.world_from_body.translation);
+  EXPECT_EQ(last[0].state.world_from_body.rotation.coeffs(), last[1].state.world_from_body.rotation.coeffs());
+}
+
+// An estimator whose magnetometer readings go through `spoil`.
+class SpoiltMagnetometer : public testing::Test {
+ protected:
+  template <typename Spoil>
+  FrameEstimate run(const Spoil& spoil, MagnetometerUse use = MagnetometerUse::Automatic,
+                    double rate_hz = 50.0) {
+    TestSceneOptions scene_options = sceneOptions(5.0, 10.0);
+    TestScene scene(scene_options);
+    Rig rig = scene.rig();
+    rig.magnetometer = calibration_;
+    rig.magnetometer->rate_hz = rate_hz;
+    EstimatorOptions options;
+    options.magnetometer.use = use;
+    Estimator estimator(rig, options, &diagnostics_);
+    FrameEstimate estimate;
+    int64_t reading = 0;
+    std::optional<Rigid3> last_pose;
+    while (const auto frame = scene.next()) {
+      // Between frames the pose of the last one is near enough for these tests.
+      std::vector<MagnetometerSample> readings;
+      const Quat& rotation = frame->truth.motion.world_from_body.rotation;
+      for (;; ++reading) {
+        const Time time =
+            scene_options.points.start + Duration::fromSeconds(static_cast<double>(reading) / rate_hz);
+        if (time > frame->truth.time) break;
+        MagnetometerSample sample{time, rotation.conjugate() * kField_W};
+        sample.field_M.x() += 1e-12 * static_cast<double>(reading % 7);  // noise, so that no two are the same
+        spoil(reading, &sample);
+        readings.push_back(sample);
+      }
+      estimate = estimator.add(frame->tracks, frame->imu, readings);
+      ++statuses_[estimate.magnetometer.status];
+    }
+    EXPECT_EQ(estimate.status, Status::Tracking);
+    EXPECT_TRUE(estimate.covariance.allFinite());
+    return estimate;
+  }
+  static void leave(int64_t, MagnetometerSample*) {}
+
+  SpoiltMagnetometer() { calibration_.is_calibrated = true; }
+
+  MagnetometerCalibration calibration_;
+  Diagnostics diagnostics_;
+  std::map<MagnetometerStatus, int> statuses_;
+};
+
+TEST_F(SpoiltMagnetometer, WithNothingWrongIsUsed) {
+  const FrameEstimate estimate = run(leave);
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 0);
+}
+
+TEST_F(SpoiltMagnetometer, OfNaNsIsNoData) {
+  const FrameEstimate estimate =
+      run([](int64_t, MagnetometerSample* s) { s->field_M.y() = std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::NoData);
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Start);
+  EXPECT_GT(diagnostics_.count("magnetometer_invalid"), 100);
+  EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 1);
+}
+
+TEST_F(SpoiltMagnetometer, ThatFreezesIsNoData) {
+  const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
+    if (i > 100) s->field_M = Vec3(1e-6, 20e-6, 30e-6);
+  });
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::NoData);
+  EXPECT_EQ(diagnostics_.count("magnetometer_frozen"), 1);
+}
+
+TEST_F(SpoiltMagnetometer, InMicroteslaIsConvertedWithAWarning) {
+  const FrameEstimate estimate = run([](int64_t, MagnetometerSample* s) { s->field_M *= 1e6; });
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_EQ(diagnostics_.count("magnetometer_converted"), 1);
+  EXPECT_NEAR(estimate.magnetometer.field_W->norm(), kField_W.norm(), 1e-6);
+}
+
+TEST_F(SpoiltMagnetometer, ComesAtAnyRate) {
+  for (const double rate_hz : {1.0, 1000.0}) {
+    statuses_.clear();
+    const FrameEstimate estimate = run(leave, MagnetometerUse::Automatic, rate_hz);
+    EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic) << rate_hz;
+    EXPECT_GT(statuses_[MagnetometerStatus::Used], 3) << rate_hz;
+    EXPECT_EQ(statuses_[MagnetometerStatus::NoData] > 0, rate_hz < 10.0);
+  }
+}
+
+TEST_F(SpoiltMagnetometer, ThatComesLateIsUsedFromThenOn) {
+  const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
+    if (i < 150) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
+  });
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Start);
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_TRUE(estimate.magnetometer.field_W.has_value());
+}
+
+TEST_F(SpoiltMagnetometer, ThatLosesTheFieldIsRejectedAndSaysSo) {
+  run([](int64_t i, MagnetometerSample* s) {
+    if (i > 150) s->field_M *= 1.2;
+  });
+  EXPECT_GT(statuses_[MagnetometerStatus::Norm], 10);
+  EXPECT_EQ(diagnostics_.count("magnetometer_rejected"), 1);
+}
+
+TEST_F(SpoiltMagnetometer, WithoutCalibrationIsUsedOnlyWhenAskedTo) {
+  calibration_.is_calibrated = false;
+  EXPECT_EQ(run(leave).magnetometer.status, MagnetometerStatus::Uncalibrated);
+  EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 1);
+  const FrameEstimate asked = run(leave, MagnetometerUse::Absolute);
+  EXPECT_EQ(asked.magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_GT(asked.magnetometer.heading_sigma_rad, 1.0 * kDegree) << "hard iron may be anything";
+  EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 2);
+}
+
+TEST_F(SpoiltMagnetometer, AsInThePaperTellsNoField) {
+  const FrameEstimate estimate = run(leave, MagnetometerUse::Paper);
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_FALSE(estimate.magnetometer.field_W.has_value());
+}
+
+}  // namespace
+}  // namespace lodeline

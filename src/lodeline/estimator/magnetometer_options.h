@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+
+#include "lodeline/geometry/types.h"
+
+namespace lodeline {
+
+enum class MagnetometerUse {
+  Automatic,  ///< Absolute with a calibrated magnetometer, else Off
+  Absolute,   ///< against an estimated field of the world: MagnetometerFieldFactor
+  Paper,      ///< readings of an interval against each other: MagnetometerRelativeFactor
+  Off,
+};
+
+/// What the world's y axis points to.
+enum class HeadingReference {
+  Automatic,  ///< True where the field at the site is known, else Magnetic
+  True,
+  Magnetic,
+  Start,  ///< the world is turned so that the first pose has no yaw
+};
+const char* toString(HeadingReference reference);
+
+/// When a frame's field is taken for the Earth's.
+struct MagnetometerGateOptions {
+  double max_norm_error = 0.04;  ///< relative to the estimated field
+  double max_dip_error_rad = 0.07;
+  double max_sigmas = 3.0;  ///< of the innovation, for each of the three
+  /// How far an undisturbed field may be from the estimated one, per axis, beyond what its covariance says.
+  double field_sigma_T = 0.12e-6;
+  /// A rejected magnetometer is believed again after so long within this share of the limits.
+  double release_share = 0.5;
+  double release_s = 4.0;
+  /// After so long a rejection its field is taken as a new one, with a disturbance to be estimated.
+  double readmission_s = 60.0;
+  /// Over which rejections lower the weight of what is used.
+  double memory_s = 60.0;
+};
+
+struct MagnetometerOptions {
+  MagnetometerUse use = MagnetometerUse::Automatic;
+  HeadingReference heading_reference = HeadingReference::Automatic;
+  std::optional<Vec3> site_field_W;  ///< of the Earth where the dive is, east north up, T
+
+  /// Errors of the field that last: iron far away, currents, what calibration leaves. One sigma per axis, and
+  /// the time over which they stay the same; frames within that time are not independent witnesses.
+  double floor_T = 0.05e-6;
+  double floor_correlation_s = 5.0;
+  /// Of roll and pitch, which likewise last.
+  double tilt_sigma_rad = 0.0015;
+  double noise_inflation = 1.0;  ///< factor on the density of the magnetometer's white noise
+
+  double field_sigma_T = 1e-4;  ///< of the field vector at the start
+  double offset_sigma_T = 0.4e-6;
+  double uncalibrated_offset_sigma_T = 10e-6;
+  double offset_walk_T_per_sqrt_s = 1e-8;
+  double disturbance_sigma_T = 5e-6;
+  double disturbance_walk_T_per_sqrt_s = 5e-8;
+
+  /// Of the first heading, before the field is heard: no more than enough to keep the first steps small.
+  double start_yaw_sigma_rad = 0.5;
+  double max_start_norm_error = 0.1;      ///< relative to the field at the site
+  double max_start_dip_error_rad = 0.12;  ///< against the field at the site
+  double min_horizontal_field_T = 5e-6;   ///< less has no heading (polar regions)
+  double declination_sigma_rad =
+      0.006;  ///< of the field model and the rock, for a heading against true north
+
+  MagnetometerGateOptions gate;
+};
+
+}  // namespace lodeline
