@@ -34,6 +34,9 @@ struct RunArguments {
   std::vector<std::string> overrides;
   std::optional<double> draw_tracks_s;
   std::string magnetometer_calibration;
+  std::string magnetometer;
+  std::string site;
+  std::string date;
   bool quiet = false;
 };
 
@@ -48,6 +51,9 @@ void loadSettings(const RunArguments& arguments, Settings* settings) {
     if (equals == std::string::npos) throw UsageError(fmt::format("--set {}: expected KEY=VALUE", override));
     settings->set(override.substr(0, equals), override.substr(equals + 1));
   }
+  if (!arguments.magnetometer.empty()) settings->set("magnetometer.model", arguments.magnetometer);
+  if (!arguments.site.empty()) settings->set("heading.site", "[" + arguments.site + "]");
+  if (!arguments.date.empty()) settings->set("heading.date", arguments.date);
 }
 
 void calibrateMagnetometer(const std::filesystem::path& file, EurocSource* source) {
@@ -133,6 +139,8 @@ void run(const RunArguments& arguments) {
     options.magnetometer_calibration = arguments.magnetometer_calibration;
   }
 
+  options.odometry.estimator.magnetometer.site_field_W = siteField_W(options);
+
   const std::filesystem::path folder = arguments.output;
   Diagnostics diagnostics;
   EurocSource source(arguments.data, options.source, &diagnostics);
@@ -173,11 +181,17 @@ void addRunCommand(CLI::App& program) {
       ->type_name("SECONDS");
   command->add_option("--mag-calibration", arguments->magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote");
+  command->add_option("--magnetometer", arguments->magnetometer,
+                      "off, paper or absolute; by default absolute where it is calibrated");
+  command->add_option("--site", arguments->site,
+                      "LAT,LON,HEIGHT (degrees, m) of the recording, for true north");
+  command->add_option("--date", arguments->date, "YYYY-MM-DD of the recording, for true north");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
   command->footer(
       "Examples:\n"
       "  lodeline run dive1 -o dive1_result\n"
       "  lodeline run dive1 -o left_only --set source.cameras=[0]\n"
+      "  lodeline run dive1 -o north --mag-calibration mag.yaml --site 29.83,-82.60,20 --date 2026-11-21\n"
       "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
       "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json;\n"
       "pictures of tracks in frames.");

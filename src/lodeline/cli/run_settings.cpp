@@ -1,5 +1,10 @@
 #include "lodeline/cli/run_settings.h"
 
+#include <fmt/core.h>
+
+#include "lodeline/base/error.h"
+#include "lodeline/magnetism/world_magnetic_model.h"
+
 namespace lodeline {
 namespace {
 
@@ -103,6 +108,48 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "with fewer a frame counts as carried by inertial readings alone");
 }
 
+void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
+  settings->bind("magnetometer.model", &options->use,
+                 {{"automatic", MagnetometerUse::Automatic},
+                  {"absolute", MagnetometerUse::Absolute},
+                  {"paper", MagnetometerUse::Paper},
+                  {"off", MagnetometerUse::Off}},
+                 "automatic: absolute where the magnetometer is calibrated, else off");
+  settings->bind("magnetometer.floor_T", &options->floor_T,
+                 "lasting errors of the field, one sigma per axis");
+  settings->bind("magnetometer.floor_correlation_s", &options->floor_correlation_s, "for which they last");
+  settings->bind("magnetometer.tilt_sigma_rad", &options->tilt_sigma_rad,
+                 "of roll and pitch when a heading is taken from the field");
+  settings->bind("magnetometer.noise_inflation", &options->noise_inflation,
+                 "factor on the noise density of its calibration");
+  settings->bind("magnetometer.offset_sigma_T", &options->offset_sigma_T, "of what calibration leaves");
+  settings->bind("magnetometer.uncalibrated_offset_sigma_T", &options->uncalibrated_offset_sigma_T,
+                 "of one that was never calibrated");
+  settings->bind("magnetometer.offset_walk_T_per_sqrt_s", &options->offset_walk_T_per_sqrt_s,
+                 "random walk of that offset");
+  settings->bind("magnetometer.disturbance_sigma_T", &options->disturbance_sigma_T,
+                 "of a disturbance that has come to stay");
+  settings->bind("magnetometer.disturbance_walk_T_per_sqrt_s", &options->disturbance_walk_T_per_sqrt_s,
+                 "random walk of such a disturbance");
+}
+
+void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
+  settings->bind("magnetometer.gate.max_norm_error", &gate->max_norm_error,
+                 "of the field, relative to the estimated one");
+  settings->bind("magnetometer.gate.max_dip_error_rad", &gate->max_dip_error_rad,
+                 "against the estimated one");
+  settings->bind("magnetometer.gate.max_sigmas", &gate->max_sigmas, "of the innovation");
+  settings->bind("magnetometer.gate.field_sigma_T", &gate->field_sigma_T,
+                 "of an undisturbed field, per axis");
+  settings->bind("magnetometer.gate.release_share", &gate->release_share,
+                 "of the limits, that a rejected field has to keep to be believed again");
+  settings->bind("magnetometer.gate.release_s", &gate->release_s, "for so long");
+  settings->bind("magnetometer.gate.memory_s", &gate->memory_s,
+                 "over which rejections lower the weight of what is used");
+  settings->bind("magnetometer.gate.readmission_s", &gate->readmission_s,
+                 "after which a rejected field counts as a new one");
+}
+
 }  // namespace
 
 void bindRunSettings(Settings* settings, RunSettings* options) {
@@ -114,6 +161,29 @@ void bindRunSettings(Settings* settings, RunSettings* options) {
   bindEstimator(settings, &options->odometry.estimator);
   settings->bind("magnetometer.calibration", &options->magnetometer_calibration,
                  "file that `lodeline calibrate magnetometer` wrote; empty for none");
+  bindMagnetometer(settings, &options->odometry.estimator.magnetometer);
+  bindMagnetometerGate(settings, &options->odometry.estimator.magnetometer.gate);
+  settings->bind("heading.reference", &options->odometry.estimator.magnetometer.heading_reference,
+                 {{"automatic", HeadingReference::Automatic},
+                  {"true", HeadingReference::True},
+                  {"magnetic", HeadingReference::Magnetic},
+                  {"start", HeadingReference::Start}},
+                 "where the world's y axis points; automatic: true north with site and date, else magnetic");
+  settings->bind("heading.site", &options->site, "latitude_deg, longitude_deg, height_m; [] where unknown");
+  settings->bind("heading.date", &options->date, "of the recording, YYYY-MM-DD; empty where unknown");
+}
+
+std::optional<Vec3> siteField_W(const RunSettings& options) {
+  if (options.site.empty() && options.date.empty()) return std::nullopt;
+  if (options.site.empty() || options.date.empty()) {
+    throw UsageError("true north takes both place and date: --site LAT,LON,HEIGHT --date YYYY-MM-DD");
+  }
+  if (options.site.size() != 3) {
+    throw UsageError(fmt::format("a site is latitude_deg,longitude_deg,height_m; here are {} numbers",
+                                 options.site.size()));
+  }
+  const GeodeticPosition site{options.site[0], options.site[1], options.site[2]};
+  return worldMagneticField(site, decimalYear(options.date)).field_ENU;
 }
 
 }  // namespace lodeline

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,14 @@ struct RunSettings {
   SynchronizerOptions synchronizer;
   OdometryOptions odometry;
   std::string magnetometer_calibration;  ///< file of `lodeline calibrate magnetometer`; empty for none
+  std::vector<double> site;              ///< latitude, longitude (degrees) and height (m); empty for unknown
+  std::string date;                      ///< YYYY-MM-DD; empty for unknown
 };
 
 void bindRunSettings(Settings* settings, RunSettings* options);
+
+/// The Earth's field where and when the recording was made, for true north; nothing where neither is told.
+/// Throws UsageError where one is told without the other, or the site is no place.
+std::optional<Vec3> siteField_W(const RunSettings& options);
 
 }  // namespace lodeline

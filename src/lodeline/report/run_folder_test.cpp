@@ -65,6 +65,39 @@ TEST_F(RunFolder, StatesHaveAsManyValuesAsNames) {
   EXPECT_NE(row.find(",0.2,"), std::string::npos);  // sigma = sqrt(0.04)
 }
 
+TEST_F(RunFolder, StatesEndWithTheMagnetometer) {
+  StateWriter writer(folder_);
+  FrameEstimate estimate = estimateAt(5, Vec3::Zero());
+  estimate.magnetometer.heading_sigma_rad = 0.01;
+  writer.write(estimate);
+  estimate.magnetometer.status = MagnetometerStatus::Innovation;
+  estimate.magnetometer.field_W = Vec3(1e-6, 24e-6, -38e-6);
+  estimate.magnetometer.offset_B = Vec3(3e-7, 0.0, -1e-7);
+  writer.write(estimate);
+  const std::string states = read("states.csv");
+  EXPECT_NE(states.find(",sigma_heading [rad],magnetometer,field_x [T],"), std::string::npos);
+  EXPECT_NE(states.find(",0.01,off,nan,nan,nan,nan,nan,nan,"), std::string::npos);
+  EXPECT_NE(states.find(",0.01,innovation,1e-06,2.4e-05,-3.8e-05,3e-07,0,-1e-07,"), std::string::npos);
+}
+
+TEST_F(RunFolder, SummaryTellsWhatBecameOfTheMagnetometer) {
+  RunSummary summary;
+  FrameEstimate estimate = estimateAt(0, Vec3::Zero());
+  EXPECT_EQ(nlohmann::json::parse(summary.json({})).count("magnetometer"), 0u);
+  estimate.magnetometer.heading_reference = HeadingReference::True;
+  estimate.magnetometer.heading_sigma_rad = 0.5 * M_PI / 180.0;
+  for (const auto status : {MagnetometerStatus::Used, MagnetometerStatus::Norm, MagnetometerStatus::Norm}) {
+    estimate.magnetometer.status = status;
+    summary.add(estimate);
+  }
+  const auto json = nlohmann::json::parse(summary.json({}));
+  EXPECT_EQ(json["heading"]["reference"], "true north");
+  EXPECT_EQ(json["magnetometer"]["frames"]["norm"], 2);
+  const std::string text = summary.text({});
+  EXPECT_NE(text.find("against true north, 0.50 deg"), std::string::npos);
+  EXPECT_NE(text.find("used 33.3 %, norm 66.7 %; heading owes little to it"), std::string::npos);
+}
+
 TEST_F(RunFolder, WaitingFramesAreNotWritten) {
   StateWriter writer(folder_);
   FrameEstimate waiting = estimateAt(1, Vec3::Zero());

@@ -51,6 +51,8 @@ void RunSummary::add(const FrameEstimate& estimate) {
   ++posed_;
   inertial_ += estimate.status == Status::Inertial;
   keyframes_ += estimate.is_keyframe;
+  if (estimate.magnetometer.status != MagnetometerStatus::Off)
+    ++magnetometer_frames_[estimate.magnetometer.status];
   const Vec3& position_W = estimate.state.world_from_body.translation;
   if (last_position_W_) path_m_ += (position_W - *last_position_W_).norm();
   last_position_W_ = position_W;
@@ -72,6 +74,23 @@ double RunSummary::meanReprojection_sigmas() const {
 }
 double RunSummary::coreMillisecondsPerFrame(double seconds) const {
   return frames_ ? 1e3 * seconds / frames_ : 0.0;
+}
+
+std::string RunSummary::headingText() const {
+  const MagnetometerEstimate& last = last_.magnetometer;
+  return fmt::format("against {}, {:.2f} deg (one sigma, at the end)", toString(last.heading_reference),
+                     last.heading_sigma_rad * 180.0 / M_PI);
+}
+
+std::string RunSummary::magnetometerText() const {
+  std::string text;
+  int believed = 0;
+  for (const auto& [status, frames] : magnetometer_frames_) {
+    text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", toString(status), 100.0 * frames / posed_);
+    if (status == MagnetometerStatus::Used) believed += frames;
+  }
+  if (2 * believed < posed_) text += "; heading owes little to it, check calibration and surroundings";
+  return text;
 }
 
 std::string RunSummary::text(const Diagnostics& diagnostics) const {
@@ -100,6 +119,8 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
                    coreMillisecondsPerFrame(filesSeconds()), coreMillisecondsPerFrame(front_end_s),
                    coreMillisecondsPerFrame(estimator_s)));
   line("memory", fmt::format("{:.0f} MB at most", peak_memory_MB));
+  if (posed_ > 0) line("heading", headingText());
+  if (hasMagnetometer()) line("magnetometer", magnetometerText());
   if (interrupted) line("interrupted", "the recording goes on; results cover what was read");
   for (const Finding& finding : diagnostics.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : "";
@@ -132,6 +153,19 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
                                {"front_end", coreMillisecondsPerFrame(front_end_s)},
                                {"estimator", coreMillisecondsPerFrame(estimator_s)}};
   json["peak_memory_MB"] = peak_memory_MB;
+  const MagnetometerEstimate& magnetometer = last_.magnetometer;
+  json["heading"] = {{"reference", toString(magnetometer.heading_reference)},
+                     {"sigma_rad", magnetometer.heading_sigma_rad}};
+  if (hasMagnetometer()) {
+    for (const auto& [status, frames] : magnetometer_frames_)
+      json["magnetometer"]["frames"][toString(status)] = frames;
+  }
+  if (magnetometer.field_W) {
+    const Vec3& field = *magnetometer.field_W;
+    const Vec3& offset = *magnetometer.offset_B;
+    json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
+    json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};
+  }
   json["findings"] = findingsJson(diagnostics);
   return json.dump(2) + "\n";
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -60,6 +61,9 @@ class RunSummary {
 
  private:
   double coreMillisecondsPerFrame(double seconds) const;
+  bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
+  std::string headingText() const;
+  std::string magnetometerText() const;
   /// What the process spent outside of front end and estimator: reading, decoding, writing.
   double filesSeconds() const { return process_s - front_end_s - estimator_s; }
 
@@ -76,6 +80,7 @@ class RunSummary {
   double landmarks_ = 0.0;
   double reprojection_sigmas_ = 0.0;
   int reprojected_frames_ = 0;
+  std::map<MagnetometerStatus, int> magnetometer_frames_;
 };
 
 }  // namespace lodeline

@@ -36,6 +36,11 @@ constexpr const char* kAttitudeHeader =
 /// One sigma of a variance that rounding may have made negative; nan stays nan.
 double sigma(double variance) { return variance < 0.0 ? 0.0 : std::sqrt(variance); }
 
+constexpr const char* kMagnetometerHeader =
+    ",sigma_heading [rad],magnetometer,field_x [T],field_y [T],field_z [T],offset_x [T],offset_y "
+    "[T],offset_z "
+    "[T]";
+
 /// Header of the pose covariance's upper triangle, [p, theta] in world axes.
 std::string covarianceHeader() {
   std::string header;
@@ -43,6 +48,15 @@ std::string covarianceHeader() {
     for (int column = row; column < 6; ++column) header += fmt::format(",cov_pose_{}{}", row, column);
   }
   return header;
+}
+
+/// What is not estimated is nan.
+void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& magnetometer) {
+  const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  fmt::format_to(std::back_inserter(line), ",{:.9g},{}", magnetometer.heading_sigma_rad,
+                 toString(magnetometer.status));
+  append(line, magnetometer.field_W.value_or(unknown));
+  append(line, magnetometer.offset_B.value_or(unknown));
 }
 
 void appendAttitude(fmt::memory_buffer& line, const std::optional<AttitudeEstimate>& attitude) {
@@ -65,6 +79,7 @@ FrameEstimate withAttitudeOnly(const FrameEstimate& frame, const AttitudeEstimat
   known.state.gyroscope_bias_B = attitude.gyroscope_bias_B;
   known.covariance.setConstant(kUnknown);
   known.covariance(5, 5) = attitude.heading_sigma_rad * attitude.heading_sigma_rad;
+  known.magnetometer.heading_sigma_rad = attitude.heading_sigma_rad;
   return known;
 }
 
@@ -88,6 +103,7 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
       fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(row, column));
     }
   }
+  appendMagnetometer(line, estimate.magnetometer);
   return line;
 }
 
@@ -98,7 +114,8 @@ StateWriter::StateWriter(const std::filesystem::path& folder)
       trajectory_(openOutput(folder / "trajectory.tum")),
       states_(openOutput(folder / "states.csv")) {
   trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
-  states_ << kStateHeader << covarianceHeader() << kAttitudeHeader << "\n" << std::flush;
+  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << "\n"
+          << std::flush;
 }
 
 void StateWriter::write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude) {
