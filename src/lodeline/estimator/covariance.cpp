@@ -44,7 +44,8 @@ JointCovariance::JointCovariance(const NormalEquations& system, const Window& wi
   const Frame& newest = window.newest();
   std::vector<const double*> blocks = {newest.pose.data(), newest.motion.data()};
   for (const auto& state : window.globals()) {
-    if (system.find(state->value.data())) blocks.push_back(state->value.data());
+    if (state->is_correlation_wanted && system.find(state->value.data()))
+      blocks.push_back(state->value.data());
   }
   int row = 0;
   for (const double* value : blocks) {

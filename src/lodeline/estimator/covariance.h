@@ -15,7 +15,8 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
 /// Joint covariance of some of the blocks that a system holds, stacked in the order given.
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks);
 
-/// Covariance of the newest frame together with the global states that the system knows.
+/// Covariance of the newest frame together with those global states that the system knows and whose
+/// correlation is wanted (GlobalState::is_correlation_wanted).
 class JointCovariance {
  public:
   JointCovariance() = default;

@@ -1,7 +1,7 @@
 #include "lodeline/estimator/factor_list.h"
 
-#include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/estimator/magnetometer_states.h"
+#include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
 #include "lodeline/factors/magnetometer_relative_factor.h"
 

@@ -22,6 +22,8 @@ struct GlobalState {
   /// Random walk of each coordinate, [unit of the block]/sqrt(s): what the prior knows of the state fades by
   /// this as frames are marginalised. 0: a constant.
   double walk_per_sqrt_s = 0.0;
+  /// Whether JointCovariance shall hold it, at the price of as many more columns to solve for.
+  bool is_correlation_wanted = false;
 
   bool isPose() const { return value.size() == kPoseSize; }
   int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(value.size()); }

@@ -138,7 +138,7 @@ double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
 void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const {
   const MagnetometerOptions& wanted = options_.magnetometer;
   const auto add = [&](const char* name, const Vec3& value, double walk) -> GlobalState& {
-    return window->add({name, {value.x(), value.y(), value.z()}, std::nullopt, walk});
+    return window->add({name, {value.x(), value.y(), value.z()}, std::nullopt, walk, true});
   };
   GlobalState& field = add(MagnetometerStates::kField, alignment.field_W, 0.0);
   GlobalState& offset = add(MagnetometerStates::kOffset, Vec3::Zero(), wanted.offset_walk_T_per_sqrt_s);
