@@ -184,16 +184,18 @@ class SpoiltMagnetometer : public testing::Test {
     Estimator estimator(rig, options, &diagnostics_);
     FrameEstimate estimate;
     int64_t reading = 0;
-    std::optional<Rigid3> last_pose;
     while (const auto frame = scene.next()) {
-      // Between frames the pose of the last one is near enough for these tests.
+      // Between frames the rig turns evenly, near enough; what lies further back is not given.
       std::vector<MagnetometerSample> readings;
       const Quat& rotation = frame->truth.motion.world_from_body.rotation;
       for (;; ++reading) {
         const Time time =
             scene_options.points.start + Duration::fromSeconds(static_cast<double>(reading) / rate_hz);
         if (time > frame->truth.time) break;
-        MagnetometerSample sample{time, rotation.conjugate() * kField_W};
+        const double before_s = (frame->truth.time - time).seconds();
+        if (before_s > 0.15) continue;
+        const Quat turned = rotation * so3::exp(-before_s * frame->truth.motion.angular_velocity_B);
+        MagnetometerSample sample{time, turned.conjugate() * kField_W};
         sample.field_M.x() += 1e-12 * static_cast<double>(reading % 7);  // noise, so that no two are the same
         spoil(reading, &sample);
         readings.push_back(sample);
