@@ -20,8 +20,9 @@ using ::testing::HasSubstr;
 class RealCloud : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!testDataDir()) GTEST_SKIP() << "the folder with test recordings is missing";
-    clouds_ = *testDataDir() / "magcal";
+    const auto folder = testData("magcal");
+    if (!folder) GTEST_SKIP() << missingTestData("magcal");
+    clouds_ = *folder;
   }
 
   MagnetometerCalibrationResult calibrated(const std::filesystem::path& file,
@@ -119,7 +120,9 @@ TEST_F(RealCloud, NeverFitsTheFullModelToARecordWithoutTurns) {
 // BROAD's magnetometer lags and repeats 29 % of its rows; its field has a size of 43 to 45 uT and dips by 69
 // degrees.
 TEST_F(RealCloud, FindsTheLagAndTheRotationOfARecordingWithGyroscope) {
-  std::istringstream lines(readFileBytes(*testDataDir() / "broad" / "02_undisturbed_slow_rotation_B.csv.gz"));
+  const auto broad = testData("broad");
+  if (!broad) GTEST_SKIP() << missingTestData("broad");
+  std::istringstream lines(readFileBytes(*broad / "02_undisturbed_slow_rotation_B.csv.gz"));
   std::string rows =
       "t [s],wx [rad/s],wy [rad/s],wz [rad/s],ax [m/s^2],ay [m/s^2],az [m/s^2],mx [uT],my [uT],mz [uT]\n";
   std::string line;

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "lodeline/base/test_data.h"
 #include "lodeline/inertial/attitude_filter.h"
@@ -85,21 +86,21 @@ HeadingAndTilt run(const std::vector<BroadRow>& rows, bool with_magnetometer) {
 
 class Broad : public ::testing::Test {
  protected:
-  std::vector<BroadRow> rows(const char* name) {
-    const auto folder = testDataDir();
-    if (!folder || !std::filesystem::exists(*folder / "broad" / name)) return {};
-    return readBroad(*folder / "broad" / name);
+  void SetUp() override {
+    folder_ = testData("broad");
+    if (!folder_) GTEST_SKIP() << missingTestData("broad");
   }
-};
+  std::vector<BroadRow> rows(const char* name) const { return readBroad(*folder_ / name); }
 
-#define REQUIRE_ROWS(rows) \
-  if (rows.empty()) GTEST_SKIP() << "shared/data/broad is missing"
+ private:
+  std::optional<std::filesystem::path> folder_;
+};
 
 TEST_F(Broad, UndisturbedHeadingIsWithinThreeDegrees) {
   for (const char* name : {"02_undisturbed_slow_rotation_B.csv.gz", "07_undisturbed_fast_rotation_B.csv.gz",
                            "16_undisturbed_fast_translation_B.csv.gz"}) {
     const auto trial = rows(name);
-    REQUIRE_ROWS(trial);
+    ASSERT_FALSE(trial.empty()) << name;
     const HeadingAndTilt errors = run(trial, true);
     RecordProperty(name, std::to_string(errors.headingRmse_deg()));
     EXPECT_LE(errors.headingRmse_deg(), 3.0) << name;
@@ -110,7 +111,7 @@ TEST_F(Broad, UndisturbedHeadingIsWithinThreeDegrees) {
 
 TEST_F(Broad, AMagnetNearbyDoesNoHarm) {
   const auto trial = rows("28_disturbed_stationary_magnet_A.csv.gz");
-  REQUIRE_ROWS(trial);
+  ASSERT_FALSE(trial.empty());
   const HeadingAndTilt with = run(trial, true);
   const HeadingAndTilt without = run(trial, false);
   EXPECT_LE(with.headingRmse_deg(), without.headingRmse_deg());
@@ -120,11 +121,9 @@ TEST_F(Broad, AMagnetNearbyDoesNoHarm) {
 // Aggressive flight for 107 s with a gyroscope bias of 4.6 deg/s, no magnetometer: heading against the first
 // truth.
 TEST(Flight, DriftsLittleInHeadingAndTilt) {
-  const auto folder = testDataDir();
-  const auto file = [&](const char* name) { return *folder / "euroc_imu_gt" / name; };
-  if (!folder || !std::filesystem::exists(file("V1_03_difficult_imu0.csv.gz"))) {
-    GTEST_SKIP() << "shared/data/euroc_imu_gt is missing";
-  }
+  const auto folder = testData("euroc_imu_gt");
+  if (!folder) GTEST_SKIP() << missingTestData("euroc_imu_gt");
+  const auto file = [&](const char* name) { return *folder / name; };
   const RealRecording recording =
       readRealRecording(file("V1_03_difficult_imu0.csv.gz"), file("V1_03_difficult_groundtruth.csv.gz"));
   Diagnostics diagnostics;
