@@ -36,6 +36,8 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
                  "nearest point that stereo matching looks for");
   settings->bind("front_end.max_epipolar_px", &options->consensus.max_error_px,
                  "largest disagreement of a point with the motion of the others");
+  settings->bind("front_end.seed", &options->consensus.seed,
+                 "of the random choices in that judgement; another one makes another, equally good run");
   settings->bind("front_end.max_gap_s", &options->max_gap_s, "images missing for longer end all tracks");
   settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation");
 }

@@ -37,7 +37,7 @@ class Consensus {
 
   Motion bestHypothesis(const Mat3& rotation, double limit_px,
                         const EpipolarConsensusOptions& options) const {
-    std::mt19937 random(options.seed);
+    std::mt19937 random(static_cast<std::mt19937::result_type>(options.seed));
     Motion best{rotation, Vec3::UnitZ()};
     double best_cost = truncatedCost(best, limit_px);
     for (int h = 0; h < options.hypotheses; ++h) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "lodeline/geometry/types.h"
@@ -12,7 +11,7 @@ struct EpipolarConsensusOptions {
   /// How far the rotation may be off, as the gyroscope's bias is not yet known.
   double rotation_sigma_rad = 0.005;
   int hypotheses = 60;
-  uint32_t seed = 1;
+  int seed = 1;  ///< of the choice of hypotheses
 };
 
 /// Which pairs of bearings agree with one motion of the camera between two images.

@@ -1,0 +1,136 @@
+#include "lodeline/cli/run_recording.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <filesystem>
+#include <opencv2/core/utility.hpp>
+
+#include "lodeline/base/error.h"
+#include "lodeline/base/settings.h"
+#include "lodeline/calibration/calibration_file.h"
+#include "lodeline/cli/process_usage.h"
+#include "lodeline/cli/run_progress.h"
+#include "lodeline/cli/stop_request.h"
+#include "lodeline/data/euroc_source.h"
+#include "lodeline/estimator/attitude_track.h"
+#include "lodeline/report/landmark_writer.h"
+#include "lodeline/report/output_file.h"
+#include "lodeline/report/state_writer.h"
+#include "lodeline/report/track_pictures.h"
+
+namespace lodeline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void calibrateMagnetometer(const std::filesystem::path& file, EurocSource* source) {
+  Rig rig = source->rig();
+  applyCalibration(readCalibrationFile(file), file, &rig);
+  source->setMagnetometer(*rig.magnetometer);
+}
+
+RunDescription describe(const RunRequest& request, const RunSettings& options, const Rig& rig) {
+  RunDescription description;
+  description.version = LODELINE_VERSION;
+  description.data = request.data;
+  description.config = request.config;
+  description.overrides = request.overrides;
+  for (const CameraCalibration& camera : rig.cameras) description.cameras.push_back(camera.name);
+  description.camera_rate_hz = rig.cameras.front().rate_hz;
+  description.imu_rate_hz = rig.imu.rate_hz;
+  if (rig.magnetometer) description.other_sensors.push_back("magnetometer");
+  if (rig.pressure) description.other_sensors.push_back("pressure");
+  if (rig.sonar) description.other_sensors.push_back("sonar");
+  description.observation_sigma_px = options.odometry.front_end.sigma_px;
+  return description;
+}
+
+/// Feeds all packets through the estimator; results are on disk at the end, whether the recording or the
+/// user ended it.
+void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* attitude,
+             const RunRequest& request, RunSummary* summary) {
+  const std::filesystem::path folder = request.output;
+  StateWriter states(folder);
+  LandmarkWriter landmarks(folder);
+  std::optional<TrackPictures> pictures;
+  if (request.draw_tracks_s) pictures.emplace(folder, *request.draw_tracks_s);
+  RunProgress progress(request.quiet);
+  const StopRequest stop;
+  const Clock::time_point start = Clock::now();
+  const double start_processor_s = ProcessUsage::now().processor_s;
+  std::optional<FramePacket> packet = synchronizer.next();
+  for (; packet && !stop.made(); packet = synchronizer.next()) {
+    const FrameEstimate estimate = odometry.add(*packet);
+    states.write(estimate, attitude->add(*packet));
+    landmarks.write(odometry.estimator().takeMapPoints());
+    if (pictures) pictures->write(*packet, odometry.frontEnd());
+    summary->add(estimate);
+    for (const cv::Mat& image : packet->images) summary->images += image.empty() ? 0 : 1;
+    summary->wall_s = secondsSince(start);
+    progress.show(*summary);
+  }
+  progress.end();
+  landmarks.write(odometry.estimator().currentMapPoints());
+  landmarks.finish();
+
+  summary->interrupted = packet.has_value();
+  summary->map_points = landmarks.count();
+  summary->front_end_s = odometry.times().front_end_s;
+  summary->estimator_s = odometry.times().estimator_s;
+  const ProcessUsage usage = ProcessUsage::now();
+  summary->process_s = usage.processor_s - start_processor_s;
+  summary->peak_memory_MB = usage.peak_memory_MB;
+}
+
+}  // namespace
+
+void applyRequest(const RunRequest& request, Settings* settings, RunSettings* options) {
+  bindRunSettings(settings, options);
+  if (!request.config.empty()) settings->load(request.config);
+  for (const std::string& override : request.overrides) {
+    const size_t equals = override.find('=');
+    if (equals == std::string::npos) throw UsageError(fmt::format("--set {}: expected KEY=VALUE", override));
+    settings->set(override.substr(0, equals), override.substr(equals + 1));
+  }
+  if (!request.magnetometer.empty()) settings->set("magnetometer.model", request.magnetometer);
+  if (!request.site.empty()) settings->set("heading.site", "[" + request.site + "]");
+  if (!request.date.empty()) settings->set("heading.date", request.date);
+  if (!request.magnetometer_calibration.empty()) {
+    options->magnetometer_calibration = request.magnetometer_calibration;
+  }
+  options->odometry.estimator.magnetometer.site_field_W = siteField_W(*options);
+}
+
+RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
+  // One thread for image operations: the same bytes on every machine, and core-milliseconds that mean
+  // something.
+  cv::setNumThreads(1);
+  RunSettings options;
+  Settings settings;
+  applyRequest(request, &settings, &options);
+
+  const std::filesystem::path folder = request.output;
+  EurocSource source(request.data, options.source, diagnostics);
+  if (!options.magnetometer_calibration.empty()) {
+    calibrateMagnetometer(options.magnetometer_calibration, &source);
+  }
+  createOutputFolder(folder);
+  std::ofstream config = openOutput(folder / "config.yaml");
+  settings.write(config);
+  closeOutput(folder / "config.yaml", &config);
+
+  Synchronizer synchronizer(&source, options.synchronizer, diagnostics);
+  Odometry odometry(source.rig(), options.odometry, diagnostics);
+  RunSummary summary(describe(request, options, source.rig()));
+  AttitudeTrack attitude(source.rig(), {}, diagnostics);
+  process(synchronizer, odometry, &attitude, request, &summary);
+  writeOutput(folder / "run.json", summary.json(*diagnostics));
+  return summary;
+}
+
+}  // namespace lodeline
