@@ -7,12 +7,12 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/output_file.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/plain_csv.h"
 #include "lodeline/report/findings.h"
 #include "lodeline/report/noise_report.h"
-#include "lodeline/report/output_file.h"
 
 namespace lodeline {
 namespace {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/data/ordered_stream.h"
@@ -14,7 +15,6 @@
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/attitude_writer.h"
 #include "lodeline/report/findings.h"
-#include "lodeline/report/output_file.h"
 
 namespace lodeline {
 namespace {

@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/calibration/calibration_plots.h"
 #include "lodeline/calibration/calibration_report.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/findings.h"
-#include "lodeline/report/output_file.h"
 
 namespace lodeline {
 namespace {

@@ -15,7 +15,7 @@
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/estimator/attitude_track.h"
 #include "lodeline/report/landmark_writer.h"
-#include "lodeline/report/output_file.h"
+#include "lodeline/base/output_file.h"
 #include "lodeline/report/state_writer.h"
 #include "lodeline/report/track_pictures.h"
 

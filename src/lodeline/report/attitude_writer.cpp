@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lodeline/report/output_file.h"
+#include "lodeline/base/output_file.h"
 
 namespace lodeline {
 namespace {

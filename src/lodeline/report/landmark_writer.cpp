@@ -2,7 +2,7 @@
 
 #include <fmt/ostream.h>
 
-#include "lodeline/report/output_file.h"
+#include "lodeline/base/output_file.h"
 
 namespace lodeline {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/output_file.h"
 #include "lodeline/report/landmark_writer.h"
-#include "lodeline/report/output_file.h"
 #include "lodeline/report/run_summary.h"
 #include "lodeline/report/state_writer.h"
 

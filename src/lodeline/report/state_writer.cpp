@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lodeline/base/output_file.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/report/output_file.h"
 
 namespace lodeline {
 namespace {
