@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
+#include "lodeline/features/speck.h"
 #include "lodeline/features/structure_tensor.h"
 
 namespace lodeline {
@@ -48,33 +49,73 @@ class Grid {
     const int left = size_.width * column / columns_, top = size_.height * row / rows_;
     return {left, top, size_.width * (column + 1) / columns_ - left, size_.height * (row + 1) / rows_ - top};
   }
-  /// Of a point in the picture.
+  /// Of the cell in which a point lies: the last one whose rounded-down edge is not beyond it.
   int indexOf(const Eigen::Vector2f& point) const {
-    const int column = std::clamp(static_cast<int>(point.x()) * columns_ / size_.width, 0, columns_ - 1);
-    const int row = std::clamp(static_cast<int>(point.y()) * rows_ / size_.height, 0, rows_ - 1);
-    return row * columns_ + column;
+    return along(point.y(), rows_, size_.height) * columns_ + along(point.x(), columns_, size_.width);
   }
 
  private:
+  static int along(float coordinate, int cells, int length) {
+    return std::clamp(((static_cast<int>(coordinate) + 1) * cells - 1) / length, 0, cells - 1);
+  }
+
   cv::Size size_;
   int columns_ = 1, rows_ = 1;
 };
 
-/// The strongest corner of a cell of the picture that is `scale` times smaller than the image.
-Corner strongestIn(const cv::Mat& picture, const cv::Rect& cell, int scale, const Occupancy& occupancy) {
-  const StructureTensor tensor(picture, cell);
-  Corner best;
-  for (int y = 0; y < cell.height; ++y) {
-    for (int x = 0; x < cell.width; ++x) {
-      const float strength = tensor.weakerGradientGreyPerPx(x, y);
-      if (strength <= best.strength) continue;
-      const int full_x = (cell.x + x) * scale, full_y = (cell.y + y) * scale;
-      if (!occupancy.isFree(full_x, full_y)) continue;
-      best = {Eigen::Vector2f(static_cast<float>(full_x), static_cast<float>(full_y)), strength};
+/// Finds corners of one cell of the picture that is `scale` times smaller than the image.
+class CellSearch {
+ public:
+  CellSearch(const cv::Mat& picture, const cv::Rect& cell, int scale, const Occupancy& occupancy)
+      : picture_(picture), cell_(cell), scale_(scale), occupancy_(occupancy), tensor_(picture, cell) {}
+
+  /// The strongest that is free and none of a speck's. Strength zero where there is none: a cell with more
+  /// specks than a few shows water and not rock.
+  Corner strongestOnRock(float min_strength) {
+    constexpr size_t kMostSpecks = 3;
+    while (specks_.size() <= kMostSpecks) {
+      const Corner best = strongest();
+      if (best.strength < min_strength) break;
+      const cv::Point corner = toPicture(best.pixel);
+      if (!isSpeck(picture_, corner)) return best;
+      specks_.push_back(corner);
     }
+    return {};
   }
-  return best;
-}
+
+ private:
+  Corner strongest() const {
+    Corner best;
+    for (int y = 0; y < cell_.height; ++y) {
+      for (int x = 0; x < cell_.width; ++x) {
+        const float strength = tensor_.weakerGradientGreyPerPx(x, y);
+        if (strength <= best.strength) continue;
+        const cv::Point at = cell_.tl() + cv::Point(x, y);
+        if (!occupancy_.isFree(at.x * scale_, at.y * scale_) || isOfSpeck(at)) continue;
+        best = {Eigen::Vector2f(static_cast<float>(at.x * scale_), static_cast<float>(at.y * scale_)),
+                strength};
+      }
+    }
+    return best;
+  }
+  cv::Point toPicture(const Eigen::Vector2f& pixel) const {
+    return {static_cast<int>(pixel.x()) / scale_, static_cast<int>(pixel.y()) / scale_};
+  }
+  /// A dot makes corners wherever the tensor's window touches it.
+  bool isOfSpeck(const cv::Point& at) const {
+    constexpr int kReach = 2 * StructureTensor::kWindowRadius + 1;
+    return std::any_of(specks_.begin(), specks_.end(), [&](const cv::Point& speck) {
+      return std::max(std::abs(at.x - speck.x), std::abs(at.y - speck.y)) <= kReach;
+    });
+  }
+
+  const cv::Mat& picture_;
+  cv::Rect cell_;
+  int scale_;
+  const Occupancy& occupancy_;
+  StructureTensor tensor_;
+  std::vector<cv::Point> specks_;
+};
 
 }  // namespace
 
@@ -91,16 +132,17 @@ std::vector<Eigen::Vector2f> CornerDetector::detect(const ImagePyramid& image, c
     filled[static_cast<size_t>(grid.indexOf(pixel / static_cast<float>(scale)))] = true;
   }
 
-  const int border =
-      std::max(static_cast<int>(std::ceil(options_.border_px / scale)), StructureTensor::kWindowRadius + 2);
+  const int border = std::max({static_cast<int>(std::ceil(options_.border_px / scale)),
+                               StructureTensor::kWindowRadius + 2, kSpeckReachPx});
   const cv::Rect usable(border, border, picture.cols - 2 * border, picture.rows - 2 * border);
   std::vector<Corner> corners;
   for (int i = 0; i < grid.count(); ++i) {
     if (filled[static_cast<size_t>(i)]) continue;
     const cv::Rect cell = grid.cell(i) & usable;
     if (cell.empty()) continue;
-    const Corner best = strongestIn(picture, cell, scale, occupancy);
-    if (best.strength < options_.min_gradient_grey_per_px) continue;
+    const Corner best = CellSearch(picture, cell, scale, occupancy)
+                            .strongestOnRock(static_cast<float>(options_.min_gradient_grey_per_px));
+    if (best.strength <= 0.0F) continue;
     occupancy.occupy(best.pixel);
     corners.push_back(best);
   }
