@@ -12,6 +12,7 @@
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/calibration/calibration_plots.h"
 #include "lodeline/calibration/calibration_report.h"
+#include "lodeline/evaluation/plots.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/findings.h"
 
@@ -65,17 +66,6 @@ RecordOptions recordOptions(const CalibrateArguments& arguments) {
   return options;
 }
 
-void drawPictures(const MagnetometerCalibrationResult& result, const std::filesystem::path& folder,
-                  Diagnostics* diagnostics) {
-  createOutputFolder(folder);
-  const gnuplot::Result drawn = gnuplot::draw({cloudFigure(result), coverageFigure(result)}, folder);
-  if (drawn.outcome == gnuplot::Outcome::Drawn) return;
-  const bool missing = drawn.outcome == gnuplot::Outcome::Missing;
-  diagnostics->report(Severity::Warning, missing ? "gnuplot_missing" : "gnuplot_failed",
-                      missing ? "no plots: the program gnuplot is not installed (Debian package gnuplot-nox)"
-                              : "no plots: gnuplot failed: " + drawn.message);
-}
-
 double comparisonDip_rad(const std::optional<Vec3>& site_field_ENU, const MagnetometerFit& first,
                          const MagnetometerFit& second) {
   if (site_field_ENU) return fieldElements(*site_field_ENU).inclination_rad;
@@ -124,7 +114,8 @@ void calibrate(const CalibrateArguments& arguments) {
     }
     fit = result.fit;
     if (!arguments.output.empty()) writeCalibrationFile(fit, arguments.output);
-    if (!arguments.plots.empty()) drawPictures(result, arguments.plots, &diagnostics);
+    if (!arguments.plots.empty())
+      drawFigures({cloudFigure(result), coverageFigure(result)}, arguments.plots, diagnostics);
     json = calibrationJson(result);
     text = calibrationText(result);
   }

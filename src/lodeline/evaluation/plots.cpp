@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include "lodeline/base/error.h"
-#include "lodeline/evaluation/gnuplot.h"
 #include "lodeline/evaluation/plot_figures.h"
 
 namespace lodeline {
@@ -23,16 +22,14 @@ const char* alignmentTitle(AlignmentType type) {
   return "";
 }
 
-void writePlots(const Evaluation& evaluation, const std::filesystem::path& folder, Diagnostics& diagnostics) {
+void drawFigures(const std::vector<gnuplot::Figure>& figures, const std::filesystem::path& folder,
+                 Diagnostics& diagnostics) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder, error) || access(folder.c_str(), W_OK) != 0) {
     throw InputError(
         fmt::format("{}: plots cannot be written there; it is no writable folder", folder.string()));
   }
-  std::vector<gnuplot::Figure> figures = {topViewFigure(evaluation), sideViewFigure(evaluation),
-                                          errorOverTimeFigure(evaluation)};
-  if (!evaluation.relative.empty()) figures.push_back(relativeErrorFigure(evaluation));
   const gnuplot::Result result = gnuplot::draw(figures, folder);
   if (result.outcome == gnuplot::Outcome::Missing) {
     diagnostics.report(Severity::Warning, "gnuplot_missing",
@@ -40,6 +37,13 @@ void writePlots(const Evaluation& evaluation, const std::filesystem::path& folde
   } else if (result.outcome == gnuplot::Outcome::Failed) {
     diagnostics.report(Severity::Warning, "gnuplot_failed", "no plots: gnuplot failed: " + result.message);
   }
+}
+
+void writePlots(const Evaluation& evaluation, const std::filesystem::path& folder, Diagnostics& diagnostics) {
+  std::vector<gnuplot::Figure> figures = {topViewFigure(evaluation), sideViewFigure(evaluation),
+                                          errorOverTimeFigure(evaluation)};
+  if (!evaluation.relative.empty()) figures.push_back(relativeErrorFigure(evaluation));
+  drawFigures(figures, folder, diagnostics);
 }
 
 }  // namespace lodeline
