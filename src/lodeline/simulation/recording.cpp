@@ -42,6 +42,20 @@ bool claim(const std::filesystem::path& folder, const std::string& identity) {
   return false;
 }
 
+// A link that stays right when both folders are moved together.
+void linkTo(const std::filesystem::path& target, const std::filesystem::path& link) {
+  std::error_code error;
+  if (std::filesystem::exists(link, error)) return;
+  std::filesystem::remove(link, error);
+  const std::filesystem::path from = std::filesystem::canonical(link.parent_path(), error);
+  const std::filesystem::path to = std::filesystem::canonical(target, error);
+  if (!error) std::filesystem::create_symlink(to.lexically_relative(from), link, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: cannot be made a link to {} ({})", link.string(), target.string(), error.message()));
+  }
+}
+
 }  // namespace
 
 RecordingSummary recordScenario(const Scenario& scenario, const std::filesystem::path& folder,
@@ -80,6 +94,32 @@ RecordingSummary recordScenario(const Scenario& scenario, const std::filesystem:
   summary.images = recordImages(renderer, dive, images, folder, options);
   summary.complete = summary.images.done == summary.images.total;
   return summary;
+}
+
+bool holdsRecording(const Scenario& scenario, const std::filesystem::path& folder) {
+  return contents(folder / "truth" / "scenario.yaml") == describe(scenario);
+}
+
+void recordOtherNoise(const Scenario& scenario, const std::filesystem::path& original,
+                      const std::filesystem::path& folder) {
+  Scenario with_original_noise = scenario;
+  with_original_noise.noise_seed.reset();
+  if (!holdsRecording(with_original_noise, original)) {
+    throw InputError(
+        fmt::format("{}: is no recording of this scenario to take images from", original.string()));
+  }
+  const Dive dive = makeDive(scenario);
+  claim(folder, describe(scenario));
+  recordSensors(dive, {}, folder);
+  if (std::filesystem::exists(original / "mav0" / "sonar0")) {
+    linkTo(original / "mav0" / "sonar0", folder / "mav0" / "sonar0");
+  }
+  for (int camera = 0; scenario.images && camera < scenario.rig.cameras; ++camera) {
+    const std::string name = fmt::format("cam{}", camera);
+    for (const char* part : {"data.csv", "data"}) {
+      linkTo(original / "mav0" / name / part, folder / "mav0" / name / part);
+    }
+  }
 }
 
 }  // namespace lodeline

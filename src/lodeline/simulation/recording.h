@@ -22,4 +22,14 @@ RecordingSummary recordScenario(const Scenario& scenario, const std::filesystem:
                                 const ImageRecordingOptions& options,
                                 const std::function<void(const char*)>& stage = {});
 
+/// The recording of `scenario` in `original` once more, with another noise of its sensors
+/// (Scenario::noise_seed) in `folder`: readings of IMU, magnetometer and pressure sensor and the truth's
+/// biases are written, images and sonar are links to the original's. Throws InputError where `original` holds
+/// another recording, or `folder` anything else.
+void recordOtherNoise(const Scenario& scenario, const std::filesystem::path& original,
+                      const std::filesystem::path& folder);
+
+/// Whether the folder holds a recording of this scenario, perhaps unfinished.
+bool holdsRecording(const Scenario& scenario, const std::filesystem::path& folder);
+
 }  // namespace lodeline

@@ -185,6 +185,42 @@ TEST_F(RecordingTest, RefusesFoldersThatHoldSomethingElse) {
   EXPECT_THROW(recordScenario(tiny("clean", false, "figure_eight"), folder_ / "c", {}), InputError);
 }
 
+TEST_F(RecordingTest, OtherNoiseChangesReadingsAndNeitherMotionNorRig) {
+  const fs::path other = folder_.string() + "_other";
+  Scenario scenario = tiny("field", false, "figure_eight");
+  recordScenario(scenario, folder_, {});
+  scenario.noise_seed = 7;
+  recordOtherNoise(scenario, folder_, other);
+  const auto first = allFiles(folder_);
+  const auto second = allFiles(other);
+  for (const char* name : {"mav0/imu0/data.csv", "mav0/mag0/data.csv", "mav0/pressure0/data.csv"}) {
+    EXPECT_NE(first.at(name), second.at(name)) << name;
+  }
+  for (const char* name : {"mav0/imu0/sensor.yaml", "mav0/mag0/sensor.yaml"}) {
+    EXPECT_EQ(first.at(name), second.at(name)) << name;
+  }
+  // Pose and velocity are the same to the last digit, biases are not.
+  std::istringstream truth(first.at("mav0/state_groundtruth_estimate0/data.csv"));
+  std::istringstream other_truth(second.at("mav0/state_groundtruth_estimate0/data.csv"));
+  const auto stateOf = [](const std::string& line) {
+    size_t end = 0;
+    for (int column = 0; column < 11; ++column) end = line.find(',', end + 1);
+    return line.substr(0, end);
+  };
+  int rows = 0, equal_biases = 0;
+  for (std::string a, b; std::getline(truth, a) && std::getline(other_truth, b); ++rows) {
+    ASSERT_EQ(stateOf(a), stateOf(b));
+    equal_biases += rows > 0 && a == b ? 1 : 0;
+  }
+  EXPECT_EQ(rows, 1401 + 1);
+  EXPECT_EQ(equal_biases, 0);
+
+  scenario.duration_s += 1.0;
+  EXPECT_THROW(recordOtherNoise(scenario, folder_, other), InputError);
+  EXPECT_FALSE(holdsRecording(scenario, folder_));
+  fs::remove_all(other);
+}
+
 TEST_F(RecordingTest, ImagesLeaveTheOtherSensorsAsTheyAre) {
   recordScenario(tiny("field", false, "open_water"), folder_ / "a", {});
   recordScenario(tiny("field", true, "open_water"), folder_ / "b", {});

@@ -145,6 +145,7 @@ std::string describe(const Scenario& s) {
   for (const EffectDescription& d : effectDescriptions()) {
     text += fmt::format("  {}: {}\n", d.name, s.effects.has(d.effect) ? "on" : "off");
   }
+  if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
   return text;
 }
 

@@ -24,6 +24,9 @@ struct Scenario {
   bool decorated = false;  ///< a once dry cave with stalactites
 
   uint64_t seed = 1;
+  /// Draws the noise of the sensors anew (white noise and wandering biases of the IMU, noise of magnetometer
+  /// and pressure sensor), while place, swim, images and the rig's own errors stay those of `seed`.
+  std::optional<uint64_t> noise_seed;
   double duration_s = 0.0;
   double path_length_m = 0.0;
   bool starts_at_rest = true;
@@ -57,6 +60,9 @@ const std::vector<Scenario>& scenarios();
 /// A scenario by name with changes. Of length and duration, one given alone changes the other in proportion.
 /// Throws UsageError for an unknown name and for values that make no recording.
 Scenario makeScenario(std::string_view name, const ScenarioChanges& changes);
+
+/// The seed that the sensors' noise is drawn with.
+inline uint64_t noiseSeed(const Scenario& scenario) { return scenario.noise_seed.value_or(scenario.seed); }
 
 /// The Earth's field at the scenario's site, T.
 Vec3 scenarioField(const Scenario& scenario);

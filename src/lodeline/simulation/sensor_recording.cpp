@@ -39,7 +39,7 @@ void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
   const double rate_hz = dive.scenario.rig.imu_rate_hz;
   const double truth_rate_hz = dive.scenario.motion == MotionKind::AtRest ? 1.0 : 100.0;
   const int64_t every = std::max<int64_t>(1, std::llround(rate_hz / truth_rate_hz));
-  ImuModel imu(dive.errors.imu, rate_hz, dive.scenario.seed);
+  ImuModel imu(dive.errors.imu, rate_hz, noiseSeed(dive.scenario));
   for (int64_t i = 0;; ++i) {
     const double t = static_cast<double>(i) / rate_hz;
     if (t > dive.motion.duration_s()) break;
@@ -63,7 +63,7 @@ void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
 void recordMagnetometer(const Dive& dive, const std::filesystem::path& mav0) {
   const double rate_hz = dive.scenario.rig.magnetometer_rate_hz;
   MagnetometerModel model(dive.motion, dive.field_W, dive.disturbances, dive.errors.magnetometer, rate_hz,
-                          dive.scenario.seed);
+                          noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "mag0" / "data.csv");
   file.write("#timestamp [ns],m_x [T],m_y [T],m_z [T]\n");
   // Half a period after the IMU's first reading: the two sensors do not share a trigger.
@@ -79,7 +79,7 @@ void recordMagnetometer(const Dive& dive, const std::filesystem::path& mav0) {
 
 void recordDepth(const Dive& dive, const std::filesystem::path& mav0) {
   PressureModel model(dive.motion, dive.errors.truth.rig.pressure->body_from_pressure, dive.surface_height_m,
-                      dive.errors.pressure, dive.scenario.seed);
+                      dive.errors.pressure, noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "pressure0" / "data.csv");
   file.write("#timestamp [ns],depth [m]\n");
   for (int64_t i = 0;; ++i) {
@@ -93,7 +93,7 @@ void recordDepth(const Dive& dive, const std::filesystem::path& mav0) {
 
 void recordSonar(const Dive& dive, const RangeFunction& range, const std::filesystem::path& mav0) {
   SonarModel model(dive.motion, dive.errors.truth.rig.sonar->body_from_sonar, range, dive.errors.sonar,
-                   dive.scenario.seed);
+                   noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "sonar0" / "data.csv");
   file.write("#timestamp [ns],range [m],angle [rad]\n");
   for (int64_t i = 0;; ++i) {
