@@ -35,7 +35,7 @@ double medianRate_hz(std::span<const MagnetometerSample> samples) {
 
 /// Readings that the fit of the ellipsoid used, in units of the field's size: as read, and corrected.
 struct UsedReadings {
-  std::vector<FieldSample> raw, corrected;
+  std::vector<NormalizedFieldSample> raw, corrected;
 };
 UsedReadings usedReadings(const std::vector<MagnetometerSample>& samples, const IronCalibration& iron) {
   UsedReadings used;

@@ -29,7 +29,7 @@ test::TurningSensor rollingSensor() {
 
 MagnetometerRecord recordOf(const test::TurningSensor& sensor, bool with_imu = true) {
   MagnetometerRecord record;
-  for (const FieldSample& sample : sensor.field()) {
+  for (const NormalizedFieldSample& sample : sensor.field()) {
     record.magnetometer.push_back({sample.time, kField_T * sample.field_M});
   }
   if (with_imu) record.imu = sensor.imu();

@@ -19,10 +19,11 @@ struct Pair {
   Vec3 from_M, to_M;
 };
 
-std::vector<Pair> makePairs(std::span<const FieldSample> field, const FieldAlignmentOptions& options) {
+std::vector<Pair> makePairs(std::span<const NormalizedFieldSample> field,
+                            const FieldAlignmentOptions& options) {
   std::vector<Pair> pairs;
   size_t last = 0;
-  for (const FieldSample& first : field) {
+  for (const NormalizedFieldSample& first : field) {
     while (last < field.size() && (field[last].time - first.time).seconds() < options.step_s) ++last;
     if (last == field.size()) break;
     // Across a hole in the data the gyroscope's own errors would count.
@@ -116,7 +117,8 @@ Vec3 solveBias(const std::vector<Pair>& pairs, const GyroscopePath& path, const 
 
 }  // namespace
 
-std::optional<FieldAlignment> alignField(std::span<const FieldSample> field, std::span<const ImuSample> imu,
+std::optional<FieldAlignment> alignField(std::span<const NormalizedFieldSample> field,
+                                         std::span<const ImuSample> imu,
                                          const FieldAlignmentOptions& options) {
   const std::vector<Pair> pairs = makePairs(field, options);
   FieldAlignment alignment;

@@ -9,7 +9,7 @@
 namespace lodeline {
 
 /// Corrected field in magnetometer axes at one time.
-struct FieldSample {
+struct NormalizedFieldSample {
   Time time;
   Vec3 field_M = Vec3::Zero();  ///< in units of the field's size
 };
@@ -37,7 +37,8 @@ struct FieldAlignmentOptions {
 /// axes at least and no first guess. The time offset is found where the disagreement is least, the gyroscope
 /// bias from its linear part. Since the equations hold for -R as well, a left-handed sensor frame comes out
 /// as one with the field reversed. Nothing where fewer than 20 pairs of samples lie within the readings.
-std::optional<FieldAlignment> alignField(std::span<const FieldSample> field, std::span<const ImuSample> imu,
+std::optional<FieldAlignment> alignField(std::span<const NormalizedFieldSample> field,
+                                         std::span<const ImuSample> imu,
                                          const FieldAlignmentOptions& options = {});
 
 }  // namespace lodeline

@@ -42,8 +42,8 @@ TEST(FieldAlignment, KnowsThatTurnsAboutOneAxisSayTooLittle) {
 
 TEST(FieldAlignment, NeedsReadingsAtTheSameTime) {
   const test::TurningSensor sensor;
-  std::vector<FieldSample> later = sensor.correctedField();
-  for (FieldSample& sample : later) sample.time = sample.time + Duration::fromSeconds(1000.0);
+  std::vector<NormalizedFieldSample> later = sensor.correctedField();
+  for (NormalizedFieldSample& sample : later) sample.time = sample.time + Duration::fromSeconds(1000.0);
   EXPECT_FALSE(alignField(later, sensor.imu()));
   EXPECT_FALSE(alignField({}, sensor.imu()));
 }

@@ -49,8 +49,9 @@ Reduced solve(const InertialSmoother::Chain::Marginal& marginal, const Basis& ac
 
 class Calibrator {
  public:
-  Calibrator(std::span<const FieldSample> field, std::span<const ImuSample> imu, const ImuNoise& noise,
-             const InertialParameters& start, const InertialCalibrationOptions& options)
+  Calibrator(std::span<const NormalizedFieldSample> field, std::span<const ImuSample> imu,
+             const ImuNoise& noise, const InertialParameters& start,
+             const InertialCalibrationOptions& options)
       : options_(options), smoother_(field, imu, start, options), stated_(noise) {
     noise_.gyroscope_density = noise.gyroscope_density_rad_per_s_sqrtHz;
     smoother_.linearise();
@@ -212,7 +213,7 @@ class Calibrator {
 
 }  // namespace
 
-InertialCalibration calibrateWithInertialSensors(std::span<const FieldSample> field,
+InertialCalibration calibrateWithInertialSensors(std::span<const NormalizedFieldSample> field,
                                                  std::span<const ImuSample> imu, const ImuNoise& noise,
                                                  const InertialParameters& start,
                                                  const InertialCalibrationOptions& options) {

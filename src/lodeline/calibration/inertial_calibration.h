@@ -55,7 +55,7 @@ struct InertialCalibration {
 /// `field`: readings in units of the field's size, uncorrected, in order of time, without outliers. `start`:
 /// soft and hard iron from the fit of the ellipsoid, rotation and time offset from alignField(). Throws
 /// EstimationError where the iteration does not settle.
-InertialCalibration calibrateWithInertialSensors(std::span<const FieldSample> field,
+InertialCalibration calibrateWithInertialSensors(std::span<const NormalizedFieldSample> field,
                                                  std::span<const ImuSample> imu, const ImuNoise& noise,
                                                  const InertialParameters& start,
                                                  const InertialCalibrationOptions& options = {});

@@ -85,7 +85,7 @@ TEST(InertialCalibration, ReadingsOfOneKilohertzShareOrientations) {
 TEST(InertialCalibration, LeavesOutReadingsThatPointTheWrongWay) {
   test::TurningSensor sensor;
   sensor.duration_s = 15.0;
-  std::vector<FieldSample> field = sensor.field();
+  std::vector<NormalizedFieldSample> field = sensor.field();
   const Quat turn = so3::exp(Vec3(0.2, 0.1, 0.0));
   const Mat3 correction = sensor.truth.soft_iron.inverse();
   for (size_t i = 100; i < 120; ++i) {
@@ -112,7 +112,7 @@ TEST(InertialCalibration, HoldsWhatTheModelLeavesOutAndWidensTheCovariance) {
 
 TEST(InertialCalibration, RefusesWhatItCannotSolve) {
   test::TurningSensor sensor;
-  std::vector<FieldSample> few = sensor.field();
+  std::vector<NormalizedFieldSample> few = sensor.field();
   few.resize(20);
   EXPECT_THROW(calibrateWithInertialSensors(few, sensor.imu(), noiseOf(sensor), startFor(sensor), {}),
                EstimationError);

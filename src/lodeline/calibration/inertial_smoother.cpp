@@ -23,8 +23,9 @@ Quat worldFromStart(const Vec3& up_S, const Vec3& field_S) {
 
 }  // namespace
 
-InertialSmoother::InertialSmoother(std::span<const FieldSample> field, std::span<const ImuSample> imu,
-                                   const InertialParameters& start, const InertialCalibrationOptions& options)
+InertialSmoother::InertialSmoother(std::span<const NormalizedFieldSample> field,
+                                   std::span<const ImuSample> imu, const InertialParameters& start,
+                                   const InertialCalibrationOptions& options)
     : imu_(imu), options_(options), parameters_(start) {
   const GyroscopePath path(imu, start.gyroscope_bias_B);
   makeMoments(field, path);
@@ -34,12 +35,12 @@ InertialSmoother::InertialSmoother(std::span<const FieldSample> field, std::span
   orient(path);
 }
 
-void InertialSmoother::makeMoments(std::span<const FieldSample> field, const GyroscopePath& path) {
+void InertialSmoother::makeMoments(std::span<const NormalizedFieldSample> field, const GyroscopePath& path) {
   // The time offset still moves a little; readings at the very ends would leave the IMU's.
   const Duration margin = Duration::fromSeconds(0.02);
   const Duration offset = Duration::fromSeconds(parameters_.time_offset_s);
-  std::vector<FieldSample> inside;
-  for (const FieldSample& sample : field) {
+  std::vector<NormalizedFieldSample> inside;
+  for (const NormalizedFieldSample& sample : field) {
     if (path.covers(sample.time + offset - margin) && path.covers(sample.time + offset + margin)) {
       inside.push_back(sample);
     }

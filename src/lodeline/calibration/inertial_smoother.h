@@ -29,7 +29,7 @@ class InertialSmoother {
     bool used = true;  ///< whether the field counts
   };
 
-  InertialSmoother(std::span<const FieldSample> field, std::span<const ImuSample> imu,
+  InertialSmoother(std::span<const NormalizedFieldSample> field, std::span<const ImuSample> imu,
                    const InertialParameters& start, const InertialCalibrationOptions& options);
 
   const std::vector<Moment>& moments() const { return moments_; }
@@ -60,7 +60,7 @@ class InertialSmoother {
     double gap_s = 0.0;   ///< of it without gyroscope
   };
 
-  void makeMoments(std::span<const FieldSample> field, const GyroscopePath& path);
+  void makeMoments(std::span<const NormalizedFieldSample> field, const GyroscopePath& path);
   void orient(const GyroscopePath& path);
   double turnSigma(const Terms& terms, const SmootherNoise& noise) const;
 

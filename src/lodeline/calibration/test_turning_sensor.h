@@ -40,10 +40,10 @@ struct TurningSensor {
     return samples;
   }
 
-  std::vector<FieldSample> field() const {
+  std::vector<NormalizedFieldSample> field() const {
     std::mt19937_64 engine(1000 + seed);
     std::normal_distribution<double> normal(0.0, field_sigma);
-    std::vector<FieldSample> samples;
+    std::vector<NormalizedFieldSample> samples;
     for (int i = 0; i < duration_s * field_rate_hz; ++i) {
       const double t = i / field_rate_hz;
       const Quat world_from_body = motion.rotation(t + truth.time_offset_s);
@@ -55,10 +55,11 @@ struct TurningSensor {
     return samples;
   }
 
-  std::vector<FieldSample> correctedField() const {
-    std::vector<FieldSample> samples = field();
+  std::vector<NormalizedFieldSample> correctedField() const {
+    std::vector<NormalizedFieldSample> samples = field();
     const Mat3 correction = truth.soft_iron.inverse();
-    for (FieldSample& sample : samples) sample.field_M = correction * (sample.field_M - truth.hard_iron);
+    for (NormalizedFieldSample& sample : samples)
+      sample.field_M = correction * (sample.field_M - truth.hard_iron);
     return samples;
   }
 };

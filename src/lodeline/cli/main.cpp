@@ -10,6 +10,7 @@
 #include "lodeline/cli/allan_command.h"
 #include "lodeline/cli/attitude_command.h"
 #include "lodeline/cli/calibrate_command.h"
+#include "lodeline/cli/compare_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
   program.footer("`lodeline COMMAND --help` explains a command, with examples.");
   lodeline::addRunCommand(program);
   lodeline::addEvaluateCommand(program);
+  lodeline::addCompareCommand(program);
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);
   lodeline::addAttitudeCommand(program);

@@ -1,21 +1,16 @@
 #include "lodeline/cli/simulate_command.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <memory>
 #include <string>
 
 #include "lodeline/base/error.h"
-#include "lodeline/cli/stop_request.h"
-#include "lodeline/simulation/recording.h"
+#include "lodeline/cli/simulate_recording.h"
 
 namespace lodeline {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct SimulateArguments {
   std::string scenario;
@@ -45,45 +40,13 @@ void printEffects() {
   }
 }
 
-/// One line that is rewritten on a terminal, or one every half minute in a log.
-class RenderProgress {
- public:
-  explicit RenderProgress(bool quiet)
-      : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), begin_(Clock::now()) {}
-
-  void show(const ImageProgress& progress) {
-    const auto now = Clock::now();
-    const bool last = progress.done == progress.total;
-    if (quiet_ || (!last && now - shown_ < std::chrono::milliseconds(terminal_ ? 300 : 30000))) return;
-    shown_ = now;
-    const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
-    const double each_s = elapsed_s / static_cast<double>(std::max<size_t>(1, progress.rendered));
-    fmt::print(stderr, "{}{} of {} images, {:.0f} ms each, {:.0f} s to go{}", terminal_ ? "\r" : "",
-               progress.done, progress.total, 1e3 * each_s,
-               each_s * static_cast<double>(progress.total - progress.done), terminal_ ? "   " : "\n");
-    if (last && terminal_) fmt::print(stderr, "\n");
-  }
-
- private:
-  bool quiet_, terminal_;
-  Clock::time_point begin_, shown_;
-};
-
 void simulate(const SimulateArguments& arguments) {
   if (arguments.list_effects) return printEffects();
   if (arguments.scenario.empty()) throw UsageError("name a scenario; `lodeline simulate --help` lists them");
   if (arguments.output.empty()) throw UsageError("name the folder to write to with -o");
   const Scenario scenario = makeScenario(arguments.scenario, arguments.changes);
-  const StopRequest stop;
-  RenderProgress progress(arguments.quiet);
-  ImageRecordingOptions options;
-  options.threads = arguments.threads;
-  options.stop = [&] { return stop.made(); };
-  options.progress = [&](const ImageProgress& p) { progress.show(p); };
-  const auto stage = [&](const char* what) {
-    if (!arguments.quiet) fmt::print(stderr, "{}: {}\n", scenario.name, what);
-  };
-  const RecordingSummary summary = recordScenario(scenario, arguments.output, options, stage);
+  const RecordingSummary summary =
+      simulateRecording(scenario, arguments.output, {.threads = arguments.threads, .quiet = arguments.quiet});
   if (!summary.complete) {
     fmt::print("interrupted: {} of {} images are in {}; the same command goes on from there\n",
                summary.images.done, summary.images.total, arguments.output);
@@ -95,13 +58,8 @@ void simulate(const SimulateArguments& arguments) {
 
 }  // namespace
 
-void addSimulateCommand(CLI::App& program) {
-  auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command =
-      program.add_subcommand("simulate", "Make a recording of a simulated dive with exact truth");
-  ScenarioChanges& c = arguments->changes;
-  command->add_option("SCENARIO", arguments->scenario, "what to simulate, see below");
-  command->add_option("-o,--output", arguments->output, "folder to write: mav0 (EuRoC layout) and truth");
+void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
+  ScenarioChanges& c = *changes;
   command->add_option("--seconds", c.seconds, "duration; given alone, the length follows");
   command->add_option("--metres", c.metres, "length of the path; given alone, the duration follows");
   command->add_option("--seed", c.seed, "of everything random (1)");
@@ -109,13 +67,23 @@ void addSimulateCommand(CLI::App& program) {
   command->add_option("--effect", c.effects, "NAME=on or NAME=off, repeatable; see --list-effects");
   command->add_option("--width", c.width_px, "of the images, px; the height follows as 3/4 (640)");
   command->add_option("--height", c.height_px, "of the images, px");
-  command->add_option("--cameras", c.cameras, "1 or 2");
   command->add_option("--camera-rate-hz", c.camera_rate_hz, "images a second (15)");
   command->add_option("--imu-rate-hz", c.imu_rate_hz, "inertial readings a second (200)");
   command->add_option("--magnetometer-rate-hz", c.magnetometer_rate_hz,
                       "magnetometer readings a second (50)");
   command->add_option("--imu", c.imu_grade, "gx5-25, gv7 or consumer");
   command->add_flag("--starts-moving", c.starts_moving, "begin in mid-swim instead of at rest");
+}
+
+void addSimulateCommand(CLI::App& program) {
+  auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* command =
+      program.add_subcommand("simulate", "Make a recording of a simulated dive with exact truth");
+  ScenarioChanges& c = arguments->changes;
+  command->add_option("SCENARIO", arguments->scenario, "what to simulate, see below");
+  command->add_option("-o,--output", arguments->output, "folder to write: mav0 (EuRoC layout) and truth");
+  addScenarioOptions(command, &c);
+  command->add_option("--cameras", c.cameras, "1 or 2");
   command->add_flag("--no-images", c.no_images, "write everything but the images");
   command->add_option("--threads", arguments->threads, "for rendering (all cores)");
   command->add_flag("--quiet", arguments->quiet, "no progress");

@@ -8,6 +8,7 @@
 #include "lodeline/evaluation/image_times.h"
 #include "lodeline/evaluation/read_body_from_camera.h"
 #include "lodeline/evaluation/test_trajectories.h"
+#include "lodeline/evaluation/write_trajectory.h"
 
 namespace lodeline {
 namespace {
@@ -212,6 +213,21 @@ TEST(ImageStamps, AreReadFromFileOrFolder) {
   EXPECT_EQ(readImageStamps(file).size(), 1u);
   EXPECT_EQ(readImageStamps(folder.path()).front().nanoseconds(), 1403636579763555584);
   EXPECT_THROW(readImageStamps(folder.write("data.csv", "1.5,a.png\n")), InputError);
+}
+
+TEST(WriteTrajectory, TumReadsBack) {
+  const test::TemporaryFolder folder;
+  const Trajectory written = test::bend(20, 1403715529.5);
+  writeTum(written, folder.path() / "t.tum");
+  Diagnostics diagnostics;
+  const Trajectory read = readTrajectory(folder.path() / "t.tum", {}, diagnostics);
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read.poses[i].time, written.poses[i].time);
+    EXPECT_LT((read.poses[i].world_from_body.matrix() - written.poses[i].world_from_body.matrix()).norm(),
+              1e-8);
+  }
+  EXPECT_THROW(writeTum(written, folder.path() / "nowhere" / "t.tum"), InputError);
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["frames"] = frames_;
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
+  if (posed_ == 0) json["waiting_for"] = last_.waiting_for;
   json["images"] = images;
   json["keyframes"] = keyframes_;
   json["completion"] = completion();

@@ -1,0 +1,129 @@
+#include "lodeline/cli/compared_run.h"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "lodeline/base/error.h"
+#include "lodeline/base/output_file.h"
+#include "lodeline/cli/azimuth_method.h"
+#include "lodeline/evaluation/read_trajectory.h"
+#include "lodeline/evaluation/text_table.h"
+
+namespace lodeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kDoneFile = "made_from.txt";
+
+/// Whatever the result depends on, for telling whether a run was made already.
+std::string identity(const RunRequest& request) {
+  RunSettings options;
+  Settings settings;
+  applyRequest(request, &settings, &options);
+  std::ostringstream text;
+  text << "lodeline " << LODELINE_VERSION << "\n" << fs::weakly_canonical(request.data).string() << "\n";
+  const fs::path mav0 = fs::is_directory(fs::path(request.data) / "mav0") ? fs::path(request.data) / "mav0"
+                                                                          : fs::path(request.data);
+  for (const char* sensor : {"cam0", "cam1", "imu0", "mag0", "pressure0"}) {
+    for (const char* file : {"data.csv", "sensor.yaml"}) {
+      const fs::path path = mav0 / sensor / file;
+      std::error_code missing;
+      const auto size = fs::file_size(path, missing);
+      if (!missing) text << sensor << "/" << file << ": " << size << " bytes\n";
+    }
+  }
+  settings.write(text);
+  if (!options.magnetometer_calibration.empty()) text << readFileBytes(options.magnetometer_calibration);
+  return text.str();
+}
+
+bool isDone(const fs::path& folder, const std::string& made_from) {
+  return fs::exists(folder / kDoneFile) && readFileBytes(folder / kDoneFile) == made_from;
+}
+
+nlohmann::json readSummary(const fs::path& folder) {
+  return nlohmann::json::parse(readFileBytes(folder / "run.json"));
+}
+
+/// False where the user stopped the run.
+bool estimate(const RunRequest& request) {
+  const fs::path folder = request.output;
+  const std::string made_from = identity(request);
+  if (isDone(folder, made_from)) return true;
+  std::error_code ignored;
+  fs::remove(folder / kDoneFile, ignored);
+  Diagnostics diagnostics;
+  if (runRecording(request, &diagnostics).interrupted) return false;
+  writeOutput(folder / kDoneFile, made_from);
+  return true;
+}
+
+/// The heading of a run by what its summary says of it.
+HeadingBasis basisOf(const nlohmann::json& summary) {
+  const std::string reference = summary.value("/heading/reference"_json_pointer, std::string());
+  return reference.find("north") != std::string::npos ? HeadingBasis::North : HeadingBasis::Start;
+}
+
+Trajectory readPoses(const fs::path& folder) {
+  Diagnostics diagnostics;
+  return readTrajectory(folder / "trajectory.tum", {}, diagnostics);
+}
+
+void judge(const Trajectory& trajectory, const Trajectory& truth, HeadingBasis basis,
+           const ComparisonInput& input, ComparedRun* run) {
+  EvaluationOptions options;
+  options.association.method = AssociationMethod::Interpolate;
+  // Truth at a few hertz will do for a swimmer; an image is still told from its neighbours by half a period.
+  options.association.tolerance_s = 0.02;
+  options.expected_stamps = input.expected_stamps;
+  Diagnostics diagnostics;
+  run->errors = computeRunErrors(trajectory, truth, basis, options, diagnostics);
+  run->completion = run->errors->completion.share;
+}
+
+}  // namespace
+
+bool isComparedMethod(const std::string& name) {
+  return name == "off" || name == "paper" || name == "absolute" || name == "azimuth";
+}
+
+std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
+                                           const std::string& method, const fs::path& input_folder,
+                                           const Trajectory& truth) {
+  const bool by_azimuth = method == "azimuth";
+  RunRequest request = input.run;
+  request.data = seed.data.string();
+  request.magnetometer = by_azimuth ? "off" : method;
+  request.overrides.push_back(fmt::format("front_end.seed={}", seed.feature_seed));
+  const auto folderOf = [&](const std::string& name) {
+    std::string folder = name + "_" + seed.name;
+    for (char& c : folder) c = c == ' ' ? '_' : c;
+    return input_folder / folder;
+  };
+  request.output = folderOf(request.magnetometer).string();
+  ComparedRun run;
+  run.seed = seed.name;
+  try {
+    if (!estimate(request)) return std::nullopt;
+    const nlohmann::json summary = readSummary(request.output);
+    run.core_ms_per_frame = summary.value("/core_ms_per_frame/total"_json_pointer, 0.0);
+    if (summary.value("frames_with_pose", 0) == 0) {
+      run.failure = fmt::format("no pose after {} frames; still waiting for {}", summary.value("frames", 0),
+                                summary.value("waiting_for", std::string("images")));
+      return run;
+    }
+    Trajectory trajectory = readPoses(request.output);
+    if (by_azimuth) trajectory = makeAzimuthRun(request, trajectory, folderOf(method));
+    judge(trajectory, truth, by_azimuth ? HeadingBasis::North : basisOf(summary), input, &run);
+  } catch (const InputError& error) {
+    run.failure = error.what();
+  } catch (const EstimationError& error) {
+    run.failure = error.what();
+  }
+  return run;
+}
+
+}  // namespace lodeline
