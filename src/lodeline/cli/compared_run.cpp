@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -18,13 +19,24 @@ namespace fs = std::filesystem;
 
 const char* const kDoneFile = "made_from.txt";
 
+/// Tells one build of the program from another (FNV-1a over its own file).
+uint64_t programFingerprint() {
+  uint64_t hash = 14695981039346656037u;
+  for (const char byte : readFileBytes("/proc/self/exe")) {
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211u;
+  }
+  return hash;
+}
+
 /// Whatever the result depends on, for telling whether a run was made already.
 std::string identity(const RunRequest& request) {
   RunSettings options;
   Settings settings;
   applyRequest(request, &settings, &options);
   std::ostringstream text;
-  text << "lodeline " << LODELINE_VERSION << "\n" << fs::weakly_canonical(request.data).string() << "\n";
+  static const uint64_t program = programFingerprint();
+  text << fmt::format("lodeline {}, build {:016x}\n", LODELINE_VERSION, program)
+       << fs::weakly_canonical(request.data).string() << "\n";
   const fs::path mav0 = fs::is_directory(fs::path(request.data) / "mav0") ? fs::path(request.data) / "mav0"
                                                                           : fs::path(request.data);
   for (const char* sensor : {"cam0", "cam1", "imu0", "mag0", "pressure0"}) {

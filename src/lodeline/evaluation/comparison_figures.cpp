@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "lodeline/evaluation/comparison_report.h"
 
@@ -72,17 +74,21 @@ std::map<double, std::vector<double>> yawByLength(const ComparedMethod& method) 
   return by_length;
 }
 
-/// Smallest distance between two lengths of any method.
-double lengthStep(const ComparedRecording& recording) {
-  std::map<double, bool> lengths;
+/// The lengths of stretches of any method.
+std::set<double> lengthsOf(const ComparedRecording& recording) {
+  std::set<double> lengths_m;
   for (const ComparedMethod& method : recording.methods) {
-    for (const auto& [length_m, errors] : yawByLength(method)) lengths[length_m] = true;
+    for (const auto& [length_m, errors] : yawByLength(method)) lengths_m.insert(length_m);
   }
-  if (lengths.empty()) return 1.0;
-  double step_m = lengths.begin()->first;
+  return lengths_m;
+}
+
+/// Smallest distance between two of them, zero included.
+double smallestStep(const std::set<double>& lengths_m) {
+  double step_m = INFINITY;
   double before_m = 0.0;
-  for (const auto& [length_m, present] : lengths) {
-    if (before_m > 0.0) step_m = std::min(step_m, length_m - before_m);
+  for (const double length_m : lengths_m) {
+    step_m = std::min(step_m, length_m - before_m);
     before_m = length_m;
   }
   return step_m;
@@ -117,7 +123,8 @@ gnuplot::Figure trajectoriesFigure(const ComparedRecording& recording) {
       "set title '{}: from equal starts, seen from above' noenhanced\nset xlabel 'east (m)'\nset ylabel "
       "'north "
       "(m)'\n"
-      "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc '#dddddd' lt 1 lw 0.7\n"
+      "set size ratio -1\nset bmargin 6\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc '#dddddd' lt 1 "
+      "lw 0.7\n"
       "set border lw 0.8\nset tics nomirror out\nset key bmargin center horizontal samplen 2 noenhanced\n",
       recording.name, box.least[0], box.most[0], box.least[1], box.most[1]);
   figure.commands += plot + "\n";
@@ -127,10 +134,11 @@ gnuplot::Figure trajectoriesFigure(const ComparedRecording& recording) {
 gnuplot::Figure relativeYawFigure(const ComparedRecording& recording) {
   gnuplot::Figure figure;
   figure.name = recording.name + "_relative_yaw";
-  const double step_m = lengthStep(recording);
+  const std::set<double> lengths_m = lengthsOf(recording);
+  if (lengths_m.empty()) return figure;
+  const double step_m = smallestStep(lengths_m);
   const double slot_m = 0.8 * step_m / static_cast<double>(recording.methods.size());
   std::string plot;
-  double longest_m = 0.0;
   for (std::size_t i = 0; i < recording.methods.size(); ++i) {
     const double shift_m =
         (static_cast<double>(i) - 0.5 * static_cast<double>(recording.methods.size() - 1)) * slot_m;
@@ -140,7 +148,6 @@ gnuplot::Figure relativeYawFigure(const ComparedRecording& recording) {
       std::sort(sorted.begin(), sorted.end());
       rows.push_back({length_m + shift_m, quantile(sorted, 0.05), quantile(sorted, 0.25),
                       quantile(sorted, 0.5), quantile(sorted, 0.75), quantile(sorted, 0.95)});
-      longest_m = std::max(longest_m, length_m);
     }
     if (rows.empty()) continue;
     figure.commands += gnuplot::dataBlock(fmt::format("m{}", i), rows);
@@ -149,14 +156,13 @@ gnuplot::Figure relativeYawFigure(const ComparedRecording& recording) {
         "title '{3}', $m{1} using 1:4:4:4:4 with candlesticks lc '#000000' lw 2 notitle",
         plot.empty() ? "plot" : ",", i, colourOf(i), recording.methods[i].name);
   }
-  if (plot.empty()) return figure;
   figure.commands += fmt::format(
       "set title '{}: relative yaw error over stretches of the path (median, quartiles, 5 and 95 %)' "
       "noenhanced\n"
       "set xlabel 'length of the stretch (m)'\nset ylabel 'yaw error (deg)'\nset boxwidth {}\nset xrange "
       "[0:{}]\nset yrange [0:*]\nset grid lc '#dddddd' lt 1 lw 0.7\nset border lw 0.8\nset tics nomirror "
-      "out\nset key bmargin center horizontal samplen 2 noenhanced\n",
-      recording.name, 0.85 * slot_m, longest_m + step_m);
+      "out\nset bmargin 5\nset xtics ({})\nset key bmargin center horizontal samplen 2 noenhanced\n",
+      recording.name, 0.85 * slot_m, *lengths_m.rbegin() + step_m, fmt::join(lengths_m, ", "));
   figure.height_px = 700;
   figure.commands += plot + "\n";
   return figure;
