@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build dependencies demo test test-sanitized bench install format check-format clean
+.PHONY: build dependencies demo experiments test test-sanitized bench install format check-format clean
 PREFIX ?= /usr/local
 
 build: dependencies
@@ -13,6 +13,11 @@ dependencies:
 # place of the simulated one: RECORDING=/path/to/folder-with-mav0.
 demo: build
 	./scripts/demo.sh
+
+# Renders replicas of the paper's dives (many hours; goes on where it was ended), compares the methods on them and
+# writes docs/experiments.md. Options are listed in the script.
+experiments: build
+	./scripts/experiments.sh
 
 # All tests; those that need recordings say SKIPPED where these are missing.
 test: build check-format
