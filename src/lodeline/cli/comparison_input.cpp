@@ -123,7 +123,8 @@ void limitToImages(ComparisonInput* prepared) {
   const double skip_s = options.synchronizer.skip_s;
   double duration_s = options.synchronizer.duration_s;
   const double available_s = images.available_s() - skip_s;
-  if (!images.complete && (duration_s == 0.0 || duration_s > available_s)) {
+  const bool cut = !images.complete && (duration_s == 0.0 || duration_s > available_s);
+  if (cut) {
     duration_s = available_s;
     prepared->run.overrides.push_back(fmt::format("source.duration_s={}", duration_s));
   }
@@ -138,11 +139,10 @@ void limitToImages(ComparisonInput* prepared) {
   }
   prepared->expected_stamps = images.stamps;
   const double used_s = images.available_s();
-  prepared->extent =
-      used_s >= images.whole_s - 1e-6
-          ? fmt::format("in full, {:.0f} s", used_s)
-          : fmt::format("an excerpt, {:.0f} s from second {:.0f} on, of {:.0f} s{}", used_s, skip_s,
-                        images.whole_s, images.complete ? "" : " (the rest has no images)");
+  prepared->extent = used_s >= images.whole_s - 1e-6
+                         ? fmt::format("in full, {:.0f} s", used_s)
+                         : fmt::format("an excerpt, {:.0f} s from second {:.0f} on, of {:.0f} s{}", used_s,
+                                       skip_s, images.whole_s, cut ? " (the rest has no images)" : "");
 }
 
 }  // namespace
