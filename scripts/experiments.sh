@@ -6,6 +6,7 @@
 #   ONLY="..."       only these, e.g. "cave1_short_field cave1_long_clean" (all six)
 #   RUNS=N           runs a method (3)
 #   METHODS=...      (off,paper,absolute,azimuth)
+#   COLMAP=no        leave COLMAP's model out, which takes ten minutes
 #   RENDER=no        render nothing: unfinished recordings count as far as they go, absent ones are not measured
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -27,6 +28,19 @@ measure() {  # NAME_REALISM
   fi
   printf '\n== lodeline compare %s\n' "${arguments[*]}"
   "$lodeline" compare "${arguments[@]}" || failed+=("$dive")
+}
+
+# A model of part of the short dive, against the truth and as the reference of the runs, as the paper had it.
+measureColmap() {
+  local dive=cave1_short_field
+  [ "${COLMAP:-yes}" = yes ] && [ -f "$experiments/results/$dive/compare.md" ] || return 0
+  if ! command -v colmap >/dev/null; then
+    printf '\nno COLMAP reference: Debian package colmap is not installed\n'
+    return
+  fi
+  printf '\n== colmap_baseline.sh %s\n' "$dive"
+  scripts/colmap_baseline.sh "$experiments/$dive" "$experiments/colmap" --from 20 --to 60 --every 3 \
+    --runs "$experiments/results/$dive/$dive" --report "$experiments/results/colmap.md" || failed+=(colmap)
 }
 
 section() {  # NAME_REALISM
@@ -82,6 +96,7 @@ writeDocument() {
 
 mkdir -p "$experiments/results"
 for dive in ${ONLY:-"${dives[@]}"}; do measure "$dive"; done
+measureColmap
 writeDocument >"$document.part"
 mv "$document.part" "$document"
 printf '\nwrote %s\n' "$document"

@@ -72,10 +72,12 @@ std::vector<double> smoothed(const std::vector<StampedPose>& poses,
       at_pose.push_back(at_pose.empty() ? std::nullopt : at_pose.back());
     }
   }
+  // A window shorter than the interval of the poses may hold no reading at any of them.
   const auto first =
       std::find_if(at_pose.begin(), at_pose.end(), [](const auto& a) { return a.has_value(); });
+  const double at_start_rad = first == at_pose.end() ? corrections.front().angle_rad : **first;
   std::vector<double> angles_rad;
-  for (const auto& angle_rad : at_pose) angles_rad.push_back(angle_rad.value_or(**first));
+  for (const auto& angle_rad : at_pose) angles_rad.push_back(angle_rad.value_or(at_start_rad));
   return angles_rad;
 }
 
