@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "lodeline/base/error.h"
@@ -84,6 +85,11 @@ void writeResults(const std::vector<ComparedRecording>& recordings, const Compar
   fmt::print("{}", findingsText(diagnostics));
 }
 
+bool hasTrajectory(const ComparedRecording& recording) {
+  return std::any_of(recording.methods.begin(), recording.methods.end(),
+                     [](const ComparedMethod& method) { return meansOf(method).runs > 0; });
+}
+
 void checkRequest(const ComparisonRequest& request) {
   if (request.methods.empty())
     throw UsageError("--methods: name at least one of off, paper, absolute, azimuth");
@@ -115,6 +121,11 @@ void compare(ComparisonRequest request) {
     recordings.push_back(std::move(recording));
   }
   writeResults(recordings, request);
+  for (const ComparedRecording& recording : recordings) {
+    if (!hasTrajectory(recording)) {
+      throw EstimationError(recording.name + ": no run gave a trajectory; the table says why");
+    }
+  }
 }
 
 void addRunOptions(CLI::App* command, ComparisonRequest* request) {

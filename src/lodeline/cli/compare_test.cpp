@@ -72,6 +72,7 @@ TEST_F(Compare, SaysSoWhereARunFailsAndWhereImagesAreMissing) {
   }
   fs::remove_all(output_);
   const Execution blank = compareRoom("--methods off --runs 1");
+  EXPECT_EQ(blank.exit_code, 3) << blank.output;
   EXPECT_THAT(blank.output, HasSubstr("no trajectory"));
   EXPECT_THAT(blank.output, HasSubstr("off, features 1: failed: no pose after"));
 }
@@ -80,7 +81,8 @@ TEST_F(Compare, ScenarioRunsDifferByNoiseAlone) {
   const Execution result = compare(
       "demo",
       "--realism field --seconds 14 --metres 1.2 --width 96 --camera-rate-hz 2 --runs 2 --methods off");
-  ASSERT_EQ(result.exit_code, 0) << result.output;
+  // Images as small as these may or may not give a trajectory; the comparison is made either way.
+  ASSERT_THAT(result.exit_code, ::testing::AnyOf(0, 3)) << result.output;
   EXPECT_THAT(result.output, HasSubstr("simulated, field, seed 1: in full"));
   const fs::path first = output_ / "recordings" / "demo_field" / "mav0";
   const fs::path second = output_ / "recordings" / "demo_field_noise2" / "mav0";
