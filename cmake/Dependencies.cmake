@@ -21,6 +21,7 @@ add_library(geographiclib::geographiclib UNKNOWN IMPORTED)
 set_target_properties(geographiclib::geographiclib PROPERTIES
                       IMPORTED_LOCATION ${GEOGRAPHICLIB_LIBRARY}
                       INTERFACE_INCLUDE_DIRECTORIES ${GEOGRAPHICLIB_INCLUDE_DIR})
+find_package(nanoflann REQUIRED)
 find_package(TBB REQUIRED COMPONENTS tbb)
 # Embree 4 on Ubuntu 24.04, 3 on Debian 12.
 find_package(embree 4 QUIET)

@@ -12,6 +12,7 @@
 #include "lodeline/cli/calibrate_command.h"
 #include "lodeline/cli/compare_command.h"
 #include "lodeline/cli/evaluate_command.h"
+#include "lodeline/cli/export_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
 
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   lodeline::addRunCommand(program);
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);
+  lodeline::addExportCommand(program);
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);
   lodeline::addAttitudeCommand(program);

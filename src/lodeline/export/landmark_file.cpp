@@ -1,0 +1,72 @@
+#include "lodeline/export/landmark_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "lodeline/base/error.h"
+
+namespace lodeline {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "landmarks.ply is read as it lies in memory");
+
+/// One vertex as it lies in the file.
+struct Vertex {
+  std::array<float, 3> position;
+  int32_t sightings;
+};
+static_assert(sizeof(Vertex) == 16);
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+  throw InputError(
+      fmt::format("{}: {}; landmarks.ply of `lodeline run` is wanted (run again, or remove the file to do "
+                  "without landmarks)",
+                  file.string(), what));
+}
+
+/// Reads the header and gives the number of vertices.
+size_t readHeader(std::ifstream& stream, const std::filesystem::path& file) {
+  constexpr std::array<const char*, 4> kProperties = {"property float x", "property float y",
+                                                      "property float z", "property int sightings"};
+  std::string line, properties, wanted;
+  for (const char* property : kProperties) wanted += std::string(property) + "\n";
+  std::optional<size_t> count;
+  bool is_binary = false;
+  if (!std::getline(stream, line) || line != "ply") refuse(file, "no PLY file");
+  while (std::getline(stream, line) && line != "end_header") {
+    if (line == "format binary_little_endian 1.0") is_binary = true;
+    if (line.starts_with("element vertex ")) count = std::strtoull(line.c_str() + 15, nullptr, 10);
+    if (line.starts_with("property ")) properties += line + "\n";
+  }
+  if (!stream) refuse(file, "its header has no end");
+  if (!is_binary || !count || properties != wanted) refuse(file, "not the layout of a run's landmarks");
+  return *count;
+}
+
+}  // namespace
+
+std::vector<Landmark> readLandmarkFile(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string() + ": cannot be opened");
+  const size_t count = readHeader(stream, file);
+  std::vector<Landmark> landmarks;
+  for (size_t i = 0; i < count; ++i) {
+    std::array<char, sizeof(Vertex)> bytes;
+    if (!stream.read(bytes.data(), bytes.size())) {
+      refuse(file, fmt::format("cut off: {} of {} points", i, count));
+    }
+    const Vertex vertex = std::bit_cast<Vertex>(bytes);
+    const Vec3 position(vertex.position[0], vertex.position[1], vertex.position[2]);
+    if (position.allFinite()) landmarks.push_back({position, vertex.sightings});
+  }
+  return landmarks;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "lodeline/export/dive_map.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+std::string placeNote(const DiveMap& map) {
+  if (!map.place) return "place: none given; coordinates are metres east, north, up from the first station";
+  const GeodeticPosition& origin = map.place->origin();
+  return fmt::format("place: first station {:.7f} deg N, {:.7f} deg E, height {:.2f} m, {:.2f} m under water",
+                     origin.latitude_deg, origin.longitude_deg, origin.height_m, map.start_depth_m);
+}
+
+std::string gridNote(const Georeference& place) {
+  return fmt::format(
+      "grid: {} (WGS 84, EPSG:{}); convergence {:.4f} deg, scale {:.6f} at the first station, both "
+      "applied",
+      place.zone().name(), place.zone().epsg(), place.convergence_rad() / kDegree, place.scale());
+}
+
+std::string sigmaNote(const Survey& survey) {
+  const Vec3 end = survey.leg_sigma_ENU * std::sqrt(static_cast<double>(survey.legs()));
+  return fmt::format(
+      "uncertainty of the end (one sigma): {:.3f} m east, {:.3f} m north, {:.3f} m up, {:.2f} % of the "
+      "length; each leg's is this by the root of {}",
+      end.x(), end.y(), end.z(), 100.0 * end.norm() / survey.length_m(), survey.legs());
+}
+
+std::string closureNote(const Survey& survey) {
+  const Misclosure closure = misclosure(survey);
+  const Vec3& d = closure.end_from_start_ENU;
+  const std::string distance =
+      fmt::format("{:.2f} m ({:.2f} m horizontal, {:+.2f} m vertical)", d.norm(), d.head<2>().norm(), d.z());
+  if (survey.is_closed) {
+    return fmt::format("misclosure: {}, {:.2f} % of the length; the last station is the first one again",
+                       distance, closure.percent());
+  }
+  if (!closure.horizontal_between_ways_m) {
+    return fmt::format("end from start: {}; the dive did not come back, so there is no misclosure", distance);
+  }
+  return fmt::format(
+      "end from start: {}, {:.2f} % of the length: the misclosure if the dive ended where it began "
+      "(--closed); way back from way out: median {:.2f} m horizontal, {:.2f} m vertical",
+      distance, closure.percent(), *closure.horizontal_between_ways_m, *closure.vertical_between_ways_m);
+}
+
+}  // namespace
+
+std::vector<std::string> describe(const DiveMap& map, const RunFolder& run) {
+  std::vector<std::string> notes;
+  notes.push_back(fmt::format(
+      "source: {}, {} of run '{}'{}, {} poses", run.program.empty() ? "lodeline" : run.program,
+      run.trajectory_file, run.folder.filename().string(),
+      run.recording.empty() ? "" : fmt::format(" on recording '{}'", run.recording), map.trajectory.size()));
+  notes.push_back(fmt::format("date: {}", map.date.empty() ? "unknown" : map.date));
+  notes.push_back("north: " + map.north.text);
+  if (run.heading_sigma_rad) {
+    notes.push_back(
+        fmt::format("heading: {:.2f} deg (one sigma, at the end)", *run.heading_sigma_rad / kDegree));
+  }
+  notes.push_back(placeNote(map));
+  if (map.place) notes.push_back(gridNote(*map.place));
+  notes.push_back(
+      fmt::format("line: {} stations, {:.2f} m", map.survey.stations.size(), map.survey.length_m()));
+  notes.push_back(sigmaNote(map.survey));
+  notes.push_back(closureNote(map.survey));
+  return notes;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/data/measurement_source.h"
+#include "lodeline/export/map_files.h"
+
+namespace lodeline {
+
+/// Which images of a recording belong to which poses (within 5 ms), named from the recording's camera folder
+/// on (cam0/data/STAMP.png), and its cameras as the run left them: with the corrections that it estimated to
+/// their extrinsics. Reads the lists of images to their end; decodes none.
+MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagnostics* diagnostics);
+
+}  // namespace lodeline

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+#include "lodeline/export/map_times.h"
+#include "lodeline/export/write_formats.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Azimuth of the body's x axis, clockwise from the map's north, 0 to 360 degrees.
+double azimuth_deg(const Quat& map_from_body) {
+  const Vec3 x = map_from_body * Vec3::UnitX();
+  const double azimuth = std::atan2(x.x(), x.y()) * 180.0 / std::numbers::pi;
+  return azimuth < 0.0 ? azimuth + 360.0 : azimuth;
+}
+
+std::string header(const DiveMap& map) {
+  std::string text;
+  for (const std::string& note : map.notes) text += "# " + note + "\n";
+  return text;
+}
+
+constexpr const char* kPlaceHeader =
+    "east [m],north [m],up [m],depth [m],latitude [deg],longitude [deg],height [m],grid_easting [m],"
+    "grid_northing [m]";
+
+/// Empty fields for what a map without a place does not know.
+std::string placeFields(const DiveMap& map, const Vec3& point_ENU) {
+  std::string text = fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", point_ENU.x(), point_ENU.y(), point_ENU.z(),
+                                 map.depth_m(point_ENU));
+  if (!map.place) return text + ",,,,,";
+  const GeodeticPosition position = map.place->geodetic(point_ENU);
+  const Vec3 grid = map.place->grid(point_ENU);
+  return text + fmt::format(",{:.9f},{:.9f},{:.4f},{:.4f},{:.4f}", position.latitude_deg,
+                            position.longitude_deg, position.height_m, grid.x(), grid.y());
+}
+
+std::string optionalField(const std::optional<double>& value) {
+  return value ? fmt::format(",{:.3f}", *value) : ",";
+}
+
+}  // namespace
+
+std::string posesCsv(const DiveMap& map) {
+  std::string text = header(map) + "timestamp [ns]," + kPlaceHeader +
+                     ",q_w,q_x,q_y,q_z,azimuth_of_body_x [deg],sigma_east [m],sigma_north [m],sigma_up [m]\n";
+  auto uncertainty = map.uncertainties.begin();
+  for (const StampedPose& pose : map.trajectory.poses) {
+    while (uncertainty != map.uncertainties.end() && uncertainty->time < pose.time) ++uncertainty;
+    Vec3 sigma = Vec3::Constant(kUnknown);
+    if (uncertainty != map.uncertainties.end() && uncertainty->time == pose.time) {
+      sigma = uncertainty->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    }
+    const Quat q = so3::canonical(pose.world_from_body.rotation);
+    fmt::format_to(std::back_inserter(text), "{},{},{:.9f},{:.9f},{:.9f},{:.9f},{:.3f}",
+                   pose.time.nanoseconds(), placeFields(map, pose.world_from_body.translation), q.w(), q.x(),
+                   q.y(), q.z(), azimuth_deg(q));
+    fmt::format_to(std::back_inserter(text), ",{:.4f},{:.4f},{:.4f}\n", sigma.x(), sigma.y(), sigma.z());
+  }
+  return text;
+}
+
+std::string stationsCsv(const DiveMap& map) {
+  std::string text = header(map) + "station,timestamp [ns],distance [m]," + kPlaceHeader +
+                     ",left [m],right [m],passage_up [m],passage_down [m]\n";
+  double distance_m = 0.0;
+  for (size_t i = 0; i < map.survey.stations.size(); ++i) {
+    const SurveyStation& station = map.survey.stations[i];
+    if (i > 0) distance_m += (station.position_ENU - map.survey.stations[i - 1].position_ENU).norm();
+    const PassageSize& size = station.passage;
+    text += fmt::format("{},{},{:.3f},{}", i, station.time.nanoseconds(), distance_m,
+                        placeFields(map, station.position_ENU));
+    text += optionalField(size.left) + optionalField(size.right) + optionalField(size.up) +
+            optionalField(size.down) + "\n";
+  }
+  return text;
+}
+
+std::string tumText(const DiveMap& map) {
+  std::string text;
+  for (const std::string& note : map.notes) text += "# " + note + "\n";
+  text += "# timestamp [s] x y z qx qy qz qw, body in east, north, up\n";
+  for (const StampedPose& pose : map.trajectory.poses) {
+    const Vec3& p = pose.world_from_body.translation;
+    const Quat q = so3::canonical(pose.world_from_body.rotation);
+    fmt::format_to(std::back_inserter(text), "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
+                   secondsText(pose.time), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  return text;
+}
+
+}  // namespace lodeline
