@@ -8,8 +8,9 @@ packages=(
   libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  libgeographiclib-dev libembree-dev libtbb-dev
+  libgeographiclib-dev libnanoflann-dev libembree-dev libtbb-dev
   gnuplot-nox
+  survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
 )
 
 missing=()

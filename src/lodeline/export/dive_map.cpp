@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
+#include "lodeline/base/error.h"
 #include "lodeline/export/map_times.h"
 
 namespace lodeline {
@@ -50,6 +52,12 @@ void turn(const RunFolder& run, DiveMap* map) {
 std::optional<Georeference> placeOf(const std::optional<GeodeticPosition>& entrance,
                                     const DiveMapOptions& options) {
   if (!entrance) return std::nullopt;
+  if (!(std::abs(entrance->latitude_deg) <= 90.0 && std::abs(entrance->longitude_deg) <= 360.0)) {
+    throw UsageError(
+        fmt::format("--entrance: latitude {:g}, longitude {:g} is no place; LAT,LON,HEIGHT is wanted, in "
+                    "degrees and m",
+                    entrance->latitude_deg, entrance->longitude_deg));
+  }
   GeodeticPosition first = *entrance;
   first.height_m -= options.start_depth_m;
   return Georeference(first, utmZone(options.crs, first));
@@ -98,8 +106,8 @@ DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
   map.team = options.team;
   map.date = dateOf(run, options);
   const std::optional<GeodeticPosition> entrance = options.entrance ? options.entrance : run.site;
-  map.north = findNorth(run.heading_reference, entrance, map.date, options.turn_deg);
   map.place = placeOf(entrance, options);
+  map.north = findNorth(run.heading_reference, entrance, map.date, options.turn_deg);
   map.place_sigma = {options.entrance_sigma_m, options.entrance_sigma_m, options.entrance_height_sigma_m};
   map.start_depth_m = options.start_depth_m;
   map.geoid_height_m = options.geoid_height_m;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "lodeline/export/dive_map.h"
@@ -9,11 +10,20 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
+/// "29.8300000 N" or "82.6000000 W".
+std::string angleText(double angle_deg, const char* positive, const char* negative) {
+  return fmt::format("{:.7f} {}", std::abs(angle_deg), angle_deg < 0.0 ? negative : positive);
+}
+
 std::string placeNote(const DiveMap& map) {
-  if (!map.place) return "place: none given; coordinates are metres east, north, up from the first station";
+  if (!map.place) {
+    return fmt::format("place: none given; metres from the first station, which is {:.2f} m under water",
+                       map.start_depth_m);
+  }
   const GeodeticPosition& origin = map.place->origin();
-  return fmt::format("place: first station {:.7f} deg N, {:.7f} deg E, height {:.2f} m, {:.2f} m under water",
-                     origin.latitude_deg, origin.longitude_deg, origin.height_m, map.start_depth_m);
+  return fmt::format("place: first station {}, {} (WGS 84), height {:.2f} m, {:.2f} m under water",
+                     angleText(origin.latitude_deg, "N", "S"), angleText(origin.longitude_deg, "E", "W"),
+                     origin.height_m, map.start_depth_m);
 }
 
 std::string gridNote(const Georeference& place) {
