@@ -45,6 +45,17 @@ double pathBetween_m(Trajectory truth, Time begin, Time end) {
   return pathLength(truth);
 }
 
+/// Recordings of one name in different folders would write to one place.
+std::string distinctName(const std::string& name, const std::vector<ComparedRecording>& others) {
+  const auto isTaken = [&](const std::string& wanted) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const ComparedRecording& other) { return other.name == wanted; });
+  };
+  std::string distinct = name;
+  for (int number = 2; isTaken(distinct); ++number) distinct = fmt::format("{}_{}", name, number);
+  return distinct;
+}
+
 /// False where the user stopped a run.
 bool makeRuns(const ComparisonInput& input, const ComparisonRequest& request, ComparedRecording* recording) {
   const Trajectory truth = readTruth(input.seeds.front().data);
@@ -114,7 +125,10 @@ void compare(ComparisonRequest request) {
   for (const std::string& name : request.inputs) {
     ComparisonInput input;
     ComparedRecording recording;
-    if (!prepareComparison(name, request, &input) || !makeRuns(input, request, &recording)) {
+    bool finished = prepareComparison(name, request, &input);
+    input.name = distinctName(input.name, recordings);
+    finished = finished && makeRuns(input, request, &recording);
+    if (!finished) {
       fmt::print("interrupted; the same command goes on from there\n");
       return;
     }

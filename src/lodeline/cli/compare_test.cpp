@@ -112,6 +112,15 @@ TEST_F(Compare, WrongWordsAndMissingTruthAreNamed) {
   expectError(compareRoom("--runs 1"), 1, "ground truth");
 }
 
+TEST_F(Compare, RecordingsOfOneNameAreKeptApart) {
+  const std::string data = quoted(recording_.data);
+  const Execution result = compare(data + " " + data, "--methods off --runs 1 --set source.duration_s=0.4");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_TRUE(fs::exists(runs() / "off_features_1" / "trajectory.tum"));
+  EXPECT_TRUE(fs::exists(runs().string() + "_2/off_features_1/trajectory.tum"));
+  EXPECT_EQ(readJson(output_ / "compare.json")["recordings"].size(), 2u);
+}
+
 TEST_F(Compare, AzimuthWithoutCalibrationSaysWhatItTakes) {
   const Execution result = compare(quoted(recording_.data), "--methods azimuth --runs 1");
   EXPECT_THAT(result.output, HasSubstr("calibrated magnetometer"));

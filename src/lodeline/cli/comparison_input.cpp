@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
@@ -107,6 +108,9 @@ void prepareFolder(const fs::path& folder, const ComparisonRequest& request, Com
   const fs::path whole = fs::weakly_canonical(folder);
   const fs::path named = whole.filename() == "mav0" ? whole.parent_path() : whole;
   prepared->name = named.filename().string();
+  for (char& c : prepared->name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.') c = '_';
+  }
   prepared->origin = "recording";
   for (int run = 1; run <= request.runs; ++run) {
     prepared->seeds.push_back({fmt::format("features {}", run), folder, run});

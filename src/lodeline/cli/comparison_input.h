@@ -34,7 +34,7 @@ struct ComparisonSeed {
 
 /// A recording made ready.
 struct ComparisonInput {
-  std::string name;    ///< fit for a file
+  std::string name;    ///< of letters, digits and -._
   std::string origin;  ///< in words
   std::vector<ComparisonSeed> seeds;
   RunRequest run;  ///< with calibration, site, date and cameras filled in; data and output are a run's own
