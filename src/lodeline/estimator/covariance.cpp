@@ -21,18 +21,38 @@ double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
 }
 
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks) {
-  const Eigen::MatrixXd hessian = system.hessian();
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factorised(scale.asDiagonal() * hessian * scale.asDiagonal());
-  std::vector<int> rows;
+  std::vector<bool> wanted(static_cast<size_t>(system.size()), false);
+  std::vector<int> last;
   for (const double* value : blocks) {
     const NormalEquations::Block& block = *system.find(value);
-    for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
+    for (int row = block.offset; row < block.offset + block.tangentSize(); ++row) {
+      last.push_back(row);
+      wanted[static_cast<size_t>(row)] = true;
+    }
   }
-  Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(system.size(), static_cast<int>(rows.size()));
-  for (size_t i = 0; i < rows.size(); ++i) selection(rows[i], static_cast<int>(i)) = scale[rows[i]];
-  const Eigen::MatrixXd columns = scale.asDiagonal() * factorised.solve(selection);
-  const Eigen::MatrixXd covariance = columns(rows, Eigen::all);
+  std::vector<int> order;
+  for (int row = 0; row < system.size(); ++row) {
+    if (!wanted[static_cast<size_t>(row)]) order.push_back(row);
+  }
+  order.insert(order.end(), last.begin(), last.end());
+  const Eigen::MatrixXd hessian = system.hessian();
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse()(order);
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian(order, order) * scale.asDiagonal();
+  const auto size = static_cast<Eigen::Index>(last.size());
+  const Eigen::LLT<Eigen::MatrixXd> factorised(scaled);
+  Eigen::MatrixXd covariance;
+  if (factorised.info() == Eigen::Success) {
+    // With the wanted rows last, what the others say of them is all in the factor's last block.
+    const Eigen::MatrixXd inverse_root = factorised.matrixLLT()
+                                             .bottomRightCorner(size, size)
+                                             .triangularView<Eigen::Lower>()
+                                             .solve(Eigen::MatrixXd::Identity(size, size));
+    covariance = inverse_root.transpose() * inverse_root;
+  } else {
+    const Eigen::MatrixXd selection = Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()).rightCols(size);
+    covariance = scaled.ldlt().solve(selection).bottomRows(size);
+  }
+  covariance = scale.tail(size).asDiagonal() * covariance * scale.tail(size).asDiagonal();
   return 0.5 * (covariance + covariance.transpose());
 }
 

@@ -9,6 +9,7 @@ namespace lodeline {
 
 FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
     : gravity_W_(options.gravity_W),
+      robust_scale_(options.solver.robust_scale_sigmas),
       reprojection_loss_(std::make_unique<ceres::CauchyLoss>(options.solver.robust_scale_sigmas)) {
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);

@@ -44,6 +44,10 @@ class FactorMaker {
 
   /// As the calibration files say.
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
+  const Rigid3& camera0FromCamera(int camera) const { return camera0_from_camera_[camera]; }
+  int cameraCount() const { return static_cast<int>(body_from_camera_.size()); }
+  /// Of the Cauchy loss on reprojection errors, in standard deviations.
+  double robustScale() const { return robust_scale_; }
   /// At the true time of a frame's images, with the calibration as estimated so far.
   Rigid3 worldFromCamera(const Window& window, const Frame& frame, int camera) const;
 
@@ -54,6 +58,7 @@ class FactorMaker {
   std::vector<Rigid3> body_from_camera_;
   std::vector<Rigid3> camera0_from_camera_;
   Vec3 gravity_W_;
+  double robust_scale_;
   std::unique_ptr<ceres::LossFunction> reprojection_loss_;
 };
 

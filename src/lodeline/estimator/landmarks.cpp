@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/estimator/visual_terms.h"
+
 namespace lodeline {
 namespace {
 
@@ -76,12 +78,6 @@ bool isUsable(const InverseDistance& rho, const LandmarkOptions& options) {
   return known && in_front && rho.rms_sigmas < options.max_error_sigmas;
 }
 
-Vec2 residualOf(Factor& factor) {
-  Vec2 residual;
-  factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
-  return residual;
-}
-
 }  // namespace
 
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
@@ -116,15 +112,15 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
 
 int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
   int removed = 0;
+  const std::vector<double> errors = VisualTerms(window, factors).errors();
+  auto error = errors.begin();
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark) continue;
-    LandmarkFactors terms = factors.landmark(window, track);
     std::vector<Sighting> kept;
     bool host_kept = false;
     bool other_kept = false;
-    for (size_t i = 0; i < track.sightings.size(); ++i) {
-      const Sighting& sighting = track.sightings[i];
-      if (residualOf(terms.factors[i]).norm() > options.max_error_sigmas) continue;
+    for (const Sighting& sighting : track.sightings) {
+      if (*error++ > options.max_error_sigmas) continue;
       const bool is_host = sighting.frame == track.landmark->host && sighting.camera == 0;
       (is_host ? host_kept : other_kept) = true;
       kept.push_back(sighting);
@@ -146,13 +142,15 @@ int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOpt
 ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame) {
   ReprojectionStatistics statistics;
   double squared = 0.0;
-  for (auto& [id, track] : window.tracks()) {
-    if (!track.landmark || !track.seenIn(frame)) continue;
-    ++statistics.landmarks;
-    LandmarkFactors terms = factors.landmark(window, track);
-    for (size_t i = 0; i < track.sightings.size(); ++i) {
-      if (track.sightings[i].frame != frame) continue;
-      squared += residualOf(terms.factors[i]).squaredNorm();
+  const std::vector<double> errors = VisualTerms(window, factors).errors();
+  auto error = errors.begin();
+  for (const auto& [id, track] : window.tracks()) {
+    if (!track.landmark) continue;
+    statistics.landmarks += track.seenIn(frame);
+    for (const Sighting& sighting : track.sightings) {
+      const double sigmas = *error++;
+      if (sighting.frame != frame) continue;
+      squared += sigmas * sigmas;
       ++statistics.sightings;
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lodeline/estimator/magnetometer_states.h"
+#include "lodeline/estimator/prior_terms.h"
 
 namespace lodeline {
 namespace {
@@ -123,7 +124,7 @@ void Marginalizer::shorten(Window& window, int max_recent_frames, int max_keyfra
 
 void Marginalizer::forget(Window& window, GlobalState& state) {
   NormalEquations system;
-  if (!prior_.empty()) system.add(factors_.prior(prior_));
+  PriorTerms(prior_).addTo(&system);
   if (system.find(state.value.data())) eliminate(window, system, {state.value.data()});
   state.first.reset();
 }
@@ -133,7 +134,7 @@ void Marginalizer::retireOldestRecent(Window& window) {
   Frame& next = *window.after(oldest);
   const double elapsed_s = (next.time - oldest.time).seconds();
   NormalEquations system;
-  if (!prior_.empty()) system.add(factors_.prior(prior_));
+  PriorTerms(prior_).addTo(&system);
   system.add(factors_.inertial(oldest, next));
   addMagnetometer(window, oldest, next, &system);
   next.from_previous.reset();
@@ -164,7 +165,7 @@ void Marginalizer::removeOldestKeyframe(Window& window) {
   Frame& oldest = *window.frames().front();
   const Frame* newest_keyframe = window.newestKeyframe();
   NormalEquations system;
-  if (!prior_.empty()) system.add(factors_.prior(prior_));
+  PriorTerms(prior_).addTo(&system);
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark || !track.seenIn(oldest.id)) continue;
     if (track.seenIn(newest_keyframe->id)) {

@@ -14,6 +14,8 @@ constexpr double kRankTolerance = 1e-10;
 // So does a coordinate with less information than this: an inverse distance that is known to 1000 per metre
 // is not known, and scaling would blow its rounding errors up to a direction that takes information away.
 constexpr double kLeastInformation = 1e-6;
+// Determinant of the scaled system above which all three coordinates are known without a look at eigenvalues.
+constexpr double kClearDeterminant = 1e-6;
 
 /// Scales residual and Jacobians by the square root of the loss's slope (iteratively reweighted least
 /// squares).
@@ -24,18 +26,25 @@ double robustScale(const ceres::LossFunction* loss, double squared_norm) {
   return std::sqrt(rho[1]);
 }
 
-/// Inverse of a positive semi-definite 3x3 matrix on its range, insensitive to the units of its coordinates.
-Mat3 pseudoInverse(const Mat3& matrix) {
-  const Vec3 scale = matrix.diagonal().cwiseMax(kLeastInformation).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(scale.asDiagonal() * matrix * scale.asDiagonal());
+}  // namespace
+
+Mat3 landmarkInverse(const Mat3& hessian) {
+  const Vec3 scale = hessian.diagonal().cwiseMax(kLeastInformation).cwiseSqrt().cwiseInverse();
+  const Mat3 scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  // The eigenvalues of `scaled` are at most 3, so this bounds the smallest: far from any doubt about the
+  // rank.
+  Mat3 inverse;
+  double determinant = 0.0;
+  bool invertible = false;
+  scaled.computeInverseAndDetWithCheck(inverse, determinant, invertible, kClearDeterminant);
+  if (invertible && determinant > 0.0) return scale.asDiagonal() * inverse * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(scaled);
   const double threshold = kRankTolerance * solver.eigenvalues()[2];
   const Vec3 inverted =
       (solver.eigenvalues().array() > threshold).select(solver.eigenvalues().cwiseInverse(), Vec3::Zero());
   return scale.asDiagonal() * solver.eigenvectors() * inverted.asDiagonal() *
          solver.eigenvectors().transpose() * scale.asDiagonal();
 }
-
-}  // namespace
 
 void NormalEquations::reserve(int size) {
   if (size <= h_.rows()) return;
@@ -94,6 +103,25 @@ void NormalEquations::add(const Factor& factor) {
   }
 }
 
+void NormalEquations::add(const std::vector<Block>& blocks, const Eigen::MatrixXd& h,
+                          const Eigen::VectorXd& g) {
+  std::vector<int> offsets;
+  for (const Block& block : blocks) offsets.push_back(offsetOf(block.value, block.ambient_size));
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    const int size_i = blocks[i].tangentSize();
+    g_.segment(offsets[i], size_i) += g.segment(blocks[i].offset, size_i);
+    for (size_t j = 0; j <= i; ++j) {
+      const int size_j = blocks[j].tangentSize();
+      const auto product = h.block(blocks[i].offset, blocks[j].offset, size_i, size_j);
+      if (offsets[j] <= offsets[i]) {
+        h_.block(offsets[i], offsets[j], size_i, size_j) += product;
+      } else {
+        h_.block(offsets[j], offsets[i], size_j, size_i) += product.transpose();
+      }
+    }
+  }
+}
+
 /// One factor of a landmark, linearised: the residual, its derivative by the landmark and by every other
 /// block, all scaled by the loss.
 struct NormalEquations::LandmarkTerm {
@@ -135,7 +163,7 @@ NormalEquations::LandmarkTerm NormalEquations::linearised(const Factor& factor, 
   return term;
 }
 
-void NormalEquations::addProduct(int row, int row_size, int column, int column_size, const Mat66& product) {
+void NormalEquations::addProduct(int row, int row_size, int column, int column_size, const Mat6& product) {
   if (row_size == kPoseTangentSize && column_size == kPoseTangentSize) {
     h_.block<kPoseTangentSize, kPoseTangentSize>(row, column) += product;
   } else {
@@ -170,7 +198,7 @@ void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
     }
   }
 
-  const Mat3 inverse = pseudoInverse(h_landmark);
+  const Mat3 inverse = landmarkInverse(h_landmark);
   for (const Coupling& row : couplings) {
     const Mat63 weighted = row.by_landmark * inverse;
     g_.segment(row.offset, row.size) -= (weighted * g_landmark).head(row.size);

@@ -7,6 +7,10 @@
 
 namespace lodeline {
 
+/// Inverse of a landmark's positive semi-definite Hessian on its range, insensitive to the units of its
+/// coordinates; what hardly anything is known of counts as unobserved and comes out as zero.
+Mat3 landmarkInverse(const Mat3& hessian);
+
 /// The Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
 /// Jacobians are those the factors give (first estimates where they hold them), residuals are current.
 class NormalEquations {
@@ -26,6 +30,10 @@ class NormalEquations {
   /// may have blocks of at most 6 tangent coordinates.
   void addEliminated(const LandmarkFactors& landmark);
 
+  /// Adds 1/2 d^T h d + g^T d, where d stacks the tangent coordinates of `blocks`, each at its offset; of h
+  /// the lower triangle is read.
+  void add(const std::vector<Block>& blocks, const Eigen::MatrixXd& h, const Eigen::VectorXd& g);
+
   /// Moves the eliminated landmarks along with a step d of the blocks.
   void stepLandmarks(const Eigen::VectorXd& step) const;
 
@@ -38,7 +46,6 @@ class NormalEquations {
   const Eigen::VectorXd gradient() const { return g_.head(size_); }
 
  private:
-  using Mat66 = Eigen::Matrix<double, 6, 6>;
   struct LandmarkTerm;
   /// Between a block and the landmark; rows beyond the block's size are zero.
   struct Coupling {
@@ -54,7 +61,7 @@ class NormalEquations {
   };
   int offsetOf(double* value, int ambient_size);
   LandmarkTerm linearised(const Factor& factor, const double* landmark);
-  void addProduct(int row, int row_size, int column, int column_size, const Mat66& product);
+  void addProduct(int row, int row_size, int column, int column_size, const Mat6& product);
   void reserve(int size);
 
   std::vector<Block> blocks_;

@@ -11,23 +11,29 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 
 }  // namespace
 
-WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors) {
-  WindowTerms terms;
-  if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
+std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
+  std::vector<Factor> terms;
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
     frame->updateImageMotion();
     if (before && frame->from_previous) {
       repropagateIfNeeded(*before, *frame->from_previous);
-      terms.dense.push_back(factors.inertial(*before, *frame));
+      terms.push_back(factors.inertial(*before, *frame));
     }
     before = frame.get();
   }
   before = nullptr;
   for (const auto& frame : window.frames()) {
-    if (auto factor = factors.magnetometer(window, before, *frame)) terms.dense.push_back(std::move(*factor));
+    if (auto factor = factors.magnetometer(window, before, *frame)) terms.push_back(std::move(*factor));
     before = frame.get();
   }
+  return terms;
+}
+
+WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors) {
+  WindowTerms terms;
+  if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
+  for (Factor& factor : collectMotionTerms(window, factors)) terms.dense.push_back(std::move(factor));
   for (auto& [id, track] : window.tracks()) {
     if (track.landmark) terms.landmarks.push_back(factors.landmark(window, track));
   }

@@ -13,6 +13,10 @@ struct WindowTerms {
   std::vector<LandmarkFactors> landmarks;
 };
 
+/// Those of them that are no landmarks', without the prior. Inertial terms whose biases moved too far are
+/// integrated again first.
+std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors);
+
 /// In a fixed order: prior, inertial terms by time, magnetometer terms by time, landmarks by track. Inertial
 /// terms whose biases moved too far are integrated again first.
 WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors);

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/prior_terms.h"
+#include "lodeline/estimator/visual_terms.h"
 
 namespace lodeline {
 namespace {
@@ -52,15 +54,44 @@ double costOf(const Factor& factor, std::vector<double>& residual) {
   return 0.5 * rho[0];
 }
 
-double costOf(const WindowTerms& terms) {
-  std::vector<double> residual;
-  double cost = 0.0;
-  for (const Factor& factor : terms.dense) cost += costOf(factor, residual);
-  for (const LandmarkFactors& landmark : terms.landmarks) {
-    for (const Factor& factor : landmark.factors) cost += costOf(factor, residual);
+/// All terms of a window, in a form that is quick to evaluate again and again.
+class QuickTerms {
+ public:
+  QuickTerms(Window& window, const Prior& prior, const FactorMaker& factors)
+      : prior_(prior), motion_(collectMotionTerms(window, factors)), visual_(window, factors) {}
+
+  double cost() {
+    double cost = prior_.cost() + visual_.cost();
+    for (const Factor& factor : motion_) cost += costOf(factor, residual_);
+    return cost;
   }
-  return cost;
-}
+
+  NormalEquations linearise() {
+    NormalEquations system;
+    prior_.addTo(&system);
+    for (const Factor& factor : motion_) system.add(factor);
+    visual_.addTo(&system);
+    return system;
+  }
+
+  void apply(const NormalEquations& system, const Eigen::VectorXd& step) {
+    for (const NormalEquations::Block& block : system.blocks()) {
+      if (block.ambient_size == kPoseSize) {
+        poseToBlock(perturbed(poseFromBlock(block.value), step.segment<6>(block.offset)), block.value);
+      } else {
+        Eigen::Map<Eigen::VectorXd>(block.value, block.ambient_size) +=
+            step.segment(block.offset, block.ambient_size);
+      }
+    }
+    visual_.stepLandmarks(system, step);
+  }
+
+ private:
+  PriorTerms prior_;
+  std::vector<Factor> motion_;
+  VisualTerms visual_;
+  std::vector<double> residual_;
+};
 
 /// H d = -g with `damping` times the diagonal added; nothing where that is not positive definite.
 std::optional<Eigen::VectorXd> solveDamped(const Eigen::MatrixXd& h, const Eigen::VectorXd& g,
@@ -75,40 +106,28 @@ std::optional<Eigen::VectorXd> solveDamped(const Eigen::MatrixXd& h, const Eigen
   return step;
 }
 
-void apply(const NormalEquations& system, const Eigen::VectorXd& step) {
-  for (const NormalEquations::Block& block : system.blocks()) {
-    if (block.ambient_size == kPoseSize) {
-      poseToBlock(perturbed(poseFromBlock(block.value), step.segment<6>(block.offset)), block.value);
-    } else {
-      Eigen::Map<Eigen::VectorXd>(block.value, block.ambient_size) +=
-          step.segment(block.offset, block.ambient_size);
-    }
-  }
-  system.stepLandmarks(step);
-}
-
 }  // namespace
 
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker& factors,
                           const SolveLimits& limits) {
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e-1;
-  const WindowTerms terms = collectTerms(window, prior, factors);
+  QuickTerms terms(window, prior, factors);
   WindowUpdate update;
-  double cost = costOf(terms);
+  double cost = terms.cost();
   update.summary.initial_cost = cost;
   double damping = kLeastDamping;
   NormalEquations system;
   while (update.summary.iterations < limits.max_iterations) {
     ++update.summary.iterations;
-    system = linearise(terms);
+    system = terms.linearise();
     const Eigen::MatrixXd h = system.hessian();
     const Snapshot before(window);
     double gain = 0.0;
     while (!(gain > 0.0) && damping <= kMostDamping) {
       if (const std::optional<Eigen::VectorXd> step = solveDamped(h, system.gradient(), damping)) {
-        apply(system, *step);
-        gain = cost - costOf(terms);
+        terms.apply(system, *step);
+        gain = cost - terms.cost();
         if (!(gain > 0.0)) before.restore();
       }
       damping *= gain > 0.0 ? 0.01 : 100.0;

@@ -1,0 +1,166 @@
+#include "lodeline/estimator/visual_terms.h"
+
+#include <gtest/gtest.h>
+
+#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/prior_terms.h"
+#include "lodeline/estimator/start.h"
+#include "lodeline/estimator/test_window.h"
+
+namespace lodeline {
+namespace {
+
+// A window of a moving rig in two versions of the calibration, each block off its first estimate, as after
+// marginalisation.
+class VisualTermsTest : public testing::TestWithParam<std::pair<int, bool>> {
+ protected:
+  VisualTermsTest() : test_(GetParam().first) {
+    TestSceneOptions scene_options;
+    scene_options.cameras = GetParam().first;
+    scene_options.duration_s = 2.0;
+    scene_options.points.tracks = 40;
+    scene_options.points.frame_rate_hz = 5.0;
+    TestScene scene(scene_options);
+    while (const auto frame = scene.next()) test_.add(*frame);
+    createLandmarks(test_.window, test_.factors, test_.options.landmark);
+    prior_ = startPrior(*test_.window.frames().front(), test_.options.initial_state, 0.05, false);
+    test_.disturb(0.01, 3);
+    Frame& second = *test_.window.frames()[1];
+    second.first_pose = second.pose;
+    (*second.first_pose)[0] += 0.02;
+    if (GetParam().second) disturbCalibration();
+  }
+
+  void disturbCalibration() {
+    addCameraStates(test_.window, prior_, GetParam().first, test_.options.camera_calibration);
+    double offset = 0.0;
+    for (const auto& state : test_.window.globals()) {
+      state->first = state->value;
+      for (double& value : state->value) value = 1e-3 * std::sin(offset += 1.0);
+    }
+    for (const auto& frame : test_.window.frames()) {
+      frame->gyroscope_B = Vec3(0.3, -0.2, 0.4);
+      frame->updateImageMotion();
+    }
+  }
+
+  // Landmarks at a time by the factors, with the prior before them so that rows come in the same order.
+  NormalEquations reference() {
+    NormalEquations system;
+    system.add(test_.factors.prior(prior_));
+    for (auto& [id, track] : test_.window.tracks()) {
+      if (track.landmark) system.addEliminated(test_.factors.landmark(test_.window, track));
+    }
+    return system;
+  }
+
+  NormalEquations quick(VisualTerms* terms) {
+    NormalEquations system;
+    PriorTerms(prior_).addTo(&system);
+    terms->addTo(&system);
+    return system;
+  }
+
+  double referenceCost() {
+    double cost = 0.0;
+    for (auto& [id, track] : test_.window.tracks()) {
+      if (!track.landmark) continue;
+      for (Factor& factor : test_.factors.landmark(test_.window, track).factors) {
+        Vec2 residual;
+        factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
+        double rho[3];
+        factor.loss->Evaluate(residual.squaredNorm(), rho);
+        cost += 0.5 * rho[0];
+      }
+    }
+    return cost;
+  }
+
+  std::vector<Vec3> landmarks() {
+    std::vector<Vec3> values;
+    for (auto& [id, track] : test_.window.tracks()) {
+      if (track.landmark) values.emplace_back(track.landmark->parameters.data());
+    }
+    return values;
+  }
+
+  TestWindow test_;
+  Prior prior_;
+};
+
+// Rows of `of` in the order of `as`.
+std::vector<int> rowsInOrder(const NormalEquations& of, const NormalEquations& as) {
+  std::vector<int> rows;
+  for (const NormalEquations::Block& block : as.blocks()) {
+    const NormalEquations::Block* found = of.find(block.value);
+    for (int i = 0; found && i < block.tangentSize(); ++i) rows.push_back(found->offset + i);
+  }
+  return rows;
+}
+
+TEST_P(VisualTermsTest, EqualTheFactors) {
+  VisualTerms terms(test_.window, test_.factors);
+  EXPECT_NEAR(terms.cost(), referenceCost(), 1e-10 * referenceCost());
+  const NormalEquations expected = reference();
+  const NormalEquations system = quick(&terms);
+  ASSERT_EQ(system.size(), expected.size());
+  const std::vector<int> rows = rowsInOrder(system, expected);
+  const Eigen::MatrixXd h = system.hessian()(rows, rows);
+  const Eigen::VectorXd scale = expected.hessian().diagonal().cwiseSqrt().cwiseInverse();
+  EXPECT_LT((scale.asDiagonal() * (h - expected.hessian()) * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-9);
+  const Eigen::VectorXd g = system.gradient()(rows);
+  EXPECT_LT(scale.cwiseProduct(g - expected.gradient()).norm(),
+            1e-9 * scale.cwiseProduct(expected.gradient()).norm());
+}
+
+TEST_P(VisualTermsTest, StepLandmarksLikeTheFactors) {
+  const std::vector<Vec3> before = landmarks();
+  ASSERT_GT(before.size(), 20u);
+  const NormalEquations expected = reference();
+  Eigen::VectorXd step(expected.size());
+  for (int i = 0; i < step.size(); ++i) step[i] = 1e-3 * std::cos(i);
+  expected.stepLandmarks(step);
+  const std::vector<Vec3> wanted = landmarks();
+
+  size_t next = 0;
+  for (auto& [id, track] : test_.window.tracks()) {
+    if (track.landmark) Eigen::Map<Vec3>(track.landmark->parameters.data()) = before[next++];
+  }
+  VisualTerms terms(test_.window, test_.factors);
+  const NormalEquations system = quick(&terms);
+  Eigen::VectorXd same_step(system.size());
+  same_step(rowsInOrder(system, expected)) = step;
+  terms.stepLandmarks(system, same_step);
+  const std::vector<Vec3> stepped = landmarks();
+  for (size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_LT((stepped[i] - wanted[i]).norm(), 1e-8 * (wanted[i] - before[i]).norm()) << "landmark " << i;
+}
+
+std::string nameOf(const testing::TestParamInfo<std::pair<int, bool>>& info) {
+  return std::to_string(info.param.first) +
+         (info.param.second ? "CamerasCalibrated" : "CamerasAsTheFilesSay");
+}
+
+INSTANTIATE_TEST_SUITE_P(Rigs, VisualTermsTest,
+                         testing::Values(std::pair(1, false), std::pair(1, true), std::pair(2, false),
+                                         std::pair(2, true)),
+                         nameOf);
+
+// A point that moved behind a camera holds its constant error there and pulls at nothing.
+TEST(VisualTerms, BearAPointBehindACamera) {
+  TestWindow test(1);
+  const Frame& host = test.add(Rigid3());
+  const Frame& target = test.add(Rigid3(Quat::Identity(), Vec3(0.0, 0.3, 0.0)));
+  test.see(1, Vec3(3, 0, 0), host);
+  test.seeAlong(1, Vec3(0.0, 0.0, -1.0), target);
+  test.place(1, Vec3(3, 0, 0), host);
+  VisualTerms terms(test.window, test.factors);
+  NormalEquations system;
+  terms.addTo(&system);
+  EXPECT_TRUE(std::isfinite(terms.cost()));
+  EXPECT_EQ(system.gradient().norm(), 0.0);
+  EXPECT_EQ(system.hessian().norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace lodeline
