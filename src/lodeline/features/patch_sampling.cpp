@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lodeline/base/wide_vectors.h"
+
 namespace lodeline {
 namespace {
 
@@ -19,6 +21,23 @@ float sum(const PatchValues& a) {
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
+/// `pixels` must not be part of the other arguments, else the loop could not be vectorised.
+LODELINE_WIDE_VECTORS
+void sampleWarped(const float* __restrict pixels, int stride, const PatchWarp& warp, PatchValues& values) {
+  const float x0 = warp.position.x(), y0 = warp.position.y();
+  const float a = warp.linear(0, 0), b = warp.linear(0, 1), c = warp.linear(1, 0), d = warp.linear(1, 1);
+  for (size_t i = 0; i < values.size(); ++i) {
+    const float x = x0 + a * kPatchU[i] + b * kPatchV[i];
+    const float y = y0 + c * kPatchU[i] + d * kPatchV[i];
+    const int column = static_cast<int>(x), row = static_cast<int>(y);
+    const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
+    const int p = row * stride + column;
+    const float top = pixels[p] + fx * (pixels[p + 1] - pixels[p]);
+    const float bottom = pixels[p + stride] + fx * (pixels[p + stride + 1] - pixels[p + stride]);
+    values[i] = top + fy * (bottom - top);
+  }
+}
+
 }  // namespace
 
 bool staysInside(const cv::Mat& image, const PatchWarp& warp, float margin) {
@@ -31,20 +50,7 @@ bool staysInside(const cv::Mat& image, const PatchWarp& warp, float margin) {
 }
 
 void sample(const cv::Mat& image, const PatchWarp& warp, PatchValues& values) {
-  const float x0 = warp.position.x(), y0 = warp.position.y();
-  const float a = warp.linear(0, 0), b = warp.linear(0, 1), c = warp.linear(1, 0), d = warp.linear(1, 1);
-  const float* pixels = image.ptr<float>();
-  const int stride = static_cast<int>(image.step1());
-  for (size_t i = 0; i < values.size(); ++i) {
-    const float x = x0 + a * kPatchU[i] + b * kPatchV[i];
-    const float y = y0 + c * kPatchU[i] + d * kPatchV[i];
-    const int column = static_cast<int>(x), row = static_cast<int>(y);
-    const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
-    const float* p = pixels + row * stride + column;
-    const float top = p[0] + fx * (p[1] - p[0]);
-    const float bottom = p[stride] + fx * (p[stride + 1] - p[stride]);
-    values[i] = top + fy * (bottom - top);
-  }
+  sampleWarped(image.ptr<float>(), static_cast<int>(image.step1()), warp, values);
 }
 
 float dot(const PatchValues& a, const PatchValues& b) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "lodeline/base/wide_vectors.h"
 #include "lodeline/simulation/fast_exp.h"
 #include "lodeline/simulation/gradient_noise.h"
 #include "lodeline/simulation/random.h"
@@ -88,14 +89,6 @@ int floorToInt(float x) {
 
 }  // namespace
 
-// The hottest function of all, compiled twice; the machine picks at start. Both do the same IEEE operations
-// in the same order, so the pictures do not depend on the choice.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
-#define LODELINE_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
-#else
-#define LODELINE_WIDE_VECTORS
-#endif
-
 SolidTexture::SolidTexture(uint64_t seed) {
   const int n = kSize;
   std::vector<RockValue> values(static_cast<size_t>(n) * n * n);
@@ -152,6 +145,7 @@ void SolidTexture::addCoarserLevel() {
   levels_.push_back(std::move(coarse));
 }
 
+// The hottest function of all.
 LODELINE_WIDE_VECTORS
 TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footprint_m) const {
   const float finest_m = tile_m / kSize;
