@@ -13,6 +13,11 @@ packages=(
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
 )
 
+# The report page. A node from elsewhere brings its own npm, and Debian's would clash with it.
+command -v npm >/dev/null || packages+=(nodejs npm)
+# For the page's tests; Ubuntu has no such package.
+grep -q '^ID=debian' /etc/os-release && packages+=(chromium)
+
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")

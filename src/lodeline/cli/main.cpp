@@ -13,6 +13,7 @@
 #include "lodeline/cli/compare_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/export_command.h"
+#include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
 
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);
   lodeline::addExportCommand(program);
+  lodeline::addReportCommand(program);
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);
   lodeline::addAttitudeCommand(program);

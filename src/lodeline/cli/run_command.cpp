@@ -6,7 +6,9 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_recording.h"
+#include "lodeline/page/page_template.h"
 
 namespace lodeline {
 namespace {
@@ -23,10 +25,15 @@ void requireResult(const RunRequest& request, const RunSummary& summary) {
                                     summary.frames(), summary.last().waiting_for));
 }
 
-void run(const RunRequest& request) {
+void run(RunRequest request, bool with_report) {
+  request.sample_pictures = with_report && !pageTemplate().empty();
   Diagnostics diagnostics;
   const RunSummary summary = runRecording(request, &diagnostics);
   if (!request.quiet) fmt::print("{}\n{}", request.output, summary.text(diagnostics));
+  if (with_report && summary.posed() > 0) {
+    const std::string remark = writeRunReport(request);
+    if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);
+  }
   requireResult(request, summary);
 }
 
@@ -54,6 +61,8 @@ void addRunCommand(CLI::App& program) {
   command->add_option("--site", arguments->site,
                       "LAT,LON,HEIGHT (degrees, m) of the recording, for true north");
   command->add_option("--date", arguments->date, "YYYY-MM-DD of the recording, for true north");
+  auto no_report = std::make_shared<bool>(false);
+  command->add_flag("--no-report", *no_report, "leave out report.html and its pictures");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
   command->footer(
       "Examples:\n"
@@ -61,9 +70,9 @@ void addRunCommand(CLI::App& program) {
       "  lodeline run dive1 -o left_only --set source.cameras=[0]\n"
       "  lodeline run dive1 -o north --mag-calibration mag.yaml --site 29.83,-82.60,20 --date 2026-11-21\n"
       "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
-      "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json;\n"
-      "pictures of tracks in frames.");
-  command->callback([arguments] { run(*arguments); });
+      "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json,\n"
+      "report.html (all of it to look at); pictures of tracks in frames.");
+  command->callback([arguments, no_report] { run(*arguments, !*no_report); });
 }
 
 }  // namespace lodeline

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "lodeline/cli/test_room.h"
+#include "lodeline/page/page_template.h"
 
 // `lodeline run`: where it finds its input, what it writes, how it ends.
 
@@ -17,6 +18,13 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 using RunOutcome = RoomTest;
+
+std::vector<std::string> writtenFiles() {
+  std::vector<std::string> files = {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply",
+                                    "run.json"};
+  if (!pageTemplate().empty()) files.push_back("report.html");
+  return files;
+}
 
 TEST_F(RunOutcome, MissingDataIsNamed) {
   std::filesystem::rename(recording_.data, folder_.path() / "elsewhere");
@@ -55,7 +63,7 @@ TEST_F(RunOutcome, FolderThatCannotBeMadeIsNamed) {
 }
 
 TEST_F(RunOutcome, FilesThatCannotBeWrittenAreNamed) {
-  for (const char* file : {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply", "run.json"}) {
+  for (const std::string& file : writtenFiles()) {
     std::filesystem::create_directories(output_ / file);
     const Execution result = run();
     EXPECT_EQ(result.exit_code, 1);
@@ -66,7 +74,7 @@ TEST_F(RunOutcome, FilesThatCannotBeWrittenAreNamed) {
 
 TEST_F(RunOutcome, FullDiskIsNoticed) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  for (const char* file : {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply", "run.json"}) {
+  for (const std::string& file : writtenFiles()) {
     std::filesystem::create_directories(output_);
     std::filesystem::create_symlink("/dev/full", output_ / file);
     const Execution result = run();
@@ -82,8 +90,10 @@ TEST_F(RunOutcome, WritesTheWholeFolderAndNothingElse) {
   for (const auto& entry : std::filesystem::directory_iterator(output_)) {
     names.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(names, testing::UnorderedElementsAre("trajectory.tum", "states.csv", "landmarks.ply",
-                                                   "config.yaml", "run.json"));
+  std::vector<std::string> expected = writtenFiles();
+  expected.push_back("timings.csv");
+  if (!pageTemplate().empty()) expected.push_back("pictures");
+  EXPECT_THAT(names, testing::UnorderedElementsAreArray(expected));
   const nlohmann::json json = summary();
   EXPECT_EQ(json["data"], recording_.data.string());
   EXPECT_GT(json["peak_memory_MB"], 1.0);

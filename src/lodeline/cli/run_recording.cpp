@@ -7,6 +7,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/output_file.h"
 #include "lodeline/base/settings.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/process_usage.h"
@@ -14,10 +15,7 @@
 #include "lodeline/cli/stop_request.h"
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/estimator/attitude_track.h"
-#include "lodeline/report/landmark_writer.h"
-#include "lodeline/base/output_file.h"
-#include "lodeline/report/state_writer.h"
-#include "lodeline/report/track_pictures.h"
+#include "lodeline/report/run_output.h"
 
 namespace lodeline {
 namespace {
@@ -43,6 +41,8 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
   for (const CameraCalibration& camera : rig.cameras) description.cameras.push_back(camera.name);
   description.camera_rate_hz = rig.cameras.front().rate_hz;
   description.imu_rate_hz = rig.imu.rate_hz;
+  description.camera_axis_B = rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ();
+  description.magnetometer = rig.magnetometer;
   if (rig.magnetometer) description.other_sensors.push_back("magnetometer");
   if (rig.pressure) description.other_sensors.push_back("pressure");
   if (rig.sonar) description.other_sensors.push_back("sonar");
@@ -52,13 +52,9 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
 
 /// Feeds all packets through the estimator; results are on disk at the end, whether the recording or the
 /// user ended it.
-void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* attitude,
+void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* attitude, const Rig& rig,
              const RunRequest& request, RunSummary* summary) {
-  const std::filesystem::path folder = request.output;
-  StateWriter states(folder);
-  LandmarkWriter landmarks(folder);
-  std::optional<TrackPictures> pictures;
-  if (request.draw_tracks_s) pictures.emplace(folder, *request.draw_tracks_s);
+  RunOutput output(request.output, rig, {request.draw_tracks_s, request.sample_pictures});
   RunProgress progress(request.quiet);
   const StopRequest stop;
   const Clock::time_point start = Clock::now();
@@ -66,20 +62,16 @@ void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* atti
   std::optional<FramePacket> packet = synchronizer.next();
   for (; packet && !stop.made(); packet = synchronizer.next()) {
     const FrameEstimate estimate = odometry.add(*packet);
-    states.write(estimate, attitude->add(*packet));
-    landmarks.write(odometry.estimator().takeMapPoints());
-    if (pictures) pictures->write(*packet, odometry.frontEnd());
+    output.write(*packet, estimate, attitude->add(*packet), &odometry);
     summary->add(estimate);
     for (const cv::Mat& image : packet->images) summary->images += image.empty() ? 0 : 1;
     summary->wall_s = secondsSince(start);
     progress.show(*summary);
   }
   progress.end();
-  landmarks.write(odometry.estimator().currentMapPoints());
-  landmarks.finish();
 
+  summary->map_points = output.finish(odometry);
   summary->interrupted = packet.has_value();
-  summary->map_points = landmarks.count();
   summary->front_end_s = odometry.times().front_end_s;
   summary->estimator_s = odometry.times().estimator_s;
   const ProcessUsage usage = ProcessUsage::now();
@@ -128,7 +120,7 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   Odometry odometry(source.rig(), options.odometry, diagnostics);
   RunSummary summary(describe(request, options, source.rig()));
   AttitudeTrack attitude(source.rig(), {}, diagnostics);
-  process(synchronizer, odometry, &attitude, request, &summary);
+  process(synchronizer, odometry, &attitude, source.rig(), request, &summary);
   writeOutput(folder / "run.json", summary.json(*diagnostics));
   return summary;
 }

@@ -18,10 +18,11 @@ struct RunRequest {
   std::vector<std::string> overrides;  ///< KEY=VALUE, over the configuration
   std::optional<double> draw_tracks_s;
   std::string magnetometer_calibration;  ///< file; empty for what the configuration says
-  std::string magnetometer;  ///< setting magnetometer.model; empty for what the configuration says
-  std::string site;          ///< LAT,LON,HEIGHT (degrees, m); empty likewise
-  std::string date;          ///< YYYY-MM-DD; empty likewise
-  bool quiet = false;        ///< no progress
+  std::string magnetometer;      ///< setting magnetometer.model; empty for what the configuration says
+  std::string site;              ///< LAT,LON,HEIGHT (degrees, m); empty likewise
+  std::string date;              ///< YYYY-MM-DD; empty likewise
+  bool sample_pictures = false;  ///< keep pictures for report.html
+  bool quiet = false;            ///< no progress
 };
 
 /// Puts what the request says over the defaults. `settings` keeps pointing to `options`. Throws UsageError.

@@ -27,6 +27,7 @@ class Odometry {
   FrameEstimate add(const FramePacket& packet);
 
   Estimator& estimator() { return estimator_; }
+  const Estimator& estimator() const { return estimator_; }
   const FrontEnd& frontEnd() const { return front_end_; }
   const StageTimes& times() const { return times_; }
 

@@ -9,16 +9,27 @@
 namespace lodeline {
 namespace {
 
+nlohmann::ordered_json rigJson(const RunDescription& run) {
+  const Vec3& axis = run.camera_axis_B;
+  nlohmann::ordered_json json = {{"cameras", run.cameras},
+                                 {"camera_rate_hz", run.camera_rate_hz},
+                                 {"camera_axis_B", {axis.x(), axis.y(), axis.z()}},
+                                 {"imu_rate_hz", run.imu_rate_hz},
+                                 {"other_sensors", run.other_sensors}};
+  if (run.magnetometer) {
+    json["magnetometer"]["is_calibrated"] = run.magnetometer->is_calibrated;
+    if (run.magnetometer->field_strength_T)
+      json["magnetometer"]["field_strength_T"] = *run.magnetometer->field_strength_T;
+  }
+  return json;
+}
+
 nlohmann::ordered_json toJson(const RunDescription& run) {
   return {{"program", "lodeline " + run.version},
           {"data", run.data},
           {"config", run.config},
           {"settings_from_command_line", run.overrides},
-          {"rig",
-           {{"cameras", run.cameras},
-            {"camera_rate_hz", run.camera_rate_hz},
-            {"imu_rate_hz", run.imu_rate_hz},
-            {"other_sensors", run.other_sensors}}}};
+          {"rig", rigJson(run)}};
 }
 
 std::string describe(const CameraCorrections& corrections) {

@@ -8,6 +8,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/estimator.h"
+#include "lodeline/sensors/rig.h"
 
 namespace lodeline {
 
@@ -20,7 +21,9 @@ struct RunDescription {
   std::vector<std::string> cameras;  ///< names, the reference first
   double camera_rate_hz = 0.0;
   double imu_rate_hz = 0.0;
+  Vec3 camera_axis_B = Vec3::UnitX();  ///< where the reference camera looks
   std::vector<std::string> other_sensors;
+  std::optional<MagnetometerCalibration> magnetometer;
   double observation_sigma_px = 0.0;
 };
 

@@ -1,0 +1,30 @@
+# The report page is bundled from web/ with npm packages. Where npm or its registry is out of reach, the program is
+# built without, and says so when it leaves report.html out.
+option(LODELINE_REPORT "Build the report page (needs node 18 and npm)" ON)
+if(NOT LODELINE_REPORT)
+  return()
+endif()
+
+set(web ${CMAKE_SOURCE_DIR}/web)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${web}/package-lock.json)
+find_program(LODELINE_NODE NAMES node nodejs)
+find_program(LODELINE_NPM npm)
+set(reason)
+if(NOT LODELINE_NODE OR NOT LODELINE_NPM)
+  set(reason "node and npm were not found")
+elseif(${web}/package-lock.json IS_NEWER_THAN ${web}/node_modules/.package-lock.json)
+  message(STATUS "Fetching the report page's packages (npm ci)")
+  execute_process(COMMAND ${LODELINE_NPM} ci --no-audit --no-fund --loglevel=error
+                  WORKING_DIRECTORY ${web} RESULT_VARIABLE result ERROR_VARIABLE reason TIMEOUT 300)
+  if(result EQUAL 0)
+    set(reason)
+    # npm leaves the time of the packed file, which may be older than a fresh checkout.
+    file(TOUCH ${web}/node_modules/.package-lock.json)
+  else()
+    string(STRIP "npm ci failed: ${result} ${reason}" reason)
+  endif()
+endif()
+if(reason)
+  message(WARNING "Building without the report page: ${reason}")
+  set(LODELINE_REPORT OFF)
+endif()

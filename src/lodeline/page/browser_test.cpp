@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "lodeline/base/output_file.h"
+#include "lodeline/evaluation/test_trajectories.h"
+#include "lodeline/page/page_template.h"
+#include "lodeline/page/report_page.h"
+#include "lodeline/page/test_run.h"
+
+// The page in headless Chromium; web/test holds what is tried there.
+
+namespace lodeline {
+namespace {
+
+using test::TemporaryFolder;
+
+bool succeeds(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+class Browser : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
+    if (!succeeds("command -v chromium >/dev/null 2>&1")) GTEST_SKIP() << "chromium is not installed";
+  }
+  /// Runs one script of web/test on a page.
+  bool passes(const std::string& script, const std::filesystem::path& page) const {
+    return succeeds("cd '" LODELINE_SOURCE_DIR "/web/test' && '" LODELINE_NODE "' " + script + " '" +
+                    page.string() + "'");
+  }
+  std::filesystem::path pageOf(const std::vector<std::filesystem::path>& runs,
+                               const std::optional<ReportReference>& reference) const {
+    Diagnostics diagnostics;
+    const std::filesystem::path file = folder_.path() / "report.html";
+    writeOutput(file, reportPage(runs, reference, &diagnostics));
+    return file;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Browser, ShowsARunAndAnswersClicks) {
+  test::TestRun run;
+  run.picture_width_px = 320;
+  test::writeTestRun(folder_.path() / "dive", run);
+  test::writeTestReference(folder_.path() / "truth.tum", run);
+  const ReportReference reference = {folder_.path() / "truth.tum", AlignmentType::None};
+  EXPECT_TRUE(passes("one_run.mjs", pageOf({folder_.path() / "dive"}, reference)));
+}
+
+TEST_F(Browser, ComparesTwoRuns) {
+  test::writeTestRun(folder_.path() / "first");
+  test::TestRun shorter;
+  shorter.frames = 120;
+  test::writeTestRun(folder_.path() / "second", shorter);
+  EXPECT_TRUE(
+      passes("two_runs.mjs", pageOf({folder_.path() / "first", folder_.path() / "second"}, std::nullopt)));
+}
+
+TEST_F(Browser, FiftyMinutesFitInto15MegabytesAndOpenInThreeSeconds) {
+  test::TestRun dive;
+  dive.frames = 50 * 60 * 15;
+  dive.landmarks_per_frame = 4;
+  dive.pictures = 120;
+  dive.picture_width_px = 640;
+  test::writeTestRun(folder_.path() / "dive", dive);
+  const std::filesystem::path page = pageOf({folder_.path() / "dive"}, std::nullopt);
+  EXPECT_LE(std::filesystem::file_size(page), 15'000'000u);
+  RecordProperty("bytes", static_cast<int>(std::filesystem::file_size(page)));
+  EXPECT_TRUE(passes("opens_fast.mjs", page));
+}
+
+}  // namespace
+}  // namespace lodeline

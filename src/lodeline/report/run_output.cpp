@@ -1,0 +1,28 @@
+#include "lodeline/report/run_output.h"
+
+namespace lodeline {
+
+RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options)
+    : states_(folder), landmarks_(folder), timings_(folder) {
+  if (rig.magnetometer) magnetometer_.emplace(folder, *rig.magnetometer);
+  if (options.draw_tracks_s) track_pictures_.emplace(folder, *options.draw_tracks_s);
+  if (options.sample_pictures) sample_pictures_.emplace(folder);
+}
+
+void RunOutput::write(const FramePacket& packet, const FrameEstimate& estimate,
+                      const std::optional<AttitudeEstimate>& attitude, Odometry* odometry) {
+  states_.write(estimate, attitude);
+  landmarks_.write(odometry->estimator().takeMapPoints());
+  if (magnetometer_) magnetometer_->write(packet);
+  if (track_pictures_) track_pictures_->write(packet, odometry->frontEnd());
+  if (sample_pictures_) sample_pictures_->write(packet, odometry->frontEnd());
+  timings_.write(packet.time, odometry->times());
+}
+
+int64_t RunOutput::finish(const Odometry& odometry) {
+  landmarks_.write(odometry.estimator().currentMapPoints());
+  landmarks_.finish();
+  return landmarks_.count();
+}
+
+}  // namespace lodeline

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "lodeline/estimator/attitude_track.h"
+#include "lodeline/report/landmark_writer.h"
+#include "lodeline/report/magnetometer_writer.h"
+#include "lodeline/report/sample_pictures.h"
+#include "lodeline/report/state_writer.h"
+#include "lodeline/report/timing_writer.h"
+#include "lodeline/report/track_pictures.h"
+
+namespace lodeline {
+
+struct RunOutputOptions {
+  std::optional<double> draw_tracks_s;  ///< TrackPictures, one each so many seconds
+  bool sample_pictures = false;         ///< SamplePictures, for report.html
+};
+
+/// All files of a run's output folder that grow while it goes on.
+class RunOutput {
+ public:
+  /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
+  RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options);
+
+  /// To be called after each packet with what became of it. Throws InputError where writing fails.
+  void write(const FramePacket& packet, const FrameEstimate& estimate,
+             const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
+
+  /// Adds the landmarks that are still in the window and completes the files; gives the number of landmarks.
+  int64_t finish(const Odometry& odometry);
+
+ private:
+  StateWriter states_;
+  LandmarkWriter landmarks_;
+  TimingWriter timings_;
+  std::optional<MagnetometerWriter> magnetometer_;
+  std::optional<TrackPictures> track_pictures_;
+  std::optional<SamplePictures> sample_pictures_;
+};
+
+}  // namespace lodeline

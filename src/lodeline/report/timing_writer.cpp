@@ -1,0 +1,23 @@
+#include "lodeline/report/timing_writer.h"
+
+#include <fmt/ostream.h>
+
+#include "lodeline/base/output_file.h"
+
+namespace lodeline {
+
+TimingWriter::TimingWriter(const std::filesystem::path& folder)
+    : stream_(openOutput(folder / "timings.csv")) {
+  stream_ << "#timestamp [ns],wall [s],front_end [s],estimator [s]\n";
+}
+
+void TimingWriter::write(Time time, const StageTimes& times) {
+  const Clock::time_point now = Clock::now();
+  fmt::print(stream_, "{},{:.6f},{:.6f},{:.6f}\n", time.nanoseconds(),
+             std::chrono::duration<double>(now - last_).count(), times.front_end_s - before_.front_end_s,
+             times.estimator_s - before_.estimator_s);
+  last_ = now;
+  before_ = times;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "lodeline/estimator/odometry.h"
+
+namespace lodeline {
+
+/// Writes `timings.csv`: how long each frame took by the wall clock, from reading to writing, and how much of
+/// the processor front end and estimator used. A file of its own, because it differs from run to run.
+class TimingWriter {
+ public:
+  /// Throws InputError where the folder cannot be written to.
+  explicit TimingWriter(const std::filesystem::path& folder);
+
+  /// To be called once all work of a frame is done. `times`: of all frames so far.
+  void write(Time time, const StageTimes& times);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::ofstream stream_;
+  Clock::time_point last_ = Clock::now();
+  StageTimes before_;
+};
+
+}  // namespace lodeline

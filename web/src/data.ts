@@ -1,0 +1,119 @@
+// What `lodeline` puts into the page; src/lodeline/page writes it. Names of columns are those of the CSV files.
+
+export interface Table {
+  total: number; // rows of the file; the page may hold fewer
+  stride: number; // every so manieth row is here
+  t_s: number[]; // since the run's first state
+  numbers: Record<string, (number | null)[]>;
+  words: Record<string, string[]>;
+}
+
+export interface Finding {
+  severity: string;
+  kind: string;
+  message: string;
+  count: number;
+}
+
+export interface Summary {
+  program?: string;
+  data?: string;
+  rig?: { cameras?: string[]; camera_rate_hz?: number; imu_rate_hz?: number; camera_axis_B?: number[] };
+  interrupted?: boolean;
+  frames?: number;
+  frames_with_pose?: number;
+  completion?: number;
+  path_m?: number;
+  duration_s?: number;
+  landmarks?: number;
+  keyframes?: number;
+  mean_tracks?: number;
+  mean_reprojection_rms_px?: number;
+  real_time_factor?: number;
+  core_ms_per_frame?: Record<string, number>;
+  peak_memory_MB?: number;
+  heading?: { reference?: string; sigma_rad?: number };
+  findings?: Finding[];
+}
+
+export interface Picture {
+  t_s: number;
+  jpeg: string; // base64
+}
+
+export interface Statistics {
+  rmse: number;
+  mean: number;
+  median: number;
+  max: number;
+}
+
+export interface Evaluation {
+  figures: {
+    estimate: { path_m: number };
+    reference: { name: string; path_m: number };
+    association: { pairs: number };
+    alignment: {
+      type: string;
+      scale: number;
+      reference_from_estimate_quaternion_wxyz: number[];
+      reference_from_estimate_translation_m: number[];
+    };
+    absolute: { position_m: Statistics; rotation_deg: Statistics; yaw_deg: Statistics };
+    end_point: { after_alignment_m: number; after_alignment_percent: number; from_equal_starts_percent: number };
+    relative?: { length_m: number; translation_percent: Statistics; yaw_deg: Statistics }[];
+  };
+  errors: Table; // position [m], yaw [deg], rotation [deg]
+  path: { t_s: number[]; x: number[]; y: number[]; z: number[] }; // the reference, in its own world
+}
+
+export interface Magnetometer {
+  table: Table;
+  is_calibrated: boolean;
+  field_strength_T: number | null; // that corrected readings should have
+}
+
+export interface Run {
+  name: string;
+  origin_ns: string;
+  summary: Summary;
+  config: string;
+  states: Table;
+  landmarks: { total: number; xyz: string }; // base64 of 32-bit floats, little endian
+  pictures: Picture[];
+  timings: Table | null;
+  magnetometer: Magnetometer | null;
+  evaluation: Evaluation | null;
+}
+
+export interface PageData {
+  live: boolean;
+  runs: Run[];
+}
+
+export function readPageData(): PageData {
+  const text = document.getElementById("lodeline-data")?.textContent ?? "";
+  return JSON.parse(text) as PageData;
+}
+
+export function decodeFloats(base64: string): Float32Array {
+  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  return new Float32Array(bytes.buffer);
+}
+
+export function column(table: Table, name: string): (number | null)[] | null {
+  const values = table.numbers[name];
+  return values && values.some((v) => v !== null) ? values : null;
+}
+
+/// Index of the value in a rising list that is nearest to `t`.
+export function nearestIndex(times: number[], t: number): number {
+  let low = 0;
+  let high = times.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle;
+    else high = middle;
+  }
+  return high > 0 && Math.abs(times[high] - t) < Math.abs(times[low] - t) ? high : Math.max(low, 0);
+}

@@ -1,0 +1,73 @@
+// Elements in one line each.
+
+type Child = Node | string | null;
+
+export function element<K extends keyof HTMLElementTagNameMap>(
+  tag: K, className = "", ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const node = document.createElement(tag);
+  if (className) node.className = className;
+  append(node, ...children);
+  return node;
+}
+
+export function append(node: Element, ...children: Child[]): void {
+  for (const child of children) if (child !== null) node.append(child);
+}
+
+export function button(text: string, title: string, action: () => void): HTMLButtonElement {
+  const node = element("button", "", text);
+  node.type = "button";
+  node.title = title;
+  node.addEventListener("click", action);
+  return node;
+}
+
+export function section(id: string, title: string, ...children: Child[]): HTMLElement {
+  const node = element("section", "", element("h2", "", title), ...children);
+  node.id = id;
+  return node;
+}
+
+/// Buttons of which one is chosen.
+export function choice<T extends string>(
+  label: string, options: { value: T; text: string }[], chosen: T, action: (value: T) => void
+): HTMLElement {
+  const group = element("div", "choice");
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", label);
+  const buttons = options.map(({ value, text }) => {
+    const node = button(text, `${label}: ${text}`, () => {
+      for (const other of buttons) other.setAttribute("aria-pressed", String(other === node));
+      action(value);
+    });
+    node.dataset.value = value;
+    node.setAttribute("aria-pressed", String(value === chosen));
+    return node;
+  });
+  append(group, ...buttons);
+  return group;
+}
+
+export function toggle(text: string, checked: boolean, action: (checked: boolean) => void): HTMLElement {
+  const box = element("input");
+  box.type = "checkbox";
+  box.checked = checked;
+  box.addEventListener("change", () => action(box.checked));
+  return element("label", "toggle", box, text);
+}
+
+/// Calls once the element comes near the visible part of the page.
+export function whenNear(node: Element, action: () => void): void {
+  const observer = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    observer.disconnect();
+    action();
+  }, { rootMargin: "300px" });
+  observer.observe(node);
+}
+
+/// Calls at once and whenever the element changes its width or height.
+export function whenResized(node: Element, action: (width: number, height: number) => void): void {
+  new ResizeObserver(() => action(node.clientWidth, node.clientHeight)).observe(node);
+}

@@ -1,0 +1,11 @@
+import { readPageData } from "./data";
+import { assemble } from "./page";
+import { makeTrack } from "./track";
+import { View } from "./view";
+
+const page = document.getElementById("page");
+if (page) {
+  const data = readPageData();
+  assemble(page, new View(data.runs.map(makeTrack)));
+  document.documentElement.dataset.ready = "true";
+}

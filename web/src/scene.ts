@@ -1,0 +1,91 @@
+// The things that stand in the 3-D view.
+
+import * as THREE from "three";
+import { Line2 } from "three/addons/lines/Line2.js";
+import { LineGeometry } from "three/addons/lines/LineGeometry.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { kKinds, themed } from "./colours";
+import { colourScale, type Colouring } from "./colouring";
+import { niceStep } from "./format";
+import type { Vec3 } from "./geometry";
+import { extent, type Track } from "./track";
+
+export type Place = { middle: THREE.Vector3; radius: number; reach: number };
+
+export function placeOf(tracks: Track[]): Place {
+  const { middle, radius, reach } = extent(tracks);
+  return { middle: new THREE.Vector3(...middle), radius, reach };
+}
+
+function fatLine(points: Vec3[], colours: number[] | string, width: number): Line2 {
+  const geometry = new LineGeometry();
+  geometry.setPositions(points.flat());
+  const coloured = typeof colours !== "string";
+  if (coloured) geometry.setColors(colours);
+  const material = new LineMaterial({
+    color: coloured ? 0xffffff : colours, vertexColors: coloured, linewidth: width,
+  });
+  return new Line2(geometry, material);
+}
+
+export function trajectoryLine(track: Track, colouring: Colouring): THREE.Object3D {
+  const scale = colourScale(track, colouring);
+  const grey = new THREE.Color(themed("faint"));
+  const colours = scale.colours.flatMap((rgb) => {
+    const colour = rgb ? new THREE.Color().setRGB(rgb[0] / 255, rgb[1] / 255, rgb[2] / 255, THREE.SRGBColorSpace) : grey;
+    return [colour.r, colour.g, colour.b];
+  });
+  return fatLine(track.position, colours, 3.5);
+}
+
+export function otherLine(track: Track, index: number): THREE.Object3D {
+  return fatLine(track.position, kKinds[index % kKinds.length], 2);
+}
+
+export function referenceLine(track: Track): THREE.Object3D | null {
+  const path = track.run.evaluation?.path;
+  if (!path || path.x.length < 2) return null;
+  return fatLine(path.x.map((x, i) => [x, path.y[i], path.z[i]] as Vec3), themed("ink"), 1.5);
+}
+
+export function landmarkCloud(track: Track): THREE.Object3D {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(track.landmarks, 3));
+  const material = new THREE.PointsMaterial({
+    color: themed("landmark"), size: 1.6 * Math.min(2, window.devicePixelRatio), sizeAttenuation: false,
+    transparent: true, opacity: 0.55, depthWrite: false,
+  });
+  return new THREE.Points(geometry, material);
+}
+
+/// A lattice under everything, its meshes a round number of metres wide.
+export function grid(place: Place, low_z: number): { object: THREE.Object3D; step_m: number } {
+  const step_m = niceStep(place.radius / 2);
+  const cells = 2 * Math.ceil((1.3 * place.radius) / step_m);
+  const object = new THREE.GridHelper(cells * step_m, cells, themed("grid-strong"), themed("grid"));
+  object.rotation.x = Math.PI / 2;
+  object.position.set(
+    Math.round(place.middle.x / step_m) * step_m, Math.round(place.middle.y / step_m) * step_m, low_z);
+  return { object, step_m };
+}
+
+/// The selected pose: a ball, and a pyramid that shows where the camera looks.
+export class PoseMarker {
+  readonly object = new THREE.Group();
+
+  constructor(private size: number) {
+    const material = new THREE.MeshBasicMaterial({ color: themed("accent") });
+    const ball = new THREE.Mesh(new THREE.SphereGeometry(0.16 * size, 16, 12), material);
+    const cone = new THREE.Mesh(new THREE.ConeGeometry(0.42 * size, size, 4, 1, true),
+      new THREE.MeshBasicMaterial({ color: themed("accent"), transparent: true, opacity: 0.4, side: THREE.DoubleSide }));
+    cone.geometry.rotateY(Math.PI / 4).translate(0, -0.5 * size, 0).rotateX(Math.PI);
+    this.object.add(ball, cone);
+  }
+
+  show(position: Vec3, view: Vec3, scale: number): void {
+    this.object.position.set(...position);
+    const direction = new THREE.Vector3(...view).normalize();
+    this.object.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), direction);
+    this.object.scale.setScalar(scale / this.size);
+  }
+}

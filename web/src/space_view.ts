@@ -1,0 +1,169 @@
+// The 3-D view: camera, mouse and fingers, what is drawn when.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { ViewHelper } from "three/addons/helpers/ViewHelper.js";
+import { whenThemeChanges } from "./colours";
+import { element, whenResized } from "./dom";
+import { grid, landmarkCloud, otherLine, placeOf, PoseMarker, referenceLine, trajectoryLine, type Place } from "./scene";
+import { poseText, Tip } from "./tip";
+import type { View } from "./view";
+import { worldNames } from "./world";
+
+const kPick_px = 18;
+
+export class SpaceView {
+  readonly node = element("div", "space");
+  private renderer: THREE.WebGLRenderer;
+  private scene = new THREE.Scene();
+  private camera = new THREE.PerspectiveCamera(45, 1, 0.01, 1000);
+  private controls: OrbitControls;
+  private content = new THREE.Group();
+  private marker!: PoseMarker;
+  private place: Place;
+  private scaleNote = element("p", "note");
+  private tip = new Tip();
+  private compass: ViewHelper;
+  private pending = 0;
+  private sized = false;
+
+  /// Throws where the browser has no WebGL.
+  constructor(private view: View) {
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.place = placeOf(view.tracks);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.draw());
+    this.scene.add(this.content);
+    this.renderer.autoClear = false; // the compass is drawn over the scene
+    this.compass = new ViewHelper(this.camera, this.renderer.domElement);
+    this.node.append(this.renderer.domElement, this.scaleNote, this.tip.node);
+    this.lookFrom("oblique");
+    whenResized(this.node, (width, height) => this.resize(width, height));
+    view.active.watch(() => this.rebuild());
+    view.colouring.watch(() => this.rebuild());
+    view.shown.watch(() => this.rebuild());
+    view.time.watch(() => this.draw());
+    whenThemeChanges(() => this.rebuild());
+    this.node.addEventListener("click", (event) => {
+      const pose = this.nearest(event);
+      if (pose >= 0) view.time.set(view.active.value.t_s[pose]);
+    });
+    this.node.addEventListener("pointermove", (event) => this.hover(event));
+    this.node.addEventListener("pointerleave", () => this.tip.hide());
+  }
+
+  get canvas(): HTMLCanvasElement {
+    this.drawNow();
+    return this.renderer.domElement;
+  }
+
+  lookFrom(where: "oblique" | "top" | "side"): void {
+    this.place = placeOf(this.view.tracks);
+    const { middle, radius, reach } = this.place;
+    const away = { oblique: [-0.55, -0.95, 0.75], top: [0, -0.001, 1], side: [0, -1, 0.02] }[where];
+    const distance = (1.05 * reach) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / Math.min(1, this.camera.aspect);
+    const direction = new THREE.Vector3(...away).normalize();
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(direction, distance);
+    this.camera.near = radius / 500;
+    this.camera.far = radius * 200;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  private resize(width: number, height: number): void {
+    if (width === 0 || height === 0) return;
+    const first = !this.sized;
+    this.sized = true;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setSize(width, height);
+    if (first) this.lookFrom("oblique");
+    this.draw();
+  }
+
+  private rebuild(): void {
+    const { view } = this;
+    this.content.traverse((object) => {
+      const drawable = object as THREE.Mesh;
+      drawable.geometry?.dispose();
+      (drawable.material as THREE.Material | undefined)?.dispose?.();
+    });
+    this.content.clear();
+    const track = view.active.value;
+    if (track.position.length > 1) this.content.add(trajectoryLine(track, view.colouring.value));
+    view.tracks.forEach((other, i) => {
+      if (other !== track && other.position.length > 1) this.content.add(otherLine(other, i));
+    });
+    if (view.shown.value.landmarks) this.content.add(landmarkCloud(track));
+    const reference = view.shown.value.reference ? referenceLine(track) : null;
+    if (reference) this.content.add(reference);
+    this.addGround();
+    this.marker = new PoseMarker(0.06 * this.place.radius);
+    this.content.add(this.marker.object);
+    this.draw();
+  }
+
+  private addGround(): void {
+    const { middle, radius } = this.place;
+    const lowest = Math.min(...this.view.tracks.flatMap((t) => t.position.map((p) => p[2])), middle.z) - 0.15 * radius;
+    const { object, step_m } = grid(this.place, lowest);
+    this.content.add(object);
+    const names = worldNames(this.view);
+    this.compass.setLabels(...(names.knowsNorth ? (["E", "N", "up"] as const) : (["x", "y", "z"] as const)));
+    this.scaleNote.textContent =
+      `Meshes of ${step_m} m.${names.knowsNorth ? ` N: ${names.up}.` : ""} Drag to turn, wheel or pinch to zoom, click for a pose.`;
+  }
+
+  private hover(event: PointerEvent): void {
+    const pose = event.buttons === 0 ? this.nearest(event) : -1;
+    if (pose < 0) return this.tip.hide();
+    const box = this.node.getBoundingClientRect();
+    this.tip.show(poseText(this.view, pose), event.clientX - box.left, event.clientY - box.top, box.width);
+  }
+
+  /// The pose that is drawn nearest to the pointer; −1 where none is near.
+  private nearest(event: MouseEvent): number {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const track = this.view.active.value;
+    const p = new THREE.Vector3();
+    let best = kPick_px;
+    let chosen = -1;
+    track.position.forEach((position, i) => {
+      p.set(...position).project(this.camera);
+      if (p.z > 1) return;
+      const x = box.left + (0.5 + p.x / 2) * box.width;
+      const y = box.top + (0.5 - p.y / 2) * box.height;
+      const distance = Math.hypot(x - event.clientX, y - event.clientY);
+      if (distance < best) {
+        best = distance;
+        chosen = i;
+      }
+    });
+    return chosen;
+  }
+
+  /// Many changes at once make one drawing.
+  private draw(): void {
+    cancelAnimationFrame(this.pending);
+    this.pending = requestAnimationFrame(() => this.drawNow());
+  }
+
+  private drawNow(): void {
+    const track = this.view.active.value;
+    const pose = this.view.pose();
+    if (this.marker) {
+      this.marker.object.visible = track.position.length > 0;
+      if (track.position.length > 0) {
+        const distance = this.camera.position.distanceTo(new THREE.Vector3(...track.position[pose]));
+        this.marker.show(track.position[pose], track.view[pose], 0.075 * distance);
+      }
+    }
+    this.renderer.clear();
+    this.renderer.render(this.scene, this.camera);
+    this.compass.render(this.renderer);
+  }
+}

@@ -1,0 +1,50 @@
+// A page in headless Chromium that remembers every complaint.
+import assert from "node:assert/strict";
+import puppeteer from "puppeteer-core";
+
+async function open(file) {
+  const started_ms = performance.now();
+  const browser = await puppeteer.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    // WebGL without a graphics card; the sandbox refuses to work for root, who runs CI.
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    protocolTimeout: 300_000,
+  });
+  const page = await browser.newPage();
+  page.setDefaultTimeout(120_000);
+  const complaints = [];
+  page.on("console", (message) => {
+    if (["error", "warn"].includes(message.type())) complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("requestfailed", (request) => complaints.push(`${request.url()} failed`));
+  await page.setViewport({ width: 1280, height: 900 });
+  await page.goto(file.startsWith("http") ? file : `file://${file}`);
+  await page.waitForSelector("html[data-ready]");
+  return { browser, page, started_ms, complaints: () => complaints.filter((text) => !isDriverTalk(text)) };
+}
+
+/// Chromium says that drawing without a graphics card is slow; that is not the page's fault.
+function isDriverTalk(text) {
+  return /GPU stall|swiftshader|GL Driver Message|Automatic fallback to software WebGL/i.test(text);
+}
+
+/// Brings an element into sight and waits until the plot in it is drawn.
+export async function show(page, selector) {
+  await page.waitForSelector(selector);
+  await page.$eval(selector, (node) => node.scrollIntoView({ behavior: "instant", block: "center" }));
+}
+
+/// Opens the page that the command line names, tries `test` on it, and tells by the exit code.
+export async function run(test) {
+  const opened = await open(process.argv[2]);
+  try {
+    await test(opened);
+    assert.deepEqual(opened.complaints(), []);
+  } catch (error) {
+    console.error(error);
+    process.exitCode = 1;
+  } finally {
+    await opened.browser.close();
+  }
+}

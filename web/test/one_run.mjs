@@ -1,0 +1,60 @@
+// One run: everything is drawn, a click selects a pose and shows its picture, nothing complains.
+import assert from "node:assert/strict";
+import { run, show } from "./browser.mjs";
+
+const kPlots = ["status", "heading", "depth", "heading-sigma", "position-sigma", "yaw-error", "velocity",
+  "gyroscope-bias", "accelerometer-bias", "tracks", "reprojection", "timings", "magnetometer-offset", "field"];
+
+/// Share of a canvas that is not blank.
+const inked = (canvas) => {
+  const copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext("2d");
+  context.drawImage(canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  let count = 0;
+  for (let i = 3; i < data.length; i += 4) count += data[i] > 0 ? 1 : 0;
+  return count / (data.length / 4);
+};
+
+const text = (page, selector) => page.$eval(selector, (node) => node.textContent);
+
+async function selectsOnClick(page, selector, [x, y]) {
+  await show(page, selector);
+  const before = await text(page, ".pose .time");
+  const box = await (await page.$(selector)).boundingBox();
+  await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+  await page.waitForFunction((old) => document.querySelector(".pose .time").textContent !== old, {}, before);
+}
+
+await run(async ({ page }) => {
+  assert.match(await text(page, "h1"), /dive/);
+  assert.match(await text(page, ".tiles"), /Completion100 %/);
+  assert.match(await text(page, ".findings"), /a name with <\/script> in it/);
+  assert.match(await text(page, "#evaluation"), /0\.100 m/);
+  assert.match(await text(page, "#configuration pre"), /keyframes: 7/);
+
+  for (const plot of kPlots) {
+    await show(page, `#plot-${plot}`);
+    await page.waitForSelector(`#plot-${plot} canvas`);
+    assert.ok((await page.$eval(`#plot-${plot} canvas`, inked)) > 0.003, `${plot} is blank`);
+  }
+  for (const map of await page.$$("canvas.map")) {
+    await map.scrollIntoView();
+    assert.ok((await map.evaluate(inked)) > 0.01, "a map is blank");
+  }
+
+  const first = await page.$eval(".picture img", (image) => image.src);
+  await selectsOnClick(page, "#plot-heading .u-over", [0.9, 0.5]);
+  assert.notEqual(await page.$eval(".picture img", (image) => image.src), first, "the picture is another one");
+  assert.match(await text(page, ".pose .figures"), /Position.*Heading.*Depth.*Error/);
+
+  // The start lies where the marker was drawn first; a click there goes back to it.
+  await page.$eval(".pose input", (slider) => { slider.value = "150"; slider.dispatchEvent(new Event("input")); });
+  assert.equal(await text(page, ".pose .time"), "0:10.0");
+
+  for (const colour of ["heading", "depth", "error"]) await page.click(`.choice button[data-value=${colour}]`);
+  assert.match(await text(page, ".colour-bar"), /0\.10+ m/);
+  await page.click(".space-card .tools button:nth-child(2)");
+});
