@@ -17,15 +17,19 @@ export function placeOf(tracks: Track[]): Place {
   return { middle: new THREE.Vector3(...middle), radius, reach };
 }
 
-function fatLine(points: Vec3[], colours: number[] | string, width: number): Line2 {
+function fatLine(points: Vec3[], colours: number[] | string, width: number, order: number): Line2 {
   const geometry = new LineGeometry();
   geometry.setPositions(points.flat());
   const coloured = typeof colours !== "string";
   if (coloured) geometry.setColors(colours);
   const material = new LineMaterial({
     color: coloured ? 0xffffff : colours, vertexColors: coloured, linewidth: width,
+    // A way through a cave is seen through its walls, which are drawn with the transparent things, too.
+    depthTest: false, transparent: true,
   });
-  return new Line2(geometry, material);
+  const line = new Line2(geometry, material);
+  line.renderOrder = order;
+  return line;
 }
 
 export function trajectoryLine(track: Track, colouring: Colouring): THREE.Object3D {
@@ -35,17 +39,17 @@ export function trajectoryLine(track: Track, colouring: Colouring): THREE.Object
     const colour = rgb ? new THREE.Color().setRGB(rgb[0] / 255, rgb[1] / 255, rgb[2] / 255, THREE.SRGBColorSpace) : grey;
     return [colour.r, colour.g, colour.b];
   });
-  return fatLine(track.position, colours, 3.5);
+  return fatLine(track.position, colours, 4.5, 2);
 }
 
 export function otherLine(track: Track, index: number): THREE.Object3D {
-  return fatLine(track.position, kKinds[index % kKinds.length], 2);
+  return fatLine(track.position, kKinds[index % kKinds.length], 2, 1);
 }
 
 export function referenceLine(track: Track): THREE.Object3D | null {
   const path = track.run.evaluation?.path;
   if (!path || path.x.length < 2) return null;
-  return fatLine(path.x.map((x, i) => [x, path.y[i], path.z[i]] as Vec3), themed("ink"), 1.5);
+  return fatLine(path.x.map((x, i) => [x, path.y[i], path.z[i]] as Vec3), themed("ink"), 1.1, 3);
 }
 
 export function landmarkCloud(track: Track): THREE.Object3D {
@@ -80,6 +84,7 @@ export class PoseMarker {
       new THREE.MeshBasicMaterial({ color: themed("accent"), transparent: true, opacity: 0.4, side: THREE.DoubleSide }));
     cone.geometry.rotateY(Math.PI / 4).translate(0, -0.5 * size, 0).rotateX(Math.PI);
     this.object.add(ball, cone);
+    this.object.renderOrder = 4;
   }
 
   show(position: Vec3, view: Vec3, scale: number): void {

@@ -36,7 +36,7 @@ function tiles(run: Run): Tile[] {
   if (figures) {
     list.splice(2, 0, {
       name: "Position error", value: `${number(figures.absolute.position_m.rmse)} m`,
-      detail: `RMSE after ${figures.alignment.type} alignment`,
+      detail: figures.alignment.type === "none" ? "RMSE, not aligned" : `RMSE after ${figures.alignment.type} alignment`,
     });
   }
   return list;

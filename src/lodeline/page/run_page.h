@@ -9,7 +9,7 @@
 namespace lodeline {
 
 /// Landmarks that a page shows of a run at most.
-inline constexpr size_t kMostLandmarks = 150000;
+inline constexpr size_t kMostLandmarks = 100000;
 
 /// Everything that the page shows of a run, from its output folder (`Run` in web/src/data.ts). Only
 /// states.csv must be there; what else is missing (an older run, one that was killed) is left out. Throws

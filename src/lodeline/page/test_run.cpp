@@ -70,7 +70,7 @@ void writePictures(const std::filesystem::path& folder, const TestRun& run) {
     cv::Mat picture(run.picture_width_px * 5 / 8, run.picture_width_px, CV_8U);
     random.fill(picture, cv::RNG::NORMAL, 110.0, 12.0);
     cv::imwrite((folder / fmt::format("{}.jpg", timeAt(t_s).nanoseconds())).string(), picture,
-                {cv::IMWRITE_JPEG_QUALITY, 72});
+                {cv::IMWRITE_JPEG_QUALITY, 65});
   }
 }
 

@@ -12,7 +12,7 @@ namespace lodeline {
 namespace {
 
 constexpr int kWidth_px = 640;
-constexpr int kJpegQuality = 72;
+constexpr int kJpegQuality = 65;
 
 /// Removes what has a name that this class gives; the folder may hold other things of the user's.
 void removePictures(const std::filesystem::path& folder) {

@@ -18,7 +18,7 @@ std::vector<uint8_t> trackPicture(const FramePacket& packet, const FrontEnd& fro
 /// there are kMost of them, every second one is removed and the pause doubles.
 class SamplePictures {
  public:
-  static constexpr size_t kMost = 120;
+  static constexpr size_t kMost = 100;
 
   /// Makes the folder, and removes pictures of an earlier run from it. Throws InputError where that fails.
   explicit SamplePictures(const std::filesystem::path& folder);
