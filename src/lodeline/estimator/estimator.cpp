@@ -10,7 +10,6 @@
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
-#include "lodeline/estimator/window_solver.h"
 #include "lodeline/estimator/window_update.h"
 
 namespace lodeline {
@@ -192,17 +191,11 @@ void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* es
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  SolveSummary summary;
-  if (starting_up_) {
-    summary =
-        solveWindow(window_, marginalizer_.prior(), factors_, {options_.solver.max_iterations_startup, 1e-6});
-    rememberCovariance(jointCovariance(window_, marginalizer_.prior(), factors_), estimate);
-  } else {
-    WindowUpdate update =
-        updateWindow(window_, marginalizer_.prior(), factors_, {options_.solver.max_iterations, 1e-4});
-    summary = update.summary;
-    rememberCovariance(std::move(update.covariance), estimate);
-  }
+  const SolveLimits limits = starting_up_ ? SolveLimits{options_.solver.max_iterations_startup, 1e-6}
+                                          : SolveLimits{options_.solver.max_iterations, 1e-4};
+  WindowUpdate update = updateWindow(window_, marginalizer_.prior(), factors_, limits);
+  const SolveSummary summary = update.summary;
+  rememberCovariance(std::move(update.covariance), estimate);
   estimate->solver_iterations = summary.iterations;
   if (!summary.usable) {
     diagnostics_->report(
