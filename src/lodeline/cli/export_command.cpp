@@ -9,6 +9,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
+#include "lodeline/cli/export_depth.h"
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/export/map_files.h"
 #include "lodeline/export/recording_images.h"
@@ -26,6 +27,8 @@ struct ExportArguments {
   std::vector<double> entrance;
   std::vector<double> entrance_sigma = {3.0, 5.0};
   bool no_splays = false;
+  std::optional<double> start_depth_m;
+  DepthProfileArguments depth;
   DiveMapOptions map;
 };
 
@@ -54,6 +57,7 @@ DiveMapOptions mapOptions(const ExportArguments& arguments) {
   }
   options.entrance_sigma_m = arguments.entrance_sigma[0];
   options.entrance_height_sigma_m = arguments.entrance_sigma[1];
+  options.start_depth_m = arguments.start_depth_m.value_or(0.0);
   if (arguments.no_splays) options.passage.splay_sectors = 0;
   return options;
 }
@@ -61,13 +65,21 @@ DiveMapOptions mapOptions(const ExportArguments& arguments) {
 void exportRun(const ExportArguments& arguments) {
   std::vector<MapFormat> formats;
   for (const std::string& name : arguments.formats) formats.push_back(mapFormatFromString(name));
+  if (formats.empty() && arguments.depth.file.empty()) {
+    throw UsageError("nothing to do: name formats with --format, or a --depth-profile to compare with");
+  }
   Diagnostics diagnostics;
-  const RunFolder run = readRunFolder(arguments.run, &diagnostics);
-  const RecordingParts parts = readRecording(arguments, formats, run, &diagnostics);
-  const DiveMap map = makeDiveMap(run, mapOptions(arguments), parts.walls_W, &diagnostics);
+  RunFolder run = readRunFolder(arguments.run, &diagnostics);
+  DiveMapOptions options = mapOptions(arguments);
   std::filesystem::path folder = arguments.output;
   if (folder.empty()) folder = std::filesystem::path(arguments.run) / "export";
   createOutputFolder(folder);
+  if (!arguments.depth.file.empty()) {
+    applyDepthProfile(arguments.depth, folder, arguments.start_depth_m.has_value(), &run, &options,
+                      &diagnostics);
+  }
+  const RecordingParts parts = readRecording(arguments, formats, run, &diagnostics);
+  const DiveMap map = makeDiveMap(run, options, parts.walls_W, &diagnostics);
   std::string files;
   for (MapFormat format : formats) {
     for (const std::filesystem::path& file : writeMap(map, parts.images, format, folder)) {
@@ -92,8 +104,8 @@ void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  command->add_option("--start-depth", arguments->map.start_depth_m, "m of the first pose under that surface")
-      ->capture_default_str();
+  command->add_option("--start-depth", arguments->start_depth_m,
+                      "m of the first pose under that surface; without it, the depth profile's, else 0");
   command
       ->add_option("--geoid-height", arguments->map.geoid_height_m,
                    "m of the level that HEIGHT counts from above the WGS 84 ellipsoid; for GeoJSON")
@@ -136,16 +148,17 @@ void addExportCommand(CLI::App& program) {
   command
       ->add_option("-f,--format", arguments->formats,
                    "survex, therion, geojson, kml, gpx, ply, csv, tum, colmap; several with commas")
-      ->delimiter(',')
-      ->required();
+      ->delimiter(',');
   command->add_option("-o,--output", arguments->output, "folder for the files; without it, RUN/export");
   addPlaceOptions(command, arguments.get());
   addSurveyOptions(command, arguments.get());
+  addDepthOptions(command, &arguments->depth);
   command->footer(
       "Every file begins with where it is from, which north it uses and what was applied.\n"
       "Examples:\n"
       "  lodeline export out --format survex,therion,kml --entrance 29.83,-82.60,10 --date 2026-11-21\n"
-      "  lodeline export out --format csv,ply -o map");
+      "  lodeline export out --format csv,ply -o map\n"
+      "  lodeline export out --format survex --depth-profile computer.csv --correct-depth");
   command->callback([arguments] { exportRun(*arguments); });
 }
 

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lodeline/cli/test_program.h"
 #include "lodeline/evaluation/test_trajectories.h"
 
@@ -33,6 +35,12 @@ class ExportTest : public ::testing::Test {
   }
   std::string text(const std::string& file) const {
     return test::readText(folder_.path() / "run" / "export" / file);
+  }
+
+  static std::string flatProfile() {
+    std::string text = "time,depth\n";
+    for (int i = 0; i < 700; i += 10) text += fmt::format("{},6.0\n", i);
+    return text;
   }
 
   test::TemporaryFolder folder_;
@@ -77,6 +85,7 @@ TEST_F(ExportTest, EndsWithTwoOnWrongUsage) {
     EXPECT_THAT(result.output, HasSubstr(says)) << arguments;
   };
   expectUsageError("", "--format");
+  expectUsageError("-f csv --correct-depth", "--depth-profile");
   expectUsageError("-f dxf", "survex, therion");
   expectUsageError("-f kml", "--entrance");
   expectUsageError("-f kml --entrance 29.83", "--entrance");
@@ -86,6 +95,30 @@ TEST_F(ExportTest, EndsWithTwoOnWrongUsage) {
   expectUsageError("-f colmap", "--recording");
   setNorth("start heading");
   expectUsageError("-f survex --entrance 29.83,-82.6,0", "--turn");
+}
+
+TEST_F(ExportTest, ComparesAndCorrectsByADepthProfile) {
+  std::string poses, profile = "time,depth (ft)\n";
+  for (int i = 0; i <= 600; ++i) {
+    const double depth_m = 5.0 + 3.0 * std::sin(i / 40.0) + 0.01 * i;
+    poses +=
+        fmt::format("{}.5 {:.3f} 0 {:.4f} 0 0 0 1\n", 1795255200 + i, 0.1 * i, 5.0 - depth_m + 0.001 * i);
+    if (i % 10 == 0)
+      profile += fmt::format("{}:{:02},{:.1f}\n", (i + 30) / 60, (i + 30) % 60, depth_m / 0.3048);
+  }
+  folder_.write("run/trajectory.tum", poses);
+  const std::string file = test::quoted(folder_.write("computer.csv", profile));
+  const Execution compared = exportRun("--depth-profile " + file);
+  ASSERT_EQ(compared.exit_code, 0) << compared.output;
+  EXPECT_THAT(compared.output, HasSubstr("only compared"));
+  EXPECT_THAT(text("depth_profile.csv"), HasSubstr("profile_less_run [m]"));
+  const Execution corrected = exportRun("-f csv --correct-depth --depth-profile " + file);
+  ASSERT_EQ(corrected.exit_code, 0) << corrected.output;
+  EXPECT_THAT(text("run_stations.csv"), HasSubstr("vertical: corrected by the depth profile"));
+  const Execution uncertain = exportRun("-f csv --correct-depth --depth-profile " +
+                                        test::quoted(folder_.write("flat.csv", flatProfile())));
+  EXPECT_EQ(uncertain.exit_code, 1);
+  EXPECT_THAT(uncertain.output, HasSubstr("--profile-lag"));
 }
 
 TEST_F(ExportTest, EndsWithOneOnBadInput) {

@@ -116,6 +116,7 @@ DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
   for (const Vec3& wall : extra_walls_W) extra_walls_ENU.push_back(turnedClockwise(wall, map.north.turn_rad));
   survey(options, extra_walls_ENU, diagnostics, &map);
   map.notes = describe(map, run);
+  map.notes.insert(map.notes.end(), options.notes.begin(), options.notes.end());
   return map;
 }
 

@@ -34,6 +34,7 @@ struct DiveMapOptions {
   PassageOptions passage;
   int min_sightings = 3;  ///< of a landmark that is taken for wall
   bool is_closed = false;
+  std::vector<std::string> notes;  ///< what else the headers are to say
 };
 
 /// Everything that goes into maps, in east, north, up with the first pose as origin.

@@ -7,7 +7,7 @@
 namespace lodeline {
 
 struct PassageOptions {
-  double half_slab_m = 1.5;    ///< along the passage, in front of a station and behind it
+  double half_slab_m = 2.5;    ///< along the passage, in front of a station and behind it
   double reach_m = 30.0;       ///< wall points beyond are not looked at
   double cone_rad = 0.524;     ///< 30 degrees about left, right, up, down
   size_t min_cone_points = 5;  ///< that a distance takes

@@ -1,0 +1,205 @@
+#include "lodeline/export/depth_alignment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lodeline/base/error.h"
+#include "lodeline/evaluation/statistics.h"
+
+namespace lodeline {
+namespace {
+
+/// The run's depth relative to its origin, on a regular grid.
+std::vector<DepthReading> runDepths(const Trajectory& trajectory, size_t count) {
+  const std::vector<StampedPose>& poses = trajectory.poses;
+  const double begin_s = poses.front().time.seconds(), end_s = poses.back().time.seconds();
+  std::vector<DepthReading> depths;
+  size_t next = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const double time_s =
+        begin_s + (end_s - begin_s) * static_cast<double>(k) / static_cast<double>(count - 1);
+    while (next + 1 < poses.size() && poses[next].time.seconds() < time_s) ++next;
+    depths.push_back({time_s, -poses[next].world_from_body.translation.z()});
+  }
+  return depths;
+}
+
+/// The profile between its readings; nothing outside, and in gaps of more than a minute.
+std::optional<double> depthAt(const std::vector<DepthReading>& readings, double time_s) {
+  constexpr double kMaxGap_s = 60.0;
+  const auto after = std::lower_bound(readings.begin(), readings.end(), time_s,
+                                      [](const DepthReading& r, double t) { return r.time_s < t; });
+  if (after == readings.end()) return std::nullopt;
+  if (after->time_s == time_s) return after->depth_m;
+  if (after == readings.begin()) return std::nullopt;
+  const DepthReading& before = *(after - 1);
+  const double gap_s = after->time_s - before.time_s;
+  if (gap_s > kMaxGap_s) return std::nullopt;
+  return before.depth_m + (after->depth_m - before.depth_m) * (time_s - before.time_s) / gap_s;
+}
+
+/// Compares the run with the profile at one lag.
+class LagCost {
+ public:
+  LagCost(const DepthProfile& profile, std::vector<DepthReading> run)
+      : readings_(profile.readings), run_(std::move(run)) {
+    const double run_s = run_.back().time_s - run_.front().time_s;
+    const double profile_s = readings_.back().time_s - readings_.front().time_s;
+    fewest_ = static_cast<size_t>(0.8 * std::min(1.0, profile_s / run_s) * static_cast<double>(run_.size()));
+  }
+
+  /// Profile less run where both are there.
+  std::vector<double> differences(double lag_s) const {
+    std::vector<double> result;
+    for (const DepthReading& reading : run_) {
+      if (const std::optional<double> depth_m = depthAt(readings_, reading.time_s - lag_s)) {
+        result.push_back(*depth_m - reading.depth_m);
+      }
+    }
+    return result;
+  }
+
+  /// Mean absolute deviation from the median, the worst tenth left out; infinite with too little overlap.
+  double operator()(double lag_s) const {
+    std::vector<double> values = differences(lag_s);
+    if (values.size() < std::max<size_t>(fewest_, 3)) return std::numeric_limits<double>::infinity();
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    const double median = *middle;
+    for (double& value : values) value = std::abs(value - median);
+    const size_t kept = values.size() - values.size() / 10;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kept - 1), values.end());
+    double sum = 0.0;
+    for (size_t i = 0; i < kept; ++i) sum += values[i];
+    return sum / static_cast<double>(kept);
+  }
+
+  double firstLag() const { return run_.front().time_s - readings_.back().time_s; }
+  double lastLag() const { return run_.back().time_s - readings_.front().time_s; }
+  double runSeconds() const { return run_.back().time_s - run_.front().time_s; }
+
+ private:
+  const std::vector<DepthReading>& readings_;
+  std::vector<DepthReading> run_;
+  size_t fewest_ = 0;
+};
+
+struct LagSearch {
+  double lag_s = 0.0;
+  double cost = std::numeric_limits<double>::infinity();
+  /// Least cost at a lag that is another minimum: beyond the hill around the best.
+  double rival_cost = std::numeric_limits<double>::infinity();
+};
+
+/// The best of a row of lags, and the best beyond its valley (walked up both sides from it).
+LagSearch searchLags(const LagCost& cost, double first_s, double last_s, double step_s) {
+  std::vector<double> costs;
+  const auto count = static_cast<size_t>(std::max(1.0, std::floor((last_s - first_s) / step_s) + 1.0));
+  for (size_t i = 0; i < count; ++i) costs.push_back(cost(first_s + static_cast<double>(i) * step_s));
+  const auto best = static_cast<size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+  LagSearch result{first_s + static_cast<double>(best) * step_s, costs[best]};
+  size_t left = best, right = best;
+  while (left > 0 && (costs[left - 1] >= costs[left] || costs[left - 1] < 1.5 * costs[best])) --left;
+  while (right + 1 < count && (costs[right + 1] >= costs[right] || costs[right + 1] < 1.5 * costs[best]))
+    ++right;
+  for (size_t i = 0; i < left; ++i) result.rival_cost = std::min(result.rival_cost, costs[i]);
+  for (size_t i = right + 1; i < count; ++i) result.rival_cost = std::min(result.rival_cost, costs[i]);
+  return result;
+}
+
+/// Root of the mean square of the run's vertical speed, m/s.
+double verticalSpeed(const std::vector<DepthReading>& run) {
+  double sum = 0.0;
+  for (size_t i = 1; i < run.size(); ++i) {
+    const double speed = (run[i].depth_m - run[i - 1].depth_m) / (run[i].time_s - run[i - 1].time_s);
+    sum += speed * speed;
+  }
+  return std::sqrt(sum / static_cast<double>(run.size() - 1));
+}
+
+/// Slope of the profile's depth over the run's, by least squares.
+double slopeOf(const std::vector<DepthComparison>& pairs) {
+  double mean_run = 0.0, mean_profile = 0.0, covariance = 0.0, variance = 0.0;
+  for (const DepthComparison& pair : pairs) {
+    mean_run += pair.run_depth_m / static_cast<double>(pairs.size());
+    mean_profile += pair.profile_depth_m / static_cast<double>(pairs.size());
+  }
+  for (const DepthComparison& pair : pairs) {
+    covariance += (pair.run_depth_m - mean_run) * (pair.profile_depth_m - mean_profile);
+    variance += (pair.run_depth_m - mean_run) * (pair.run_depth_m - mean_run);
+  }
+  constexpr double kLeastStandardDeviation_m = 1.0;
+  const double enough =
+      kLeastStandardDeviation_m * kLeastStandardDeviation_m * static_cast<double>(pairs.size());
+  return variance > enough ? covariance / variance : 1.0;
+}
+
+std::string doubtOf(const LagSearch& search, const std::vector<DepthReading>& run, double resolution_m) {
+  std::vector<double> depths;
+  for (const DepthReading& reading : run) depths.push_back(reading.depth_m);
+  const Statistics spread = computeStatistics(depths);
+  if (spread.std < 2.0 * std::max(resolution_m, 0.02)) {
+    return fmt::format("the run's depth varies by only {:.2f} m (standard deviation)", spread.std);
+  }
+  if (search.rival_cost < 1.5 * std::max(search.cost, 0.25 * resolution_m)) {
+    return "another lag fits nearly as well";
+  }
+  if (search.cost > 0.5 * spread.std) {
+    return fmt::format("the courses differ by {:.2f} m at best (do both belong to the same dive?)",
+                       search.cost);
+  }
+  return "";
+}
+
+}  // namespace
+
+DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajectory,
+                           std::optional<double> known_lag_s) {
+  const std::vector<DepthReading> coarse = runDepths(trajectory, 300), fine = runDepths(trajectory, 3000);
+  const LagCost coarse_cost(profile, coarse), fine_cost(profile, fine);
+  DepthAlignment result;
+  if (known_lag_s) {
+    result.lag_s = *known_lag_s;
+  } else {
+    const double step_s = std::clamp(coarse_cost.runSeconds() / 300.0, 0.1, 1.0);
+    const LagSearch search = searchLags(coarse_cost, coarse_cost.firstLag(), coarse_cost.lastLag(), step_s);
+    result.doubt = doubtOf(search, coarse, profile.resolution_m);
+    result.lag_s =
+        searchLags(fine_cost, search.lag_s - 1.5 * step_s, search.lag_s + 1.5 * step_s, 0.05 * step_s).lag_s;
+  }
+  const std::vector<double> differences = fine_cost.differences(result.lag_s);
+  if (differences.size() < 3) {
+    throw InputError(
+        fmt::format("{}: the profile and the run have no time in common{}; leave --profile-lag out to "
+                    "have it found",
+                    profile.name, known_lag_s ? " at this lag" : ""));
+  }
+  result.start_depth_m = computeStatistics(differences).median;
+  std::vector<double> deviations = differences;
+  for (double& d : deviations) d -= result.start_depth_m;
+  result.rms_m = computeStatistics(deviations).rmse;
+  result.common_s =
+      fine_cost.runSeconds() * static_cast<double>(differences.size()) / static_cast<double>(fine.size());
+  result.slope = slopeOf(compareDepths(profile, trajectory, result));
+  // Differences stay alike for some ten seconds; so many of them are independent.
+  const double independent = std::max(1.0, result.common_s / 10.0);
+  result.lag_sigma_s = result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(independent);
+  return result;
+}
+
+std::vector<DepthComparison> compareDepths(const DepthProfile& profile, const Trajectory& trajectory,
+                                           const DepthAlignment& alignment) {
+  std::vector<DepthComparison> pairs;
+  for (const StampedPose& pose : trajectory.poses) {
+    const std::optional<double> depth_m = depthAt(profile.readings, pose.time.seconds() - alignment.lag_s);
+    if (!depth_m) continue;
+    pairs.push_back({pose.time, alignment.start_depth_m - pose.world_from_body.translation.z(), *depth_m});
+  }
+  return pairs;
+}
+
+}  // namespace lodeline

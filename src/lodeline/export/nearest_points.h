@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lodeline/geometry/types.h"
+
+namespace lodeline {
+
+/// Finds the nearest of many points.
+class NearestPoints {
+ public:
+  /// `points` must outlive the object and not be empty.
+  explicit NearestPoints(const std::vector<Vec3>& points);
+  ~NearestPoints();
+
+  /// Indices of the `count` points (or all, where there are fewer) nearest to a place, nearest first.
+  std::vector<size_t> find(const Vec3& place, size_t count) const;
+
+ private:
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
+
+}  // namespace lodeline
