@@ -9,6 +9,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/evaluation/statistics.h"
+#include "lodeline/magnetism/iron_fit.h"
 
 namespace lodeline {
 namespace {
@@ -185,9 +186,10 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   result.common_s =
       fine_cost.runSeconds() * static_cast<double>(differences.size()) / static_cast<double>(fine.size());
   result.slope = slopeOf(compareDepths(profile, trajectory, result));
-  // Differences stay alike for some ten seconds; so many of them are independent.
-  const double independent = std::max(1.0, result.common_s / 10.0);
-  result.lag_sigma_s = result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(independent);
+  // Neighbouring differences are alike: so many of them are independent.
+  const double independent = static_cast<double>(deviations.size()) / correlationFactor(deviations);
+  result.lag_sigma_s =
+      result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(std::max(independent, 1.0));
   return result;
 }
 

@@ -61,18 +61,26 @@ std::vector<Vec3> pointsAcross(const std::vector<Vec3>& walls, const Section& se
   return points;
 }
 
-/// Distance to the wall in a direction, from the points in a cone about it.
-std::optional<double> wallDistance(const std::vector<Vec3>& points, const Vec3& direction,
-                                   const PassageOptions& options) {
-  const double least_cosine = std::cos(options.cone_rad);
+/// Distances along a direction of the points in a cone about it.
+std::vector<double> distancesIn(const std::vector<Vec3>& points, const Vec3& direction, double cone_rad) {
+  const double least_cosine = std::cos(cone_rad);
   std::vector<double> distances;
   for (const Vec3& point : points) {
     const double distance = point.dot(direction);
     if (distance > least_cosine * point.norm()) distances.push_back(distance);
   }
-  if (distances.size() < options.min_cone_points) return std::nullopt;
-  std::sort(distances.begin(), distances.end());
-  return quantile(distances, options.share);
+  return distances;
+}
+
+std::optional<double> wallDistance(const std::vector<Vec3>& points, const Vec3& direction,
+                                   const PassageOptions& options) {
+  for (double cone_rad : {options.cone_rad, options.wide_cone_rad}) {
+    std::vector<double> distances = distancesIn(points, direction, cone_rad);
+    if (distances.size() < options.min_cone_points) continue;
+    std::sort(distances.begin(), distances.end());
+    return quantile(distances, options.share);
+  }
+  return std::nullopt;
 }
 
 std::vector<Vec3> chooseSplays(const std::vector<Vec3>& points, const Section& section,

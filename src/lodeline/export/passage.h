@@ -7,10 +7,11 @@
 namespace lodeline {
 
 struct PassageOptions {
-  double half_slab_m = 2.5;    ///< along the passage, in front of a station and behind it
-  double reach_m = 30.0;       ///< wall points beyond are not looked at
-  double cone_rad = 0.524;     ///< 30 degrees about left, right, up, down
-  size_t min_cone_points = 5;  ///< that a distance takes
+  double half_slab_m = 2.5;      ///< along the passage, in front of a station and behind it
+  double reach_m = 30.0;         ///< wall points beyond are not looked at
+  double cone_rad = 0.524;       ///< 30 degrees about left, right, up, down
+  double wide_cone_rad = 0.785;  ///< 45 degrees, where the cone holds too few points
+  size_t min_cone_points = 5;    ///< that a distance takes
   /// Of the distances in a cone: the median neither follows the nearest cobble nor a point that was placed
   /// far behind the wall.
   double share = 0.5;

@@ -93,6 +93,16 @@ HeadingReference headingReference(const std::string& name, const fs::path& file)
                   file.string(), name));
 }
 
+/// A summary without a heading is from a run that knew no north.
+void readHeading(const nlohmann::json& json, const fs::path& file, RunFolder* run) {
+  if (!json.contains("heading")) return;
+  const nlohmann::json& heading = json["heading"];
+  run->heading_reference = headingReference(heading.at("reference").get<std::string>(), file);
+  if (heading.contains("sigma_rad") && heading["sigma_rad"].is_number()) {
+    run->heading_sigma_rad = heading["sigma_rad"].get<double>();
+  }
+}
+
 void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
   if (!json.contains("camera_corrections")) return;
   for (const nlohmann::json& camera : json["camera_corrections"].at("cameras")) {
@@ -110,11 +120,7 @@ void readSummary(const fs::path& file, RunFolder* run) {
     const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
     run->program = json.value("program", "");
     run->recording = json.value("data", "");
-    const nlohmann::json& heading = json.at("heading");
-    run->heading_reference = headingReference(heading.at("reference").get<std::string>(), file);
-    if (heading.contains("sigma_rad") && heading["sigma_rad"].is_number()) {
-      run->heading_sigma_rad = heading["sigma_rad"].get<double>();
-    }
+    readHeading(json, file, run);
     readCameraCorrections(json, run);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(
