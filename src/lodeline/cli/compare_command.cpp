@@ -60,9 +60,10 @@ std::string distinctName(const std::string& name, const std::vector<ComparedReco
 bool makeRuns(const ComparisonInput& input, const ComparisonRequest& request, ComparedRecording* recording) {
   const Trajectory truth = readTruth(input.seeds.front().data);
   recording->name = input.name;
-  recording->extent = fmt::format(
-      "{}: {}, {:.1f} m, {} runs a method", input.origin, input.extent,
-      pathBetween_m(truth, input.expected_stamps.front(), input.expected_stamps.back()), input.seeds.size());
+  recording->extent =
+      fmt::format("{}: {}, {:.1f} m, {} run{} a method", input.origin, input.extent,
+                  pathBetween_m(truth, input.expected_stamps.front(), input.expected_stamps.back()),
+                  input.seeds.size(), input.seeds.size() == 1 ? "" : "s");
   for (const std::string& method : request.methods) {
     recording->methods.push_back({method, {}});
     for (const ComparisonSeed& seed : input.seeds) {
