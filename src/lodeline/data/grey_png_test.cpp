@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
+#include <random>
 #include <vector>
 
 #include "lodeline/data/png_filters.h"
@@ -58,6 +59,32 @@ TEST(GreyPng, UndoesEachFilterByHand) {
   EXPECT_EQ(pixels, (std::vector<uint8_t>{10, 20, 5, 6, 6, 7, 5, 8, 5, 8}));
   const std::vector<uint8_t> unknown = {5, 0, 0};
   EXPECT_FALSE(png::unfilter(unknown.data(), 2, 1, pixels.data()));
+}
+
+// Mostly Paeth, as adaptive encoders write photographs; the rows of every height and mixture.
+TEST(GreyPng, UndoesFiltersRowByRowAndAbreastAlike) {
+  constexpr int kWidth = 13;
+  std::mt19937 random(1);
+  for (int height = 1; height < 40; ++height) {
+    std::vector<uint8_t> filtered(static_cast<size_t>((kWidth + 1) * height));
+    for (uint8_t& byte : filtered) byte = static_cast<uint8_t>(random());
+    std::vector<uint8_t> expected(static_cast<size_t>(kWidth * height));
+    const auto at = [&](int x, int y) -> int {
+      return x < 0 || y < 0 ? 0 : expected[static_cast<size_t>(y * kWidth + x)];
+    };
+    for (int y = 0; y < height; ++y) {
+      uint8_t* row = filtered.data() + y * (kWidth + 1);
+      row[0] = static_cast<uint8_t>(random() % 3 > 0 ? 4 : random() % 5);
+      for (int x = 0; x < kWidth; ++x) {
+        const int a = at(x - 1, y), b = at(x, y - 1), c = at(x - 1, y - 1);
+        const int predicted[] = {0, a, b, (a + b) / 2, png::paeth(a, b, c)};
+        expected[static_cast<size_t>(y * kWidth + x)] = static_cast<uint8_t>(row[x + 1] + predicted[row[0]]);
+      }
+    }
+    std::vector<uint8_t> pixels(expected.size());
+    ASSERT_TRUE(png::unfilter(filtered.data(), kWidth, height, pixels.data()));
+    EXPECT_EQ(pixels, expected) << height << " rows";
+  }
 }
 
 TEST(GreyPng, GivesBackWhatWasEncoded) {

@@ -1,5 +1,7 @@
 #include "lodeline/data/png_filters.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -9,87 +11,109 @@ namespace {
 
 enum Filter : uint8_t { kNone = 0, kSub = 1, kUp = 2, kAverage = 3, kPaeth = 4 };
 
-/// Undoes Paeth along one row, a pixel at a time.
-class PaethRow {
- public:
-  PaethRow(const uint8_t* filtered, uint8_t* row) : filtered_(filtered), row_(row) {}
+constexpr int kLanes = 8;
+using Short8 = int16_t __attribute__((vector_size(2 * kLanes)));
 
-  void step(int x, int up) {
-    left_ = static_cast<uint8_t>(filtered_[x] + paeth(left_, up, up_left_));
-    up_left_ = up;
-    row_[x] = static_cast<uint8_t>(left_);
-  }
-  int left() const { return left_; }
-
- private:
-  const uint8_t* filtered_;
-  uint8_t* row_;
-  int left_ = 0;
-  int up_left_ = 0;
-};
-
-void unfilterPaeth(const uint8_t* filtered, const uint8_t* above, int width, uint8_t* row) {
-  PaethRow paeth_row(filtered, row);
-  for (int x = 0; x < width; ++x) paeth_row.step(x, above[x]);
-}
-
-/// Each pixel waits for its left neighbour, so a row alone leaves the processor idle; the row below follows
-/// one pixel behind and fills the time.
-void unfilterPaethPair(const uint8_t* filtered, const uint8_t* above, int width, uint8_t* rows) {
-  PaethRow first(filtered, rows);
-  PaethRow second(filtered + width + 1, rows + width);
-  first.step(0, above[0]);
-  for (int x = 1; x < width; ++x) {
-    const int up_of_second = first.left();
-    first.step(x, above[x]);
-    second.step(x - 1, up_of_second);
-  }
-  second.step(width - 1, first.left());
-}
-
-bool unfilterRow(uint8_t filter, const uint8_t* filtered, const uint8_t* above, int width, uint8_t* row) {
-  uint8_t left = 0;
+void unfilterRow(uint8_t filter, const uint8_t* filtered, const uint8_t* above, int width, uint8_t* row) {
+  uint8_t left = 0, up_left = 0;
   switch (filter) {
     case kNone:
       std::memcpy(row, filtered, static_cast<size_t>(width));
-      return true;
+      return;
     case kSub:
       for (int x = 0; x < width; ++x) row[x] = left = static_cast<uint8_t>(filtered[x] + left);
-      return true;
+      return;
     case kUp:
       for (int x = 0; x < width; ++x) row[x] = static_cast<uint8_t>(filtered[x] + above[x]);
-      return true;
+      return;
     case kAverage:
-      for (int x = 0; x < width; ++x) {
+      for (int x = 0; x < width; ++x)
         row[x] = left = static_cast<uint8_t>(filtered[x] + (left + above[x]) / 2);
-      }
-      return true;
-    case kPaeth:
-      unfilterPaeth(filtered, above, width, row);
-      return true;
+      return;
     default:
-      return false;
+      for (int x = 0; x < width; ++x) {
+        row[x] = left = static_cast<uint8_t>(filtered[x] + paeth<int>(left, above[x], up_left));
+        up_left = above[x];
+      }
   }
 }
+
+/// Whether rows are quicker abreast than one by one: Paeth alone is slow enough.
+bool payAbreast(const uint8_t* filtered, int width, int rows) {
+  constexpr int kFewest = 3;
+  int slow = 0;
+  for (int r = 0; r < rows; ++r) slow += filtered[r * (width + 1)] == kPaeth;
+  return filtered[0] == kPaeth && slow >= kFewest;
+}
+
+/// Paeth makes each pixel wait for its left neighbour, so a row alone leaves the processor idle. Here eight
+/// rows go abreast, one to a lane, each a pixel behind the row above it.
+class RowsAbreast {
+ public:
+  explicit RowsAbreast(int width) : width_(width), steps_(static_cast<size_t>(width + kLanes - 1)) {}
+
+  /// Any filters; `rows` may be fewer than lanes.
+  void unfilter(const uint8_t* filtered, const uint8_t* above, int rows, uint8_t* pixels) {
+    load(filtered, rows);
+    Short8 left{}, up_left{};
+    for (size_t k = 0; k < steps_.size(); ++k) {
+      // Lanes that have not come to their row yet see zeros all around and stay zero.
+      Short8 up = __builtin_shuffle(left, Short8{0, 0, 1, 2, 3, 4, 5, 6});
+      up[0] = k < static_cast<size_t>(width_) ? above[k] : 0;
+      const Short8 predicted = (is_[kSub] & left) | (is_[kUp] & up) | (is_[kAverage] & ((left + up) >> 1)) |
+                               (is_[kPaeth] & paeth(left, up, up_left));
+      left = (steps_[k] + predicted) & 255;
+      up_left = up;
+      steps_[k] = left;
+    }
+    for (int r = 0; r < rows; ++r) {
+      uint8_t* row = pixels + r * width_;
+      const int16_t* lane = laneOf(r);
+      for (int x = 0; x < width_; ++x) row[x] = static_cast<uint8_t>(lane[x * kLanes]);
+    }
+  }
+
+ private:
+  void load(const uint8_t* filtered, int rows) {
+    std::fill(steps_.begin(), steps_.end(), Short8{});
+    is_ = {};
+    for (int r = 0; r < rows; ++r) {
+      const uint8_t* row = filtered + r * (width_ + 1);
+      is_[row[0]][r] = -1;
+      int16_t* lane = laneOf(r);
+      for (int x = 0; x < width_; ++x) lane[x * kLanes] = row[x + 1];
+    }
+  }
+
+  /// Of a row's first pixel; the others follow at a distance of kLanes.
+  int16_t* laneOf(int row) { return reinterpret_cast<int16_t*>(&steps_[static_cast<size_t>(row)]) + row; }
+
+  int width_;
+  std::vector<Short8> steps_;            ///< first the filtered bytes, then the pixels
+  std::array<Short8, kPaeth + 1> is_{};  ///< by filter: all bits set in the lanes that have it
+};
 
 }  // namespace
 
 bool unfilter(const uint8_t* filtered, int width, int height, uint8_t* pixels) {
+  const ptrdiff_t stride = width + 1;
+  for (int y = 0; y < height; ++y) {
+    if (filtered[y * stride] > kPaeth) return false;
+  }
   const std::vector<uint8_t> black(static_cast<size_t>(width), 0);
   const uint8_t* above = black.data();
-  const ptrdiff_t stride = width + 1;
+  RowsAbreast abreast(width);
   for (int y = 0; y < height;) {
-    if (y + 1 < height && filtered[0] == kPaeth && filtered[stride] == kPaeth) {
-      unfilterPaethPair(filtered + 1, above, width, pixels);
-      filtered += 2 * stride;
-      pixels += 2 * width;
-      y += 2;
+    int rows = std::min(kLanes, height - y);
+    if (payAbreast(filtered, width, rows)) {
+      abreast.unfilter(filtered, above, rows, pixels);
     } else {
-      if (!unfilterRow(filtered[0], filtered + 1, above, width, pixels)) return false;
-      filtered += stride;
-      pixels += width;
-      ++y;
+      rows = 1;
+      unfilterRow(filtered[0], filtered + 1, above, width, pixels);
     }
+    filtered += rows * stride;
+    pixels += rows * width;
+    y += rows;
     above = pixels - width;
   }
   return true;

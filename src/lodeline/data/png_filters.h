@@ -1,19 +1,19 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 namespace lodeline::png {
 
 /// The Paeth predictor: whichever of left, up and up-left is nearest to left + up - up_left, in this order
-/// among equals. Written
-/// with comparisons of left and up against 3 up_left - left - up instead of three absolute differences, which
-/// compiles without branches; the test compares it with the definition for all arguments.
-inline int paeth(int left, int up, int up_left) {
-  const int threshold = 3 * up_left - left - up;
-  const int low = std::min(left, up);
-  const int high = std::max(left, up);
-  const int upper = high <= threshold ? low : up_left;
+/// among equals; of integers, or of vectors of them element by element. Written with comparisons of left and
+/// up against 3 up_left - left - up instead of three absolute differences, which compiles without branches;
+/// the test compares it with the definition for all arguments.
+template <typename T>
+T paeth(T left, T up, T up_left) {
+  const T threshold = 3 * up_left - left - up;
+  const T low = left < up ? left : up;
+  const T high = left < up ? up : left;
+  const T upper = high <= threshold ? low : up_left;
   return threshold <= low ? high : upper;
 }
 
