@@ -22,6 +22,12 @@ set_target_properties(geographiclib::geographiclib PROPERTIES
                       IMPORTED_LOCATION ${GEOGRAPHICLIB_LIBRARY}
                       INTERFACE_INCLUDE_DIRECTORIES ${GEOGRAPHICLIB_INCLUDE_DIR})
 find_package(nanoflann REQUIRED)
+# Debian's cpp-httplib brings no CMake package on Debian 12.
+find_path(HTTPLIB_INCLUDE_DIR httplib.h REQUIRED)
+find_library(HTTPLIB_LIBRARY NAMES cpp-httplib REQUIRED)
+add_library(httplib::httplib UNKNOWN IMPORTED)
+set_target_properties(httplib::httplib PROPERTIES IMPORTED_LOCATION ${HTTPLIB_LIBRARY}
+                      INTERFACE_INCLUDE_DIRECTORIES ${HTTPLIB_INCLUDE_DIR})
 find_package(TBB REQUIRED COMPONENTS tbb)
 # Embree 4 on Ubuntu 24.04, 3 on Debian 12.
 find_package(embree 4 QUIET)

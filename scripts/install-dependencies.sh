@@ -10,6 +10,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libgeographiclib-dev libnanoflann-dev libembree-dev libtbb-dev
   gnuplot-nox
+  libcpp-httplib-dev
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
 )
 

@@ -27,8 +27,9 @@ const kKinds: Kind[] = [
   },
 ];
 
+/// Error only where there is a reference; the rest every run has, if not yet.
 export function available(tracks: Track[]): { value: Colouring; text: string }[] {
-  return kKinds.filter((kind) => tracks.some((track) => kind.values(track).some((v) => v !== null)));
+  return kKinds.filter(({ value }) => value !== "error" || tracks.some((track) => track.run.evaluation));
 }
 
 export interface ColourScale {

@@ -88,7 +88,10 @@ export interface Run {
 
 export interface PageData {
   live: boolean;
-  runs: Run[];
+  runs: Run[]; // none while live
+  name?: string; // these while live
+  data?: string;
+  camera_axis_B?: number[];
 }
 
 export function readPageData(): PageData {

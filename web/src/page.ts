@@ -42,7 +42,7 @@ function plots(view: View): HTMLElement {
     element("p", "note", "Drag to zoom in, double-click to zoom out, click to select a pose; the figures of all plots follow the pointer."),
     element("div", "grid",
       statusCard(view, "status", "Status", [{ name: "images", column: "status" }, { name: "magnetometer", column: "magnetometer" }]),
-      ...kPlots.map((spec) => plotCard(view, spec))));
+      ...kPlots.map((spec) => plotCard(view, spec.make))));
 }
 
 function magnetometer(view: View): HTMLElement | null {

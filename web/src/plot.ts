@@ -142,19 +142,22 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
     plot?.destroy();
     plot = null;
     if (!current) return;
-    const data = [current.t_s, ...current.series.map((s) => s.values)] as uPlot.AlignedData;
-    plot = new uPlot(options(current, view, drawing.clientWidth), data, drawing);
+    plot = new uPlot(options(current, view, drawing.clientWidth), dataOf(current), drawing);
     selectOnClick(plot, view);
   };
   let seen = false;
   view.active.watch(() => {
+    const before = current;
     current = spec(view);
     card.hidden = current === null;
     if (!current) return;
     card.id = `plot-${current.id}`;
     title.textContent = current.unit ? `${current.title} (${current.unit})` : current.title;
     note.textContent = current.note ?? "";
-    if (seen) make();
+    if (!seen) return;
+    // A run that goes on has more of the same.
+    if (plot && before && haveSameCurves(before, current)) plot.setData(dataOf(current));
+    else make();
   });
   view.time.watch(() => plot?.redraw(false));
   whenThemeChanges(() => {
@@ -167,6 +170,16 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
     whenResized(drawing, (width) => plot && width > 0 && plot.setSize({ width, height: current?.height_px ?? 190 }));
   });
   return card;
+}
+
+function dataOf(spec: PlotSpec): uPlot.AlignedData {
+  return [spec.t_s, ...spec.series.map((s) => s.values)] as uPlot.AlignedData;
+}
+
+/// What is drawn by a hook may be another thing under the same name.
+function haveSameCurves(a: PlotSpec, b: PlotSpec): boolean {
+  const names = (spec: PlotSpec) => spec.series.map((s) => s.label).join();
+  return a.id === b.id && a.title === b.title && names(a) === names(b) && !b.hook;
 }
 
 function pictureTitle(spec: PlotSpec): string {

@@ -155,21 +155,32 @@ function yawError(view: View): PlotSpec | null {
   } : null;
 }
 
-export const kPlots: ((view: View) => PlotSpec | null)[] = [
-  heading,
-  depth,
-  uncertainty,
-  positionSigma,
-  yawError,
-  ofStates("velocity", "Velocity in the world", "m/s", (a) => `v_${a} [m/s]`, 1, (a) => `sigma_v_${a} [m/s]`),
-  ofStates("gyroscope-bias", "Gyroscope bias", "°/s", (a) => `b_g_${a} [rad/s]`, kDegrees, (a) => `sigma_b_g_${a} [rad/s]`),
-  ofStates("accelerometer-bias", "Accelerometer bias", "m/s²", (a) => `b_a_${a} [m/s^2]`, 1, (a) => `sigma_b_a_${a} [m/s^2]`),
-  tracks,
-  reprojection,
-  timings,
+type Make = (view: View) => PlotSpec | null;
+
+export const kPlots: { id: string; make: Make }[] = [
+  { id: "heading", make: heading },
+  { id: "depth", make: depth },
+  { id: "heading-sigma", make: uncertainty },
+  { id: "position-sigma", make: positionSigma },
+  { id: "yaw-error", make: yawError },
+  {
+    id: "velocity",
+    make: ofStates("velocity", "Velocity in the world", "m/s", (a) => `v_${a} [m/s]`, 1, (a) => `sigma_v_${a} [m/s]`),
+  },
+  {
+    id: "gyroscope-bias",
+    make: ofStates("gyroscope-bias", "Gyroscope bias", "°/s", (a) => `b_g_${a} [rad/s]`, kDegrees, (a) => `sigma_b_g_${a} [rad/s]`),
+  },
+  {
+    id: "accelerometer-bias",
+    make: ofStates("accelerometer-bias", "Accelerometer bias", "m/s²", (a) => `b_a_${a} [m/s^2]`, 1, (a) => `sigma_b_a_${a} [m/s^2]`),
+  },
+  { id: "tracks", make: tracks },
+  { id: "reprojection", make: reprojection },
+  { id: "timings", make: timings },
 ];
 
-export const kMagnetometerPlots: ((view: View) => PlotSpec | null)[] = [
+export const kMagnetometerPlots: Make[] = [
   ofStates("magnetometer-offset", "Magnetometer offset", "µT", (a) => `offset_${a} [T]`, 1e6),
   ofStates("field", "Field in the world", "µT", (a) => `field_${a} [T]`, 1e6),
 ];

@@ -74,6 +74,20 @@ export class SpaceView {
     this.draw();
   }
 
+  /// A run that goes on outgrows the view; then it moves back, looking the same way.
+  private refit(): void {
+    const place = placeOf(this.view.tracks);
+    const growth = place.reach / this.place.reach;
+    if (growth < 1.15) return;
+    this.place = place;
+    const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(growth);
+    this.controls.target.copy(place.middle);
+    this.camera.position.copy(place.middle).add(away);
+    this.camera.far = Math.max(this.camera.far, 200 * place.radius);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+  }
+
   private resize(width: number, height: number): void {
     if (width === 0 || height === 0) return;
     const first = !this.sized;
@@ -93,6 +107,7 @@ export class SpaceView {
       (drawable.material as THREE.Material | undefined)?.dispose?.();
     });
     this.content.clear();
+    this.refit();
     const track = view.active.value;
     if (track.position.length > 1) this.content.add(trajectoryLine(track, view.colouring.value));
     view.tracks.forEach((other, i) => {

@@ -17,21 +17,24 @@ export interface Track {
   headingSigma_deg: (number | null)[];
   positionSigma_m: (number | null)[];
   error_m: (number | null)[];
+  map: WorldMap;
   landmarks: Float32Array; // x y z x y z ..., in the world that the page shows
 }
 
 export function makeTrack(run: Run): Track {
   const map = new WorldMap(run);
-  const axis = (run.summary.rig?.camera_axis_B ?? [1, 0, 0]) as Vec3;
   const track: Track = {
-    run, row: [], t_s: [], position: [], view: [], heading_deg: [], depth_m: [], headingSigma_deg: [],
+    run, map, row: [], t_s: [], position: [], view: [], heading_deg: [], depth_m: [], headingSigma_deg: [],
     positionSigma_m: [], error_m: [], landmarks: mapped(decodeFloats(run.landmarks.xyz), map),
   };
-  for (let row = 0; row < run.states.t_s.length; ++row) appendPose(track, map, axis, row);
+  for (let row = 0; row < run.states.t_s.length; ++row) appendPose(track, row);
   return track;
 }
 
-function appendPose(track: Track, map: WorldMap, axis: Vec3, row: number): void {
+/// Takes a row of the states along, where it has a position.
+export function appendPose(track: Track, row: number): void {
+  const { map } = track;
+  const axis = (track.run.summary.rig?.camera_axis_B ?? [1, 0, 0]) as Vec3;
   const n = track.run.states.numbers;
   const x = n["p_x [m]"][row];
   if (x === null) return;

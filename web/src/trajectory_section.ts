@@ -67,11 +67,13 @@ function spaceCard(view: View): HTMLElement {
   return card;
 }
 
-function mapCard(view: View, title: string, flattening: (view: View) => Flattening): HTMLElement {
+function mapCard(view: View, title: (view: View) => string, flattening: (view: View) => Flattening): HTMLElement {
   const map = new MapView(view, flattening);
-  const name = () => fileName(view.active.value.run.name, title.toLowerCase());
-  const tools = element("div", "tools", button("PNG", "Download this picture", () => savePng(name(), map.canvas, title)));
-  return element("article", "card", element("header", "", element("h3", "", title), tools), map.node);
+  const head = element("h3");
+  view.active.watch(() => (head.textContent = title(view)));
+  const name = () => fileName(view.active.value.run.name, title(view).toLowerCase());
+  const tools = element("div", "tools", button("PNG", "Download this picture", () => savePng(name(), map.canvas, title(view))));
+  return element("article", "card", element("header", "", head, tools), map.node);
 }
 
 export function trajectorySection(view: View): HTMLElement {
@@ -81,6 +83,6 @@ export function trajectorySection(view: View): HTMLElement {
     colourBar(view), toggles(view));
   return section("trajectory", "Trajectory", bar,
     element("div", "split", spaceCard(view), posePanel(view)),
-    element("div", "pair", mapCard(view, `From above, ${worldNames(view).up} is up`, fromAbove),
-      mapCard(view, "From the side", fromTheSide)));
+    element("div", "pair", mapCard(view, () => `From above, ${worldNames(view).up} is up`, fromAbove),
+      mapCard(view, () => "From the side", fromTheSide)));
 }

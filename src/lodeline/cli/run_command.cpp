@@ -13,6 +13,8 @@
 namespace lodeline {
 namespace {
 
+constexpr int kLivePort = 8642;
+
 /// Turns a run without a result into the error that explains it.
 void requireResult(const RunRequest& request, const RunSummary& summary) {
   if (summary.interrupted || summary.posed() > 0) return;
@@ -61,6 +63,17 @@ void addRunCommand(CLI::App& program) {
   command->add_option("--site", arguments->site,
                       "LAT,LON,HEIGHT (degrees, m) of the recording, for true north");
   command->add_option("--date", arguments->date, "YYYY-MM-DD of the recording, for true north");
+  command
+      ->add_option("--live", arguments->live_port,
+                   "show the run in the browser while it goes on, at this port; 0 for any")
+      ->type_name("[PORT]")
+      ->expected(0, 1)
+      ->default_str(std::to_string(kLivePort))
+      ->check(CLI::Range(0, 65535));
+  command
+      ->add_option("--live-address", arguments->live_address,
+                   "network address for --live; 0.0.0.0 lets other machines see it")
+      ->capture_default_str();
   auto no_report = std::make_shared<bool>(false);
   command->add_flag("--no-report", *no_report, "leave out report.html and its pictures");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
@@ -70,6 +83,7 @@ void addRunCommand(CLI::App& program) {
       "  lodeline run dive1 -o left_only --set source.cameras=[0]\n"
       "  lodeline run dive1 -o north --mag-calibration mag.yaml --site 29.83,-82.60,20 --date 2026-11-21\n"
       "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
+      "  lodeline run dive1 -o dive1_result --live\n"
       "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json,\n"
       "report.html (all of it to look at); pictures of tracks in frames.");
   command->callback([arguments, no_report] { run(*arguments, !*no_report); });

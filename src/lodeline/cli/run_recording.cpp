@@ -15,6 +15,7 @@
 #include "lodeline/cli/stop_request.h"
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/estimator/attitude_track.h"
+#include "lodeline/live/live_view.h"
 #include "lodeline/report/run_output.h"
 
 namespace lodeline {
@@ -55,6 +56,12 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
 void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* attitude, const Rig& rig,
              const RunRequest& request, RunSummary* summary) {
   RunOutput output(request.output, rig, {request.draw_tracks_s, request.sample_pictures});
+  std::optional<LiveView> live;
+  if (request.live_port) {
+    const std::string name = std::filesystem::absolute(request.output).filename().string();
+    live.emplace(request.live_address, *request.live_port, name, request.data, rig);
+    if (!request.quiet) fmt::print(stderr, "live at {}\n", live->url());
+  }
   RunProgress progress(request.quiet);
   const StopRequest stop;
   const Clock::time_point start = Clock::now();
@@ -66,6 +73,7 @@ void process(Synchronizer& synchronizer, Odometry& odometry, AttitudeTrack* atti
     summary->add(estimate);
     for (const cv::Mat& image : packet->images) summary->images += image.empty() ? 0 : 1;
     summary->wall_s = secondsSince(start);
+    if (live) live->show(*packet, estimate, *summary, odometry.frontEnd());
     progress.show(*summary);
   }
   progress.end();

@@ -22,7 +22,9 @@ struct RunRequest {
   std::string site;              ///< LAT,LON,HEIGHT (degrees, m); empty likewise
   std::string date;              ///< YYYY-MM-DD; empty likewise
   bool sample_pictures = false;  ///< keep pictures for report.html
-  bool quiet = false;            ///< no progress
+  std::optional<int> live_port;  ///< show the run in the browser; 0 for any port
+  std::string live_address = "127.0.0.1";  ///< from where that can be seen
+  bool quiet = false;                      ///< no progress
 };
 
 /// Puts what the request says over the defaults. `settings` keeps pointing to `options`. Throws UsageError.

@@ -1,0 +1,87 @@
+#include "lodeline/live/live_view.h"
+
+#include <nlohmann/json.hpp>
+
+#include "lodeline/page/base64.h"
+#include "lodeline/page/report_page.h"
+#include "lodeline/page/table_json.h"
+#include "lodeline/report/sample_pictures.h"
+
+namespace lodeline {
+namespace {
+
+constexpr std::chrono::milliseconds kStatePause(100);
+constexpr std::chrono::milliseconds kPicturePause(500);
+constexpr int kPictureWidth_px = 480;
+
+std::string livePage(const std::string& name, const std::string& data, const Rig& rig) {
+  const Vec3 axis = rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ();
+  return fillPage({{"live", true},
+                   {"name", name},
+                   {"data", data},
+                   {"camera_axis_B", {axis.x(), axis.y(), axis.z()}},
+                   {"runs", nlohmann::ordered_json::array()}});
+}
+
+/// Under the names of states.csv, so that the page can treat both alike.
+nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
+  const Vec3& p = estimate.state.world_from_body.translation;
+  const Quat& q = estimate.state.world_from_body.rotation;
+  const Eigen::VectorXd sigma = estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return {{"p_x [m]", shortNumber(p.x())},
+          {"p_y [m]", shortNumber(p.y())},
+          {"p_z [m]", shortNumber(p.z())},
+          {"q_w", shortNumber(q.w())},
+          {"q_x", shortNumber(q.x())},
+          {"q_y", shortNumber(q.y())},
+          {"q_z", shortNumber(q.z())},
+          {"sigma_p_x [m]", shortNumber(sigma[0])},
+          {"sigma_p_y [m]", shortNumber(sigma[1])},
+          {"sigma_p_z [m]", shortNumber(sigma[2])},
+          {"sigma_heading [rad]", shortNumber(estimate.magnetometer.heading_sigma_rad)},
+          {"tracks", estimate.tracks},
+          {"landmarks", estimate.landmarks},
+          {"reprojection_rms [sigma]", shortNumber(estimate.reprojection_rms_sigmas)}};
+}
+
+nlohmann::ordered_json stateOf(const FrameEstimate& estimate, const RunSummary& summary, double t_s) {
+  nlohmann::ordered_json json;
+  json["t_s"] = shortNumber(t_s);
+  const bool has_pose = estimate.status != Status::Waiting;
+  if (has_pose) json["numbers"] = numbersOf(estimate);
+  json["words"] = {{"status", toString(estimate.status)},
+                   {"magnetometer", toString(estimate.magnetometer.status)}};
+  json["run"] = {{"frames", summary.frames()},
+                 {"path_m", shortNumber(summary.pathLength_m())},
+                 {"real_time_factor", shortNumber(summary.realTimeFactor())},
+                 {"heading_reference", toString(estimate.magnetometer.heading_reference)},
+                 {"waiting_for", estimate.waiting_for}};
+  return json;
+}
+
+}  // namespace
+
+LiveView::LiveView(const std::string& address, int port, const std::string& name, const std::string& data,
+                   const Rig& rig)
+    : server_(address, port, livePage(name, data, rig)) {}
+
+LiveView::~LiveView() { server_.send("end", "{}"); }
+
+void LiveView::show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
+                    const FrontEnd& front_end) {
+  if (!first_time_) first_time_ = packet.time;
+  const double t_s = (packet.time - *first_time_).seconds();
+  const Clock::time_point now = Clock::now();
+  if (now >= next_state_) {
+    next_state_ = now + kStatePause;
+    server_.sendAndKeep("state", stateOf(estimate, summary, t_s).dump());
+  }
+  if (now < next_picture_ || !server_.isWatched()) return;
+  const std::vector<uint8_t> jpeg = trackPicture(packet, front_end, kPictureWidth_px);
+  if (jpeg.empty()) return;
+  next_picture_ = now + kPicturePause;
+  const nlohmann::ordered_json json = {{"t_s", shortNumber(t_s)}, {"jpeg", base64(jpeg)}};
+  server_.send("picture", json.dump());
+}
+
+}  // namespace lodeline

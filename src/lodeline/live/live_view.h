@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "lodeline/data/frame_packet.h"
+#include "lodeline/features/front_end.h"
+#include "lodeline/live/live_server.h"
+#include "lodeline/report/run_summary.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// Shows a run in the browser while it goes on: a few times a second what is known of the newest frame, less
+/// often its image with the tracks. Takes nothing from the run but some of its time, and gives it nothing.
+class LiveView {
+ public:
+  /// `name` of the run and `data` it reads, for the page. Throws UsageError where the port cannot be had or
+  /// the program was built without the page.
+  LiveView(const std::string& address, int port, const std::string& name, const std::string& data,
+           const Rig& rig);
+  /// Tells browsers that the run has ended.
+  ~LiveView();
+
+  std::string url() const { return server_.url(); }
+
+  /// To be called after each frame; does nothing for most of them.
+  void show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
+            const FrontEnd& front_end);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  LiveServer server_;
+  Clock::time_point next_state_ = Clock::now();
+  Clock::time_point next_picture_ = Clock::now();
+  std::optional<Time> first_time_;
+};
+
+}  // namespace lodeline

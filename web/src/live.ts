@@ -1,0 +1,116 @@
+// The page while a run goes on: what the program tells over server-sent events, shown as it comes.
+
+import type { PageData, Run } from "./data";
+import { append, element, section, toggle } from "./dom";
+import { headingDial } from "./heading_dial";
+import { number } from "./format";
+import { kPlots } from "./plots";
+import { plotCard } from "./plot";
+import { statusCard } from "./status_strip";
+import { appendPose, makeTrack } from "./track";
+import { trajectorySection } from "./trajectory_section";
+import { View } from "./view";
+
+/// What LiveView sends of a frame; columns have the names of states.csv.
+interface State {
+  t_s: number;
+  numbers?: Record<string, number | null>;
+  words: Record<string, string>;
+  run: { frames: number; path_m: number; real_time_factor: number; heading_reference: string; waiting_for: string };
+}
+
+const kRedraw_ms = 500;
+const kMostPictures = 40;
+const kLivePlots = ["heading", "depth", "heading-sigma", "tracks"];
+
+function emptyRun(data: PageData): Run {
+  const run: Run = {
+    name: data.name ?? "run", origin_ns: "0", config: "", evaluation: null, timings: null, magnetometer: null, pictures: [],
+    summary: { data: data.data, rig: { camera_axis_B: data.camera_axis_B }, heading: {} },
+    states: { total: 0, stride: 1, t_s: [], numbers: {}, words: { status: [], magnetometer: [] } },
+    landmarks: { total: 0, xyz: "" },
+  };
+  for (const name of ["p_x [m]", "p_y [m]", "p_z [m]", "q_w", "q_x", "q_y", "q_z", "sigma_p_x [m]", "sigma_p_y [m]", "sigma_p_z [m]",
+    "sigma_heading [rad]", "tracks", "landmarks", "reprojection_rms [sigma]"]) run.states.numbers[name] = [];
+  return run;
+}
+
+/// The newest words and figures.
+function nowPanel(): { node: HTMLElement; show: (state: State) => void } {
+  const dial = headingDial();
+  const list = element("dl", "figures");
+  const word = element("strong", "status-word", "connecting");
+  const show = (state: State) => {
+    const { run, words, numbers } = state;
+    word.textContent = words.status === "waiting" ? `waiting for ${run.waiting_for}` : words.status;
+    word.dataset.status = words.status;
+    const rows: [string, string][] = [
+      ["Time", `${number(state.t_s, 4)} s, frame ${run.frames}`],
+      ["Ratio to real time", `${number(run.real_time_factor, 3)} ×`],
+      ["Path", `${number(run.path_m, 4)} m`],
+      ["Tracks", numbers ? `${numbers["tracks"]}, ${numbers["landmarks"]} of them landmarks` : "–"],
+      ["Magnetometer", words.magnetometer],
+    ];
+    list.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", "", name), element("dd", "", value)]));
+  };
+  return {
+    node: element("article", "card now", element("div", "now-text", word, list), dial.node),
+    show: (state) => {
+      show(state);
+      dial.show(state);
+    },
+  };
+}
+
+export function startLive(page: Element, data: PageData): void {
+  const run = emptyRun(data);
+  const track = makeTrack(run);
+  const view = new View([track]);
+  const now = nowPanel();
+  let follow = true;
+  let dirty = false;
+  append(now.node, toggle("Follow the newest pose", true, (on) => (follow = on)));
+  view.shown.set({ ...view.shown.value, pictures: false }); // of the last seconds only
+  document.title = `${run.name} – Lodeline, live`;
+  append(page,
+    element("header", "head", element("p", "mark", "Lodeline live"), element("h1", "", run.name), element("p", "from", run.summary.data ?? "")),
+    now.node, trajectorySection(view),
+    section("plots", "Over time", element("div", "grid",
+      statusCard(view, "status", "Status", [{ name: "images", column: "status" }, { name: "magnetometer", column: "magnetometer" }]),
+      ...kPlots.filter((spec) => kLivePlots.includes(spec.id)).map((spec) => plotCard(view, spec.make)))));
+
+  const events = new EventSource("events");
+  events.addEventListener("state", (event) => {
+    const state = JSON.parse((event as MessageEvent<string>).data) as State;
+    // After a broken connection the server tells everything from the start again.
+    if (state.t_s <= (run.states.t_s[run.states.t_s.length - 1] ?? -1)) return;
+    add(run, state);
+    if (state.numbers) appendPose(track, run.states.t_s.length - 1);
+    run.summary.heading = { reference: state.run.heading_reference };
+    now.show(state);
+    dirty = true;
+  });
+  events.addEventListener("picture", (event) => {
+    run.pictures.push(JSON.parse((event as MessageEvent<string>).data));
+    if (run.pictures.length > kMostPictures) run.pictures.shift();
+    dirty = true;
+  });
+  events.addEventListener("end", () => {
+    events.close();
+    append(now.node, element("p", "note ended", "The run has ended; report.html in its folder shows all of it."));
+  });
+  setInterval(() => {
+    if (!dirty || track.t_s.length === 0) return;
+    dirty = false;
+    view.active.emit();
+    if (follow) view.time.set(track.t_s[track.t_s.length - 1]);
+  }, kRedraw_ms);
+}
+
+function add(run: Run, state: State): void {
+  const { states } = run;
+  states.total += 1;
+  states.t_s.push(state.t_s);
+  for (const [name, column] of Object.entries(states.numbers)) column.push(state.numbers?.[name] ?? null);
+  for (const [name, column] of Object.entries(states.words)) column.push(state.words[name] ?? "none");
+}
