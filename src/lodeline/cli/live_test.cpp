@@ -1,10 +1,11 @@
-#include <httplib.h>
-
 #include <thread>
 
 #include "lodeline/cli/test_room.h"
 #include "lodeline/live/live_server.h"
 #include "lodeline/page/page_template.h"
+
+// Defines macros (<resolv.h>) that Eigen stumbles over, so it stands last.
+#include <httplib.h>
 
 // `lodeline run --live`
 
