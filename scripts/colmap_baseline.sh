@@ -67,7 +67,7 @@ selectImages() {
 
 reconstruct() {
   cameraModel
-  rm -rf "$out/images" "$out/database.db" "$out/sparse" "$out/model"
+  rm -rf "$out/images" "$out/database.db" "$out/sparse" "$out/model" "$out/model_text"
   selectImages
   colmap feature_extractor --database_path "$out/database.db" --image_path "$out/images" \
     --ImageReader.single_camera 1 --ImageReader.camera_model "$model" --ImageReader.camera_params "$parameters" \
@@ -85,6 +85,8 @@ reconstruct() {
   printf '%s s to %s s, every %s. image: %s images, %s part(s)\n' "$from" "$to" "$every" "$images" "$parts" \
     >"$out/excerpt.txt"
   mv "$(dirname "$best")" "$out/model"
+  mkdir -p "$out/model_text"
+  colmap model_converter --input_path "$out/model" --output_path "$out/model_text" --output_type TXT >>"$out/colmap.log" 2>&1
 }
 
 # NAME ESTIMATE REFERENCE OPTIONS...: a row with RMSE of rotation and position, scale and number of poses.
@@ -99,13 +101,13 @@ judge() {
     END { printf "| %s | %.2f° | %.3f m | %.4f | %d |\n", name, rotation, position, scale, pairs }'
 }
 
-# The poses of a run while the model has images.
+# The poses of a run at the images that the model has a pose for.
 cutRun() {
-  local first last
-  first=$(ls "$out/images" | head -n 1)
-  last=$(ls "$out/images" | tail -n 1)
-  awk -v first="${first%.*}" -v last="${last%.*}" '
-    /^#/ || ($1 > first / 1e9 - 0.02 && $1 < last / 1e9 + 0.02)' "$1/trajectory.tum" >"$out/excerpt.tum"
+  awk '
+    FNR == NR { if ($NF ~ /^[0-9]+\.[a-z]+$/) { sub(/\..*/, "", $NF); wanted[substr($NF, 1, length($NF) - 6)] } next }
+    /^#/ { next }
+    { sub(/\./, "", $1); key = substr($1, 1, length($1) - 6) }
+    key in wanted { sub(/.........$/, ".&", $1); print }' "$out/model_text/images.txt" "$1/trajectory.tum" >"$out/excerpt.tum"
 }
 
 table() {

@@ -39,7 +39,7 @@ measureColmap() {
     return
   fi
   printf '\n== colmap_baseline.sh %s\n' "$dive"
-  scripts/colmap_baseline.sh "$experiments/$dive" "$experiments/colmap" --from 25 --to 65 --every 4 \
+  scripts/colmap_baseline.sh "$experiments/$dive" "$experiments/colmap" --from 30 --to 70 --every 4 \
     --runs "$experiments/results/$dive/$dive" --report "$experiments/results/colmap.md" || failed+=(colmap)
 }
 
