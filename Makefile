@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build dependencies demo experiments test test-sanitized bench install format check-format clean
+.PHONY: build dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
 
 build: dependencies
@@ -38,6 +38,10 @@ bench: build
 # To PREFIX (default /usr/local); DESTDIR is put before it.
 install: build
 	cmake --install build/release --prefix $(PREFIX)
+
+# A Debian package in build/release.
+package: build
+	cd build/release && cpack
 
 format:
 	clang-format-14 -i $$(find src -name '*.h' -o -name '*.cpp')

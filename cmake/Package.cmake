@@ -1,0 +1,18 @@
+# `make package`: a Debian package with the program, the libraries, the headers and the CMake package.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME lodeline)
+set(CPACK_PACKAGE_VENDOR "Lodeline")
+set(CPACK_PACKAGE_CONTACT "The Lodeline authors <lodeline@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+# What the program needs is read from its binary; what find_package(lodeline) needs is only recommended.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
+    "libeigen3-dev, libceres-dev, libopencv-dev, libyaml-cpp-dev, libcli11-dev, libfmt-dev, nlohmann-json3-dev, \
+zlib1g-dev, libdeflate-dev, libgeographiclib-dev, libnanoflann-dev, libembree-dev, libtbb-dev, gnuplot-nox")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "survex, therion, qgis")
+include(CPack)
