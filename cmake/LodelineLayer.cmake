@@ -45,6 +45,7 @@ function(lodeline_layer name)
     target_link_libraries(lodeline_${name} INTERFACE lodeline_options ${links})
   endif()
   lodeline_export(${name})
+  add_library(lodeline::${name} ALIAS lodeline_${name})  # the name that find_package(lodeline) gives it
   if(NOT LODELINE_BUILD_TESTS)
     return()
   endif()

@@ -1,0 +1,46 @@
+// Compares an estimated trajectory with a reference, in any layout that `lodeline evaluate` reads:
+//   example_4_evaluate ESTIMATE REFERENCE
+// Without arguments, a made-up estimate with a made-up reference.
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+#include "lodeline/evaluation/evaluation_report.h"
+#include "lodeline/evaluation/read_trajectory.h"
+
+namespace {
+
+/// A climbing circle of 5 m, 10 poses a second for a minute, whose heading drifts by so much a second.
+lodeline::Trajectory circle(double drift_rad_per_s) {
+  lodeline::Trajectory trajectory;
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.1 * i, angle = 0.1 * t;
+    const lodeline::Quat drift(Eigen::AngleAxisd(drift_rad_per_s * t, lodeline::Vec3::UnitZ()));
+    const lodeline::Quat heading(Eigen::AngleAxisd(angle, lodeline::Vec3::UnitZ()));
+    const lodeline::Vec3 position(5.0 * std::sin(angle), 5.0 - 5.0 * std::cos(angle), 0.02 * t);
+    trajectory.poses.push_back(
+        {lodeline::Time::fromSeconds(1.8e9 + t), lodeline::Rigid3(drift * heading, drift * position)});
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  lodeline::Diagnostics diagnostics;
+  const bool has_files = argc == 3;
+  const lodeline::Trajectory estimate =
+      has_files ? lodeline::readTrajectory(argv[1], {}, diagnostics) : circle(0.5e-3);
+  const lodeline::Trajectory reference =
+      has_files ? lodeline::readTrajectory(argv[2], {}, diagnostics) : circle(0.0);
+
+  lodeline::EvaluationOptions options;
+  options.alignment = lodeline::AlignmentType::SE3;
+  const lodeline::Evaluation evaluation = lodeline::evaluate(estimate, reference, options, diagnostics);
+  std::printf("%s", lodeline::evaluationTable(evaluation, diagnostics).c_str());
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
