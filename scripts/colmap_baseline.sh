@@ -89,16 +89,19 @@ reconstruct() {
   colmap model_converter --input_path "$out/model" --output_path "$out/model_text" --output_type TXT >>"$out/colmap.log" 2>&1
 }
 
-# NAME ESTIMATE REFERENCE OPTIONS...: a row with RMSE of rotation and position, scale and number of poses.
+# NAME ESTIMATE REFERENCE OPTIONS...: a row with RMSE of rotation and position, scale and number of poses. A model has
+# a unit of length of its own: errors against one are given in metres of the estimate.
 judge() {
-  local name=$1 estimate=$2 reference=$3
+  local name=$1 estimate=$2 reference=$3 own_unit=0
   shift 3
-  "$lodeline" evaluate "$estimate" "$reference" --align sim3 "$@" | awk -v name="$name" '
+  [ "$reference" != "$out/model" ] || own_unit=1
+  "$lodeline" evaluate "$estimate" "$reference" --align sim3 "$@" | awk -v name="$name" -v own_unit="$own_unit" '
     /^pairs/ { pairs = $2 }
     /^alignment/ { sub(/.*scale /, ""); scale = $1 }
     /^  position \(m\)/ && position == "" { position = $3 }
     /^  rotation \(deg\)/ && rotation == "" { rotation = $3 }
-    END { printf "| %s | %.2f° | %.3f m | %.4f | %d |\n", name, rotation, position, scale, pairs }'
+    END { if (own_unit) position /= scale
+      printf "| %s | %.2f° | %.3f m | %.4f | %d |\n", name, rotation, position, scale, pairs }'
 }
 
 # The poses of a run at the images that the model has a pose for.
