@@ -17,13 +17,20 @@ cv::Point fixedPoint(const Eigen::Vector2f& pixel) {
           static_cast<int>(std::lround(pixel.y() * (1 << kShift)))};
 }
 
+/// The colours of all levels at once; OpenCV builds its map anew with every call.
+cv::Mat turboColours() {
+  cv::Mat levels(256, 1, CV_8U);
+  for (int i = 0; i < 256; ++i) levels.at<uint8_t>(i) = static_cast<uint8_t>(i);
+  cv::Mat colours;
+  cv::applyColorMap(levels, colours, cv::COLORMAP_TURBO);
+  return colours;
+}
+
 cv::Scalar colourOfAge(int sightings, int old_sightings) {
+  static const cv::Mat colours = turboColours();
   const double age =
       std::clamp(static_cast<double>(sightings - 1) / std::max(1, old_sightings - 1), 0.0, 1.0);
-  const cv::Mat level(1, 1, CV_8U, cv::Scalar(30.0 + 210.0 * age));
-  cv::Mat colour;
-  cv::applyColorMap(level, colour, cv::COLORMAP_TURBO);
-  const auto bgr = colour.at<cv::Vec3b>(0, 0);
+  const auto bgr = colours.at<cv::Vec3b>(static_cast<int>(std::lround(30.0 + 210.0 * age)));
   return {static_cast<double>(bgr[0]), static_cast<double>(bgr[1]), static_cast<double>(bgr[2])};
 }
 
@@ -39,13 +46,14 @@ cv::Mat drawTracks(const FrontEnd& front_end, const std::vector<cv::Mat>& images
   const auto& cameras = front_end.cameras();
   std::vector<int> lefts;
   cv::Size size(0, 0);
-  for (const auto& camera : cameras) {
+  for (size_t i = 0; i < cameras.size() && i < images.size(); ++i) {
+    const CameraCalibration& camera = cameras[i]->calibration();
     lefts.push_back(size.width);
-    size.width += camera->calibration().width_px;
-    size.height = std::max(size.height, camera->calibration().height_px);
+    size.width += camera.width_px;
+    size.height = std::max(size.height, camera.height_px);
   }
   cv::Mat picture(size.height + kBarPx, size.width, CV_8UC3, cv::Scalar::all(0));
-  for (size_t i = 0; i < cameras.size() && i < images.size(); ++i) {
+  for (size_t i = 0; i < lefts.size(); ++i) {
     if (images[i].empty()) continue;
     cv::Mat part = picture(cv::Rect(cv::Point(lefts[i], 0), images[i].size()));
     cv::cvtColor(images[i], part, cv::COLOR_GRAY2BGR);
@@ -53,7 +61,7 @@ cv::Mat drawTracks(const FrontEnd& front_end, const std::vector<cv::Mat>& images
   for (const Track& track : front_end.tracks()) {
     const cv::Scalar colour = colourOfAge(track.sightings, old_sightings);
     drawDot(picture, track.warp.position, colour);
-    for (size_t m = 0; m < track.matches.size(); ++m) {
+    for (size_t m = 0; m < track.matches.size() && m + 1 < lefts.size(); ++m) {
       if (!track.matches[m]) continue;
       const Eigen::Vector2f offset(static_cast<float>(lefts[m + 1]), 0.0F);
       drawDot(picture, track.matches[m]->position + offset, colour);

@@ -1,5 +1,6 @@
 #include "lodeline/live/live_view.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "lodeline/page/base64.h"
@@ -12,6 +13,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kStatePause(100);
 constexpr std::chrono::milliseconds kPicturePause(500);
+/// A picture that took long to make is followed by a pause so many times as long, which bounds what pictures
+/// take of a run on any machine.
+constexpr int kPauseToWork = 80;
 constexpr int kPictureWidth_px = 480;
 
 std::string livePage(const std::string& name, const std::string& data, const Rig& rig) {
@@ -79,9 +83,10 @@ void LiveView::show(const FramePacket& packet, const FrameEstimate& estimate, co
   if (now < next_picture_ || !server_.isWatched()) return;
   const std::vector<uint8_t> jpeg = trackPicture(packet, front_end, kPictureWidth_px);
   if (jpeg.empty()) return;
-  next_picture_ = now + kPicturePause;
   const nlohmann::ordered_json json = {{"t_s", shortNumber(t_s)}, {"jpeg", base64(jpeg)}};
   server_.send("picture", json.dump());
+  const Clock::time_point done = Clock::now();
+  next_picture_ = done + std::max<Clock::duration>(kPicturePause, kPauseToWork * (done - now));
 }
 
 }  // namespace lodeline

@@ -29,7 +29,8 @@ void removePictures(const std::filesystem::path& folder) {
 
 std::vector<uint8_t> trackPicture(const FramePacket& packet, const FrontEnd& front_end, int max_width_px) {
   if (packet.images.front().empty()) return {};
-  cv::Mat picture = drawTracks(front_end, packet.images)(cv::Rect({0, 0}, packet.images.front().size()));
+  const cv::Mat& image = packet.images.front();
+  cv::Mat picture = drawTracks(front_end, {image})(cv::Rect({0, 0}, image.size()));
   if (picture.cols > max_width_px) {
     const double scale = static_cast<double>(max_width_px) / picture.cols;
     cv::resize(picture, picture, {}, scale, scale, cv::INTER_AREA);
