@@ -4,6 +4,7 @@
 #include <httplib.h>
 
 #include <algorithm>
+#include <condition_variable>
 #include <deque>
 #include <mutex>
 #include <thread>
@@ -40,6 +41,7 @@ struct LiveServer::State {
   std::thread thread;
 
   std::mutex mutex;
+  std::condition_variable left;  ///< a watcher has
   std::vector<std::shared_ptr<EventQueue>> watchers;
   std::deque<std::string> kept;
   bool closed = false;
@@ -63,8 +65,11 @@ std::shared_ptr<EventQueue> LiveServer::State::addWatcher() {
 }
 
 void LiveServer::State::removeWatcher(const std::shared_ptr<EventQueue>& queue) {
-  const std::lock_guard lock(mutex);
-  std::erase(watchers, queue);
+  {
+    const std::lock_guard lock(mutex);
+    std::erase(watchers, queue);
+  }
+  left.notify_all();
 }
 
 void LiveServer::State::tell(const std::string& text) {
@@ -118,9 +123,12 @@ LiveServer::LiveServer(const std::string& address, int port, std::string page)
 
 LiveServer::~LiveServer() {
   {
-    const std::lock_guard lock(state_->mutex);
+    std::unique_lock lock(state_->mutex);
     state_->closed = true;
     for (const auto& queue : state_->watchers) queue->close();
+    // A server that is stopped drops what is still to be sent.
+    state_->left.wait_for(lock, std::chrono::seconds(kWriteTimeout_s),
+                          [this] { return state_->watchers.empty(); });
   }
   // Stopping a server that does not run yet would be forgotten.
   while (!state_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
