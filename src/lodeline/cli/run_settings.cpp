@@ -152,6 +152,27 @@ void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
                  "after which a rejected field counts as a new one");
 }
 
+void bindDepth(Settings* settings, DepthOptions* options) {
+  settings->bind("pressure.use", &options->use, "whether the pressure sensor is fused");
+  settings->bind(
+      "pressure.density_ratio", &options->density_ratio,
+      "density of the water over that which the gauge assumes: 0.975 for a gauge set to salt water "
+      "in fresh water");
+  settings->bind("pressure.density_ratio_sigma", &options->density_ratio_sigma, "of that ratio; 0 holds it");
+  settings->bind("pressure.lag_s", &options->lag_s, "time constant of the gauge's answer");
+  settings->bind("pressure.lag_sigma_s", &options->lag_sigma_s, "of that lag; 0 holds it");
+  settings->bind("pressure.offset_walk_m_per_sqrt_s", &options->offset_walk_m_per_sqrt_s,
+                 "random walk of the surface's pressure and level");
+  settings->bind("pressure.noise_inflation", &options->noise_inflation,
+                 "factor on the depth_noise_std of its file");
+  settings->bind("pressure.floor_m", &options->floor_m, "lasting errors of the readings, one sigma");
+  settings->bind("pressure.floor_correlation_s", &options->floor_correlation_s, "for which they last");
+  settings->bind("pressure.gate.max_sigmas", &options->gate.max_sigmas, "of a jump that is believed");
+  settings->bind("pressure.gate.max_jump_m", &options->gate.max_jump_m, "that is believed in any case");
+  settings->bind("pressure.gate.readmission_s", &options->gate.readmission_s,
+                 "after which rejected readings, if steady, count from a new offset");
+}
+
 }  // namespace
 
 void bindRunSettings(Settings* settings, RunSettings* options) {
@@ -165,6 +186,7 @@ void bindRunSettings(Settings* settings, RunSettings* options) {
                  "file that `lodeline calibrate magnetometer` wrote; empty for none");
   bindMagnetometer(settings, &options->odometry.estimator.magnetometer);
   bindMagnetometerGate(settings, &options->odometry.estimator.magnetometer.gate);
+  bindDepth(settings, &options->odometry.estimator.depth);
   settings->bind("heading.reference", &options->odometry.estimator.magnetometer.heading_reference,
                  {{"automatic", HeadingReference::Automatic},
                   {"true", HeadingReference::True},

@@ -9,15 +9,25 @@
 
 namespace lodeline {
 
+namespace {
+
+/// Relative sigma of a vector's length.
+double lengthUncertainty(const Vec3& vector, const Mat3& covariance) {
+  const double length = vector.norm();
+  if (length < 1e-9) return std::numeric_limits<double>::infinity();
+  const Vec3 direction = vector / length;
+  return std::sqrt(direction.dot(covariance * direction)) / length;
+}
+
+}  // namespace
+
 double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance) {
-  const auto along = [](const Vec3& vector, const Mat3& vector_covariance) {
-    const double length = vector.norm();
-    if (length < 1e-9) return std::numeric_limits<double>::infinity();
-    const Vec3 direction = vector / length;
-    return std::sqrt(direction.dot(vector_covariance * direction)) / length;
-  };
-  return std::min(along(newest.worldFromBody().translation, covariance.block<3, 3>(0, 0)),
-                  along(newest.velocity_W(), covariance.block<3, 3>(6, 6)));
+  return std::min(lengthUncertainty(newest.worldFromBody().translation, covariance.block<3, 3>(0, 0)),
+                  speedUncertainty(newest, covariance));
+}
+
+double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance) {
+  return lengthUncertainty(newest.velocity_W(), covariance.block<3, 3>(6, 6));
 }
 
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks) {

@@ -37,6 +37,8 @@ class JointCovariance {
 /// Relative standard deviation of the scale as the newest frame shows it: of its distance from the origin or
 /// of its speed along their directions, whichever is known better. `covariance` as from newestCovariance().
 double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
+/// The same of its speed alone.
+double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
 
 /// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "lodeline/base/error.h"
 #include "lodeline/estimator/camera_states.h"
@@ -33,18 +34,22 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       factors_(rig_, options_),
       marginalizer_(factors_),
       mono_initializer_(rig_, options_, factors_),
-      magnetometer_(rig_, options_, diagnostics) {
+      magnetometer_(rig_, options_, diagnostics),
+      depth_(rig_, options_.depth, diagnostics),
+      scale_(rig_, options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
 
 FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu,
-                             std::span<const MagnetometerSample> magnetometer) {
+                             std::span<const MagnetometerSample> magnetometer,
+                             std::span<const DepthSample> depth) {
   FrameEstimate estimate;
   estimate.time = tracks.time;
   checkOrder(tracks.time, imu);
   const SightingList sightings = sightingsOf(tracks);
   const bool carries_on = initialized();
   magnetometer_.take(magnetometer, imu, carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero());
+  depth_.take(depth);
   if (carries_on) insertFrame(tracks.time, sightings, imu);
   last_time_ = tracks.time;
   if (carries_on) {
@@ -60,6 +65,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);
   ++frames_since_start_;
+  startAgainAfterDarkness(estimate);
   starting_up_ = starting_up_ && !isSettled(estimate.covariance);
   if (!starting_up_) {
     marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
@@ -87,11 +93,27 @@ void Estimator::checkOrder(Time time, std::span<const ImuSample> imu) const {
   }
 }
 
+void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
+  constexpr double kDarkness_s = 1.0;
+  if (estimate.status == Status::Inertial) {
+    blind_since_ = blind_since_.value_or(estimate.time);
+    return;
+  }
+  const bool was_dark = blind_since_ && (estimate.time - *blind_since_).seconds() > kDarkness_s;
+  blind_since_.reset();
+  if (!was_dark || scale_is_given_) return;
+  starting_up_ = lost_scale_ = true;
+  frames_since_start_ = 0;
+}
+
 bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
   const WindowOptions& window = options_.window;
   if (frames_since_start_ < window.startup_frames) return false;
-  return scale_is_given_ || frames_since_start_ >= window.startup_max_frames ||
-         scaleUncertainty(window_.newest(), covariance) < window.startup_scale_sigma;
+  if (scale_is_given_ || frames_since_start_ >= window.startup_max_frames) return true;
+  // The way from the origin says nothing of a scale that was lost since.
+  const double sigma = lost_scale_ ? speedUncertainty(window_.newest(), covariance)
+                                   : scaleUncertainty(window_.newest(), covariance);
+  return sigma < window.startup_scale_sigma;
 }
 
 SightingList Estimator::sightingsOf(const FrameTracks& tracks) const {
@@ -177,6 +199,7 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
   window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
   magnetometer_.addToNewest(window_, marginalizer_);
+  depth_.addToNewest(window_, marginalizer_);
 }
 
 void Estimator::startMagnetometer() {
@@ -187,6 +210,7 @@ void Estimator::startMagnetometer() {
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
   estimate->covariance = covariance.newest();
+  depth_.remember(covariance);
   magnetometer_.remember(std::move(covariance));
 }
 
@@ -213,6 +237,8 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->state = newest.state();
   estimate->camera_corrections = cameraCorrections(window_);
   estimate->magnetometer = magnetometer_.estimate(window_);
+  estimate->depth = depth_.estimate(window_);
+  estimate->scale = scale_.add(window_);
   estimate->landmarks = statistics.landmarks;
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
   for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;

@@ -6,11 +6,13 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/camera_states.h"
+#include "lodeline/estimator/depth_fusion.h"
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/magnetometer_fusion.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/estimator/mono_initializer.h"
 #include "lodeline/estimator/options.h"
+#include "lodeline/estimator/scale_budget.h"
 #include "lodeline/estimator/window.h"
 
 namespace lodeline {
@@ -39,6 +41,8 @@ struct FrameEstimate {
   /// Nothing where the calibration is taken as the files give it.
   std::optional<CameraCorrections> camera_corrections;
   MagnetometerEstimate magnetometer;
+  DepthEstimate depth;
+  ScaleInformation scale;  ///< what carries it at present
 };
 
 /// Visual-inertial odometry over a sliding window of keyframes and recent frames (paper section III).
@@ -47,11 +51,12 @@ class Estimator {
   Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
   /// Adds one frame: what the front end tracked, and the inertial readings since the frame before (both ends
-  /// on the frames' times; for the first frame all readings there are), and the magnetometer's since the
-  /// frame before. Throws InputError, and leaves the estimator as it was, where frame or inertial readings do
-  /// not follow on the frame before.
+  /// on the frames' times; for the first frame all readings there are), and the magnetometer's and the
+  /// pressure sensor's since the frame before. Throws InputError, and leaves the estimator as it was, where
+  /// frame or inertial readings do not follow on the frame before.
   FrameEstimate add(const FrameTracks& tracks, std::span<const ImuSample> imu,
-                    std::span<const MagnetometerSample> magnetometer = {});
+                    std::span<const MagnetometerSample> magnetometer = {},
+                    std::span<const DepthSample> depth = {});
 
   bool initialized() const { return !window_.empty(); }
   const Window& window() const { return window_; }
@@ -71,6 +76,9 @@ class Estimator {
   bool startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate);
   void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
+  /// After darkness one camera is at a start again: the scale of what it now sees hangs on the speed that
+  /// dead reckoning left, and must not be frozen while that is known badly.
+  void startAgainAfterDarkness(const FrameEstimate& estimate);
   /// Whether the window may begin to be marginalised.
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   /// Turns a window that has just started to north.
@@ -86,13 +94,17 @@ class Estimator {
   Marginalizer marginalizer_;
   MonoInitializer mono_initializer_;
   MagnetometerFusion magnetometer_;
+  DepthFusion depth_;
+  ScaleBudget scale_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
   std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
   bool starting_up_ = true;
-  bool scale_is_given_ = false;  ///< by a stereo start
+  bool scale_is_given_ = false;      ///< by a stereo start
+  std::optional<Time> blind_since_;  ///< the newest frames see nothing known
+  bool lost_scale_ = false;          ///< at some time since the start
 };
 
 }  // namespace lodeline

@@ -1,5 +1,6 @@
 #include "lodeline/estimator/factor_list.h"
 
+#include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
@@ -11,6 +12,7 @@ FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
     : gravity_W_(options.gravity_W),
       robust_scale_(options.solver.robust_scale_sigmas),
       reprojection_loss_(std::make_unique<ceres::CauchyLoss>(options.solver.robust_scale_sigmas)) {
+  if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);
     camera0_from_camera_.push_back(body_from_camera_.front().inverse() * camera.body_from_camera);
@@ -49,6 +51,17 @@ std::optional<Factor> FactorMaker::magnetometer(const Window& window, Frame* bef
       first_pose, states.field->firstEstimate());
   factor.blocks = {frame.pose.data(), states.field->value.data(), states.offset->value.data()};
   if (measured.disturbed) factor.blocks.push_back(states.disturbance->value.data());
+  return factor;
+}
+
+std::optional<Factor> FactorMaker::depth(const Window& window, Frame& frame) const {
+  if (!frame.depth) return std::nullopt;
+  const DepthStates states(window);
+  Factor factor;
+  factor.function = std::make_unique<DepthFactor>(frame.depth->depth, port_B_, frame.depth->sigma_m,
+                                                  frame.firstPose(), states.scale->firstEstimate());
+  factor.blocks = {frame.pose.data(), states.offset->value.data(), states.scale->value.data(),
+                   states.lag->value.data()};
   return factor;
 }
 

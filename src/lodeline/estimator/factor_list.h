@@ -38,6 +38,8 @@ class FactorMaker {
   Factor inertial(Frame& before, Frame& frame) const;
   /// Term of the frame's magnetometer, if it has one; `before` is the frame before (null for the first).
   std::optional<Factor> magnetometer(const Window& window, Frame* before, Frame& frame) const;
+  /// Term of the frame's depth readings, if it has any.
+  std::optional<Factor> depth(const Window& window, Frame& frame) const;
   Factor prior(const Prior& prior) const;
   /// All sightings of a track that has a landmark.
   LandmarkFactors landmark(Window& window, TrackHistory& track) const;
@@ -57,6 +59,7 @@ class FactorMaker {
 
   std::vector<Rigid3> body_from_camera_;
   std::vector<Rigid3> camera0_from_camera_;
+  Vec3 port_B_ = Vec3::Zero();  ///< pressure port, m
   Vec3 gravity_W_;
   double robust_scale_;
   std::unique_ptr<ceres::LossFunction> reprojection_loss_;

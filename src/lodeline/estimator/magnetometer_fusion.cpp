@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/lasting_error.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -164,10 +165,7 @@ FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean,
     measurement.noise.sigma_T = reading_sigma_T;
     return measurement;
   }
-  // Errors that stay the same for a time tau weigh on averages like white noise of density sigma sqrt(2 tau).
-  const double longest_s = 2.0 * wanted.floor_correlation_s;
-  const double since_s = last_seen_ ? (mean.time - *last_seen_).seconds() : longest_s;
-  const double shared = longest_s / std::clamp(since_s, 1e-3, longest_s);
+  const double shared = lastingErrorShare(mean.time, last_seen_, wanted.floor_correlation_s);
   const double variance_T2 =
       std::pow(reading_sigma_T, 2) / mean.readings + shared * std::pow(floorSigma(mean.field_B), 2);
   measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);

@@ -136,7 +136,7 @@ void Marginalizer::retireOldestRecent(Window& window) {
   NormalEquations system;
   PriorTerms(prior_).addTo(&system);
   system.add(factors_.inertial(oldest, next));
-  addMagnetometer(window, oldest, next, &system);
+  addSensors(window, oldest, next, &system);
   next.from_previous.reset();
   if (oldest.is_keyframe) {
     eliminate(window, system, {oldest.motion.data()}, elapsed_s);
@@ -147,8 +147,8 @@ void Marginalizer::retireOldestRecent(Window& window) {
   }
 }
 
-void Marginalizer::addMagnetometer(const Window& window, Frame& oldest, Frame& next,
-                                   NormalEquations* system) const {
+void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
+                              NormalEquations* system) const {
   for (Frame* frame : {&oldest, &next}) {
     // A term against the frame before goes with that frame, one against the field with its own.
     if (!frame->magnetometer || frame->magnetometer->relative != (frame == &next)) continue;
@@ -159,6 +159,8 @@ void Marginalizer::addMagnetometer(const Window& window, Frame& oldest, Frame& n
     if (const auto factor = factors_.magnetometer(window, before, *frame)) system->add(*factor);
     frame->magnetometer.reset();
   }
+  if (const auto factor = factors_.depth(window, oldest)) system->add(*factor);
+  oldest.depth.reset();
 }
 
 void Marginalizer::removeOldestKeyframe(Window& window) {

@@ -39,8 +39,9 @@ class Marginalizer {
   /// Oldest frame with motion: a keyframe loses its motion; any other frame goes, its sightings being dropped
   /// so that the prior stays sparse.
   void retireOldestRecent(Window& window);
-  /// Magnetometer terms that touch the oldest of two frames, which then have become part of the prior.
-  void addMagnetometer(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
+  /// Magnetometer and depth terms that touch the oldest of two frames, which then have become part of the
+  /// prior.
+  void addSensors(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
   /// Oldest keyframe: landmarks that the newest keyframe does not see are marginalised with all their
   /// sightings; the others lose only their sightings there, and move to another host.
   void removeOldestKeyframe(Window& window);

@@ -11,7 +11,7 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
   const FrameTracks tracks = front_end_.process(packet.time, packet.images, previousFromCurrent(packet));
   const double tracked_s = threadSeconds();
-  const FrameEstimate estimate = estimator_.add(tracks, packet.imu, packet.magnetometer);
+  const FrameEstimate estimate = estimator_.add(tracks, packet.imu, packet.magnetometer, packet.depth);
   times_.front_end_s += tracked_s - start_s;
   times_.estimator_s += threadSeconds() - tracked_s;
   if (estimate.status != Status::Waiting) gyroscope_bias_B_ = estimate.state.gyroscope_bias_B;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lodeline/estimator/depth_options.h"
 #include "lodeline/estimator/magnetometer_options.h"
 #include "lodeline/geometry/types.h"
 #include "lodeline/inertial/gravity.h"
@@ -26,7 +27,7 @@ struct MonoInitializationOptions {
   double max_duration_s = 2.5;
   int min_frames = 6;
   int min_common_tracks = 40;  ///< seen by the oldest and the newest frame
-  double min_parallax_px = 20.0;
+  double min_parallax_px = 10.0;
   double max_epipolar_error_px = 1.0;
   /// How far gravity may come out from its true magnitude when the alignment leaves it free.
   double gravity_tolerance_m_per_s2 = 1.0;
@@ -94,6 +95,7 @@ struct EstimatorOptions {
   CameraCalibrationOptions camera_calibration;
   PreintegrationOptions preintegration;
   MagnetometerOptions magnetometer;
+  DepthOptions depth;
   GravityAlignmentOptions gravity_alignment;
   int min_landmarks_for_vision = 8;  ///< fewer seen landmarks mean that a frame is carried inertially
 };

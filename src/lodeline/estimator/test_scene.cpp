@@ -15,25 +15,37 @@ constexpr double kRoomHalfHeight_m = 2.5;
 
 Motion swaying(const TestSceneOptions& options) {
   Random random(options.seed, "scene/phases");
-  const auto activity = [&](double t) {
-    const auto covers = [t](const TimeSpan& span) { return span.contains(t); };
-    return std::any_of(options.still.begin(), options.still.end(), covers) ? 0.0 : options.liveliness;
+  const auto covered = [](const std::vector<TimeSpan>& spans, double t) {
+    return std::any_of(spans.begin(), spans.end(), [t](const TimeSpan& span) { return span.contains(t); });
   };
-  const auto add = [&](MotionChannel& channel, double amplitude, double rate_rad_per_s) {
+  const auto addSway = [&](MotionChannel& channel, double amplitude, double rate_rad_per_s, bool is_turn,
+                           double from_s = 0.0) {
+    const auto activity = [&](double t) {
+      if (t < from_s) return 0.0;
+      const bool rests = covered(options.still, t) || (!is_turn && covered(options.on_the_spot, t));
+      return rests ? 0.0 : options.liveliness;
+    };
     // A knot a second brings the rig to rest within 3 s, gently.
     channel.sines.push_back(
         {motionSpline(options.duration_s, 1.0, [&](double t) { return amplitude * activity(t); }),
          motionSpline(options.duration_s, 1.0, [&](double t) { return rate_rad_per_s * t; }), 1.0,
          random.uniform(0.0, 2.0 * std::numbers::pi)});
   };
+  const auto add = [&](MotionChannel& channel, double amplitude_m, double rate_rad_per_s) {
+    addSway(channel, amplitude_m * options.translation, rate_rad_per_s, false);
+  };
+  const auto addTurn = [&](MotionChannel& channel, double amplitude_rad, double rate_rad_per_s) {
+    addSway(channel, amplitude_rad, rate_rad_per_s, true);
+  };
   MotionChannels channels;
-  add(channels.east, 1.0 * options.translation, 0.7);
-  add(channels.east, 0.2 * options.translation, 2.1);
-  add(channels.north, 0.8 * options.translation, 0.9);
-  add(channels.up, 0.3 * options.translation, 1.3);
-  add(channels.yaw, 0.5, 0.4);
-  add(channels.pitch, 0.2, 1.1);
-  add(channels.roll, 0.15, 0.8);
+  add(channels.east, 1.0, 0.7);
+  add(channels.east, 0.2, 2.1);
+  add(channels.north, 0.8, 0.9);
+  add(channels.up, 0.3, 1.3);
+  addTurn(channels.yaw, 0.5, 0.4);
+  addTurn(channels.pitch, 0.2, 1.1);
+  addTurn(channels.roll, 0.15, 0.8);
+  if (options.hurry_rad_per_s > 0.0) addSway(channels.yaw, options.hurry_rad_per_s / 0.5, 0.5, true, 5.0);
   MotionChannel* path[] = {&channels.east, &channels.north, &channels.up};
   for (int axis = 0; axis < 3; ++axis) {
     path[axis]->splines.push_back(
@@ -87,6 +99,7 @@ Rig testRig(int cameras) {
     camera.body_from_camera = Rigid3(Quat(body_from_camera), Vec3(0.02, 0.05 - 0.11 * i, 0.0));
     rig.cameras.push_back(camera);
   }
+  rig.pressure = PressureCalibration{2.0, 0.02, Rigid3(Quat::Identity(), Vec3(-0.12, 0.0, 0.03))};
   return rig;
 }
 
@@ -121,12 +134,12 @@ Rigid3 estimateFromTruth(const Rigid3& first_estimate, const Rigid3& first_truth
   return Rigid3(heading, first_estimate.translation - heading * first_truth.translation);
 }
 
-Comparison ComparedEstimator::add(const SimulatedFrame& frame) {
+Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const DepthSample> depth) {
   const Rigid3& truth = frame.truth.motion.world_from_body;
   Comparison result;
   result.time_s = scene_.secondsOf(frame.truth.time);
   if (!estimate_from_truth_) true_poses_[frame.truth.time] = truth;
-  result.estimate = estimator_.add(frame.tracks, frame.imu);
+  result.estimate = estimator_.add(frame.tracks, frame.imu, {}, depth);
   if (!result.initialized()) return result;
   if (!estimate_from_truth_) {
     // The prior knows the oldest frame best, at its first estimate.

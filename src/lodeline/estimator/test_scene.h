@@ -15,8 +15,11 @@ struct TestSceneOptions {
   double duration_s = 20.0;
   double liveliness = 1.0;   ///< 1: about 1 m/s, 1.5 m/s^2 and 0.5 rad/s; scales position and rotation
   double translation = 1.0;  ///< scales the sway of the position once more; 0 turns on the spot
+  /// More yaw than that from 5 s on: up to so much faster.
+  double hurry_rad_per_s = 0.0;
   Vec3 drift_m_per_s = Vec3::Zero();  ///< constant velocity on top
   std::vector<TimeSpan> still;        ///< the sway fades within 3 s of their borders
+  std::vector<TimeSpan> on_the_spot;  ///< only the sway of the position fades
   PointSimulationOptions points;      ///< seed, end and IMU errors are filled in by the scene
   /// The specimen's biases at the start are drawn from these, one sigma per axis.
   double gyroscope_bias_sigma_rad_per_s = 0.02;
@@ -44,7 +47,8 @@ class TestScene {
   PointSimulation simulation_;
 };
 
-/// Two (or one) undistorted cameras 11 cm apart looking along the body's x axis, y to the left.
+/// Two (or one) undistorted cameras 11 cm apart looking along the body's x axis, y to the left; a pressure
+/// port 12 cm behind.
 Rig testRig(int cameras);
 
 /// Options of an estimator that believes what a scene does: noise as stated, biases as drawn.
@@ -77,7 +81,7 @@ class ComparedEstimator {
   ComparedEstimator(const TestScene& scene, const EstimatorOptions& options)
       : scene_(scene), estimator_(scene.rig(), options, &diagnostics_) {}
 
-  Comparison add(const SimulatedFrame& frame);
+  Comparison add(const SimulatedFrame& frame, std::span<const DepthSample> depth = {});
 
   const Estimator& estimator() const { return estimator_; }
   const Diagnostics& diagnostics() const { return diagnostics_; }

@@ -11,6 +11,7 @@
 #include "lodeline/base/time.h"
 #include "lodeline/estimator/global_state.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/depth_factor.h"
 #include "lodeline/factors/magnetometer_field_factor.h"
 #include "lodeline/factors/parameters.h"
 #include "lodeline/factors/reprojection_factor.h"
@@ -33,6 +34,12 @@ struct FieldMeasurement {
   bool disturbed = false;  ///< the field has a disturbance to be estimated
 };
 
+/// What the pressure sensor says of a frame.
+struct DepthMeasurement {
+  CarriedDepth depth;
+  double sigma_m = 0.0;
+};
+
 /// The state at one image time. Old keyframes keep their pose only.
 struct Frame {
   FrameId id = 0;
@@ -52,6 +59,7 @@ struct Frame {
   std::unique_ptr<Preintegration> from_previous;
   /// Until it has become part of the prior.
   std::optional<FieldMeasurement> magnetometer;
+  std::optional<DepthMeasurement> depth;
 
   Rigid3 worldFromBody() const { return poseFromBlock(pose.data()); }
   Vec3 velocity_W() const { return Vec3(motion.data()); }

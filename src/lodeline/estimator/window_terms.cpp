@@ -25,6 +25,7 @@ std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factor
   before = nullptr;
   for (const auto& frame : window.frames()) {
     if (auto factor = factors.magnetometer(window, before, *frame)) terms.push_back(std::move(*factor));
+    if (auto factor = factors.depth(window, *frame)) terms.push_back(std::move(*factor));
     before = frame.get();
   }
   return terms;

@@ -9,7 +9,7 @@ namespace lodeline {
 
 /// Every term of the window's cost.
 struct WindowTerms {
-  std::vector<Factor> dense;  ///< prior, inertial and magnetometer terms
+  std::vector<Factor> dense;  ///< prior, inertial, magnetometer and depth terms
   std::vector<LandmarkFactors> landmarks;
 };
 
@@ -17,8 +17,8 @@ struct WindowTerms {
 /// integrated again first.
 std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors);
 
-/// In a fixed order: prior, inertial terms by time, magnetometer terms by time, landmarks by track. Inertial
-/// terms whose biases moved too far are integrated again first.
+/// In a fixed order: prior, inertial terms by time, magnetometer and depth terms by time, landmarks by
+/// track. Inertial terms whose biases moved too far are integrated again first.
 WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors);
 
 /// The linear system of all terms at the window's present values, landmarks eliminated.

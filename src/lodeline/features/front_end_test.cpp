@@ -178,6 +178,26 @@ TEST(FrontEnd, StartsAnewAfterALongSilence) {
   EXPECT_GT(later.observations.front().track, first.observations.back().track);
 }
 
+TEST(FrontEnd, KeepsItsTracksThroughJumpsOfTheExposure) {
+  for (const double gain : {0.4, 1.6}) {
+    FrontEnd front_end(daylight().sequence.rig(), {});
+    Recording recording = daylight();
+    for (size_t i = 7; i < kFrames; ++i) {
+      for (cv::Mat& image : recording.images[i]) {
+        cv::Mat exposed;
+        image.convertTo(exposed, -1, gain);
+        image = exposed;
+      }
+    }
+    const std::vector<FrameTracks> frames = track(recording, front_end);
+    const auto before = pixels(frames[6], 0), after = pixels(frames[8], 0);
+    const auto kept = std::count_if(before.begin(), before.end(),
+                                    [&](const auto& entry) { return after.contains(entry.first); });
+    EXPECT_GE(kept, 180) << "gain " << gain;
+    EXPECT_LT(accuracyOverTenFrames(recording.sequence, frames).rms_px, 0.2) << "gain " << gain;
+  }
+}
+
 TEST(FrontEnd, LosesEverythingInDarknessAndRecovers) {
   FrontEnd front_end(daylight().sequence.rig(), {});
   Recording recording = daylight();

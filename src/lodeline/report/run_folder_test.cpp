@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -96,6 +97,46 @@ TEST_F(RunFolder, SummaryTellsWhatBecameOfTheMagnetometer) {
   const std::string text = summary.text({});
   EXPECT_NE(text.find("against true north, 0.50 deg"), std::string::npos);
   EXPECT_NE(text.find("used 33.3 %, norm 66.7 %; heading owes little to it"), std::string::npos);
+}
+
+TEST_F(RunFolder, StatesEndWithThePressureSensor) {
+  StateWriter writer(folder_);
+  FrameEstimate estimate = estimateAt(5, Vec3::Zero());
+  writer.write(estimate);
+  estimate.depth.status = DepthStatus::Jump;
+  estimate.depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
+  writer.write(estimate);
+  const std::string states = read("states.csv");
+  EXPECT_NE(states.find(",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s]\n"),
+            std::string::npos);
+  EXPECT_NE(states.find(",off,nan,nan,nan,nan\n"), std::string::npos);
+  EXPECT_NE(states.find(",jump,9.25,7.5,0.975,0.5\n"), std::string::npos);
+}
+
+TEST_F(RunFolder, SummaryTellsOfDepthAndWhatCarriedTheScale) {
+  RunSummary summary;
+  FrameEstimate estimate = estimateAt(0, Vec3::Zero());
+  summary.add(estimate);
+  EXPECT_EQ(nlohmann::json::parse(summary.json({})).count("pressure"), 0u);
+  EXPECT_EQ(nlohmann::json::parse(summary.json({})).count("scale"), 0u);
+  estimate.depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
+  estimate.depth.status = DepthStatus::Used;
+  estimate.scale = {6e4, 3e4, 1e4};
+  summary.add(estimate);
+  estimate.depth.status = DepthStatus::NoData;
+  estimate.scale = {};
+  summary.add(estimate);
+  summary.add(estimate);
+  const auto json = nlohmann::json::parse(summary.json({}));
+  EXPECT_EQ(json["pressure"]["frames"]["used"], 1);
+  EXPECT_EQ(json["pressure"]["frames"].count("no data"), 0u);
+  EXPECT_EQ(json["pressure"]["gauge"]["lag_s"], 0.5);
+  // Means over the four frames.
+  EXPECT_NEAR(json["scale"]["sigma"], 1.0 / std::sqrt(2.5e4), 1e-12);
+  EXPECT_NEAR(json["scale"]["stereo"]["share"], 0.6, 1e-12);
+  EXPECT_NEAR(json["scale"]["stereo"]["sigma_without"], 0.01, 1e-12);
+  EXPECT_NEAR(json["scale"]["depth"]["sigma_alone"], 0.02, 1e-12);
+  EXPECT_NE(summary.text({}).find("60 % by stereo (alone 0.8 %), 30 % by accelerometer"), std::string::npos);
 }
 
 TEST_F(RunFolder, WaitingFramesAreNotWritten) {

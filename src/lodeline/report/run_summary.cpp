@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "lodeline/report/findings.h"
@@ -52,6 +54,43 @@ nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
   return json;
 }
 
+nlohmann::ordered_json toJson(const DepthEstimate::Gauge& gauge) {
+  return {{"depth_at_origin_m", gauge.depth_at_origin_m},
+          {"density_ratio", gauge.density_ratio},
+          {"density_ratio_sigma", gauge.density_ratio_sigma},
+          {"lag_s", gauge.lag_s},
+          {"lag_sigma_s", gauge.lag_sigma_s}};
+}
+
+using ScaleSource = std::pair<const char*, double ScaleInformation::*>;
+constexpr ScaleSource kScaleSources[] = {{"stereo", &ScaleInformation::stereo},
+                                         {"accelerometer", &ScaleInformation::accelerometer},
+                                         {"depth", &ScaleInformation::depth}};
+
+std::string describe(const ScaleInformation& scale) {
+  std::string text = "carried";
+  for (const auto& [name, source] : kScaleSources) {
+    const double information = scale.*source;
+    if (information > 0.0)
+      text += fmt::format(" {:.0f} % by {} (alone {:.1f} %),", 100.0 * information / scale.sum(), name,
+                          100.0 / std::sqrt(information));
+  }
+  return text +
+         fmt::format(" together {:.1f} % (one sigma over half a minute)", 100.0 / std::sqrt(scale.sum()));
+}
+
+nlohmann::ordered_json toJson(const ScaleInformation& scale) {
+  nlohmann::ordered_json json;
+  json["sigma"] = 1.0 / std::sqrt(scale.sum());
+  for (const auto& [name, source] : kScaleSources) {
+    const double information = scale.*source, others = scale.sum() - information;
+    json[name]["share"] = information / scale.sum();
+    if (information > 0.0) json[name]["sigma_alone"] = 1.0 / std::sqrt(information);
+    if (others > 0.0) json[name]["sigma_without"] = 1.0 / std::sqrt(others);
+  }
+  return json;
+}
+
 }  // namespace
 
 void RunSummary::add(const FrameEstimate& estimate) {
@@ -64,6 +103,11 @@ void RunSummary::add(const FrameEstimate& estimate) {
   keyframes_ += estimate.is_keyframe;
   if (estimate.magnetometer.status != MagnetometerStatus::Off)
     ++magnetometer_frames_[estimate.magnetometer.status];
+  const DepthStatus depth = estimate.depth.status;
+  if (depth != DepthStatus::Off && depth != DepthStatus::NoData) ++depth_frames_[depth];
+  scale_.stereo += estimate.scale.stereo;
+  scale_.accelerometer += estimate.scale.accelerometer;
+  scale_.depth += estimate.scale.depth;
   const Vec3& position_W = estimate.state.world_from_body.translation;
   if (last_position_W_) path_m_ += (position_W - *last_position_W_).norm();
   last_position_W_ = position_W;
@@ -104,6 +148,22 @@ std::string RunSummary::magnetometerText() const {
   return text;
 }
 
+std::string RunSummary::depthText() const {
+  std::string text;
+  for (const auto& [status, frames] : depth_frames_)
+    text += fmt::format("{}{} {} readings", text.empty() ? "" : ", ", frames, toString(status));
+  if (!last_.depth.gauge) return text;
+  const DepthEstimate::Gauge& gauge = *last_.depth.gauge;
+  return text + fmt::format("; {:.2f} m at the origin, density ratio {:.4f} (sigma {:.4f}), lag {:.2f} s",
+                            gauge.depth_at_origin_m, gauge.density_ratio, gauge.density_ratio_sigma,
+                            gauge.lag_s);
+}
+
+std::optional<ScaleInformation> RunSummary::scaleInformation() const {
+  if (!(scale_.sum() > 0.0)) return std::nullopt;
+  return ScaleInformation{scale_.stereo / posed_, scale_.accelerometer / posed_, scale_.depth / posed_};
+}
+
 std::string RunSummary::text(const Diagnostics& diagnostics) const {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) {
@@ -132,6 +192,8 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
   line("memory", fmt::format("{:.0f} MB at most", peak_memory_MB));
   if (posed_ > 0) line("heading", headingText());
   if (hasMagnetometer()) line("magnetometer", magnetometerText());
+  if (!depth_frames_.empty()) line("pressure", depthText());
+  if (const auto scale = scaleInformation()) line("scale", describe(*scale));
   if (interrupted) line("interrupted", "the recording goes on; results cover what was read");
   for (const Finding& finding : diagnostics.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : "";
@@ -178,6 +240,9 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
     json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
     json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};
   }
+  for (const auto& [status, frames] : depth_frames_) json["pressure"]["frames"][toString(status)] = frames;
+  if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);
+  if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   json["findings"] = findingsJson(diagnostics);
   return json.dump(2) + "\n";
 }

@@ -67,6 +67,9 @@ class RunSummary {
   bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
   std::string headingText() const;
   std::string magnetometerText() const;
+  std::string depthText() const;
+  /// Mean over the frames of what carried the scale; nothing where nothing did.
+  std::optional<ScaleInformation> scaleInformation() const;
   /// What the process spent outside of front end and estimator: reading, decoding, writing.
   double filesSeconds() const { return process_s - front_end_s - estimator_s; }
 
@@ -84,6 +87,8 @@ class RunSummary {
   double reprojection_sigmas_ = 0.0;
   int reprojected_frames_ = 0;
   std::map<MagnetometerStatus, int> magnetometer_frames_;
+  std::map<DepthStatus, int> depth_frames_;  ///< of frames with readings
+  ScaleInformation scale_;                   ///< summed over the frames
 };
 
 }  // namespace lodeline

@@ -41,6 +41,8 @@ constexpr const char* kMagnetometerHeader =
     "[T],offset_z "
     "[T]";
 
+constexpr const char* kDepthHeader = ",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s]";
+
 /// Header of the pose covariance's upper triangle, [p, theta] in world axes.
 std::string covarianceHeader() {
   std::string header;
@@ -57,6 +59,15 @@ void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& ma
                  toString(magnetometer.status));
   append(line, magnetometer.field_W.value_or(unknown));
   append(line, magnetometer.offset_B.value_or(unknown));
+}
+
+/// What is not estimated is nan.
+void appendDepth(fmt::memory_buffer& line, const DepthEstimate& depth) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  DepthEstimate::Gauge unknown{kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+  const DepthEstimate::Gauge gauge = depth.gauge.value_or(unknown);
+  fmt::format_to(std::back_inserter(line), ",{},{:.9g},{:.9g},{:.9g},{:.9g}", toString(depth.status),
+                 gauge.body_depth_m, gauge.depth_at_origin_m, gauge.density_ratio, gauge.lag_s);
 }
 
 void appendAttitude(fmt::memory_buffer& line, const std::optional<AttitudeEstimate>& attitude) {
@@ -114,7 +125,8 @@ StateWriter::StateWriter(const std::filesystem::path& folder)
       trajectory_(openOutput(folder / "trajectory.tum")),
       states_(openOutput(folder / "states.csv")) {
   trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
-  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << "\n"
+  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader
+          << "\n"
           << std::flush;
 }
 
@@ -125,6 +137,7 @@ void StateWriter::write(const FrameEstimate& estimate, const std::optional<Attit
   fmt::memory_buffer line = has_pose ? stateLine(estimate, toString(estimate.status))
                                      : stateLine(withAttitudeOnly(estimate, *attitude), "attitude");
   appendAttitude(line, attitude);
+  appendDepth(line, estimate.depth);
   states_ << fmt::to_string(line) << "\n" << std::flush;
   if (!trajectory_ || !states_) {
     throw InputError((folder_ / "trajectory.tum").string() + ": writing failed at " +

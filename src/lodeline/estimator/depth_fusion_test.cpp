@@ -1,0 +1,225 @@
+#include "lodeline/estimator/depth_fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "lodeline/estimator/test_scene.h"
+#include "lodeline/simulation/random.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kNever = 1e9;
+
+/// A gauge that reads twice a second, 30 ms before a frame.
+struct Gauge {
+  double noise_m = 0.015;
+  double density_ratio = 1.0;
+  double lag_s = 0.0;
+  /// Does to a reading what goes wrong.
+  std::function<double(double time_s, double depth_m)> fault = [](double, double depth_m) { return depth_m; };
+};
+
+struct Dive {
+  std::vector<Comparison> frames;
+  std::map<DepthStatus, int> statuses;
+  std::map<std::string, int64_t> findings;
+
+  double largestHeightError(double from_s, double to_s) const {
+    double largest_m = 0.0;
+    for (const Comparison& c : frames) {
+      if (c.initialized() && c.time_s >= from_s && c.time_s < to_s)
+        largest_m = std::max(largest_m, std::abs(c.error[2]));
+    }
+    return largest_m;
+  }
+  const FrameEstimate& last() const { return frames.back().estimate; }
+};
+
+TestSceneOptions sceneOptions(double duration_s) {
+  TestSceneOptions options;
+  options.duration_s = duration_s;
+  options.points.tracks = 40;
+  options.points.frame_rate_hz = 10.0;
+  return options;
+}
+
+Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, EstimatorOptions estimator) {
+  constexpr double kEarly_s = 0.03;
+  const double period_s = 1.0 / options.points.frame_rate_hz;
+  const int readings_apart = static_cast<int>(std::lround(0.5 / period_s));
+  TestScene scene(options);
+  ComparedEstimator compared(scene, estimator);
+  const Vec3 port_B = scene.rig().pressure->body_from_pressure.translation;
+  Random random(options.seed, "gauge");
+  Dive result;
+  std::optional<double> shown_m;
+  double height_before_m = 0.0;
+  int count = 0;
+  while (const auto frame = scene.next()) {
+    std::vector<DepthSample> readings;
+    const MotionState& truth = frame->truth.motion;
+    const double height_m = (truth.world_from_body * port_B).z() - kEarly_s * truth.velocity_W.z();
+    if (gauge) {
+      const double keep = gauge->lag_s > 0.0 ? std::exp(-period_s / gauge->lag_s) : 0.0;
+      shown_m = shown_m ? keep * *shown_m + (1.0 - keep) * 0.5 * (height_m + height_before_m) : height_m;
+      if (keep == 0.0) shown_m = height_m;
+      height_before_m = height_m;
+      if (count++ % readings_apart == 0) {
+        const double depth_m = 12.0 - gauge->density_ratio * *shown_m + gauge->noise_m * random.normal();
+        readings.push_back({frame->truth.time - Duration::fromSeconds(kEarly_s),
+                            gauge->fault(scene.secondsOf(frame->truth.time), depth_m)});
+      }
+    }
+    result.frames.push_back(compared.add(*frame, readings));
+    ++result.statuses[result.last().depth.status];
+  }
+  for (const Finding& finding : compared.diagnostics().ranked())
+    result.findings[finding.kind] = finding.count;
+  return result;
+}
+
+Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge) {
+  return dive(options, gauge, honestOptions(options));
+}
+
+TEST(DepthFusion, HoldsTheHeightInTheDark) {
+  TestSceneOptions options = sceneOptions(24.0);
+  options.points.blackouts = {{12.0, 8.0}};
+  const Dive with = dive(options, Gauge());
+  const Dive without = dive(options, std::nullopt);
+  EXPECT_LT(with.largestHeightError(2.0, kNever), 0.06);
+  EXPECT_GT(without.largestHeightError(12.0, 20.0), 0.06) << "too easy a scene";
+  for (const Comparison& c : with.frames) {
+    if (c.time_s < 2.0) continue;
+    EXPECT_LT(std::abs(c.error[2]), 4.0 * std::sqrt(c.estimate.covariance(2, 2))) << "at " << c.time_s;
+  }
+  EXPECT_EQ(with.statuses.count(DepthStatus::Jump), 0u);
+  EXPECT_TRUE(with.findings.empty());
+}
+
+TEST(DepthFusion, FindsLagAndDensity) {
+  TestSceneOptions options = sceneOptions(40.0);
+  options.drift_m_per_s = Vec3(0.0, 0.0, -0.1);
+  Gauge gauge;
+  gauge.density_ratio = 0.975;
+  gauge.lag_s = 0.7;
+  const Dive found = dive(options, gauge);
+  const DepthEstimate::Gauge& last = found.last().depth.gauge.value();
+  EXPECT_NEAR(last.lag_s, 0.7, 0.1);
+  EXPECT_LT(last.lag_sigma_s, 0.05);
+  EXPECT_LT(last.density_ratio_sigma, 0.012);
+  EXPECT_NEAR(last.density_ratio, 0.975, 3.0 * last.density_ratio_sigma);
+  EXPECT_LT(last.density_ratio, 0.992);
+  EXPECT_EQ(found.statuses.count(DepthStatus::Jump), 0u);
+}
+
+TEST(DepthFusion, CarriesTheScaleOfOneCameraThatSinks) {
+  TestSceneOptions options = sceneOptions(30.0);
+  options.cameras = 1;
+  options.points.tracks = 90;
+  options.liveliness = 0.4;
+  options.drift_m_per_s = Vec3(0.1, 0.0, -0.2);
+  const auto scaleSigma = [](const Dive& d) {
+    const Eigen::Matrix<double, 15, 15>& covariance = d.last().covariance;
+    return std::sqrt(covariance(2, 2)) / std::abs(d.last().state.world_from_body.translation.z());
+  };
+  const Dive with = dive(options, Gauge());
+  const Dive without = dive(options, std::nullopt);
+  ASSERT_TRUE(with.frames.back().initialized() && without.frames.back().initialized());
+  EXPECT_LT(scaleSigma(with), 0.5 * scaleSigma(without));
+  EXPECT_LT(with.largestHeightError(10.0, kNever), 0.1);
+}
+
+// Whatever a gauge says, odometry must not be much worse than without it.
+class FaultyGauge : public testing::Test {
+ protected:
+  FaultyGauge() : options_(sceneOptions(32.0)) {
+    options_.points.frame_rate_hz = 4.0;
+    options_.drift_m_per_s = Vec3(0.0, 0.0, -0.1);
+  }
+
+  Dive run(const std::function<double(double, double)>& fault) {
+    Gauge gauge;
+    gauge.fault = fault;
+    return dive(options_, gauge);
+  }
+  TestSceneOptions options_;
+};
+
+TEST_F(FaultyGauge, SpikesAreLeftOut) {
+  int reading = 0, spikes = 0;
+  const Dive result = run([&](double, double depth_m) {
+    if (++reading % 8 != 0) return depth_m;
+    ++spikes;
+    return spikes % 2 ? 655.35 : depth_m - 1.0;
+  });
+  EXPECT_EQ(result.statuses.at(DepthStatus::Jump), spikes);
+  EXPECT_LT(result.largestHeightError(0.0, kNever), 0.06);
+}
+
+TEST_F(FaultyGauge, NewZeroIsTakenForANewOffset) {
+  const Dive result = run([](double t, double depth_m) { return t < 12.0 ? depth_m : depth_m + 3.0; });
+  EXPECT_EQ(result.statuses.at(DepthStatus::Restarted), 1);
+  EXPECT_EQ(result.last().depth.status == DepthStatus::Jump, false);
+  EXPECT_LT(result.largestHeightError(0.0, kNever), 0.08);
+  EXPECT_EQ(result.findings.at("pressure_restarted"), 1);
+}
+
+TEST_F(FaultyGauge, FrozenReadingsAreNoticedAndForgivenWhenTheyChange) {
+  std::optional<double> stuck_m;
+  const Dive result = run([&](double t, double depth_m) {
+    if (t < 12.0 || t > 20.0) return depth_m;
+    stuck_m = stuck_m.value_or(depth_m);
+    return *stuck_m;
+  });
+  EXPECT_GT(result.statuses.at(DepthStatus::Frozen), 5);
+  EXPECT_EQ(result.findings.count("pressure_frozen"), 1u);
+  EXPECT_LT(result.largestHeightError(0.0, kNever), 0.08);
+  int used_later = 0;
+  for (const Comparison& c : result.frames)
+    used_later += c.time_s > 21.0 && c.estimate.depth.status == DepthStatus::Used;
+  EXPECT_GT(used_later, 20);
+}
+
+TEST_F(FaultyGauge, OtherUnitsAndSignsAreNamedAndDoLittleHarm) {
+  const Dive without = dive(options_, std::nullopt);
+  for (const double factor : {100.0, 9806.65, 0.0980665, -1.0}) {
+    const Dive result = run([factor](double, double depth_m) { return factor * depth_m; });
+    EXPECT_EQ(result.findings.count("pressure_slope"), 1u) << factor;
+    EXPECT_LT(result.largestHeightError(0.0, kNever), without.largestHeightError(0.0, kNever) + 0.15)
+        << factor;
+  }
+}
+
+TEST_F(FaultyGauge, NoiseBeyondWhatItStatesIsLearnt) {
+  Random random(3, "loud");
+  const Dive result = run([&](double, double depth_m) { return depth_m + 0.1 * random.normal(); });
+  EXPECT_LT(result.largestHeightError(0.0, kNever), 0.1);
+}
+
+TEST_F(FaultyGauge, NotANumberIsLeftOut) {
+  const Dive result =
+      run([](double t, double depth_m) { return std::fmod(t, 2.0) < 0.6 ? std::nan("") : depth_m; });
+  EXPECT_GT(result.findings.at("pressure_invalid"), 5);
+  EXPECT_LT(result.largestHeightError(0.0, kNever), 0.06);
+}
+
+TEST(DepthFusion, SwitchedOffItIsAsIfThereWereNone) {
+  const TestSceneOptions options = sceneOptions(4.0);
+  EstimatorOptions off = honestOptions(options);
+  off.depth.use = false;
+  const Dive with = dive(options, Gauge(), off);
+  const Dive without = dive(options, std::nullopt);
+  EXPECT_EQ(with.last().depth.status, DepthStatus::Off);
+  EXPECT_EQ(without.last().depth.status, DepthStatus::NoData);
+  EXPECT_EQ(with.last().covariance, without.last().covariance);
+  EXPECT_EQ(with.last().state.world_from_body.translation, without.last().state.world_from_body.translation);
+}
+
+}  // namespace
+}  // namespace lodeline

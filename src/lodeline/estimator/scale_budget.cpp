@@ -1,0 +1,79 @@
+#include "lodeline/estimator/scale_budget.h"
+
+#include <cmath>
+
+namespace lodeline {
+namespace {
+
+constexpr double kMemory_s = 30.0;
+
+}  // namespace
+
+void ScaleBudget::Scatter::fade(double keep) {
+  weight_ *= keep;
+  squares_ *= keep;
+}
+
+void ScaleBudget::Scatter::add(const Vec3& value, double weight) {
+  weight_ += weight;
+  const Vec3 before = value - mean_;
+  mean_ += weight / weight_ * before;
+  squares_ += weight * before.dot(value - mean_);
+}
+
+double ScaleBudget::Scatter::sum() const { return squares_; }
+
+ScaleBudget::ScaleBudget(const Rig& rig, const EstimatorOptions& options)
+    : calibration_(options.camera_calibration), density_sigma_(options.depth.density_ratio_sigma) {
+  if (rig.cameras.size() < 2) return;
+  baseline_m_ =
+      (rig.cameras[1].body_from_camera.translation - rig.cameras[0].body_from_camera.translation).norm();
+}
+
+ScaleInformation ScaleBudget::add(const Window& window) {
+  const Frame& newest = window.newest();
+  if (last_) {
+    const double keep = std::exp(-(newest.time - *last_).seconds() / kMemory_s);
+    accelerations_.fade(keep);
+    heights_.fade(keep);
+  }
+  last_ = newest.time;
+  if (newest.from_previous && window.frames().size() > 1) {
+    const Frame& before = *window.frames()[window.frames().size() - 2];
+    const double elapsed_s = newest.from_previous->dt_s();
+    const double speed_variance = newest.from_previous->covariance().block<3, 3>(3, 3).trace() / 3.0;
+    const Vec3 acceleration_W = (newest.velocity_W() - before.velocity_W()) / elapsed_s;
+    accelerations_.add(acceleration_W, elapsed_s * elapsed_s / speed_variance);
+  }
+  if (newest.depth)
+    heights_.add(newest.worldFromBody().translation.z() * Vec3::UnitZ(),
+                 1.0 / std::pow(newest.depth->sigma_m, 2));
+  ScaleInformation information;
+  information.stereo = stereoInformation(window);
+  information.accelerometer = accelerations_.sum();
+  if (heights_.sum() > 0.0)
+    information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma_ * density_sigma_);
+  return information;
+}
+
+double ScaleBudget::stereoInformation(const Window& window) const {
+  if (!baseline_m_) return 0.0;
+  const FrameId newest = window.newest().id;
+  double inverse_distances = 0.0;
+  int count = 0;
+  for (const auto& [id, track] : window.tracks()) {
+    if (!track.landmark || track.landmark->inverseDistance() <= 0.0 || !track.find(newest, 1)) continue;
+    inverse_distances += track.landmark->inverseDistance();
+    ++count;
+  }
+  if (count == 0) return 0.0;
+  // A calibration that is held is trusted, but not beyond what files state.
+  constexpr double kTrust = 1e-3;
+  const double by_position = calibration_.enabled ? calibration_.stereo_position_sigma_m / *baseline_m_ : 0.0;
+  const double by_rotation =
+      calibration_.enabled ? calibration_.stereo_rotation_sigma_rad * count / inverse_distances / *baseline_m_
+                           : 0.0;
+  return 1.0 / (by_position * by_position + by_rotation * by_rotation + kTrust * kTrust);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+
+#include "lodeline/estimator/options.h"
+#include "lodeline/estimator/window.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// What each source says of the length of a metre, as information 1 / sigma^2 of the logarithm of the scale.
+struct ScaleInformation {
+  double stereo = 0.0;
+  double accelerometer = 0.0;
+  double depth = 0.0;
+
+  double sum() const { return stereo + accelerometer + depth; }
+};
+
+/// Keeps an account of what carries the scale, beside the estimator and without effect on it. Every source is
+/// taken by itself, over the half-minute for which images hand a scale on:
+/// - stereo: the baseline b, known as the calibration is, sigma^2 = (sigma_b / b)^2 + (sigma_rotation d /
+/// b)^2
+///   at the mean distance d of what both cameras see (a turn of one camera moves all points);
+/// - accelerometer: changes of the acceleration against the noise of its integral; what is constant counts as
+///   bias and tilt;
+/// - depth: changes of the height against the readings' sigma, and the water's density.
+class ScaleBudget {
+ public:
+  ScaleBudget(const Rig& rig, const EstimatorOptions& options);
+
+  /// The window with its newest frame solved.
+  ScaleInformation add(const Window& window);
+
+ private:
+  /// Weighted scatter of a quantity about its mean, with a memory.
+  class Scatter {
+   public:
+    void fade(double keep);
+    void add(const Vec3& value, double weight);
+    /// Weighted sum of squared distances from the mean.
+    double sum() const;
+
+   private:
+    double weight_ = 0.0;
+    Vec3 mean_ = Vec3::Zero();
+    double squares_ = 0.0;
+  };
+
+  double stereoInformation(const Window& window) const;
+
+  std::optional<double> baseline_m_;
+  CameraCalibrationOptions calibration_;
+  double density_sigma_;
+  Scatter accelerations_, heights_;
+  std::optional<Time> last_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,69 @@
+#include "lodeline/estimator/scale_budget.h"
+
+#include <gtest/gtest.h>
+
+#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/test_window.h"
+
+namespace lodeline {
+namespace {
+
+/// Information after the frames of a scene, at their true states.
+ScaleInformation informationAfter(int cameras, double liveliness, double depth_sigma_m, double sink_m_per_s,
+                                  const EstimatorOptions& options = {}) {
+  TestSceneOptions scene_options;
+  scene_options.cameras = cameras;
+  scene_options.liveliness = liveliness;
+  scene_options.duration_s = 9.0;
+  scene_options.points.tracks = 30;
+  scene_options.points.frame_rate_hz = 5.0;
+  scene_options.drift_m_per_s = Vec3(0.0, 0.0, -sink_m_per_s);
+  TestScene scene(scene_options);
+  TestWindow test(cameras);
+  ScaleBudget budget(test.rig, options);
+  ScaleInformation information;
+  while (const auto simulated = scene.next()) {
+    Frame& frame = test.add(*simulated, true);
+    if (depth_sigma_m > 0.0) frame.depth = DepthMeasurement{CarriedDepth(), depth_sigma_m};
+    createLandmarks(test.window, test.factors, test.options.landmark);
+    information = budget.add(test.window);
+  }
+  return information;
+}
+
+TEST(ScaleBudget, OneCameraAtConstantSpeedHasNothing) {
+  const ScaleInformation information = informationAfter(1, 0.0, 0.0, 0.2);
+  EXPECT_EQ(information.stereo, 0.0);
+  EXPECT_EQ(information.depth, 0.0);
+  EXPECT_LT(information.accelerometer, 1.0);  // a sigma of more than 100 %
+}
+
+TEST(ScaleBudget, AccelerationCountsWithItsSquare) {
+  const double calm = informationAfter(1, 0.5, 0.0, 0.0).accelerometer;
+  const double lively = informationAfter(1, 1.0, 0.0, 0.0).accelerometer;
+  EXPECT_NEAR(lively / calm, 4.0, 1.5);  // the noise grows with the motion, too
+  EXPECT_GT(lively, 100.0);
+}
+
+TEST(ScaleBudget, StereoIsAsGoodAsItsCalibration) {
+  EstimatorOptions coarse, fine;
+  coarse.camera_calibration.stereo_rotation_sigma_rad = 0.004;
+  fine.camera_calibration.stereo_rotation_sigma_rad = 0.002;
+  const double by_coarse = informationAfter(2, 1.0, 0.0, 0.0, coarse).stereo;
+  const double by_fine = informationAfter(2, 1.0, 0.0, 0.0, fine).stereo;
+  EXPECT_NEAR(by_fine / by_coarse, 4.0, 0.2);
+  // Walls 4 m away, 11 cm apart: 0.002 * 4 / 0.11.
+  EXPECT_NEAR(1.0 / std::sqrt(by_fine), 0.07, 0.03);
+}
+
+TEST(ScaleBudget, DepthCountsWhereTheRigSinksAndNeverBeyondTheWater) {
+  const double level = informationAfter(1, 0.0, 0.05, 0.0).depth;
+  const double sinking = informationAfter(1, 0.0, 0.05, 0.2).depth;
+  EXPECT_LT(level, 1.0);
+  // 1.6 m evenly in 40 readings: scatter of 0.46 m against 0.05 m / sqrt(40).
+  EXPECT_NEAR(1.0 / std::sqrt(sinking), 0.023, 0.008);
+  EXPECT_LT(informationAfter(1, 0.0, 1e-4, 0.2).depth, 1.0 / (0.015 * 0.015));
+}
+
+}  // namespace
+}  // namespace lodeline
