@@ -105,7 +105,7 @@ DepthDecision DepthFusion::judge(const DepthSample& reading, const CarriedDepth&
   const Innovation innovation = innovate(depth, window);
   const bool is_reliable = innovation.speed_sigma_m_per_s < kReliableSpeed_m_per_s;
   const bool is_noise = is_reliable && innovation.lag_sigma_m < health_.readingSigma();
-  const DepthStatus health = health_.check(reading, motion_, is_reliable);
+  const DepthStatus health = health_.check(reading, motion_, depth.lag_s, is_reliable);
   health_.learnScatter(is_noise ? std::optional(innovation.value_m) : std::nullopt);
   DepthDecision decision = gate_.decide(reading.time, innovation.value_m, innovation.sigma_m);
   if (is_slope_wrong_ && health == DepthStatus::Used) decision = {DepthStatus::Restarted, true};

@@ -13,15 +13,16 @@ constexpr size_t kScatterReadings = 21;
 
 }  // namespace
 
-DepthStatus DepthHealth::check(const DepthSample& reading, const VerticalMotion& motion, bool is_reliable) {
+DepthStatus DepthHealth::check(const DepthSample& reading, const VerticalMotion& motion, double lag_s,
+                               bool is_reliable) {
   if (!changed_ || reading.depth_m != changed_->depth_m) {
     changed_ = reading;
     is_frozen_ = false;
   }
   if (is_reliable && last_) {
-    slope_.add(reading.time, reading.depth_m, motion.riseSince(last_->time, reading.time, 0.0));
+    slope_.add(reading.time, reading.depth_m, motion.shownRise(last_->time, reading.time, lag_s));
     const Time since = std::max(changed_->time, reading.time - Duration::fromSeconds(kFrozenSpan_s));
-    const double rise_m = motion.riseSince(since, reading.time, 0.0);
+    const double rise_m = motion.shownRise(since, reading.time, lag_s);
     is_frozen_ = is_frozen_ || std::abs(rise_m) > kFrozenRise_m + 3.0 * readingSigma();
   } else {
     slope_.interrupt();

@@ -18,9 +18,9 @@ class DepthHealth {
   DepthHealth(const DepthGateOptions& options, double stated_sigma_m)
       : options_(options), stated_sigma_m_(stated_sigma_m) {}
 
-  /// The next reading in order of time. `is_reliable`: whether `motion`, of the port, is known well enough to
-  /// judge a gauge by. Used, Frozen or Slope.
-  DepthStatus check(const DepthSample& reading, const VerticalMotion& motion, bool is_reliable);
+  /// The next reading in order of time, of a gauge with `lag_s`. `is_reliable`: whether `motion`, of the
+  /// port, is known well enough to judge a gauge by. Used, Frozen or Slope.
+  DepthStatus check(const DepthSample& reading, const VerticalMotion& motion, double lag_s, bool is_reliable);
   /// That reading less what is expected, m; nothing where the difference says more of what is expected.
   void learnScatter(const std::optional<double>& innovation_m);
 

@@ -18,6 +18,10 @@ class VerticalMotion {
   /// first-order lag; a lag of 0 or less counts as a shift in time. Where no speed is known, that of the
   /// nearest moment holds between `from` and `to`, and the point stood still before the first moment.
   double riseSince(Time from, Time to, double lag_s) const;
+  /// How much higher the point is at `to` than at `from` by what such a sensor shows.
+  double shownRise(Time from, Time to, double lag_s) const {
+    return riseSince(from, to, lag_s) - riseSince(to, to, lag_s);
+  }
 
  private:
   double speedAt(Time time) const;

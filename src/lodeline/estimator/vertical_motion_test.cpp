@@ -39,6 +39,11 @@ TEST(VerticalMotion, KnowsWhatALaggingGaugeShows) {
   }
 }
 
+TEST(VerticalMotion, KnowsHowWhatItShowsChanges) {
+  EXPECT_NEAR(breathing().shownRise(at(27.0), at(29.2), 0.7),
+              laggingHeightOf(29.2, 0.7) - laggingHeightOf(27.0, 0.7), 5e-4);
+}
+
 TEST(VerticalMotion, LagPassesSmoothlyThroughZero) {
   const VerticalMotion motion = breathing();
   const double before = motion.riseSince(at(29.1), at(29.2), -1e-3);
