@@ -127,7 +127,10 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   Synchronizer synchronizer(&source, options.synchronizer, diagnostics);
   Odometry odometry(source.rig(), options.odometry, diagnostics);
   RunSummary summary(describe(request, options, source.rig()));
-  AttitudeTrack attitude(source.rig(), {}, diagnostics);
+  AttitudeFilterOptions attitude_options;
+  attitude_options.site_field_W = options.odometry.estimator.magnetometer.site_field_W;
+  Diagnostics unheard;  // what the filter finds wrong with readings, synchroniser and odometry report too
+  AttitudeTrack attitude(source.rig(), attitude_options, &unheard);
   process(synchronizer, odometry, &attitude, source.rig(), request, &summary);
   writeOutput(folder / "run.json", summary.json(*diagnostics));
   return summary;

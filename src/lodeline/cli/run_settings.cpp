@@ -118,10 +118,11 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
                   {"off", MagnetometerUse::Off}},
                  "automatic: absolute where the magnetometer is calibrated, else off");
   settings->bind("magnetometer.floor_T", &options->floor_T,
-                 "lasting errors of the field, one sigma per axis");
+                 "lasting errors of the field, one sigma per axis, to start with");
   settings->bind("magnetometer.floor_correlation_s", &options->floor_correlation_s, "for which they last");
-  settings->bind("magnetometer.tilt_sigma_rad", &options->tilt_sigma_rad,
-                 "of roll and pitch when a heading is taken from the field");
+  settings->bind("magnetometer.floor_prior_samples", &options->floor_prior_samples,
+                 "that floor_T is worth against what size and dip of the field teach");
+  settings->bind("magnetometer.floor_memory_s", &options->floor_memory_s, "over which they teach");
   settings->bind("magnetometer.noise_inflation", &options->noise_inflation,
                  "factor on the noise density of its calibration");
   settings->bind("magnetometer.offset_sigma_T", &options->offset_sigma_T, "of what calibration leaves");
@@ -148,6 +149,13 @@ void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
   settings->bind("magnetometer.gate.release_s", &gate->release_s, "for so long");
   settings->bind("magnetometer.gate.memory_s", &gate->memory_s,
                  "over which rejections lower the weight of what is used");
+  settings->bind("magnetometer.gate.account_s", &gate->account_s,
+                 "over which agreement and rejection are weighed against each other");
+  settings->bind("magnetometer.gate.credit_s", &gate->credit_s,
+                 "by which rejection has to outweigh agreement before nothing is believed any more");
+  settings->bind("magnetometer.gate.max_lasting_sigma_rad", &gate->max_lasting_sigma_rad,
+                 "that the field's lasting error may be worth of heading");
+  settings->bind("magnetometer.gate.distrust_s", &gate->distrust_s, "after which that is tried again");
   settings->bind("magnetometer.gate.readmission_s", &gate->readmission_s,
                  "after which a rejected field counts as a new one");
 }

@@ -56,7 +56,8 @@ std::optional<MagnetometerSample> EurocSource::nextMagnetometer() {
 
 void EurocSource::checkMagneticUnit(const MagnetometerSample& sample) {
   const double norm = sample.field_M.norm();
-  if (norm > kLeastField_T && norm < kGreatestField_T) return;
+  if (is_magnetic_unit_doubted_ || (norm > kLeastField_T && norm < kGreatestField_T)) return;
+  is_magnetic_unit_doubted_ = true;
   diagnostics_->report(
       Severity::Warning, "magnetometer_unit",
       fmt::format("{}:{}: a field of {:g} T; the Earth's is 2e-5 to 7e-5 T: is the column in tesla?",

@@ -44,7 +44,8 @@ class EurocSource : public MeasurementSource {
   std::optional<CsvReader> magnetometer_;
   std::optional<CsvReader> pressure_;
   std::optional<CsvReader> sonar_;
-  CsvRow row_;  ///< reused, so that reading does not allocate
+  bool is_magnetic_unit_doubted_ = false;  ///< once said, a whole column is meant
+  CsvRow row_;                             ///< reused, so that reading does not allocate
 };
 
 }  // namespace lodeline

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/inertial/field_gate.h"
 
 namespace lodeline {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kLeastField_T = 15e-6;  // the Earth's has 22 to 67 uT; hard ir
 constexpr double kMostField_T = 90e-6;
 
 double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
-double dipOf(const Vec3& field_W) { return std::asin(-field_W.z() / field_W.norm()); }
+double dipOf(const Vec3& field_W) { return FieldShape::of(field_W).dip_rad; }
 double azimuthOf(const Vec3& field_W) { return std::atan2(field_W.y(), field_W.x()); }
 
 /// Why no heading can be had from the field; empty where it can.

@@ -29,6 +29,8 @@ class Row {
     largest_ = std::max(largest_, trial.largest());
     used_ += trial.share(MagnetometerStatus::Used);
     readmitted_ += trial.share(MagnetometerStatus::Readmitted);
+    inconsistent_ += trial.share(MagnetometerStatus::Inconsistent);
+    floor_T_ += trial.floor_T;
     ms_ += 1e3 * trial.estimator_s / static_cast<double>(trial.samples.size());
     reference_ = trial.reference;
   }
@@ -36,16 +38,18 @@ class Row {
     const auto degrees = [&](double squares) {
       return std::sqrt(squares / count_) * 180.0 / std::numbers::pi;
     };
-    fmt::print("{:13} {:9} {:>8.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>7.1f} {:>7.1f} {:>7.2f}  {}\n", trouble,
-               use, degrees(rms_), degrees(claimed_), largest_ * 180.0 / std::numbers::pi, degrees(aligned_),
-               100.0 * used_ / count_, 100.0 * readmitted_ / count_, ms_ / count_, toString(reference_));
+    fmt::print(
+        "{:13} {:9} {:>8.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>7.1f} {:>7.1f} {:>7.1f} {:>8.3f} {:>7.2f}  {}\n",
+        trouble, use, degrees(rms_), degrees(claimed_), largest_ * 180.0 / std::numbers::pi,
+        degrees(aligned_), 100.0 * used_ / count_, 100.0 * readmitted_ / count_,
+        100.0 * inconsistent_ / count_, 1e6 * floor_T_ / count_, ms_ / count_, toString(reference_));
     std::fflush(stdout);
   }
 
  private:
   int count_ = 0;
   double rms_ = 0.0, claimed_ = 0.0, aligned_ = 0.0, largest_ = 0.0, used_ = 0.0, readmitted_ = 0.0,
-         ms_ = 0.0;
+         inconsistent_ = 0.0, floor_T_ = 0.0, ms_ = 0.0;
   HeadingReference reference_ = HeadingReference::Start;
 };
 
@@ -66,7 +70,9 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Heading errors of simulated dives in degrees, from 60 s on: root mean square over time and seeds "
       "against north (or against the first heading), claimed, largest, root mean square with the mean "
-      "taken off; share of frames whose field was used or readmitted; time of the estimator a frame.");
+      "taken off; share of frames whose field was used, readmitted or inconsistent; its lasting error as "
+      "learned, "
+      "uT; time of the estimator a frame.");
   HeadingTrialOptions options;
   int seeds = 3;
   double minutes = 30.0, each_s = 0.0;
@@ -81,20 +87,23 @@ int main(int argc, char** argv) {
   app.add_option("--rate", options.frame_rate_hz, "frames a second")->capture_default_str();
   app.add_option("--cameras", options.cameras)->capture_default_str()->check(CLI::Range(1, 2));
   app.add_option("--troubles", troubles,
-                 "0 none, 1 hard iron, 2 disturbances, 3 tank, 4 dipole, 5 calibration, 6 lamp")
+                 "0 none, 1 hard iron, 2 disturbances, 3 tank, 4 dipole, 5 calibration, 6 lamp, 7 soft iron, "
+                 "8 misaligned, 9 scale, 10 swapped axes")
       ->capture_default_str();
   app.add_option("--uses", uses)->capture_default_str()->check(CLI::IsMember(kUses));
+  app.add_option("--grade", options.imu_grade, "of the IMU")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gx5-25", "gv7", "consumer"}));
   app.add_option("--honest-imu", options.honest_imu, "take the IMU's noise for what it is")
       ->capture_default_str();
   app.add_option("--floor", magnetometer.floor_T, "T")->capture_default_str();
   app.add_option("--offset-sigma", magnetometer.offset_sigma_T, "T")->capture_default_str();
   app.add_option("--offset-walk", magnetometer.offset_walk_T_per_sqrt_s, "T/sqrt(s)")->capture_default_str();
-  app.add_option("--tilt-sigma", magnetometer.tilt_sigma_rad, "rad")->capture_default_str();
   app.add_option("--each", each_s, "list every dive every so many seconds");
   CLI11_PARSE(app, argc, argv);
   options.duration_s = 60.0 * minutes;
-  fmt::print("{:13} {:9} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7}\n", "trouble", "use", "rms", "claimed",
-             "largest", "aligned", "used %", "readm %", "ms");
+  fmt::print("{:13} {:9} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>8} {:>7}\n", "trouble", "use", "rms",
+             "claimed", "largest", "aligned", "used %", "readm %", "incon %", "floor uT", "ms");
   for (const int trouble : troubles) {
     options.trouble = static_cast<FieldTrouble>(trouble);
     for (const std::string& use : uses) {

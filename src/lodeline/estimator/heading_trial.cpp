@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 const Vec3 kField_W(0.0, 24.2e-6, -38.6e-6);  // to magnetic north, as in Florida
-constexpr const char* kGrade = "gx5-25";
 
 MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Motion& motion) {
   DisturbanceOptions wanted;
@@ -46,21 +45,45 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
   }
 }
 
+/// What is wrong with the calibration.
+void spoil(FieldTrouble trouble, Random& random, MagnetometerCalibration* calibration) {
+  const Vec3 direction = random.direction();
+  Mat3& iron = calibration->iron_correction;
+  switch (trouble) {
+    case FieldTrouble::HardIron:
+      calibration->hard_iron_T += 0.3e-6 * direction;
+      return;
+    case FieldTrouble::Calibration:
+      calibration->hard_iron_T += 8e-6 * direction;
+      iron = Mat3::Identity();
+      return;
+    case FieldTrouble::SoftIron:
+      iron *= Mat3::Identity() + 0.1 * (3.0 * direction * direction.transpose() - Mat3::Identity()) / 2.0;
+      return;
+    case FieldTrouble::Misalignment:
+      iron = so3::exp(20.0 * kDegree * direction) * iron;
+      return;
+    case FieldTrouble::Scale:
+      iron *= 1.5;
+      return;
+    case FieldTrouble::SwappedAxes:
+      iron.row(0).swap(iron.row(1));
+      return;
+    default:
+      return;
+  }
+}
+
 /// The calibration that the rig is given for a magnetometer with these errors.
 void calibrate(const MagnetometerErrors& errors, FieldTrouble trouble, uint64_t seed,
                MagnetometerCalibration* calibration) {
   Random random(seed, "heading trial/calibration");
-  const Vec3 direction = random.direction();
   calibration->noise_density_T_per_sqrtHz = errors.noise_density_T_per_sqrtHz;
   calibration->body_from_magnetometer = errors.body_from_magnetometer;
   calibration->iron_correction = errors.soft_iron.inverse();
   calibration->hard_iron_T = errors.hard_iron_T;
   calibration->is_calibrated = true;
-  if (trouble == FieldTrouble::HardIron) calibration->hard_iron_T += 0.3e-6 * direction;
-  if (trouble == FieldTrouble::Calibration) {
-    calibration->hard_iron_T += 8e-6 * direction;
-    calibration->iron_correction = Mat3::Identity();
-  }
+  spoil(trouble, random, calibration);
 }
 
 PointDive diveOf(const HeadingTrialOptions& options, const ImuErrors& imu) {
@@ -76,7 +99,7 @@ PointDive diveOf(const HeadingTrialOptions& options, const ImuErrors& imu) {
 EstimatorOptions estimatorOptions(const HeadingTrialOptions& options) {
   EstimatorOptions estimator = options.estimator;
   if (!options.honest_imu) return estimator;
-  const ImuGrade& grade = imuGrade(kGrade);
+  const ImuGrade& grade = imuGrade(options.imu_grade);
   estimator.preintegration.noise_inflation = 1.0;
   estimator.preintegration.motion_noise = MotionNoiseOptions::none();
   estimator.initial_state.gyroscope_bias_sigma_rad_per_s = std::max(1e-3, grade.gyroscope_turn_on_rad_per_s);
@@ -100,8 +123,8 @@ double rootMeanSquare(const std::vector<HeadingSample>& samples, double begin_s,
 }  // namespace
 
 const char* toString(FieldTrouble trouble) {
-  constexpr std::array kNames = {"none",   "hard iron",   "disturbances", "tank",
-                                 "dipole", "calibration", "lamp"};
+  constexpr std::array kNames = {"none", "hard iron", "disturbances", "tank",  "dipole",      "calibration",
+                                 "lamp", "soft iron", "misaligned",   "scale", "swapped axes"};
   return kNames[static_cast<size_t>(trouble)];
 }
 
@@ -141,11 +164,11 @@ double HeadingTrial::share(MagnetometerStatus status) const {
 
 HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
   SpecimenOptions specimen;
-  const ImuErrors imu = drawImuErrors(imuGrade(kGrade), specimen, options.seed);
+  const ImuErrors imu = drawImuErrors(imuGrade(options.imu_grade), specimen, options.seed);
   PointDive dive = diveOf(options, imu);
   PointMagnetometer magnetometer;
   magnetometer.field_W = kField_W;
-  magnetometer.errors = drawMagnetometerErrors(kGrade, {}, options.seed);
+  magnetometer.errors = drawMagnetometerErrors(options.imu_grade, {}, options.seed);
   magnetometer.disturbances = disturbancesOf(options, dive.motion);
   calibrate(magnetometer.errors, options.trouble, options.seed, &*dive.mounted.rig.magnetometer);
 
@@ -169,6 +192,7 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
     const Quat& estimated = estimate.state.world_from_body.rotation;
     const Quat& truth = frame->truth.motion.world_from_body.rotation;
     trial.reference = estimate.magnetometer.heading_reference;
+    trial.floor_T = estimate.magnetometer.floor_T.value_or(0.0);
     if (!estimate_from_truth) {
       estimate_from_truth = Quat::Identity();
       if (trial.reference == HeadingReference::Start)

@@ -19,6 +19,10 @@ enum class FieldTrouble {
   Dipole,        ///< iron lying in the passage, 15 degrees, passed both ways
   Calibration,   ///< hard iron wrong by 8 uT, soft iron by some per cent
   Lamp,          ///< a current of 0.1 to 0.4 uT, switched
+  SoftIron,      ///< soft iron wrong by 10 %
+  Misalignment,  ///< axes turned by 20 degrees
+  Scale,         ///< corrected readings too large by half
+  SwappedAxes,   ///< two axes taken for each other
 };
 const char* toString(FieldTrouble trouble);
 
@@ -29,6 +33,7 @@ struct HeadingTrialOptions {
   double frame_rate_hz = 5.0;
   int tracks = 60;
   int cameras = 2;
+  std::string imu_grade = "gx5-25";  ///< of simulation/imu_model.h, with its magnetometer
   FieldTrouble trouble = FieldTrouble::None;
   EstimatorOptions estimator;
   bool honest_imu = true;  ///< the estimator takes the IMU's noise for what it is (noise_inflation 1)
@@ -44,6 +49,7 @@ struct HeadingSample {
 struct HeadingTrial {
   std::vector<HeadingSample> samples;  ///< of every frame
   HeadingReference reference = HeadingReference::Start;
+  double floor_T = 0.0;      ///< of the field, as learned by the end
   double estimator_s = 0.0;  ///< processor time
 
   /// Root mean square over the samples from `begin_s` on.

@@ -8,6 +8,7 @@
 
 #include "lodeline/estimator/lasting_error.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/inertial/field_gate.h"
 
 namespace lodeline {
 namespace {
@@ -59,7 +60,8 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
       gyroscope_density_(options.preintegration.noise_inflation *
                          rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz),
       readings_(calibration_, diagnostics),
-      gate_(options.magnetometer.gate) {
+      gate_(options.magnetometer.gate),
+      floor_(options.magnetometer) {
   if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
     return;
   if (use_ == MagnetometerUse::Off) {
@@ -132,8 +134,7 @@ double MagnetometerFusion::offsetSigma() const {
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
-  return std::hypot(options_.magnetometer.floor_T,
-                    calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
+  return std::hypot(floor_.sigma_T(), calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
 }
 
 void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const {
@@ -152,6 +153,16 @@ void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* wi
   prior->append(offset.value.data(), 3, Vec3::Constant(offsetSigma()));
 }
 
+double MagnetometerFusion::whiteVariance(const MagnetometerMean& mean) const {
+  const double density = options_.magnetometer.noise_inflation * calibration_.noise_density_T_per_sqrtHz;
+  return density * density * calibration_.rate_hz / mean.readings;
+}
+
+double MagnetometerFusion::tiltSigma() const {
+  if (covariance_.empty()) return options_.initial_state.tilt_sigma_min_rad;
+  return std::sqrt(0.5 * covariance_.newest().diagonal().segment<2>(3).sum());
+}
+
 FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean, double variance_scale,
                                                    bool disturbed) {
   const MagnetometerOptions& wanted = options_.magnetometer;
@@ -159,18 +170,15 @@ FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean,
   measurement.mean = mean;
   measurement.relative = !absolute();
   measurement.disturbed = disturbed;
-  const double reading_sigma_T =
-      wanted.noise_inflation * calibration_.noise_density_T_per_sqrtHz * std::sqrt(calibration_.rate_hz);
   if (measurement.relative) {
-    measurement.noise.sigma_T = reading_sigma_T;
+    measurement.noise.sigma_T = std::sqrt(whiteVariance(mean) * mean.readings);
     return measurement;
   }
   const double shared = lastingErrorShare(mean.time, last_seen_, wanted.floor_correlation_s);
-  const double variance_T2 =
-      std::pow(reading_sigma_T, 2) / mean.readings + shared * std::pow(floorSigma(mean.field_B), 2);
+  const double variance_T2 = whiteVariance(mean) + shared * std::pow(floorSigma(mean.field_B), 2);
   measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
   measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
-  measurement.noise.tilt_sigma_rad = wanted.tilt_sigma_rad * std::sqrt(variance_scale * shared);
+  measurement.noise.tilt_sigma_rad = tiltSigma() * std::sqrt(variance_scale * shared);
   last_seen_ = mean.time;
   return measurement;
 }
@@ -214,12 +222,15 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
   if (decision.end_disturbance || (decision.begin_disturbance && disturbed_))
     endDisturbance(window, marginalizer);
   if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
+  // Also a field that is not believed at all is watched, lest it never be believed again.
+  if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
+    learnFloor(mean, earth, window);
   if (!decision.use) {
     // A field that was rejected a moment ago is no fresh witness: what disturbed it fades.
     last_seen_ = mean.time;
     return;
   }
-  const bool disturbed = decision.status == MagnetometerStatus::Readmitted;
+  const bool disturbed = status_ == MagnetometerStatus::Readmitted;
   newest.magnetometer = measurementOf(mean, decision.variance_scale, disturbed);
 }
 
@@ -230,21 +241,22 @@ FieldCheck MagnetometerFusion::check(const MagnetometerMean& mean, const Window&
   const Vec3 expected_W = states.field_W() + (disturbed ? states.disturbance_W() : Vec3::Zero());
   const Vec3 measured_W = world_from_body * (mean.field_B - mean.carried * states.offset_B());
   const Mat3 covariance = differenceCovariance(mean, window, disturbed);
-  const double norm_T = expected_W.norm(), horizontal_T = expected_W.head<2>().norm();
-  const auto dip = [](const Vec3& field_W) { return std::atan2(-field_W.z(), field_W.head<2>().norm()); };
+  const FieldShape expected = FieldShape::of(expected_W), measured = FieldShape::of(measured_W);
+  const double norm_T = expected.norm_T, horizontal_T = expected.horizontal_T();
   const auto sigmaAlong = [&](const Vec3& direction) {
     return std::sqrt(direction.dot(covariance * direction));
   };
   const Vec3 along = expected_W / norm_T;
   const Vec3 across = Vec3::UnitZ().cross(expected_W) / horizontal_T;
   FieldCheck result;
-  result.norm_error = measured_W.norm() / norm_T - 1.0;
+  result.norm_error = measured.norm_T / norm_T - 1.0;
   result.norm_sigma = sigmaAlong(along) / norm_T;
-  result.dip_error_rad = dip(measured_W) - dip(expected_W);
+  result.dip_error_rad = measured.dip_rad - expected.dip_rad;
   result.dip_sigma_rad = sigmaAlong(along.cross(across)) / norm_T;
   result.heading_error_rad =
       std::atan2(across.dot(measured_W), measured_W.head<2>().dot(expected_W.head<2>()) / horizontal_T);
   result.heading_sigma_rad = sigmaAlong(across) / horizontal_T;
+  result.lasting_sigma_rad = floor_.sigma_T() / horizontal_T;
   return result;
 }
 
@@ -253,11 +265,8 @@ Mat3 MagnetometerFusion::differenceCovariance(const MagnetometerMean& mean, cons
   const MagnetometerOptions& wanted = options_.magnetometer;
   const MagnetometerStates states(window);
   const Mat3 world_from_body = window.newest().worldFromBody().rotation.toRotationMatrix();
-  const double reading_variance_T2 =
-      std::pow(calibration_.noise_density_T_per_sqrtHz * wanted.noise_inflation, 2) * calibration_.rate_hz /
-      mean.readings;
   FieldNoise noise;
-  noise.sigma_T = std::hypot(wanted.gate.field_sigma_T, std::sqrt(reading_variance_T2));
+  noise.sigma_T = std::hypot(wanted.gate.field_sigma_T, std::sqrt(whiteVariance(mean)));
   noise.rotation_sigma_rad = mean.rotation_sigma_rad;
   Mat3 covariance = fieldCovariance_W(states.field_W(), noise);
 
@@ -277,6 +286,18 @@ Mat3 MagnetometerFusion::differenceCovariance(const MagnetometerMean& mean, cons
     }
   }
   return covariance;
+}
+
+void MagnetometerFusion::learnFloor(const MagnetometerMean& mean, const FieldCheck& earth,
+                                    const Window& window) {
+  const double norm_T = MagnetometerStates(window).field_W().norm();
+  const double relative_variance =
+      0.5 * (earth.norm_sigma * earth.norm_sigma + earth.dip_sigma_rad * earth.dip_sigma_rad);
+  const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
+  const double state_variance_T2 =
+      norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - whiteVariance(mean);
+  floor_.add(mean.time, norm_T * earth.norm_error, norm_T * earth.dip_error_rad,
+             std::max(0.0, state_variance_T2), whiteVariance(mean));
 }
 
 void MagnetometerFusion::beginDisturbance(const MagnetometerMean& mean, Window& window,
@@ -301,7 +322,17 @@ void MagnetometerFusion::endDisturbance(Window& window, Marginalizer& marginaliz
 }
 
 void MagnetometerFusion::reportDecision(const GateDecision& decision, Time time) {
-  if (!decision.use && !rejecting_) {
+  const bool inconsistent = decision.status == MagnetometerStatus::Inconsistent;
+  if (inconsistent && status_before_ != MagnetometerStatus::Inconsistent) {
+    diagnostics_->report(
+        Severity::Warning, "magnetometer_inconsistent",
+        fmt::format(
+            "magnetometer: its field has disagreed with its calibration for longer than it has agreed "
+            "with it, up to {} ns; nothing of it is used from then on unless that changes. Calibrate it "
+            "anew, where it is mounted (`lodeline calibrate magnetometer`)",
+            time.nanoseconds()));
+  }
+  if (!decision.use && !inconsistent && !rejecting_) {
     diagnostics_->report(
         Severity::Warning, "magnetometer_rejected",
         fmt::format("magnetometer: not the Earth's field ({}) from {} ns on; heading is carried by gyroscope "
@@ -316,6 +347,7 @@ void MagnetometerFusion::reportDecision(const GateDecision& decision, Time time)
                     time.nanoseconds(), options_.magnetometer.gate.readmission_s));
   }
   rejecting_ = !decision.use;
+  status_before_ = decision.status;
 }
 
 MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
@@ -332,6 +364,7 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   if (states.field != nullptr) {
     estimate.field_W = states.field_W();
     estimate.offset_B = states.offset_B();
+    estimate.floor_T = floor_.sigma_T();
   }
   return estimate;
 }

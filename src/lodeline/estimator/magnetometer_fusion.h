@@ -6,6 +6,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/field_floor.h"
 #include "lodeline/estimator/heading_alignment.h"
 #include "lodeline/estimator/magnetometer_gate.h"
 #include "lodeline/estimator/magnetometer_states.h"
@@ -24,6 +25,7 @@ struct MagnetometerEstimate {
   /// Estimated field of the Earth and offset of the corrected readings, T; nothing unless fused absolutely.
   std::optional<Vec3> field_W;
   std::optional<Vec3> offset_B;
+  std::optional<double> floor_T;  ///< lasting error of the field per axis, as learned
 };
 
 /// Brings the magnetometer into a window: sorts its readings, turns the world to north at the start, keeps
@@ -64,6 +66,11 @@ class MagnetometerFusion {
   /// The newest frame's field against the expected one, and the covariance of their difference, T^2.
   FieldCheck check(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
   Mat3 differenceCovariance(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
+  /// Of a mean's white noise, T^2 per axis.
+  double whiteVariance(const MagnetometerMean& mean) const;
+  /// Of the roll and pitch that the window knows, one sigma per axis, rad.
+  double tiltSigma() const;
+  void learnFloor(const MagnetometerMean& mean, const FieldCheck& earth, const Window& window);
   void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   void endDisturbance(Window& window, Marginalizer& marginalizer);
   void reportDecision(const GateDecision& decision, Time time);
@@ -76,12 +83,14 @@ class MagnetometerFusion {
   double gyroscope_density_ = 0.0;  ///< rad/s/sqrt(Hz), inflated
   MagnetometerReadings readings_;
   MagnetometerGate gate_;
+  FieldFloor floor_;
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;
   JointCovariance covariance_;
   bool disturbed_ = false;         ///< the disturbance is among the window's states
   std::optional<Time> last_seen_;  ///< frame with a field, used or not
   bool rejecting_ = false;
+  MagnetometerStatus status_before_ = MagnetometerStatus::Off;  ///< of the last decision
 };
 
 }  // namespace lodeline

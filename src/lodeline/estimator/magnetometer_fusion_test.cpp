@@ -130,6 +130,12 @@ TEST(MagnetometerFusion, StaysOutOfAHeadingThatItCannotImprove) {
   const HeadingTrial disturbed = runHeadingTrial(options);
   EXPECT_LT(disturbed.largest(10.0), 0.8 * kDegree);
   EXPECT_LT(disturbed.share(MagnetometerStatus::Used), 0.8) << "nothing was rejected";
+  // A wrong calibration is told from disturbances, here with less patience than there is time for in a dive.
+  options.trouble = FieldTrouble::Misalignment;
+  options.estimator.magnetometer.gate.credit_s = 30.0;
+  const HeadingTrial misaligned = runHeadingTrial(options);
+  EXPECT_LT(misaligned.alignedRms(20.0), 1.1 * off.alignedRms(20.0) + 0.02 * kDegree);
+  EXPECT_GT(misaligned.share(MagnetometerStatus::Inconsistent), 0.2);
 }
 
 TEST(MagnetometerFusion, LearnsAnOffsetThatCalibrationLeft) {

@@ -34,6 +34,8 @@ const char* toString(MagnetometerStatus status) {
       return "innovation";
     case MagnetometerStatus::Readmitted:
       return "readmitted";
+    case MagnetometerStatus::Inconsistent:
+      return "inconsistent";
     case MagnetometerStatus::Uncalibrated:
       return "uncalibrated";
   }
@@ -78,17 +80,51 @@ GateDecision MagnetometerGate::reject(Time time, MagnetometerStatus reason) {
 
 GateDecision MagnetometerGate::decide(Time time, const FieldCheck& earth,
                                       const std::optional<FieldCheck>& disturbed) {
+  const double since_s = last_time_ ? (time - *last_time_).seconds() : 0.0;
+  last_time_ = time;
+  if (distrusted_since_ && !rehabilitated(time, earth)) {
+    keepAccount(verdict(earth, options_.release_share), since_s);
+    return {MagnetometerStatus::Inconsistent};
+  }
   GateDecision decision = judge(time, earth, disturbed);
-  decision.variance_scale *= std::pow(1.0 - doubt(time, decision), -4);
+  keepAccount(decision.status, since_s);
+  if (isInconsistent(earth)) {
+    distrusted_since_ = time;
+    decision = reject(time, MagnetometerStatus::Inconsistent);
+    decision.end_disturbance = disturbed.has_value();
+    return decision;
+  }
+  decision.variance_scale *= std::pow(1.0 - doubt(decision, since_s), -4);
   return decision;
 }
 
-double MagnetometerGate::doubt(Time time, const GateDecision& decision) {
+void MagnetometerGate::keepAccount(MagnetometerStatus status, double since_s) {
+  const double kept = std::exp(-since_s / options_.account_s);
+  agreed_s_ *= kept;
+  rejected_s_ *= kept;
+  // A readmitted field agrees with nothing but itself.
+  if (status == MagnetometerStatus::Readmitted) return;
+  (status == MagnetometerStatus::Used ? agreed_s_ : rejected_s_) += since_s;
+}
+
+bool MagnetometerGate::isInconsistent(const FieldCheck& earth) const {
+  return rejected_s_ > agreed_s_ + options_.credit_s ||
+         earth.lasting_sigma_rad > options_.max_lasting_sigma_rad;
+}
+
+bool MagnetometerGate::rehabilitated(Time time, const FieldCheck& earth) {
+  const bool prevails = agreed_s_ > rejected_s_ + options_.credit_s && !isInconsistent(earth);
+  if (!prevails && (time - *distrusted_since_).seconds() < options_.distrust_s) return false;
+  distrusted_since_.reset();
+  if (!prevails) agreed_s_ = rejected_s_ = 0.0;
+  rejected_since_ = time;
+  return true;
+}
+
+double MagnetometerGate::doubt(const GateDecision& decision, double since_s) {
   constexpr double kMost = 0.9;
-  const double since_s = last_time_ ? (time - *last_time_).seconds() : 0.0;
   const double now = !decision.use ? 1.0 : decision.status == MagnetometerStatus::Readmitted ? 0.5 : 0.0;
   doubt_ += (now - doubt_) * (1.0 - std::exp(-since_s / options_.memory_s));
-  last_time_ = time;
   return std::min(doubt_, kMost);
 }
 

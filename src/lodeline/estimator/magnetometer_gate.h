@@ -16,6 +16,7 @@ enum class MagnetometerStatus {
   Dip,           ///< rejected: field of another inclination
   Innovation,    ///< rejected: heading disagrees with gyroscope and images
   Readmitted,    ///< rejected for so long that its field counts as a new one, whose disturbance is estimated
+  Inconsistent,  ///< rejected as a whole: it has disagreed for longer than it has agreed
   Uncalibrated,  ///< not used because nobody knows its iron
 };
 const char* toString(MagnetometerStatus status);
@@ -25,6 +26,7 @@ struct FieldCheck {
   double norm_error = 0.0, norm_sigma = 0.0;  ///< relative to the expected field
   double dip_error_rad = 0.0, dip_sigma_rad = 0.0;
   double heading_error_rad = 0.0, heading_sigma_rad = 0.0;
+  double lasting_sigma_rad = 0.0;  ///< of a heading from this field, by what FieldFloor has learned
 };
 
 struct GateDecision {
@@ -43,7 +45,10 @@ struct GateDecision {
 ///   calibration is wrong looks right now and then;
 /// - if that does not happen for `readmission_s`, its field is readmitted as one that is disturbed by a
 ///   constant to be estimated, so that no wrong decision locks it out for good. The Earth's field is kept in
-///   mind, and as soon as it is seen again the disturbance is over.
+///   mind, and as soon as it is seen again the disturbance is over;
+/// - it keeps account of how long the field agreed and how long it did not. What disagrees for longer than it
+///   agrees is no disturbance of a good sensor: its calibration is wrong, or a magnet is on board. Then
+///   nothing is used until agreement prevails, or until it is time for a new trial.
 class MagnetometerGate {
  public:
   explicit MagnetometerGate(const MagnetometerGateOptions& options) : options_(options) {}
@@ -61,8 +66,13 @@ class MagnetometerGate {
   bool released(Time time, const FieldCheck& check, std::optional<Time>* calm_since) const;
   GateDecision reject(Time time, MagnetometerStatus reason);
   GateDecision judge(Time time, const FieldCheck& earth, const std::optional<FieldCheck>& disturbed);
+  /// By its account.
+  bool isInconsistent(const FieldCheck& earth) const;
+  /// While the sensor is not believed at all; whether that is over.
+  bool rehabilitated(Time time, const FieldCheck& earth);
+  void keepAccount(MagnetometerStatus status, double since_s);
   /// Share of the recent past in which the magnetometer was rejected; readmission counts half.
-  double doubt(Time time, const GateDecision& decision);
+  double doubt(const GateDecision& decision, double since_s);
 
   MagnetometerGateOptions options_;
   State state_ = State::Trusting;
@@ -70,6 +80,8 @@ class MagnetometerGate {
   std::optional<Time> earth_calm_since_, disturbed_calm_since_;
   std::optional<Time> last_time_;
   double doubt_ = 0.0;
+  double agreed_s_ = 0.0, rejected_s_ = 0.0;  ///< faded
+  std::optional<Time> distrusted_since_;
 };
 
 }  // namespace lodeline

@@ -145,6 +145,7 @@ TEST_F(MagnetometerGateTest, EndsTheDisturbanceWhenTheEarthsFieldIsBack) {
 }
 
 TEST_F(MagnetometerGateTest, BeginsAnotherDisturbanceWhenTheFirstHasChanged) {
+  run(120.0, headingOff(0.0));
   run(70.0, headingOff(0.1));
   for (int i = 0; i < 700 && begun_ < 2; ++i) run(0.1, normOff(0.1), normOff(0.1));
   EXPECT_EQ(last_.status, Status::Readmitted);
@@ -156,10 +157,65 @@ TEST_F(MagnetometerGateTest, BeginsAnotherDisturbanceWhenTheFirstHasChanged) {
   EXPECT_EQ(begun_, 2);
 }
 
+TEST_F(MagnetometerGateTest, BelievesNothingOfWhatDisagreesForLongerThanItAgrees) {
+  // By turns a minute that fits and more than one that does not, as the rig turns with a wrong calibration.
+  run(30.0, headingOff(0.0));
+  for (int i = 0; i < 6; ++i) {
+    run(50.0, normOff(0.1), normOff(0.1));
+    run(20.0, headingOff(0.0), normOff(0.1));
+  }
+  EXPECT_EQ(last_.status, Status::Inconsistent);
+  EXPECT_FALSE(last_.use) << "it fits, but it did so before";
+  EXPECT_EQ(begun_, 0);
+  count_.clear();
+  run(400.0, headingOff(0.0));
+  EXPECT_EQ(last_.status, Status::Used) << "agreement has prevailed";
+  EXPECT_GT(count_[Status::Inconsistent], 500);
+}
+
+TEST_F(MagnetometerGateTest, BelievesNothingOfAFieldThatNeverAgreesWell) {
+  FieldCheck poor = headingOff(0.01);
+  poor.lasting_sigma_rad = 0.03;
+  run(10.0, poor);
+  EXPECT_EQ(last_.status, Status::Inconsistent);
+  // It takes both agreement and a field that has become steady.
+  run(200.0, poor);
+  EXPECT_EQ(last_.status, Status::Inconsistent);
+  run(5.0, headingOff(0.01));
+  EXPECT_EQ(last_.status, Status::Used);
+}
+
+TEST_F(MagnetometerGateTest, EndsTheDisturbanceOfASensorThatItDistrusts) {
+  run(70.0, headingOff(0.1));
+  ASSERT_TRUE(disturbance_);
+  run(100.0, headingOff(0.1), normOff(0.1));
+  EXPECT_EQ(last_.status, Status::Inconsistent);
+  EXPECT_FALSE(disturbance_);
+  EXPECT_EQ(ended_, 1);
+}
+
+TEST_F(MagnetometerGateTest, TriesADistrustedSensorAgainInTheEnd) {
+  run(30.0, headingOff(0.0));
+  run(200.0, normOff(0.1), normOff(0.1));
+  ASSERT_EQ(last_.status, Status::Inconsistent);
+  const int begun = begun_;
+  run(1900.0, normOff(0.1), headingOff(0.0));
+  EXPECT_EQ(begun_, begun + 1);
+  EXPECT_EQ(last_.status, Status::Readmitted);
+}
+
+TEST_F(MagnetometerGateTest, ForgivesALongDisturbanceToASensorThatWasGood) {
+  run(400.0, headingOff(0.0));
+  run(270.0, normOff(0.1));
+  EXPECT_EQ(count_[Status::Inconsistent], 0);
+  run(5.0, headingOff(0.0));
+  EXPECT_EQ(last_.status, Status::Used);
+}
+
 TEST(MagnetometerStatusNames, AreDistinct) {
   std::map<std::string, int> names;
   for (int i = 0; i <= static_cast<int>(Status::Uncalibrated); ++i) ++names[toString(static_cast<Status>(i))];
-  EXPECT_EQ(names.size(), 8u);
+  EXPECT_EQ(names.size(), 9u);
   EXPECT_EQ(names.count("unknown"), 0u);
 }
 

@@ -36,6 +36,14 @@ struct MagnetometerGateOptions {
   double readmission_s = 60.0;
   /// Over which rejections lower the weight of what is used.
   double memory_s = 60.0;
+  /// A field that within the last `account_s` was rejected for longer than it agreed, by more than
+  /// `credit_s`, is that of a wrong calibration or of a magnet on board: nothing of it is used.
+  double account_s = 600.0;
+  double credit_s = 120.0;
+  /// The same is said of a field whose lasting error (FieldFloor) is worth more of heading than this.
+  double max_lasting_sigma_rad = 0.015;
+  /// After so long it is tried again, even so.
+  double distrust_s = 1800.0;
 };
 
 struct MagnetometerOptions {
@@ -45,16 +53,17 @@ struct MagnetometerOptions {
 
   /// Errors of the field that last: iron far away, currents, what calibration leaves. One sigma per axis, and
   /// the time over which they stay the same; frames within that time are not independent witnesses.
+  /// `floor_T` is where it starts; size and dip of the field teach better (FieldFloor).
   double floor_T = 0.05e-6;
   double floor_correlation_s = 5.0;
-  /// Of roll and pitch, which likewise last.
-  double tilt_sigma_rad = 0.0015;
+  double floor_prior_samples = 20.0;
+  double floor_memory_s = 300.0;
   double noise_inflation = 1.0;  ///< factor on the density of the magnetometer's white noise
 
   double field_sigma_T = 1e-4;  ///< of the field vector at the start
   double offset_sigma_T = 0.4e-6;
   double uncalibrated_offset_sigma_T = 10e-6;
-  double offset_walk_T_per_sqrt_s = 1e-8;
+  double offset_walk_T_per_sqrt_s = 3e-9;  ///< 0.2 uT in half an hour
   double disturbance_sigma_T = 5e-6;
   double disturbance_walk_T_per_sqrt_s = 5e-8;
 

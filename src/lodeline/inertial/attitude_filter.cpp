@@ -49,7 +49,6 @@ AttitudeFilter::AttitudeFilter(const AttitudeFilterOptions& options,
                                const std::optional<MagnetometerCalibration>& magnetometer,
                                Diagnostics* diagnostics)
     : options_(options),
-      magnetometer_(magnetometer),
       diagnostics_(diagnostics),
       rest_(options.rest),
       bias_(options.bias, options.inclination_time_constant_s),
@@ -57,6 +56,10 @@ AttitudeFilter::AttitudeFilter(const AttitudeFilterOptions& options,
       heading_(options.heading),
       force_I_(options.inclination_time_constant_s),
       status_(magnetometer ? HeadingStatus::Waiting : HeadingStatus::NoMagnetometer) {
+  if (magnetometer) {
+    magnetometer_rate_hz_ = magnetometer->rate_hz;
+    readings_.emplace(*magnetometer, diagnostics);
+  }
   if (options.site_field_W) {
     declination_rad_ = std::atan2(options.site_field_W->x(), options.site_field_W->y());
   }
@@ -105,7 +108,7 @@ void AttitudeFilter::start(const ImuSample& sample) {
   rest_.reset();
   bias_.restart();
   history_.clear();
-  if (magnetometer_ || last_) {
+  if (readings_ || last_) {
     heading_.forget();
   } else {
     heading_.define(0.0);
@@ -146,14 +149,8 @@ void AttitudeFilter::remember(Time time) {
 }
 
 void AttitudeFilter::add(const MagnetometerSample& sample) {
-  if (!magnetometer_) return;
-  if (!sample.field_M.allFinite() || sample.field_M.isZero(0.0)) {
-    diagnostics_->report(Severity::Warning, "magnetometer_not_finite",
-                         fmt::format("magnetometer reading at {} ns is zero or not finite; passed over",
-                                     sample.time.nanoseconds()));
-    return;
-  }
-  waiting_.push_back(sample);
+  if (!readings_) return;
+  for (const FieldSample& usable : readings_->add({&sample, 1})) waiting_.push_back(usable);
   takeFields();
 }
 
@@ -164,8 +161,8 @@ void AttitudeFilter::takeFields() {
   }
 }
 
-void AttitudeFilter::takeField(const MagnetometerSample& sample) {
-  if (last_field_ && (sample.time <= last_field_->time || sample.field_M == last_field_->field_M)) return;
+void AttitudeFilter::takeField(const FieldSample& sample) {
+  if (last_field_time_ && sample.time <= *last_field_time_) return;
   if (sample.time < history_.front().time) return;
   size_t after = history_.size() - 1;
   while (after > 0 && history_[after - 1].time >= sample.time) --after;
@@ -176,11 +173,11 @@ void AttitudeFilter::takeField(const MagnetometerSample& sample) {
   const Quat level_from_body = from.level_from_body.slerp(share, to.level_from_body);
 
   const double since_s =
-      last_field_ ? (sample.time - last_field_->time).seconds() : 1.0 / magnetometer_->rate_hz;
+      last_field_time_ ? (sample.time - *last_field_time_).seconds() : 1.0 / magnetometer_rate_hz_;
   const double step_s = std::min(since_s, kLongestFieldStep_s);
-  const Vec3 field_L = level_from_body * magnetometer_->corrected_B(sample.field_M);
+  const Vec3 field_L = level_from_body * sample.field_B;
   const FieldVerdict verdict = gate_.update(field_L, to.turned_rad - last_field_turned_rad_, step_s);
-  last_field_ = sample;
+  last_field_time_ = sample.time;
   last_field_turned_rad_ = to.turned_rad;
   // The angle that turns the field's horizontal part to magnetic north, which lies west of true north by
   // minus the declination.
@@ -220,7 +217,7 @@ void AttitudeFilter::publish(Time time) {
   estimate.heading_sigma_rad = heading_.sigma_rad();
   estimate.gyroscope_bias_B = bias_.bias_B();
   estimate.at_rest = at_rest_;
-  if (last_field_ && (time - last_field_->time).seconds() > kSilent_s) status_ = HeadingStatus::Waiting;
+  if (last_field_time_ && (time - *last_field_time_).seconds() > kSilent_s) status_ = HeadingStatus::Waiting;
   estimate.status = status_;
   estimate_ = estimate;
 }

@@ -7,6 +7,7 @@
 #include "lodeline/inertial/field_gate.h"
 #include "lodeline/inertial/gyroscope_bias_filter.h"
 #include "lodeline/inertial/heading_filter.h"
+#include "lodeline/inertial/magnetometer_readings.h"
 #include "lodeline/inertial/rest_detector.h"
 #include "lodeline/sensors/rig.h"
 
@@ -68,7 +69,7 @@ class AttitudeFilter {
   void add(const ImuSample& sample);
 
   /// Times are on the IMU's clock, with any lag of the sensor taken off; up to 0.5 s before the last IMU
-  /// reading, or after it. Repeated readings are passed over.
+  /// reading, or after it. What MagnetometerReadings finds unusable is passed over.
   void add(const MagnetometerSample& sample);
 
   /// At the last IMU reading; nothing before the first.
@@ -89,12 +90,13 @@ class AttitudeFilter {
   void level(const ImuSample& sample, double step_s);
   void remember(Time time);
   void takeFields();
-  void takeField(const MagnetometerSample& sample);
+  void takeField(const FieldSample& sample);
   void judge(FieldVerdict verdict, double measured_rad, double step_s);
   void publish(Time time);
 
   AttitudeFilterOptions options_;
-  std::optional<MagnetometerCalibration> magnetometer_;
+  double magnetometer_rate_hz_ = 0.0;
+  std::optional<MagnetometerReadings> readings_;  ///< nothing without a magnetometer
   Diagnostics* diagnostics_;
   double declination_rad_ = 0.0;
 
@@ -111,8 +113,8 @@ class AttitudeFilter {
   double turned_rad_ = 0.0;
 
   std::deque<Moment> history_;
-  std::deque<MagnetometerSample> waiting_;
-  std::optional<MagnetometerSample> last_field_;
+  std::deque<FieldSample> waiting_;
+  std::optional<Time> last_field_time_;
   double last_field_turned_rad_ = 0.0;
   double rejected_s_ = 0.0;
   HeadingStatus status_;

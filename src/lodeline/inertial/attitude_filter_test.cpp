@@ -267,7 +267,7 @@ TEST_F(AttitudeFilterTest, PassesOverBadAndRepeatedReadings) {
   EXPECT_EQ(filter.estimate()->world_from_body.coeffs(), before.coeffs());
   EXPECT_EQ(diagnostics.count("imu_not_finite"), 1);
   EXPECT_EQ(diagnostics.count("imu_disorder"), 1);
-  EXPECT_EQ(diagnostics.count("magnetometer_not_finite"), 2);
+  EXPECT_EQ(diagnostics.count("magnetometer_invalid"), 2);
 }
 
 TEST_F(AttitudeFilterTest, StartsAnewAfterALongGap) {

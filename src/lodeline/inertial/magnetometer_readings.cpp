@@ -86,8 +86,9 @@ std::vector<FieldSample> MagnetometerReadings::add(std::span<const MagnetometerS
   std::vector<FieldSample> usable;
   if (!tesla_per_unit_) findUnit(readings);
   for (const MagnetometerSample& reading : readings) {
-    if (!reading.field_M.allFinite()) {
-      report("invalid", fmt::format("reading at {} ns is no number; left out", reading.time.nanoseconds()));
+    if (!reading.field_M.allFinite() || reading.field_M.isZero(0.0)) {
+      report("invalid",
+             fmt::format("reading at {} ns is zero or no number; left out", reading.time.nanoseconds()));
       continue;
     }
     if (tesla_per_unit_.value_or(0.0) == 0.0 || !isNew(reading)) continue;

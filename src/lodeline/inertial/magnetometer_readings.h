@@ -13,7 +13,7 @@ namespace lodeline {
 
 /// Sorts a magnetometer's readings: what can be used comes out freed from soft and hard iron, in tesla and
 /// body axes; what cannot is left out and said once a kind:
-/// - `magnetometer_invalid`: not a number, or infinite;
+/// - `magnetometer_invalid`: not a number, infinite, or zero;
 /// - `magnetometer_repeated`: the same three figures as before, as a driver gives them that is asked faster
 ///   than the sensor measures;
 /// - `magnetometer_frozen`: nothing but repetition for a second;

@@ -239,6 +239,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
     const Vec3& offset = *magnetometer.offset_B;
     json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
     json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};
+    json["magnetometer"]["floor_T"] = *magnetometer.floor_T;
   }
   for (const auto& [status, frames] : depth_frames_) json["pressure"]["frames"][toString(status)] = frames;
   if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);
