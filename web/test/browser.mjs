@@ -17,7 +17,10 @@ async function open(file) {
     if (["error", "warn"].includes(message.type())) complaints.push(message.text());
   });
   page.on("pageerror", (error) => complaints.push(error.message));
-  page.on("requestfailed", (request) => complaints.push(`${request.url()} failed`));
+  page.on("requestfailed", (request) => {
+    // The page itself closes its stream of events at the end.
+    if (request.failure()?.errorText !== "net::ERR_ABORTED") complaints.push(`${request.url()} failed`);
+  });
   await page.setViewport({ width: 1280, height: 900 });
   await page.goto(file.startsWith("http") ? file : `file://${file}`);
   await page.waitForSelector("html[data-ready]");

@@ -18,15 +18,6 @@ constexpr std::chrono::milliseconds kPicturePause(500);
 constexpr int kPauseToWork = 80;
 constexpr int kPictureWidth_px = 480;
 
-std::string livePage(const std::string& name, const std::string& data, const Rig& rig) {
-  const Vec3 axis = rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ();
-  return fillPage({{"live", true},
-                   {"name", name},
-                   {"data", data},
-                   {"camera_axis_B", {axis.x(), axis.y(), axis.z()}},
-                   {"runs", nlohmann::ordered_json::array()}});
-}
-
 /// Under the names of states.csv, so that the page can treat both alike.
 nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
   const Vec3& p = estimate.state.world_from_body.translation;
@@ -48,7 +39,20 @@ nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
           {"reprojection_rms [sigma]", shortNumber(estimate.reprojection_rms_sigmas)}};
 }
 
-nlohmann::ordered_json stateOf(const FrameEstimate& estimate, const RunSummary& summary, double t_s) {
+Vec3 cameraAxis_B(const Rig& rig) { return rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ(); }
+
+}  // namespace
+
+std::string livePage(const std::string& name, const std::string& data, const Vec3& camera_axis_B) {
+  const Vec3& axis = camera_axis_B;
+  return fillPage({{"live", true},
+                   {"name", name},
+                   {"data", data},
+                   {"camera_axis_B", {axis.x(), axis.y(), axis.z()}},
+                   {"runs", nlohmann::ordered_json::array()}});
+}
+
+std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s) {
   nlohmann::ordered_json json;
   json["t_s"] = shortNumber(t_s);
   const bool has_pose = estimate.status != Status::Waiting;
@@ -60,14 +64,12 @@ nlohmann::ordered_json stateOf(const FrameEstimate& estimate, const RunSummary& 
                  {"real_time_factor", shortNumber(summary.realTimeFactor())},
                  {"heading_reference", toString(estimate.magnetometer.heading_reference)},
                  {"waiting_for", estimate.waiting_for}};
-  return json;
+  return json.dump();
 }
-
-}  // namespace
 
 LiveView::LiveView(const std::string& address, int port, const std::string& name, const std::string& data,
                    const Rig& rig)
-    : server_(address, port, livePage(name, data, rig)) {}
+    : server_(address, port, livePage(name, data, cameraAxis_B(rig))) {}
 
 LiveView::~LiveView() { server_.send("end", "{}"); }
 
@@ -78,7 +80,7 @@ void LiveView::show(const FramePacket& packet, const FrameEstimate& estimate, co
   const Clock::time_point now = Clock::now();
   if (now >= next_state_) {
     next_state_ = now + kStatePause;
-    server_.sendAndKeep("state", stateOf(estimate, summary, t_s).dump());
+    server_.sendAndKeep("state", liveState(estimate, summary, t_s));
   }
   if (now < next_picture_ || !server_.isWatched()) return;
   const std::vector<uint8_t> jpeg = trackPicture(packet, front_end, kPictureWidth_px);

@@ -11,6 +11,13 @@
 
 namespace lodeline {
 
+/// The page as it is before anything was told. `camera_axis_B`: where the first camera looks. Throws
+/// UsageError where the program was built without the page.
+std::string livePage(const std::string& name, const std::string& data, const Vec3& camera_axis_B);
+
+/// What a browser is told of a frame, in JSON (`State` in web/src/live.ts).
+std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s);
+
 /// Shows a run in the browser while it goes on: a few times a second what is known of the newest frame, less
 /// often its image with the tracks. Takes nothing from the run but some of its time, and gives it nothing.
 class LiveView {

@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "lodeline/live/live_view.h"
+#include "lodeline/page/page_template.h"
+
+// The page in headless Chromium while a run goes on; web/test/live.mjs says what it should show.
+
+namespace lodeline {
+namespace {
+
+bool succeeds(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Swims east at 1 m/s, half a metre below the start, by inertial readings at the end.
+FrameEstimate estimateAt(int second) {
+  FrameEstimate estimate;
+  estimate.time = Time::fromSeconds(second);
+  estimate.status = second < 12 ? Status::Tracking : Status::Inertial;
+  estimate.state.world_from_body.translation = Vec3(second, 0.0, -0.5);
+  estimate.magnetometer.heading_reference = HeadingReference::True;
+  estimate.magnetometer.heading_sigma_rad = 2.0 * M_PI / 180.0;
+  return estimate;
+}
+
+TEST(LiveBrowser, ShowsWhatIsTold) {
+  if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
+  if (!succeeds("command -v chromium >/dev/null 2>&1")) GTEST_SKIP() << "chromium is not installed";
+  bool passed = false;
+  std::thread browser;
+  {
+    LiveServer server("127.0.0.1", 0, livePage("dive", "recording", Vec3::UnitX()));
+    RunSummary summary;
+    for (int second = 0; second <= 12; ++second) {
+      FrameEstimate estimate = estimateAt(second);
+      if (second > 0) summary.add(estimate);
+      summary.wall_s = summary.recordingSeconds() / 1.5;
+      server.sendAndKeep("state", liveState(estimate, summary, second));
+    }
+    server.sendAndKeep("picture", R"({"t_s":12,"jpeg":"AAAA"})");
+    browser = std::thread([&passed, url = server.url()] {
+      passed = succeeds("cd '" LODELINE_SOURCE_DIR "/web/test' && '" LODELINE_NODE "' live.mjs " + url);
+    });
+    for (int i = 0; i < 6000 && !server.isWatched(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    server.send("end", "{}");
+  }
+  browser.join();
+  EXPECT_TRUE(passed);
+}
+
+}  // namespace
+}  // namespace lodeline
