@@ -9,6 +9,8 @@ packages=(
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   libgeographiclib-dev libnanoflann-dev libembree-dev libtbb-dev
+  libbz2-dev liblz4-dev librosbag-storage-dev libsensor-msgs-dev  # ROS 1 bags
+  python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program, for the tests
   gnuplot-nox
   libcpp-httplib-dev
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes

@@ -10,12 +10,6 @@
 namespace lodeline {
 namespace {
 
-CalibrationMap open(const std::filesystem::path& file) {
-  CalibrationMap map(loadYamlFile(file), file, "");
-  map.ignore({"sensor_type", "comment"});
-  return map;
-}
-
 double positive(const std::string& key, CalibrationMap* map) {
   const double value = map->number(key);
   if (!(value > 0.0)) throw InputError(fmt::format("{} is {:g}; it must be positive", map->at(key), value));
@@ -35,65 +29,92 @@ std::string maskOrNone(CalibrationMap* map) {
 
 /// A sensor of which the file tells no more than place, rate and one figure of noise.
 template <typename Calibration>
-Calibration readSmallSensor(const std::filesystem::path& file, Rigid3 Calibration::*body_from_sensor,
-                            const std::string& noise_key, double Calibration::*noise,
-                            Diagnostics* diagnostics) {
-  CalibrationMap map = open(file);
+Calibration readSmallSensor(Rigid3 Calibration::*body_from_sensor, const std::string& noise_key,
+                            double Calibration::*noise, CalibrationMap* map) {
+  map->ignore({"sensor_type", "comment"});
   Calibration calibration;
-  calibration.*body_from_sensor = map.transform("T_BS");
-  calibration.rate_hz = rateOrUnknown(&map);
-  calibration.*noise = positive(noise_key, &map);
+  calibration.*body_from_sensor = map->transform("T_BS");
+  calibration.rate_hz = rateOrUnknown(map);
+  calibration.*noise = positive(noise_key, map);
+  return calibration;
+}
+
+/// A whole file as one map, read by one of the functions below.
+template <typename Read>
+auto readFile(const std::filesystem::path& file, Diagnostics* diagnostics, const Read& read) {
+  CalibrationMap map(loadYamlFile(file), file, "");
+  auto calibration = read(&map);
   map.reportUnknownKeys(diagnostics);
   return calibration;
 }
 
 }  // namespace
 
-EurocImu readEurocImu(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  CalibrationMap map = open(file);
+EurocImu readEurocImu(CalibrationMap* map) {
+  map->ignore({"sensor_type", "comment"});
   EurocImu imu;
-  if (map.has("T_BS")) imu.euroc_body_from_imu = map.transform("T_BS");
-  imu.calibration.rate_hz = rateOrUnknown(&map);
-  imu.calibration.noise = readImuNoise(&map);
-  map.reportUnknownKeys(diagnostics);
+  if (map->has("T_BS")) imu.euroc_body_from_imu = map->transform("T_BS");
+  imu.calibration.rate_hz = rateOrUnknown(map);
+  imu.calibration.noise = readImuNoise(map);
   return imu;
 }
 
+EurocCameraExtras readEurocCameraExtras(CalibrationMap* map) { return {rateOrUnknown(map), maskOrNone(map)}; }
+
+CameraCalibration readEurocCamera(const std::string& name, CalibrationMap* map) {
+  map->ignore({"sensor_type", "comment"});
+  CameraCalibration camera;
+  camera.name = name;
+  readPinhole("distortion_coefficients", map, &camera);
+  camera.body_from_camera = map->transform("T_BS");
+  camera.rate_hz = rateOrUnknown(map);
+  camera.time_offset_to_imu_s = map->numberOr("timeshift_cam_imu", 0.0);
+  camera.mask_file = maskOrNone(map);
+  return camera;
+}
+
+MagnetometerCalibration readEurocMagnetometer(CalibrationMap* map) {
+  using Calibration = MagnetometerCalibration;
+  return readSmallSensor(&Calibration::body_from_magnetometer, "magnetometer_noise_density",
+                         &Calibration::noise_density_T_per_sqrtHz, map);
+}
+
+PressureCalibration readEurocPressure(CalibrationMap* map) {
+  using Calibration = PressureCalibration;
+  return readSmallSensor(&Calibration::body_from_pressure, "depth_noise_std", &Calibration::depth_noise_std_m,
+                         map);
+}
+
+SonarCalibration readEurocSonar(CalibrationMap* map) {
+  using Calibration = SonarCalibration;
+  return readSmallSensor(&Calibration::body_from_sonar, "range_noise_std", &Calibration::range_noise_std_m,
+                         map);
+}
+
+EurocImu readEurocImu(const std::filesystem::path& file, Diagnostics* diagnostics) {
+  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocImu(map); });
+}
+
 EurocCameraExtras readEurocCameraExtras(const std::filesystem::path& file) {
-  CalibrationMap map = open(file);
-  return {rateOrUnknown(&map), maskOrNone(&map)};
+  CalibrationMap map(loadYamlFile(file), file, "");
+  return readEurocCameraExtras(&map);
 }
 
 CameraCalibration readEurocCamera(const std::filesystem::path& file, const std::string& name,
                                   Diagnostics* diagnostics) {
-  CalibrationMap map = open(file);
-  CameraCalibration camera;
-  camera.name = name;
-  readPinhole("distortion_coefficients", &map, &camera);
-  camera.body_from_camera = map.transform("T_BS");
-  camera.rate_hz = rateOrUnknown(&map);
-  camera.time_offset_to_imu_s = map.numberOr("timeshift_cam_imu", 0.0);
-  camera.mask_file = maskOrNone(&map);
-  map.reportUnknownKeys(diagnostics);
-  return camera;
+  return readFile(file, diagnostics, [&](CalibrationMap* map) { return readEurocCamera(name, map); });
 }
 
 MagnetometerCalibration readEurocMagnetometer(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  using Calibration = MagnetometerCalibration;
-  return readSmallSensor(file, &Calibration::body_from_magnetometer, "magnetometer_noise_density",
-                         &Calibration::noise_density_T_per_sqrtHz, diagnostics);
+  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocMagnetometer(map); });
 }
 
 PressureCalibration readEurocPressure(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  using Calibration = PressureCalibration;
-  return readSmallSensor(file, &Calibration::body_from_pressure, "depth_noise_std",
-                         &Calibration::depth_noise_std_m, diagnostics);
+  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocPressure(map); });
 }
 
 SonarCalibration readEurocSonar(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  using Calibration = SonarCalibration;
-  return readSmallSensor(file, &Calibration::body_from_sonar, "range_noise_std",
-                         &Calibration::range_noise_std_m, diagnostics);
+  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocSonar(map); });
 }
 
 }  // namespace lodeline

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/data/yaml_file.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -35,5 +36,13 @@ CameraCalibration readEurocCamera(const std::filesystem::path& file, const std::
 MagnetometerCalibration readEurocMagnetometer(const std::filesystem::path& file, Diagnostics* diagnostics);
 PressureCalibration readEurocPressure(const std::filesystem::path& file, Diagnostics* diagnostics);
 SonarCalibration readEurocSonar(const std::filesystem::path& file, Diagnostics* diagnostics);
+
+/// The same from one map of keys; which keys of it are unknown is left to the caller.
+EurocImu readEurocImu(CalibrationMap* map);
+CameraCalibration readEurocCamera(const std::string& name, CalibrationMap* map);
+MagnetometerCalibration readEurocMagnetometer(CalibrationMap* map);
+PressureCalibration readEurocPressure(CalibrationMap* map);
+SonarCalibration readEurocSonar(CalibrationMap* map);
+EurocCameraExtras readEurocCameraExtras(CalibrationMap* map);
 
 }  // namespace lodeline

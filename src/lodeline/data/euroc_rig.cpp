@@ -2,24 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_calibration.h"
 #include "lodeline/data/kalibr_calibration.h"
+#include "lodeline/data/stream_rate.h"
 
 namespace lodeline {
 namespace {
-
-/// Rows from the start of a stream that its rate is measured on.
-constexpr int kRateRows = 50;
-/// A stated rate further than this factor from the measured one is wrong.
-constexpr double kRateFactor = 1.5;
-
-void warn(const std::string& kind, const std::string& message, Diagnostics* diagnostics) {
-  diagnostics->report(Severity::Warning, kind, message);
-}
 
 struct StreamStart {
   std::vector<Time> stamps;
@@ -31,7 +21,7 @@ StreamStart readStart(const std::filesystem::path& csv, int number_count) {
   CsvReader reader(csv, number_count, &reported_when_read_in_earnest);
   StreamStart start;
   CsvRow row;
-  while (static_cast<int>(start.stamps.size()) < kRateRows && reader.next(&row)) {
+  while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
     start.stamps.push_back(row.time);
   }
   if (!start.stamps.empty()) return start;
@@ -39,26 +29,6 @@ StreamStart readStart(const std::filesystem::path& csv, int number_count) {
   const std::vector<Finding> findings = reported_when_read_in_earnest.ranked();
   if (!findings.empty()) start.why_empty += fmt::format(" (first: {})", findings.front().first_message);
   return start;
-}
-
-/// The stated rate where it is plausible, else the inverse of the median step; 0 where neither can be had.
-double settleRate(const std::filesystem::path& csv, const std::vector<Time>& stamps, double stated_hz,
-                  Diagnostics* diagnostics) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < stamps.size(); ++i) steps_s.push_back((stamps[i] - stamps[i - 1]).seconds());
-  if (steps_s.empty()) return stated_hz;
-  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2),
-                   steps_s.end());
-  const double median_s = steps_s[steps_s.size() / 2];
-  if (!(median_s > 0.0)) return stated_hz;
-  const double measured_hz = 1.0 / median_s;
-  if (!(stated_hz > 0.0)) return measured_hz;
-  if (measured_hz < stated_hz * kRateFactor && measured_hz > stated_hz / kRateFactor) return stated_hz;
-  warn("rate",
-       fmt::format("{}: the calibration says {:g} Hz but the stamps come at {:.4g} Hz, which is used",
-                   csv.string(), stated_hz, measured_hz),
-       diagnostics);
-  return measured_hz;
 }
 
 /// For sensors that cannot be done without.
@@ -96,7 +66,7 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
     const std::filesystem::path csv = layout.csv(name);
     const std::vector<Time> stamps =
         requireStamps(csv, 0, "restore it or leave this camera out (source.cameras)");
-    camera.rate_hz = settleRate(csv, stamps, camera.rate_hz, diagnostics);
+    camera.rate_hz = settleRate(csv.string(), stamps, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));
   }
@@ -114,12 +84,13 @@ std::optional<Calibration> readOptional(const EurocLayout& layout, const char* n
   if (!std::filesystem::exists(csv)) return std::nullopt;
   const StreamStart start = readStart(csv, number_count);
   if (start.stamps.empty()) {
-    warn("sensor_empty", start.why_empty + "; carrying on without this sensor", diagnostics);
+    diagnostics->report(Severity::Warning, "sensor_empty",
+                        start.why_empty + "; carrying on without this sensor");
     return std::nullopt;
   }
   Calibration calibration = read(layout.sensor(name) / "sensor.yaml", diagnostics);
   calibration.*body_from_sensor = body_from_euroc_body * (calibration.*body_from_sensor);
-  calibration.rate_hz = settleRate(csv, start.stamps, calibration.rate_hz, diagnostics);
+  calibration.rate_hz = settleRate(csv.string(), start.stamps, calibration.rate_hz, diagnostics);
   if (!(calibration.rate_hz > 0.0)) calibration.rate_hz = Calibration().rate_hz;
   return calibration;
 }
@@ -136,7 +107,8 @@ EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnosti
   }
   const std::vector<Time> stamps =
       requireStamps(layout.csv("imu0"), 6, "the estimator cannot work without inertial data");
-  imu.calibration.rate_hz = settleRate(layout.csv("imu0"), stamps, imu.calibration.rate_hz, diagnostics);
+  imu.calibration.rate_hz =
+      settleRate(layout.csv("imu0").string(), stamps, imu.calibration.rate_hz, diagnostics);
   if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = ImuCalibration().rate_hz;
   return imu;
 }

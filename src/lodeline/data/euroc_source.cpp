@@ -18,9 +18,12 @@ bool next(std::optional<CsvReader>* reader, CsvRow* row) { return *reader && (*r
 
 EurocSource::EurocSource(const std::filesystem::path& data, const EurocOptions& options,
                          Diagnostics* diagnostics)
-    : layout_(findEurocLayout(data, options)),
-      diagnostics_(diagnostics),
-      rig_(readEurocRig(layout_, diagnostics)) {
+    : EurocSource(findEurocLayout(data, options), diagnostics) {}
+
+EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
+    : RecordedSource(readEurocRig(layout, diagnostics)),
+      layout_(std::move(layout)),
+      diagnostics_(diagnostics) {
   if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
@@ -44,7 +47,8 @@ std::optional<PendingImage> EurocSource::nextImage(size_t camera) {
   if (!cameras_[camera].next(&row_)) return std::nullopt;
   const std::string name = row_.text.empty() ? fmt::format("{}.png", row_.time.nanoseconds()) : row_.text;
   const std::filesystem::path file = layout_.sensor(rig_.cameras[camera].name) / "data" / name;
-  return PendingImage{row_.time, file.string(), [file] { return loadGreyImage(file); }};
+  return PendingImage{row_.time, file.string(), [file] { return loadGreyImage(file); },
+                      [file] { return loadStoredImage(file); }};
 }
 
 std::optional<MagnetometerSample> EurocSource::nextMagnetometer() {

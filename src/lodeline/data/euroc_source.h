@@ -18,15 +18,12 @@ namespace lodeline {
 ///     mav0/sonar0/data.csv     #timestamp [ns],range [m],angle [rad]
 ///
 /// each with its sensor.yaml (see readEurocRig).
-class EurocSource : public MeasurementSource {
+class EurocSource : public RecordedSource {
  public:
   /// `data`: the folder that contains mav0, or mav0 itself. `diagnostics` must outlive the source. Throws
   /// InputError as findEurocLayout() and readEurocRig() do.
   EurocSource(const std::filesystem::path& data, const EurocOptions& options, Diagnostics* diagnostics);
 
-  const Rig& rig() const override { return rig_; }
-  /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
-  void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
   std::optional<ImuSample> nextImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
@@ -34,11 +31,11 @@ class EurocSource : public MeasurementSource {
   std::optional<SonarSample> nextSonar() override;
 
  private:
+  EurocSource(EurocLayout layout, Diagnostics* diagnostics);
   void checkMagneticUnit(const MagnetometerSample& sample);
 
   EurocLayout layout_;
   Diagnostics* diagnostics_;
-  Rig rig_;
   std::optional<CsvReader> imu_;
   std::vector<CsvReader> cameras_;
   std::optional<CsvReader> magnetometer_;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "lodeline/data/measurement_source.h"
 
@@ -9,5 +11,17 @@ namespace lodeline {
 /// Reads an image file as 8-bit grey, whatever it holds: colour is weighted to luminance, 16 bits are scaled
 /// to 8. Never throws for a missing or damaged file; says so in the result.
 LoadedImage loadGreyImage(const std::filesystem::path& file);
+
+/// The same from the bytes of an image file. `name`: for messages.
+LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& name);
+
+/// The bytes of an image file.
+StoredImage loadStoredImage(const std::filesystem::path& file);
+
+/// Whether the bytes are those of a PNG file, whose pixels can be had without loss.
+bool isPng(std::span<const uint8_t> bytes);
+
+/// 8-bit grey from 8 or 16 bits, one, three (BGR) or four (BGRA) channels: luminance, and the upper 8 bits.
+cv::Mat greyFrom(const cv::Mat& pixels);
 
 }  // namespace lodeline

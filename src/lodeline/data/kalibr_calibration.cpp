@@ -60,21 +60,34 @@ KalibrFiles findKalibrFiles(const std::vector<std::filesystem::path>& folders) {
   return files;
 }
 
+CameraCalibration readKalibrCamera(const std::vector<CameraCalibration>& before, CalibrationMap* map) {
+  map->ignore({"cam_overlaps", "rostopic", "camera_model"});
+  CameraCalibration camera;
+  camera.name = fmt::format("cam{}", before.size());
+  readPinhole("distortion_coeffs", map, &camera);
+  camera.body_from_camera = readCameraFromBody(before, map).inverse();
+  camera.time_offset_to_imu_s = map->numberOr("timeshift_cam_imu", 0.0);
+  camera.rate_hz = 0.0;
+  return camera;
+}
+
+ImuCalibration readKalibrImu(CalibrationMap* map) {
+  map->ignore({"T_i_b", "rostopic", "model", "time_offset"});
+  ImuCalibration imu;
+  imu.noise = readImuNoise(map);
+  imu.rate_hz = map->numberOr("update_rate", 0.0);
+  return imu;
+}
+
 std::vector<CameraCalibration> readKalibrCameras(const std::filesystem::path& file,
                                                  Diagnostics* diagnostics) {
   const YAML::Node root = loadYamlFile(file);
   std::vector<CameraCalibration> cameras;
   for (size_t i = 0; root.IsMap() && root[fmt::format("cam{}", i)].IsDefined(); ++i) {
-    CameraCalibration camera;
-    camera.name = fmt::format("cam{}", i);
-    CalibrationMap map(root[camera.name], file, camera.name);
-    map.ignore({"cam_overlaps", "rostopic", "camera_model"});
-    readPinhole("distortion_coeffs", &map, &camera);
-    camera.body_from_camera = readCameraFromBody(cameras, &map).inverse();
-    camera.time_offset_to_imu_s = map.numberOr("timeshift_cam_imu", 0.0);
-    camera.rate_hz = 0.0;
+    const std::string name = fmt::format("cam{}", i);
+    CalibrationMap map(root[name], file, name);
+    cameras.push_back(readKalibrCamera(cameras, &map));
     map.reportUnknownKeys(diagnostics);
-    cameras.push_back(std::move(camera));
   }
   if (cameras.empty()) {
     throw InputError(fmt::format("{}: key 'cam0' is missing; this is not Kalibr's camchain", file.string()));
@@ -86,10 +99,7 @@ ImuCalibration readKalibrImu(const std::filesystem::path& file, Diagnostics* dia
   const YAML::Node root = loadYamlFile(file);
   const bool nested = root.IsMap() && root["imu0"].IsDefined();
   CalibrationMap map(nested ? root["imu0"] : root, file, nested ? "imu0" : "");
-  map.ignore({"T_i_b", "rostopic", "model", "time_offset"});
-  ImuCalibration imu;
-  imu.noise = readImuNoise(&map);
-  imu.rate_hz = map.numberOr("update_rate", 0.0);
+  const ImuCalibration imu = readKalibrImu(&map);
   map.reportUnknownKeys(diagnostics);
   return imu;
 }

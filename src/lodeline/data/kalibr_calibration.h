@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/data/yaml_file.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -27,5 +28,10 @@ std::vector<CameraCalibration> readKalibrCameras(const std::filesystem::path& fi
 /// Noise and `update_rate`, either at the top of the file or under `imu0`. Throws InputError naming file and
 /// key.
 ImuCalibration readKalibrImu(const std::filesystem::path& file, Diagnostics* diagnostics);
+
+/// One camera of a camchain, after those `before` it in the chain; which keys of its map are unknown is left
+/// to the caller.
+CameraCalibration readKalibrCamera(const std::vector<CameraCalibration>& before, CalibrationMap* map);
+ImuCalibration readKalibrImu(CalibrationMap* map);
 
 }  // namespace lodeline

@@ -5,6 +5,8 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
@@ -17,6 +19,13 @@ struct LoadedImage {
   std::string problem;  ///< why `image` is empty, naming the file; empty where all is well
 };
 
+/// An image as the recording holds it, for copying without loss.
+struct StoredImage {
+  std::vector<uint8_t> file;  ///< bytes of an image file; empty where the recording holds bare pixels
+  cv::Mat pixels;             ///< those: 8 or 16-bit grey, or 8-bit BGR, BGRA
+  std::string problem;        ///< why there is neither
+};
+
 /// An image that exists but is decoded only when somebody wants its pixels.
 struct PendingImage {
   Time time;         ///< mid-exposure, on the camera's clock
@@ -24,6 +33,8 @@ struct PendingImage {
   /// Decodes. May run on another thread, at the same time as calls to the source; must not throw for damaged
   /// images.
   std::function<LoadedImage()> load;
+  /// The same image as it is stored; sources that no recording stands behind have none.
+  std::function<StoredImage()> stored = {};
 };
 
 /// A recording (or a live or simulated rig) as one stream per sensor, each pulled one reading at a time in
@@ -41,6 +52,19 @@ class MeasurementSource {
   virtual std::optional<MagnetometerSample> nextMagnetometer() { return std::nullopt; }
   virtual std::optional<DepthSample> nextDepth() { return std::nullopt; }
   virtual std::optional<SonarSample> nextSonar() { return std::nullopt; }
+};
+
+/// A source whose rig was read from files, and may be known better.
+class RecordedSource : public MeasurementSource {
+ public:
+  const Rig& rig() const override { return rig_; }
+  /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
+  void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
+
+ protected:
+  explicit RecordedSource(Rig rig) : rig_(std::move(rig)) {}
+
+  Rig rig_;
 };
 
 }  // namespace lodeline

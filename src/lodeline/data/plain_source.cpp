@@ -2,14 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "lodeline/base/error.h"
+#include "lodeline/data/stream_rate.h"
 
 namespace lodeline {
 namespace {
-
-constexpr size_t kRowsForRate = 50;
 
 template <typename Reading>
 std::optional<Reading> takeFirst(std::deque<Reading>* readings) {
@@ -22,7 +19,7 @@ std::optional<Reading> takeFirst(std::deque<Reading>* readings) {
 }  // namespace
 
 PlainSource::PlainSource(const std::filesystem::path& file, Diagnostics* diagnostics)
-    : csv_(file, diagnostics) {
+    : RecordedSource(Rig()), csv_(file, diagnostics) {
   if (!csv_.hasGyroscope() || !csv_.hasAccelerometer()) {
     throw InputError(fmt::format("{}: has no gyroscope and accelerometer; both are needed", file.string()));
   }
@@ -31,17 +28,13 @@ PlainSource::PlainSource(const std::filesystem::path& file, Diagnostics* diagnos
 }
 
 void PlainSource::measureRate() {
-  while (imu_.size() < kRowsForRate && readRow()) {
+  while (imu_.size() < kStampsForRate && readRow()) {
   }
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < imu_.size(); ++i) {
-    const double step_s = (imu_[i].time - imu_[i - 1].time).seconds();
-    if (step_s > 0.0) steps_s.push_back(step_s);
-  }
-  if (steps_s.empty()) return;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  rig_.imu.rate_hz = 1.0 / *middle;
+  std::vector<Time> stamps;
+  for (const ImuSample& sample : imu_) stamps.push_back(sample.time);
+  const std::optional<double> rate_hz = measuredRate_hz(stamps);
+  if (!rate_hz) return;
+  rig_.imu.rate_hz = *rate_hz;
   if (rig_.magnetometer) rig_.magnetometer->rate_hz = rig_.imu.rate_hz;
 }
 

@@ -9,14 +9,12 @@ namespace lodeline {
 
 /// A PlainCsv file as a recording without cameras: gyroscope and accelerometer, and a magnetometer where the
 /// file has one, in body axes, uncalibrated.
-class PlainSource : public MeasurementSource {
+class PlainSource : public RecordedSource {
  public:
   /// Throws InputError as PlainCsv does, and where gyroscope or accelerometer is missing. `diagnostics` must
   /// outlive the source.
   PlainSource(const std::filesystem::path& file, Diagnostics* diagnostics);
 
-  const Rig& rig() const override { return rig_; }
-  void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
   std::optional<ImuSample> nextImu() override;
   std::optional<PendingImage> nextImage(size_t) override { return std::nullopt; }
   std::optional<MagnetometerSample> nextMagnetometer() override;
@@ -26,7 +24,6 @@ class PlainSource : public MeasurementSource {
   void measureRate();
 
   PlainCsv csv_;
-  Rig rig_;
   /// Read for one of the sensors, not yet asked for by the other.
   std::deque<ImuSample> imu_;
   std::deque<MagnetometerSample> magnetometer_;

@@ -38,6 +38,8 @@ class CalibrationMap {
 
   /// Adds keys that are known but not needed.
   void ignore(const std::vector<std::string>& keys);
+  /// Whether a key was asked for or ignored.
+  bool isKnown(const std::string& key) const { return known_.contains(key); }
   /// Reports every key that was neither asked for nor ignored.
   void reportUnknownKeys(Diagnostics* diagnostics) const;
   /// For files of our own: throws InputError for such a key, naming its line and the nearest known one.

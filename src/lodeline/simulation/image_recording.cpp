@@ -61,7 +61,7 @@ void recordImageLists(const Dive& dive, const std::vector<ScheduledImage>& image
                       const std::filesystem::path& folder) {
   for (int camera = 0; camera < dive.scenario.rig.cameras; ++camera) {
     RecordingFile list(folder / "mav0" / fmt::format("cam{}", camera) / "data.csv");
-    list.write("#timestamp [ns],filename\n");
+    list.write(kImageColumns);
     for (const ScheduledImage& image : images) {
       if (image.camera == camera)
         list.write(fmt::format("{},{}\n", image.stamp.nanoseconds(), fileName(image)));

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "lodeline/base/error.h"
-
 namespace lodeline {
 namespace {
 
@@ -50,23 +48,6 @@ void writeText(const std::filesystem::path& path, const std::string& text) {
 }
 
 }  // namespace
-
-RecordingFile::RecordingFile(const std::filesystem::path& path) : path_(path) {
-  std::error_code error;
-  std::filesystem::create_directories(path.parent_path(), error);
-  stream_.open(path, std::ios::binary | std::ios::trunc);
-  if (error || !stream_) {
-    throw InputError(fmt::format("{}: cannot be written; choose another folder with -o", path.string()));
-  }
-}
-
-void RecordingFile::write(const std::string& text) { stream_ << text; }
-
-void RecordingFile::close() {
-  stream_.close();
-  if (!stream_)
-    throw InputError(fmt::format("{}: could not be written in full; is the disk full?", path_.string()));
-}
 
 void writeCalibration(const Rig& rig, const std::filesystem::path& mav0) {
   for (const CameraCalibration& camera : rig.cameras)

@@ -26,9 +26,7 @@ std::string truthRow(Time time, const MotionState& state, const ImuModel& imu) {
 // Inertial readings and, beside them, the true states with the biases in these very readings.
 void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
   RecordingFile readings(mav0 / "imu0" / "data.csv");
-  readings.write(
-      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
-      "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n");
+  readings.write(kImuColumns);
   const std::filesystem::path truth_folder = mav0 / "state_groundtruth_estimate0";
   RecordingFile truth(truth_folder / "data.csv");
   truth.write(
@@ -65,7 +63,7 @@ void recordMagnetometer(const Dive& dive, const std::filesystem::path& mav0) {
   MagnetometerModel model(dive.motion, dive.field_W, dive.disturbances, dive.errors.magnetometer, rate_hz,
                           noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "mag0" / "data.csv");
-  file.write("#timestamp [ns],m_x [T],m_y [T],m_z [T]\n");
+  file.write(kMagnetometerColumns);
   // Half a period after the IMU's first reading: the two sensors do not share a trigger.
   for (int64_t i = 0;; ++i) {
     const double t = (static_cast<double>(i) + 0.5) / rate_hz;
@@ -81,7 +79,7 @@ void recordDepth(const Dive& dive, const std::filesystem::path& mav0) {
   PressureModel model(dive.motion, dive.errors.truth.rig.pressure->body_from_pressure, dive.surface_height_m,
                       dive.errors.pressure, noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "pressure0" / "data.csv");
-  file.write("#timestamp [ns],depth [m]\n");
+  file.write(kDepthColumns);
   for (int64_t i = 0;; ++i) {
     const double t = (static_cast<double>(i) + 0.3) / dive.scenario.rig.pressure_rate_hz;
     if (t > dive.motion.duration_s()) break;
@@ -95,7 +93,7 @@ void recordSonar(const Dive& dive, const RangeFunction& range, const std::filesy
   SonarModel model(dive.motion, dive.errors.truth.rig.sonar->body_from_sonar, range, dive.errors.sonar,
                    noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "sonar0" / "data.csv");
-  file.write("#timestamp [ns],range [m],angle [rad]\n");
+  file.write(kSonarColumns);
   for (int64_t i = 0;; ++i) {
     const double t = (static_cast<double>(i) + 0.7) / dive.scenario.rig.sonar_rate_hz;
     if (t > dive.motion.duration_s()) break;

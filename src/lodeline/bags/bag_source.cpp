@@ -1,0 +1,230 @@
+#include "lodeline/bags/bag_source.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <memory>
+
+#include "lodeline/bags/image_messages.h"
+#include "lodeline/base/error.h"
+#include "lodeline/data/image_loader.h"
+#include "lodeline/data/stream_rate.h"
+
+namespace lodeline {
+namespace {
+
+bool isFinite(const ImuSample& s) {
+  return s.angular_velocity_B.allFinite() && s.specific_force_B.allFinite();
+}
+bool isFinite(const MagnetometerSample& s) { return s.field_M.allFinite(); }
+bool isFinite(const DepthSample& s) { return std::isfinite(s.depth_m); }
+bool isFinite(const std::vector<SonarSample>&) { return true; }  // parsing leaves odd echoes out
+
+RigFile readRig(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics) {
+  if (!options.rig_files.empty()) return readRigFiles(options.rig_files, diagnostics);
+  const std::filesystem::path beside = rigFileBeside(bag);
+  if (std::filesystem::exists(beside)) return readRigFiles({beside}, diagnostics);
+  if (!options.needs_calibration) return {};
+  throw InputError(
+      fmt::format("{}: a bag does not hold the calibration; describe the rig with --rig FILE, or in {} "
+                  "(docs/data.md shows how)",
+                  bag.string(), beside.string()));
+}
+
+/// Gives every sensor that the bag has a calibration, be it a meaningless one.
+void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
+  Rig& rig = rig_file->rig;
+  rig_file->has_imu = true;
+  const size_t cameras = imageTopics(bag).size();
+  while (rig.cameras.size() < cameras) {
+    CameraCalibration camera;
+    camera.name = fmt::format("cam{}", rig.cameras.size());
+    camera.rate_hz = 0.0;
+    rig.cameras.push_back(camera);
+  }
+  if (!rig.magnetometer && !topicsFor(bag, "mag0").empty()) rig.magnetometer.emplace();
+  if (!rig.pressure && !topicsFor(bag, "pressure0").empty()) rig.pressure.emplace();
+  if (!rig.sonar && !topicsFor(bag, "sonar0").empty()) rig.sonar.emplace();
+}
+
+/// Leaves only the cameras that are asked for.
+void selectCameras(const std::vector<int>& indices, const std::filesystem::path& bag, Rig* rig) {
+  if (indices.empty()) return;
+  std::vector<CameraCalibration> selected;
+  for (const int index : indices) {
+    if (index < 0 || index >= static_cast<int>(rig->cameras.size())) {
+      throw InputError(fmt::format("{}: camera {} was asked for, but the rig has {} cameras", bag.string(),
+                                   index, rig->cameras.size()));
+    }
+    selected.push_back(rig->cameras[static_cast<size_t>(index)]);
+  }
+  rig->cameras = std::move(selected);
+}
+
+TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
+  TopicWish wish;
+  wish.named = rig_file.topics;
+  for (const auto& [sensor, topic] : options.topics) wish.named[sensor] = topic;
+  wish.camera_count = options.with_cameras ? rig_file.rig.cameras.size() : 0;
+  wish.sensors = {"imu0"};
+  if (rig_file.rig.magnetometer) wish.sensors.push_back("mag0");
+  if (rig_file.rig.pressure) wish.sensors.push_back("pressure0");
+  if (rig_file.rig.sonar) wish.sensors.push_back("sonar0");
+  return wish;
+}
+
+StoredImage storedImage(bool is_compressed, std::span<const uint8_t> message, const std::string& name) {
+  return is_compressed ? messages::compressedImageFile(message, name) : messages::imagePixels(message, name);
+}
+
+LoadedImage greyImage(bool is_compressed, std::span<const uint8_t> message, const std::string& name) {
+  const StoredImage stored = storedImage(is_compressed, message, name);
+  if (!stored.problem.empty()) return {cv::Mat(), stored.problem};
+  return is_compressed ? decodeGreyImage(stored.file, name) : LoadedImage{greyFrom(stored.pixels), ""};
+}
+
+}  // namespace
+
+std::filesystem::path rigFileBeside(const std::filesystem::path& bag) {
+  std::filesystem::path file = bag;
+  return file.replace_extension(".rig.yaml");
+}
+
+BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics)
+    : RecordedSource(Rig()),
+      bag_(bag, diagnostics),
+      diagnostics_(diagnostics),
+      rig_file_(readRig(bag, options, diagnostics)) {
+  if (!options.needs_calibration) addUncalibrated(bag_, &rig_file_);
+  if (!rig_file_.has_imu) {
+    throw InputError(
+        fmt::format("{}: the rig file has no section imu0 (or Kalibr's imu.yaml is missing); its noise "
+                    "densities are needed",
+                    bag.string()));
+  }
+  choice_ = chooseTopics(bag_, wishOf(rig_file_, options), diagnostics);
+  rig_ = rig_file_.rig;
+  if (!options.with_cameras) rig_.cameras.clear();
+  settleCameras(options);
+  imu_ = cursorOf("imu0");
+  magnetometer_ = cursorOf("mag0");
+  pressure_ = cursorOf("pressure0");
+  sonar_ = cursorOf("sonar0");
+  if (options.needs_calibration && imu_.topic == nullptr) {
+    throw InputError(fmt::format("{}: has no topic of type {}; inertial readings are needed", bag.string(),
+                                 messages::kImu.name));
+  }
+  if (magnetometer_.topic == nullptr) rig_.magnetometer.reset();
+  if (pressure_.topic == nullptr) rig_.pressure.reset();
+  if (sonar_.topic == nullptr) rig_.sonar.reset();
+  settleRates();
+}
+
+void BagSource::settleCameras(const BagOptions& options) {
+  if (options.needs_calibration && options.with_cameras && rig_.cameras.empty()) {
+    throw InputError(
+        fmt::format("{}: the rig file describes no camera; a trajectory cannot be estimated without "
+                    "images",
+                    bag_.file().string()));
+  }
+  selectCameras(options.camera_indices, bag_.file(), &rig_);
+  for (const CameraCalibration& camera : rig_.cameras) cameras_.push_back(cursorOf(camera.name));
+}
+
+BagSource::Cursor BagSource::cursorOf(const std::string& sensor) const {
+  const auto choice = choice_.find(sensor);
+  return {choice == choice_.end() ? nullptr : choice->second, 0};
+}
+
+void BagSource::settleRates() {
+  const auto settle = [&](Cursor cursor, double fallback_hz, double* rate_hz) {
+    if (cursor.topic == nullptr) return;
+    std::vector<Time> stamps;
+    while (stamps.size() < kStampsForRate) {
+      const std::optional<wire::Bytes> message = nextMessage(&cursor);
+      if (!message) break;
+      stamps.push_back(messages::stampOf(*message));
+    }
+    const std::string name = fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic);
+    *rate_hz = settleRate(name, stamps, *rate_hz, diagnostics_);
+    if (!(*rate_hz > 0.0)) *rate_hz = fallback_hz;
+  };
+  settle(imu_, ImuCalibration().rate_hz, &rig_.imu.rate_hz);
+  for (size_t i = 0; i < cameras_.size(); ++i) {
+    settle(cameras_[i], CameraCalibration().rate_hz, &rig_.cameras[i].rate_hz);
+  }
+  if (rig_.magnetometer) {
+    settle(magnetometer_, MagnetometerCalibration().rate_hz, &rig_.magnetometer->rate_hz);
+  }
+  if (rig_.pressure) settle(pressure_, PressureCalibration().rate_hz, &rig_.pressure->rate_hz);
+  if (rig_.sonar) settle(sonar_, SonarCalibration().rate_hz, &rig_.sonar->rate_hz);
+}
+
+std::optional<wire::Bytes> BagSource::nextMessage(Cursor* cursor) {
+  constexpr size_t kHeaderBytes = 16;
+  while (cursor->topic != nullptr && cursor->next < cursor->topic->entries.size()) {
+    std::optional<wire::Bytes> message = bag_.read(cursor->topic->entries[cursor->next++]);
+    if (message && message->size() >= kHeaderBytes) return message;
+  }
+  return std::nullopt;
+}
+
+template <typename Parse>
+auto BagSource::nextReading(Cursor* cursor, const Parse& parse)
+    -> std::optional<decltype(parse(std::span<const uint8_t>()))> {
+  while (const std::optional<wire::Bytes> message = nextMessage(cursor)) {
+    std::string problem = "holds no finite number where one is due";
+    try {
+      auto reading = parse(std::span<const uint8_t>(*message));
+      if (isFinite(reading)) return reading;
+    } catch (const wire::Reader::CutOff& error) {
+      problem = error.what();
+    }
+    diagnostics_->report(
+        Severity::Warning, "bag_message",
+        fmt::format("{} {}: the message received at {} ns: {}; passed over", bag_.file().string(),
+                    cursor->topic->connection.topic,
+                    cursor->topic->entries[cursor->next - 1].received.nanoseconds(), problem));
+  }
+  return std::nullopt;
+}
+
+std::optional<ImuSample> BagSource::nextImu() { return nextReading(&imu_, messages::parseImu); }
+
+std::optional<PendingImage> BagSource::nextImage(size_t camera) {
+  Cursor& cursor = cameras_[camera];
+  std::optional<wire::Bytes> bytes = nextMessage(&cursor);
+  if (!bytes) return std::nullopt;
+  const auto message = std::make_shared<const wire::Bytes>(std::move(*bytes));
+  const Time stamp = messages::stampOf(*message);
+  const std::string name = fmt::format("{} {} at {} ns", bag_.file().string(), cursor.topic->connection.topic,
+                                       stamp.nanoseconds());
+  const bool is_compressed = cursor.topic->connection.type == messages::kCompressedImage.name;
+  return PendingImage{stamp, name, [=] { return greyImage(is_compressed, *message, name); },
+                      [=] { return storedImage(is_compressed, *message, name); }};
+}
+
+std::optional<MagnetometerSample> BagSource::nextMagnetometer() {
+  return nextReading(&magnetometer_, messages::parseMagneticField);
+}
+
+std::optional<DepthSample> BagSource::nextDepth() {
+  return nextReading(&pressure_, [this](std::span<const uint8_t> message) {
+    return messages::parseFluidPressure(message, rig_file_.water);
+  });
+}
+
+std::optional<SonarSample> BagSource::nextSonar() {
+  while (echoes_.empty()) {
+    const bool is_scan =
+        sonar_.topic != nullptr && sonar_.topic->connection.type == messages::kLaserScan.name;
+    const auto echoes = nextReading(&sonar_, is_scan ? messages::parseLaserScan : messages::parseRange);
+    if (!echoes) return std::nullopt;
+    echoes_.assign(echoes->begin(), echoes->end());
+  }
+  const SonarSample echo = echoes_.front();
+  echoes_.pop_front();
+  return echo;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/bags/bag_file.h"
+#include "lodeline/bags/messages.h"
+#include "lodeline/bags/topic_choice.h"
+#include "lodeline/data/measurement_source.h"
+#include "lodeline/data/rig_file.h"
+
+namespace lodeline {
+
+struct BagOptions {
+  /// Files that describe the rig (see readRigFiles). None: NAME.rig.yaml beside NAME.bag.
+  std::vector<std::filesystem::path> rig_files;
+  /// Topics by sensor ("cam0", "imu0", …), before what the rig files name.
+  std::map<std::string, std::string> topics;
+  /// N of the camN to use, as in EurocOptions.
+  std::vector<int> camera_indices;
+  bool with_cameras = true;
+  /// False for what needs readings only, as converting: sensors without a calibration get the default one.
+  bool needs_calibration = true;
+};
+
+/// A ROS 1 bag as a recording, streamed: one message of each topic at a time.
+class BagSource : public RecordedSource {
+ public:
+  /// Throws InputError as BagFile, readRigFiles and chooseTopics do, and for a rig that has no camera or IMU
+  /// or a bag that has none of its readings. `diagnostics` must outlive the source.
+  BagSource(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics);
+
+  std::optional<ImuSample> nextImu() override;
+  std::optional<PendingImage> nextImage(size_t camera) override;
+  std::optional<MagnetometerSample> nextMagnetometer() override;
+  std::optional<DepthSample> nextDepth() override;
+  std::optional<SonarSample> nextSonar() override;
+
+  BagFile& bag() { return bag_; }
+  const RigFile& rigFile() const { return rig_file_; }
+
+ private:
+  /// How far a topic has been read.
+  struct Cursor {
+    const BagTopic* topic = nullptr;
+    size_t next = 0;
+  };
+
+  void settleCameras(const BagOptions& options);
+  void settleRates();
+  Cursor cursorOf(const std::string& sensor) const;
+  std::optional<wire::Bytes> nextMessage(Cursor* cursor);
+  template <typename Parse>
+  auto nextReading(Cursor* cursor, const Parse& parse)
+      -> std::optional<decltype(parse(std::span<const uint8_t>()))>;
+
+  BagFile bag_;
+  Diagnostics* diagnostics_;
+  RigFile rig_file_;
+  TopicChoice choice_;
+  std::vector<Cursor> cameras_;
+  Cursor imu_, magnetometer_, pressure_, sonar_;
+  std::deque<SonarSample> echoes_;  ///< of the scan last read
+};
+
+/// NAME.rig.yaml for NAME.bag.
+std::filesystem::path rigFileBeside(const std::filesystem::path& bag);
+
+}  // namespace lodeline

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lodeline/bags/bag_file.h"
+#include "lodeline/base/diagnostics.h"
+
+namespace lodeline {
+
+/// Which topic of a bag is which sensor: cam0, cam1, …, imu0, mag0, pressure0, sonar0.
+using TopicChoice = std::map<std::string, const BagTopic*>;
+
+/// What is to be looked for.
+struct TopicWish {
+  size_t camera_count = 0;
+  std::vector<std::string> sensors;          ///< imu0, mag0, …: those that the rig has
+  std::map<std::string, std::string> named;  ///< topics by sensor, where they are told
+};
+
+/// Takes the topics that are named; finds the others by their type, images in the order of their names. Where
+/// a camera publishes both raw and compressed images, the raw ones are taken. Sensors for which the bag has
+/// no topic are left out. What was found by type, and topics of sensors that the rig does not have, are
+/// reported as notices. Throws InputError, listing the topics, where a named one is not there or is of
+/// another type, where several would do, and where there are more or fewer topics of images than cameras.
+TopicChoice chooseTopics(const BagFile& bag, const TopicWish& wish, Diagnostics* diagnostics);
+
+/// The topics of images by the order of their names, each camera once.
+std::vector<const BagTopic*> imageTopics(const BagFile& bag);
+
+/// Topics of a sensor (not a camera) by type.
+std::vector<const BagTopic*> topicsFor(const BagFile& bag, const std::string& sensor);
+
+}  // namespace lodeline

@@ -1,0 +1,63 @@
+#include "lodeline/cli/open_recording.h"
+
+#include <fmt/core.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "lodeline/bags/bag_source.h"
+#include "lodeline/base/error.h"
+#include "lodeline/data/euroc_source.h"
+
+namespace lodeline {
+
+void addBagOptions(BagArguments* arguments, CLI::App* command) {
+  command
+      ->add_option(
+          "--rig", arguments->rig_files,
+          "for a bag: calibration of the rig (rig.yaml, or Kalibr's camchain-imucam.yaml and imu.yaml); "
+          "without it NAME.rig.yaml beside NAME.bag")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--topic", arguments->topics,
+          "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
+          "is not named")
+      ->type_name("SENSOR=TOPIC");
+}
+
+std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
+  std::map<std::string, std::string> topics;
+  for (const std::string& text : arguments.topics) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      throw UsageError(fmt::format("--topic {}: expected SENSOR=TOPIC, as in cam0=/left/image_raw", text));
+    }
+    topics[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  return topics;
+}
+
+bool isBag(const std::filesystem::path& data) {
+  const std::string name = data.filename().string();
+  return data.extension() == ".bag" || name.ends_with(".bag.active");
+}
+
+std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
+                                              const BagArguments& bag_arguments, Diagnostics* diagnostics) {
+  if (!isBag(data)) {
+    if (!bag_arguments.rig_files.empty() || !bag_arguments.topics.empty()) {
+      throw UsageError(fmt::format("--rig and --topic are for ROS bags; {} is none", data.string()));
+    }
+    return std::make_unique<EurocSource>(data, options, diagnostics);
+  }
+  BagOptions bag_options;
+  bag_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
+  bag_options.topics = topicsOf(bag_arguments);
+  bag_options.camera_indices = options.camera_indices;
+  bag_options.with_cameras = options.with_cameras;
+  return std::make_unique<BagSource>(data, bag_options, diagnostics);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/data/euroc_rig.h"
+#include "lodeline/data/measurement_source.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lodeline {
+
+/// What the command line says about a bag.
+struct BagArguments {
+  std::vector<std::string> rig_files;
+  std::vector<std::string> topics;  ///< SENSOR=TOPIC
+};
+
+/// Adds --rig and --topic to a command.
+void addBagOptions(BagArguments* arguments, CLI::App* command);
+
+/// Topics by sensor. Throws UsageError where one is not of the form SENSOR=TOPIC.
+std::map<std::string, std::string> topicsOf(const BagArguments& arguments);
+
+bool isBag(const std::filesystem::path& data);
+
+/// Opens a folder in the EuRoC ASL layout, or a ROS 1 bag. Throws as EurocSource and BagSource do, and
+/// UsageError for options of bags with a folder. `diagnostics` must outlive the source.
+std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
+                                              const BagArguments& bag_arguments, Diagnostics* diagnostics);
+
+}  // namespace lodeline

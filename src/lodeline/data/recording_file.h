@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace lodeline {
+
+/// A text file that is being written, its folder created. Throws InputError, naming the path, where that
+/// fails.
+class RecordingFile {
+ public:
+  explicit RecordingFile(const std::filesystem::path& path);
+  void write(const std::string& text);
+  /// Throws where anything could not be written, e.g. on a full disk.
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream stream_;
+};
+
+/// First lines of the lists of readings in the EuRoC ASL layout.
+inline constexpr const char* kImuColumns =
+    "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+inline constexpr const char* kImageColumns = "#timestamp [ns],filename\n";
+inline constexpr const char* kMagnetometerColumns = "#timestamp [ns],m_x [T],m_y [T],m_z [T]\n";
+inline constexpr const char* kDepthColumns = "#timestamp [ns],depth [m]\n";
+inline constexpr const char* kSonarColumns = "#timestamp [ns],range [m],angle [rad]\n";
+
+}  // namespace lodeline

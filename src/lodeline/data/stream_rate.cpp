@@ -1,0 +1,38 @@
+#include "lodeline/data/stream_rate.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace lodeline {
+namespace {
+
+/// A stated rate further than this factor from the measured one is wrong.
+constexpr double kRateFactor = 1.5;
+
+}  // namespace
+
+std::optional<double> measuredRate_hz(const std::vector<Time>& stamps) {
+  std::vector<double> steps_s;
+  for (size_t i = 1; i < stamps.size(); ++i) steps_s.push_back((stamps[i] - stamps[i - 1]).seconds());
+  if (steps_s.empty()) return std::nullopt;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  if (!(*middle > 0.0)) return std::nullopt;
+  return 1.0 / *middle;
+}
+
+double settleRate(const std::string& name, const std::vector<Time>& stamps, double stated_hz,
+                  Diagnostics* diagnostics) {
+  const std::optional<double> measured_hz = measuredRate_hz(stamps);
+  if (!measured_hz) return stated_hz;
+  if (!(stated_hz > 0.0)) return *measured_hz;
+  if (*measured_hz<stated_hz * kRateFactor&& * measured_hz> stated_hz / kRateFactor) return stated_hz;
+  diagnostics->report(
+      Severity::Warning, "rate",
+      fmt::format("{}: the calibration says {:g} Hz but the stamps come at {:.4g} Hz, which is used", name,
+                  stated_hz, *measured_hz));
+  return *measured_hz;
+}
+
+}  // namespace lodeline
