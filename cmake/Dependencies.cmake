@@ -38,7 +38,7 @@ set_target_properties(lz4::lz4 PROPERTIES IMPORTED_LOCATION ${LZ4_LIBRARY}
 # Its CMake files ask for catkin; the packages that its headers take lie in folders of their own.
 set(rosbag_libraries rosbag_storage roscpp_serialization rostime cpp_common console_bridge class_loader)
 set(rosbag_headers rosbag/bag.h sensor_msgs/Imu.h pluginlib/class_loader.hpp class_loader/class_loader.hpp
-    rcpputils/shared_library.hpp rcutils/types.h)
+    rcpputils/shared_library.hpp rcutils/types.h ament_index_cpp/get_package_prefix.hpp)
 add_library(rosbag_storage::rosbag_storage INTERFACE IMPORTED)
 set(LODELINE_HAS_ROSBAG_STORAGE ON)
 foreach(library IN LISTS rosbag_libraries)

@@ -11,6 +11,7 @@
 #include "lodeline/cli/attitude_command.h"
 #include "lodeline/cli/calibrate_command.h"
 #include "lodeline/cli/compare_command.h"
+#include "lodeline/cli/convert_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/export_command.h"
 #include "lodeline/cli/report_command.h"
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
   lodeline::addAllanCommand(program);
   lodeline::addAttitudeCommand(program);
   lodeline::addCalibrateCommand(program);
+  lodeline::addConvertCommand(program);
   try {
     program.parse(argc, argv);
     return kGood;

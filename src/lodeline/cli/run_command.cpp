@@ -44,7 +44,9 @@ void run(RunRequest request, bool with_report) {
 void addRunCommand(CLI::App& program) {
   auto arguments = std::make_shared<RunRequest>();
   CLI::App* command = program.add_subcommand("run", "Estimate a trajectory and a map from a recording");
-  command->add_option("DATA", arguments->data, "folder that contains mav0 (EuRoC ASL layout), or mav0 itself")
+  command
+      ->add_option("DATA", arguments->data,
+                   "folder that contains mav0 (EuRoC ASL layout), or mav0 itself; or a ROS 1 bag (NAME.bag)")
       ->required();
   command->add_option("-o,--output", arguments->output, "folder for the results; made where it is missing")
       ->required();
@@ -76,6 +78,7 @@ void addRunCommand(CLI::App& program) {
       ->capture_default_str();
   auto no_report = std::make_shared<bool>(false);
   command->add_flag("--no-report", *no_report, "leave out report.html and its pictures");
+  addBagOptions(&arguments->bag, command);
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
   command->footer(
       "Examples:\n"
@@ -84,6 +87,7 @@ void addRunCommand(CLI::App& program) {
       "  lodeline run dive1 -o north --mag-calibration mag.yaml --site 29.83,-82.60,20 --date 2026-11-21\n"
       "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
       "  lodeline run dive1 -o dive1_result --live\n"
+      "  lodeline run dive1.bag -o dive1_result --rig camchain-imucam.yaml --rig imu.yaml\n"
       "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json,\n"
       "report.html (all of it to look at); pictures of tracks in frames.");
   command->callback([arguments, no_report] { run(*arguments, !*no_report); });

@@ -13,7 +13,6 @@
 #include "lodeline/cli/process_usage.h"
 #include "lodeline/cli/run_progress.h"
 #include "lodeline/cli/stop_request.h"
-#include "lodeline/data/euroc_source.h"
 #include "lodeline/estimator/attitude_track.h"
 #include "lodeline/live/live_view.h"
 #include "lodeline/report/run_output.h"
@@ -27,7 +26,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void calibrateMagnetometer(const std::filesystem::path& file, EurocSource* source) {
+void calibrateMagnetometer(const std::filesystem::path& file, RecordedSource* source) {
   Rig rig = source->rig();
   applyCalibration(readCalibrationFile(file), file, &rig);
   source->setMagnetometer(*rig.magnetometer);
@@ -115,23 +114,24 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   applyRequest(request, &settings, &options);
 
   const std::filesystem::path folder = request.output;
-  EurocSource source(request.data, options.source, diagnostics);
+  const std::unique_ptr<RecordedSource> source =
+      openRecording(request.data, options.source, request.bag, diagnostics);
   if (!options.magnetometer_calibration.empty()) {
-    calibrateMagnetometer(options.magnetometer_calibration, &source);
+    calibrateMagnetometer(options.magnetometer_calibration, source.get());
   }
   createOutputFolder(folder);
   std::ofstream config = openOutput(folder / "config.yaml");
   settings.write(config);
   closeOutput(folder / "config.yaml", &config);
 
-  Synchronizer synchronizer(&source, options.synchronizer, diagnostics);
-  Odometry odometry(source.rig(), options.odometry, diagnostics);
-  RunSummary summary(describe(request, options, source.rig()));
+  Synchronizer synchronizer(source.get(), options.synchronizer, diagnostics);
+  Odometry odometry(source->rig(), options.odometry, diagnostics);
+  RunSummary summary(describe(request, options, source->rig()));
   AttitudeFilterOptions attitude_options;
   attitude_options.site_field_W = options.odometry.estimator.magnetometer.site_field_W;
   Diagnostics unheard;  // what the filter finds wrong with readings, synchroniser and odometry report too
-  AttitudeTrack attitude(source.rig(), attitude_options, &unheard);
-  process(synchronizer, odometry, &attitude, source.rig(), request, &summary);
+  AttitudeTrack attitude(source->rig(), attitude_options, &unheard);
+  process(synchronizer, odometry, &attitude, source->rig(), request, &summary);
   writeOutput(folder / "run.json", summary.json(*diagnostics));
   return summary;
 }

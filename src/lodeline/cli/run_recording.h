@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/cli/open_recording.h"
 #include "lodeline/cli/run_settings.h"
 #include "lodeline/report/run_summary.h"
 
@@ -13,6 +14,7 @@ namespace lodeline {
 /// One run of the estimator, in the words of the command line.
 struct RunRequest {
   std::string data;                    ///< recording
+  BagArguments bag;                    ///< where the recording is a bag
   std::string output;                  ///< folder for the results; made where it is missing
   std::string config;                  ///< file of settings; empty for none
   std::vector<std::string> overrides;  ///< KEY=VALUE, over the configuration

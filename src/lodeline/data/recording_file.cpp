@@ -8,7 +8,7 @@ namespace lodeline {
 
 RecordingFile::RecordingFile(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
-  std::filesystem::create_directories(path.parent_path(), error);
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   stream_.open(path, std::ios::binary | std::ios::trunc);
   if (error || !stream_) {
     throw InputError(fmt::format("{}: cannot be written; choose another folder with -o", path.string()));
