@@ -1,4 +1,5 @@
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -25,7 +26,7 @@ std::filesystem::path makeBag(const std::string& compression) {
   for (uint32_t i = 0; i < kImages; ++i) {
     const Time time = Time::fromNanoseconds(1'000'000'000 + i * int64_t{50'000'000});
     for (const char* camera : {"cam0", "cam1"}) {
-      writer.write("/" + std::string(camera), messages::kImage.name, time,
+      writer.write(fmt::format("/{}", camera), messages::kImage.name, time,
                    messages::image(time, camera, pixels, i));
     }
     for (int64_t k = 0; k < 10; ++k) {
