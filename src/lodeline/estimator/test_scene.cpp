@@ -19,7 +19,7 @@ Motion swaying(const TestSceneOptions& options) {
     return std::any_of(spans.begin(), spans.end(), [t](const TimeSpan& span) { return span.contains(t); });
   };
   const auto addSway = [&](MotionChannel& channel, double amplitude, double rate_rad_per_s, bool is_turn,
-                           double from_s = 0.0) {
+                           double from_s = -1e9) {
     const auto activity = [&](double t) {
       if (t < from_s) return 0.0;
       const bool rests = covered(options.still, t) || (!is_turn && covered(options.on_the_spot, t));
