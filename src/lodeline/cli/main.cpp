@@ -14,6 +14,7 @@
 #include "lodeline/cli/convert_command.h"
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/export_command.h"
+#include "lodeline/cli/inspect_command.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   lodeline::addAttitudeCommand(program);
   lodeline::addCalibrateCommand(program);
   lodeline::addConvertCommand(program);
+  lodeline::addInspectCommand(program);
   try {
     program.parse(argc, argv);
     return kGood;

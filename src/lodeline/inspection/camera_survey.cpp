@@ -1,0 +1,190 @@
+#include "lodeline/inspection/camera_survey.h"
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/features/corner_detector.h"
+#include "lodeline/features/mask.h"
+#include "lodeline/inspection/visual_rotation.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kImageGapPeriods = 1.5;
+constexpr int kPyramidLevels = 4;
+constexpr double kForwardBackward_px = 0.7;
+
+bool isWithin(Time time, const std::vector<TimeSpan>& spans) {
+  return std::any_of(spans.begin(), spans.end(),
+                     [&](const TimeSpan& span) { return time >= span.begin && time <= span.end; });
+}
+
+/// An image with its corners, to be followed into the next.
+struct Followed {
+  Time time;
+  cv::Mat image;
+  std::vector<cv::Point2f> corners;
+};
+
+class Survey {
+ public:
+  Survey(const CameraCalibration& calibration, const CameraSurveyOptions& options, CameraSurvey* result)
+      : options_(options),
+        offset_(Duration::fromSeconds(calibration.time_offset_to_imu_s)),
+        camera_(makeCamera(calibration)),
+        mask_(loadMask(calibration)),
+        detector_(CornerDetectorOptions()),
+        result_(result) {}
+
+  void look(const PendingImage& pending, bool follow) {
+    const LoadedImage loaded = pending.load();
+    if (loaded.image.empty()) {
+      if (result_->unreadable++ == 0) result_->first_problem = loaded.problem;
+      return;
+    }
+    if (!hasRightSize(loaded.image)) return;
+    const ImagePyramid pyramid(loaded.image, kPyramidLevels);
+    Followed current{pending.time, loaded.image, {}};
+    for (const Eigen::Vector2f& corner : detector_.detect(pyramid, mask_, {})) {
+      current.corners.emplace_back(corner.x(), corner.y());
+    }
+    FrameSurvey frame{pending.time, assess(pyramid), static_cast<int>(current.corners.size()), -1};
+    if (follow && previous_) compare(current, &frame);
+    result_->frames.push_back(frame);
+    previous_.reset();
+    if (follow) previous_ = std::move(current);
+  }
+
+  /// Whether the next image comes too soon after the last one that was followed.
+  bool isTooSoon(Time time) const {
+    return previous_ && time > previous_->time && (time - previous_->time).seconds() < options_.least_step_s;
+  }
+
+ private:
+  bool hasRightSize(const cv::Mat& image) {
+    const CameraCalibration& calibration = camera_->calibration();
+    if (image.cols == calibration.width_px && image.rows == calibration.height_px) return true;
+    if (result_->other_size++ == 0) {
+      result_->other_width_px = image.cols;
+      result_->other_height_px = image.rows;
+    }
+    return false;
+  }
+
+  void compare(const Followed& current, FrameSurvey* frame) {
+    ++result_->compared;
+    if (cv::norm(previous_->image, current.image, cv::NORM_INF) == 0.0) {
+      ++result_->identical;
+      return;
+    }
+    constexpr double kLongestStep_s = 0.3;
+    const double step_s = (current.time - previous_->time).seconds();
+    if (previous_->corners.empty() || !(step_s > 0.0) || step_s > kLongestStep_s) return;
+    std::vector<Vec3> before, after;
+    frame->followed = followCorners(current, &before, &after);
+    const std::optional<VisualRotation> rotation = visualRotation(before, after);
+    if (!rotation) return;
+    result_->turns.push_back(
+        {previous_->time + offset_, current.time + offset_, Vec3(rotation->rotation_C / step_s)});
+  }
+
+  /// Rays of the corners that are found in the current image and, from there, in the previous one again.
+  int followCorners(const Followed& current, std::vector<Vec3>* before, std::vector<Vec3>* after) const {
+    std::vector<cv::Point2f> forward, back;
+    std::vector<uint8_t> found, found_back;
+    const cv::Size window(21, 21);
+    const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01);
+    constexpr double kLeastEigenvalue = 1e-6;
+    cv::calcOpticalFlowPyrLK(previous_->image, current.image, previous_->corners, forward, found,
+                             cv::noArray(), window, kPyramidLevels, enough, 0, kLeastEigenvalue);
+    cv::calcOpticalFlowPyrLK(current.image, previous_->image, forward, back, found_back, cv::noArray(),
+                             window, kPyramidLevels, enough, 0, kLeastEigenvalue);
+    for (size_t i = 0; i < forward.size(); ++i) {
+      if (!found[i] || !found_back[i] || cv::norm(back[i] - previous_->corners[i]) > kForwardBackward_px)
+        continue;
+      const auto ray_before = camera_->unproject(Vec2(previous_->corners[i].x, previous_->corners[i].y));
+      const auto ray_after = camera_->unproject(Vec2(forward[i].x, forward[i].y));
+      if (!ray_before || !ray_after) continue;
+      before->push_back(*ray_before);
+      after->push_back(*ray_after);
+    }
+    return static_cast<int>(before->size());
+  }
+
+  CameraSurveyOptions options_;
+  Duration offset_;
+  std::shared_ptr<const Camera> camera_;
+  cv::Mat mask_;
+  CornerDetector detector_;
+  CameraSurvey* result_;
+  std::optional<Followed> previous_;
+};
+
+/// How variedly the rig turned in each stretch; readings in order of time.
+std::vector<std::pair<double, TimeSpan>> rateSpans(const std::vector<ImuSample>& samples,
+                                                   const StreamSummary& images, double span_s) {
+  std::vector<std::pair<double, TimeSpan>> spans;
+  const Duration length = Duration::fromSeconds(span_s);
+  auto sample = samples.begin();
+  for (Time begin = *images.first; begin < *images.last; begin = begin + length) {
+    const TimeSpan span{begin, begin + length};
+    Vec3 sum = Vec3::Zero(), squares = Vec3::Zero();
+    double count = 0.0;
+    while (sample != samples.end() && sample->time < begin) ++sample;
+    for (; sample != samples.end() && sample->time < span.end; ++sample) {
+      sum += sample->angular_velocity_B;
+      squares += sample->angular_velocity_B.cwiseAbs2();
+      ++count;
+    }
+    if (count > 2.0) spans.emplace_back((squares / count - (sum / count).cwiseAbs2()).sum(), span);
+  }
+  return spans;
+}
+
+}  // namespace
+
+StreamSummary surveyStamps(MeasurementSource* source, size_t camera) {
+  StreamSurvey stream;
+  while (const std::optional<PendingImage> image = source->nextImage(camera)) stream.add(image->time);
+  return stream.summarize(kImageGapPeriods);
+}
+
+CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const StreamSummary& stream,
+                          const std::vector<TimeSpan>& spans, const CameraSurveyOptions& options) {
+  const CameraCalibration& calibration = source->rig().cameras[camera];
+  CameraSurvey result;
+  result.name = calibration.name;
+  result.stream = stream;
+  Survey survey(calibration, options, &result);
+  const int64_t every = std::max<int64_t>(1, stream.readings / options.most_samples);
+  int64_t index = 0;
+  int followed = 0;
+  while (const std::optional<PendingImage> image = source->nextImage(camera)) {
+    const bool follow = followed < options.most_turns && isWithin(image->time, spans);
+    const bool sample = index++ % every == 0;
+    if (follow && survey.isTooSoon(image->time)) continue;
+    if (!follow && !sample) continue;
+    survey.look(*image, follow);
+    if (follow) ++followed;
+  }
+  return result;
+}
+
+std::vector<TimeSpan> liveliestSpans(const std::vector<ImuSample>& samples, const StreamSummary& images,
+                                     double span_s, double total_s) {
+  std::vector<TimeSpan> chosen;
+  if (!images.first || samples.empty()) return chosen;
+  std::vector<std::pair<double, TimeSpan>> spans = rateSpans(samples, images, span_s);
+  std::stable_sort(spans.begin(), spans.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (size_t i = 0; i < spans.size() && static_cast<double>(i) * span_s < total_s; ++i) {
+    chosen.push_back(spans[i].second);
+  }
+  std::sort(chosen.begin(), chosen.end(),
+            [](const TimeSpan& a, const TimeSpan& b) { return a.begin < b.begin; });
+  return chosen;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/signed_axes.h"
+
+namespace lodeline::findings {
+namespace {
+
+constexpr double kGravity_m_per_s2 = 9.80665;
+constexpr double kDegrees = 180.0 / M_PI;
+
+void add(Inspection* inspection, Severity severity, double harm, const std::string& kind,
+         const std::string& message) {
+  inspection->findings.push_back({severity, harm, "imu0", kind, message});
+}
+
+void judgeDead(const char* name, const char* kind, const TriadSurvey& triad, Inspection* inspection) {
+  std::string axes;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (triad.is_dead[axis]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[axis]);
+  }
+  if (axes.empty()) return;
+  add(inspection, Severity::Serious, 90.0, kind,
+      fmt::format("the {}'s {} axis is dead: it never changes; nothing can be estimated with it", name,
+                  axes));
+}
+
+void judgeSaturation(const char* name, const char* kind, const char* unit, const TriadSurvey& triad,
+                     Inspection* inspection) {
+  if (triad.saturated_share < 1e-3) return;
+  add(inspection, Severity::Warning, 55.0, kind,
+      fmt::format("the {} is saturated in {:.2g} % of its readings (limit {:.4g} {}); choose a larger range",
+                  name, 100.0 * triad.saturated_share, triad.limit, unit));
+}
+
+void judgeForceUnit(const ImuSurvey& imu, Inspection* inspection) {
+  if (imu.force_to_SI != 1.0) {
+    const char* unit = imu.force_to_SI > 1.0 ? "g" : "mg";
+    add(inspection, Severity::Serious, 98.0, "accelerometer_unit",
+        fmt::format("the accelerometer is in {}, not m/s^2: its readings have a size of {:.4g}; multiply "
+                    "them by {:.6g}",
+                    unit, imu.median_force, imu.force_to_SI));
+    return;
+  }
+  if (imu.median_force > 8.0 && imu.median_force < 12.5) return;
+  add(inspection, Severity::Serious, 97.0, "accelerometer_unit",
+      fmt::format("the accelerometer's readings have a size of {:.4g} m/s^2, where gravity alone has 9.8: "
+                  "wrong unit, "
+                  "scale, or gravity taken off",
+                  imu.median_force));
+}
+
+void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
+  if (imu.rest_s < 1.0) return;
+  const double error = imu.rest_force_m_per_s2 - kGravity_m_per_s2;
+  if (imu.force_to_SI == 1.0 && std::abs(error) > 0.25) {
+    add(inspection, Severity::Warning, 45.0, "gravity_at_rest",
+        fmt::format(
+            "at rest the accelerometer reads {:.3f} m/s^2, {:.2f} off gravity; calibrate its scale and bias",
+            imu.rest_force_m_per_s2, error));
+  }
+  constexpr double kLargeBias_rad_per_s = 0.12;
+  if (imu.rest_rate_B.norm() * inspection->rate_to_SI > kLargeBias_rad_per_s) {
+    add(inspection, Severity::Warning, 44.0, "gyroscope_bias",
+        fmt::format("at rest the gyroscope reads {:.2f} deg/s", kDegrees * imu.rest_rate_B.norm()));
+  }
+}
+
+/// Handedness and axes of the gyroscope against the accelerometer, which need no camera.
+void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
+  if (!imu.turning) return;
+  const GravityTurning& turning = *imu.turning;
+  constexpr double kClear = 0.75;
+  if (turning.best_correlation < kClear || turning.correlation > 0.3 * turning.best_correlation) return;
+  const bool is_mirrored = turning.correlation < -kClear;
+  add(inspection, Severity::Serious, is_mirrored ? 92.0 : 85.0, "imu_axes",
+      is_mirrored
+          ? std::string(
+                "the axes of the IMU are swapped: they form a left-handed frame (gravity turns against the "
+                "gyroscope); two axes are exchanged or one or three have the wrong sign")
+          : fmt::format("the axes of gyroscope and accelerometer differ, swapped or with wrong signs: "
+                        "gravity turns as if, "
+                        "in the gyroscope's readings, {}",
+                        describeSignedAxes(turning.best_axes)));
+}
+
+/// Without a camera to compare with: gravity turns far more slowly than rates in deg/s, read as rad/s, say.
+void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
+  if (inspection->rate_to_SI != 1.0 || !imu.turning || imu.turning->correlation < 0.4) return;
+  const double scale = imu.turning->scale;
+  if (scale > 2.5 / kDegrees || scale < 0.4 / kDegrees) return;
+  inspection->rate_to_SI = 1.0 / kDegrees;
+  add(inspection, Severity::Serious, 99.0, "gyroscope_unit",
+      fmt::format(
+          "the gyroscope is in deg/s, not rad/s: gravity turns {:.3g} times as fast as it says; multiply its "
+          "readings by pi/180",
+          scale));
+}
+
+}  // namespace
+
+void judgeImu(Inspection* inspection) {
+  const ImuSurvey& imu = inspection->imu;
+  if (imu.samples.empty()) return;
+  judgeDead("gyroscope", "gyroscope_dead_axis", imu.gyroscope, inspection);
+  judgeDead("accelerometer", "accelerometer_dead_axis", imu.accelerometer, inspection);
+  judgeSaturation("gyroscope", "gyroscope_saturated", "rad/s", imu.gyroscope, inspection);
+  judgeSaturation("accelerometer", "accelerometer_saturated", "m/s^2", imu.accelerometer, inspection);
+  judgeForceUnit(imu, inspection);
+  judgeRateUnit(imu, inspection);
+  judgeRest(imu, inspection);
+  judgeTurningOfGravity(imu, inspection);
+}
+
+}  // namespace lodeline::findings

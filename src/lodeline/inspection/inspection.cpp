@@ -1,0 +1,136 @@
+#include "lodeline/inspection/inspection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/inspection/findings.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kSlowGapPeriods = 4.0;
+constexpr double kDegree = M_PI / 180.0;
+
+template <typename Next, typename Value>
+void surveyPlain(const std::string& sensor, const Next& next, const Value& value, Inspection* inspection) {
+  StreamSurvey stream;
+  PlainSurvey survey{sensor, {}, 0.0, 0.0};
+  bool is_first = true;
+  while (const auto reading = next()) {
+    stream.add(reading->time);
+    survey.least = is_first ? value(*reading) : std::min(survey.least, value(*reading));
+    survey.greatest = is_first ? value(*reading) : std::max(survey.greatest, value(*reading));
+    is_first = false;
+  }
+  survey.stream = stream.summarize(kSlowGapPeriods);
+  inspection->others.push_back(survey);
+}
+
+std::vector<StreamSummary> readStreams(MeasurementSource* source, Inspection* inspection) {
+  inspection->rig = source->rig();
+  inspection->imu = surveyImu(source);
+  if (inspection->rig.pressure) {
+    surveyPlain(
+        "pressure0", [&] { return source->nextDepth(); },
+        [](const DepthSample& sample) { return sample.depth_m; }, inspection);
+  }
+  if (inspection->rig.sonar) {
+    surveyPlain(
+        "sonar0", [&] { return source->nextSonar(); },
+        [](const SonarSample& sample) { return sample.range_m; }, inspection);
+  }
+  std::vector<StreamSummary> images;
+  for (size_t i = 0; i < inspection->rig.cameras.size(); ++i) images.push_back(surveyStamps(source, i));
+  return images;
+}
+
+/// The images of the first camera tell what the gyroscope's rates are in.
+void settleRateUnit(Inspection* inspection) {
+  constexpr double kLikeness = 2.0, kSame = 0.6;
+  for (const CameraInspection& camera : inspection->cameras) {
+    if (!camera.turning || camera.turning->correlation < kSame) continue;
+    const double ratio = camera.turning->gyroscope_scale / kDegree;
+    if (ratio > kLikeness || ratio < 1.0 / kLikeness) return;
+    inspection->rate_to_SI = kDegree;
+    inspection->findings.push_back({Severity::Serious, 99.0, "imu0", "gyroscope_unit",
+                                    "the gyroscope is in deg/s, not rad/s: the images turn 57 times slower "
+                                    "than it says; multiply its readings by "
+                                    "pi/180"});
+    return;
+  }
+}
+
+void compareCameras(Inspection* inspection) {
+  std::vector<ImuSample> samples = inspection->imu.samples;
+  for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection->rate_to_SI;
+  const GyroscopeIntegral gyroscope(samples);
+  for (size_t i = 0; i < inspection->cameras.size(); ++i) {
+    inspection->cameras[i].turning = compareTurns(inspection->cameras[i].survey.turns, gyroscope,
+                                                  inspection->rig.cameras[i].body_from_camera.rotation);
+  }
+}
+
+void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& images,
+                  const InspectionOptions& options, Inspection* inspection) {
+  if (images.empty()) return;
+  Diagnostics reported_before;
+  const std::unique_ptr<MeasurementSource> source = open(&reported_before);
+  const double total_s = options.images.most_turns *
+                         std::max(options.images.least_step_s,
+                                  images.front().rate_hz > 0.0 ? 1.0 / images.front().rate_hz : 0.05);
+  const std::vector<TimeSpan> spans =
+      liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
+  for (size_t i = 0; i < images.size(); ++i) {
+    inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, options.images), {}});
+  }
+  compareCameras(inspection);
+  settleRateUnit(inspection);
+  if (inspection->rate_to_SI != 1.0) compareCameras(inspection);
+}
+
+void takeReaderFindings(const Diagnostics& diagnostics, Inspection* inspection) {
+  for (const Finding& finding : diagnostics.ranked()) {
+    if (finding.kind == "magnetometer_unit") continue;  // judged here with the unit's name
+    const std::string times = finding.count > 1 ? " (" + std::to_string(finding.count) + " times)" : "";
+    inspection->findings.push_back(
+        {finding.severity, 48.0, "recording", finding.kind, finding.first_message + times});
+  }
+}
+
+}  // namespace
+
+std::string Inspection::verdict(const std::string& sensor) const {
+  Severity worst = Severity::Notice;
+  for (const InspectionFinding& finding : findings) {
+    if (finding.sensor == sensor) worst = std::max(worst, finding.severity);
+  }
+  if (worst == Severity::Serious) return "harmful";
+  return worst == Severity::Warning ? "usable" : "good";
+}
+
+Inspection inspect(const SourceFactory& open, const InspectionOptions& options) {
+  Inspection inspection;
+  inspection.site_field_W = options.site_field_W;
+  Diagnostics diagnostics;
+  const std::unique_ptr<MeasurementSource> source = open(&diagnostics);
+  const std::vector<StreamSummary> images = readStreams(source.get(), &inspection);
+  lookAtImages(open, images, options, &inspection);
+  findings::judgeImu(&inspection);
+  if (inspection.rig.magnetometer) {
+    std::vector<ImuSample> samples = inspection.imu.samples;
+    for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection.rate_to_SI;
+    inspection.magnetometer = surveyMagnetometer(source.get(), samples);
+  }
+  findings::judgeStreams(&inspection);
+  findings::judgeImages(&inspection);
+  findings::judgeTurning(&inspection);
+  findings::judgeMagnetometer(&inspection);
+  takeReaderFindings(diagnostics, &inspection);
+  std::stable_sort(inspection.findings.begin(), inspection.findings.end(),
+                   [](const InspectionFinding& a, const InspectionFinding& b) {
+                     return a.severity != b.severity ? a.severity > b.severity : a.harm > b.harm;
+                   });
+  return inspection;
+}
+
+}  // namespace lodeline

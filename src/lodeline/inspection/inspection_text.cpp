@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/inspection/camera_words.h"
+#include "lodeline/inspection/inspection_report.h"
+#include "lodeline/inspection/median.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+
+std::string findingsLines(const Inspection& inspection) {
+  std::string text;
+  int number = 0;
+  for (const InspectionFinding& finding : inspection.findings) {
+    if (finding.severity == Severity::Notice) continue;
+    text +=
+        fmt::format("{}. {} {}: {}\n", ++number, toString(finding.severity), finding.sensor, finding.message);
+  }
+  if (number == 0) text = "nothing found that would hurt\n";
+  for (const InspectionFinding& finding : inspection.findings) {
+    if (finding.severity == Severity::Notice)
+      text += fmt::format("   {}: {}\n", finding.sensor, finding.message);
+  }
+  return text;
+}
+
+std::string streamLine(const Inspection& inspection, const std::string& sensor, const StreamSummary& stream) {
+  std::string text =
+      fmt::format("{:<10}{:<9}{:>9} readings  {:>8.2f} Hz  {:>8.1f} s", sensor, inspection.verdict(sensor),
+                  stream.readings, stream.rate_hz, stream.duration_s);
+  text += fmt::format("  gaps {}  duplicates {}  disorder {}", stream.gaps.size(), stream.duplicates,
+                      stream.backwards);
+  if (stream.repeated > 0) {
+    text += fmt::format("  repeated {:.1f} %",
+                        100.0 * static_cast<double>(stream.repeated) / static_cast<double>(stream.readings));
+  }
+  return text + "\n";
+}
+
+std::string imuText(const Inspection& inspection) {
+  const ImuSurvey& imu = inspection.imu;
+  std::string text = streamLine(inspection, "imu0", imu.stream);
+  if (imu.samples.empty()) return text;
+  text += fmt::format("          specific force {:.3f} m/s^2 (median)", imu.median_force * imu.force_to_SI);
+  if (imu.rest_s > 0.0) {
+    const Vec3 bias_deg = kDegrees * inspection.rate_to_SI * imu.rest_rate_B;
+    text +=
+        fmt::format("; at rest for {:.1f} s: gravity {:.3f} m/s^2, gyroscope bias {:.2f} {:.2f} {:.2f} deg/s",
+                    imu.rest_s, imu.rest_force_m_per_s2, bias_deg.x(), bias_deg.y(), bias_deg.z());
+  } else {
+    text += "; never at rest, so that biases cannot be read off";
+  }
+  const Vec3 spread_deg = kDegrees * inspection.rate_to_SI * imu.gyroscope.spread;
+  return text +
+         fmt::format("\n          turns by {:.1f} {:.1f} {:.1f} deg/s (standard deviation about x y z)\n",
+                     spread_deg.x(), spread_deg.y(), spread_deg.z());
+}
+
+std::string qualityText(const CameraSurvey& survey) {
+  if (survey.frames.empty()) return {};
+  std::vector<double> grey, contrast, sharpness, saturated, corners, followed;
+  for (const FrameSurvey& frame : survey.frames) {
+    grey.push_back(frame.quality.mean_grey);
+    contrast.push_back(frame.quality.contrast_grey);
+    sharpness.push_back(frame.quality.sharpness);
+    saturated.push_back(frame.quality.saturated);
+    corners.push_back(frame.corners);
+    if (frame.followed >= 0) followed.push_back(frame.followed);
+  }
+  return fmt::format(
+      "          images (median of {}): grey {:.0f}, contrast {:.0f}, sharpness {:.2f}, saturated {:.1f} %, "
+      "{:.0f} points worth "
+      "following, {:.0f} followed to the next\n",
+      survey.frames.size(), median(grey), median(contrast), median(sharpness), 100.0 * median(saturated),
+      median(corners), median(followed));
+}
+
+std::string turningText(const CameraInspection& camera) {
+  if (!camera.turning)
+    return "          turned too little, or was followed too badly, to be compared with the gyroscope\n";
+  const TurnComparison& turning = *camera.turning;
+  return fmt::format(
+      "          with the gyroscope over {} images: correlation {:.3f}, stamps {:+.1f} ms (+-{:.1f}), "
+      "rotation {:.1f} deg off{}, focal "
+      "length {:.3f} of the calibrated\n",
+      turning.turns, turning.correlation, 1e3 * turning.time_offset_s, 1e3 * turning.time_offset_sigma_s,
+      kDegrees * turning.misalignment_rad,
+      turning.hidden_axes > 0 ? fmt::format(" ({} axes not shown by the motion)", turning.hidden_axes) : "",
+      turning.focal_ratio);
+}
+
+std::string cameraText(const Inspection& inspection, size_t index) {
+  const CameraInspection& camera = inspection.cameras[index];
+  const CameraCalibration& calibration = inspection.rig.cameras[index];
+  std::string text = streamLine(inspection, camera.survey.name, camera.survey.stream);
+  text += fmt::format("          {}\n", describeAxes(calibration));
+  if (!inspection.imu.samples.empty()) {
+    text += fmt::format("          {}\n", describeGravity(calibration, inspection.imu.up_B));
+  }
+  return text + qualityText(camera.survey) + turningText(camera);
+}
+
+std::string magnetometerText(const Inspection& inspection) {
+  const MagnetometerSurvey& survey = *inspection.magnetometer;
+  std::string text = streamLine(inspection, "mag0", survey.stream);
+  text += fmt::format("          field {:.2f} uT (spread {:.1f} %)", 1e6 * survey.field_T,
+                      100.0 * survey.field_spread);
+  if (survey.inclination_rad) {
+    text += fmt::format(", {:.1f} deg below the horizon", kDegrees * *survey.inclination_rad);
+  }
+  if (survey.turning) {
+    text +=
+        fmt::format("; turned back by the gyroscope it scatters by {:.1f} %, least with stamps {:+.0f} ms",
+                    100.0 * survey.turning->scatter, 1e3 * survey.turning->time_offset_s);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string inspectionText(const Inspection& inspection) {
+  std::string text = findingsLines(inspection) + "\n" + imuText(inspection);
+  for (size_t i = 0; i < inspection.cameras.size(); ++i) text += cameraText(inspection, i);
+  if (inspection.magnetometer) text += magnetometerText(inspection);
+  for (const PlainSurvey& other : inspection.others) {
+    text += streamLine(inspection, other.sensor, other.stream);
+    text += fmt::format("          {:.2f} to {:.2f} m\n", other.least, other.greatest);
+  }
+  return text;
+}
+
+}  // namespace lodeline

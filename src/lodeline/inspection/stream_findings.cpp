@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include "lodeline/inspection/findings.h"
+
+namespace lodeline::findings {
+namespace {
+
+/// How much of a stream may be amiss before it counts.
+constexpr double kTolerableShare = 1e-3;
+constexpr double kHarmfulImuGap_s = 0.05;
+
+class StreamJudge {
+ public:
+  StreamJudge(const std::string& sensor, const StreamSummary& stream, bool is_imu, Inspection* inspection)
+      : sensor_(sensor), stream_(stream), is_imu_(is_imu), inspection_(inspection) {}
+
+  void judge() const {
+    if (stream_.readings == 0) {
+      add(Severity::Serious, 95.0, "stream_empty", "has no reading that could be used");
+      return;
+    }
+    judgeOrder();
+    judgeGaps();
+    judgeFrozen();
+  }
+
+ private:
+  void add(Severity severity, double harm, const std::string& kind, const std::string& message) const {
+    inspection_->findings.push_back({severity, harm, sensor_, kind, message});
+  }
+
+  double share(int64_t count) const {
+    return static_cast<double>(count) / static_cast<double>(stream_.readings);
+  }
+
+  void judgeOrder() const {
+    const auto severity = [&](int64_t count) {
+      if (share(count) > kTolerableShare) return is_imu_ ? Severity::Serious : Severity::Warning;
+      return Severity::Notice;
+    };
+    if (stream_.duplicates > 0) {
+      add(severity(stream_.duplicates), 60.0 + 10.0 * share(stream_.duplicates), "duplicate_stamps",
+          fmt::format(
+              "duplicated stamps: {} of {} readings ({:.2g} %) have the stamp of the one before and are "
+              "dropped; look for a driver or merge that writes readings twice",
+              stream_.duplicates, stream_.readings, 100.0 * share(stream_.duplicates)));
+    }
+    if (stream_.backwards > 0) {
+      add(severity(stream_.backwards), 62.0 + 10.0 * share(stream_.backwards), "stamps_out_of_order",
+          fmt::format(
+              "stamps out of order: time goes backwards {} times in {} readings ({:.2g} %), which are "
+              "dropped; sort the readings by their stamps",
+              stream_.backwards, stream_.readings, 100.0 * share(stream_.backwards)));
+    }
+  }
+
+  void judgeGaps() const {
+    if (stream_.gaps.empty()) return;
+    const StreamGap& longest = stream_.gaps.front();
+    const double lost = stream_.duration_s > 0.0 ? stream_.gap_s / stream_.duration_s : 0.0;
+    const bool harmful = is_imu_ ? longest.length_s > kHarmfulImuGap_s || lost > 0.01 : lost > 0.05;
+    add(harmful ? (is_imu_ ? Severity::Serious : Severity::Warning) : Severity::Notice,
+        is_imu_ ? 64.0 + std::min(10.0, longest.length_s) : 40.0, "gaps",
+        fmt::format("gaps: silent {} times, {:.3g} s together ({:.2g} % of the time), the longest {:.3g} s "
+                    "after stamp "
+                    "{} ns{}",
+                    stream_.gaps.size(), stream_.gap_s, 100.0 * lost, longest.length_s,
+                    longest.after.nanoseconds(),
+                    harmful && is_imu_ ? "; motion within them is unknown" : ""));
+  }
+
+  void judgeFrozen() const {
+    if (stream_.longest_frozen_s < 1.0) return;
+    const bool mostly = stream_.frozen_share > 0.2;
+    add(mostly || is_imu_ ? Severity::Serious : Severity::Warning, 70.0, "frozen",
+        fmt::format(
+            "frozen: says the same figures for {:.3g} s on end ({:.0f} % of the time); the sensor or its "
+            "driver hangs",
+            stream_.longest_frozen_s, 100.0 * stream_.frozen_share));
+  }
+
+  std::string sensor_;
+  const StreamSummary& stream_;
+  bool is_imu_;
+  Inspection* inspection_;
+};
+
+}  // namespace
+
+void judgeStreams(Inspection* inspection) {
+  StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
+  for (const CameraInspection& camera : inspection->cameras) {
+    StreamJudge(camera.survey.name, camera.survey.stream, false, inspection).judge();
+  }
+  if (inspection->magnetometer)
+    StreamJudge("mag0", inspection->magnetometer->stream, false, inspection).judge();
+  for (const PlainSurvey& other : inspection->others) {
+    // Depth and range may well stay the same for a while.
+    StreamSummary stream = other.stream;
+    stream.longest_frozen_s = 0.0;
+    StreamJudge(other.sensor, stream, false, inspection).judge();
+  }
+}
+
+}  // namespace lodeline::findings

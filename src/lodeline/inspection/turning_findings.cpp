@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "lodeline/geometry/so3.h"
+#include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/signed_axes.h"
+
+namespace lodeline::findings {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+/// Least correlation at which the turns of camera and gyroscope are taken for the same.
+constexpr double kSame = 0.6;
+/// Least correlation at which their differences are taken for errors of the rig, not of the images.
+constexpr double kJudgeable = 0.93;
+constexpr double kHarmfulOffset_s = 0.008;
+constexpr double kHarmfulMisalignment_rad = 5.0 / kDegrees;
+constexpr double kHarmfulFocalError = 0.1;
+constexpr double kSignificant_sigmas = 4.0;
+
+class TurningJudge {
+ public:
+  TurningJudge(const CameraInspection& camera, const CameraCalibration& calibration, Inspection* inspection)
+      : name_(camera.survey.name),
+        calibration_(calibration),
+        turning_(*camera.turning),
+        inspection_(inspection) {}
+
+  void judge() {
+    if (turning_.correlation < kSame) {
+      add(Severity::Warning, 80.0, "camera_unrelated",
+          fmt::format("images and gyroscope do not turn together (correlation {:.2f}): recorded at other "
+                      "times, clocks "
+                      "more than 1 s apart, dead axes of the gyroscope, or images without texture",
+                      turning_.correlation));
+      return;
+    }
+    if (isGyroscopeDead()) return;
+    if (turning_.correlation < kJudgeable) {
+      add(Severity::Notice, 0.0, "turns_too_vague",
+          fmt::format("images and gyroscope agree too loosely (correlation {:.2f}) to judge extrinsics, "
+                      "focal length and "
+                      "time offset: little turning, or too much else that moves",
+                      turning_.correlation));
+      return;
+    }
+    judgeOffset();
+    if (judgeAxes()) return;
+    judgeFocalLength();
+  }
+
+ private:
+  void add(Severity severity, double harm, const std::string& kind, const std::string& message) {
+    inspection_->findings.push_back({severity, harm, name_, kind, message});
+  }
+
+  /// Relations of axes mean nothing then; the dead axis is named already, or here where noise hides it.
+  bool isGyroscopeDead() {
+    for (const bool dead : inspection_->imu.gyroscope.is_dead) {
+      if (dead) return true;
+    }
+    return false;
+  }
+
+  void judgeOffset() {
+    const double offset_s = turning_.time_offset_s;
+    const double sigma_s = turning_.time_offset_sigma_s;
+    if (std::abs(offset_s) < kHarmfulOffset_s || std::abs(offset_s) < kSignificant_sigmas * sigma_s) return;
+    add(Severity::Serious, 83.0, "camera_time_offset",
+        fmt::format("time offset: the images' stamps {} the gyroscope's by {:.0f} ms (+-{:.1f}); set "
+                    "timeshift_cam_imu to "
+                    "{:.4f} s or fix the clock",
+                    offset_s < 0.0 ? "lag behind" : "run ahead of", 1e3 * std::abs(offset_s), 1e3 * sigma_s,
+                    calibration_.time_offset_to_imu_s + offset_s));
+  }
+
+  /// True where the axes are so wrong that focal lengths cannot be judged.
+  bool judgeAxes() {
+    if (turning_.is_mirrored) {
+      add(Severity::Serious, 91.0, "axes_mirrored",
+          fmt::format("axes swapped: images and gyroscope turn as in a mirror; the axes of the IMU are "
+                      "exchanged or have a "
+                      "wrong sign (as if {}), or the images are mirrored",
+                      describeSignedAxes(nearestSignedAxes(turning_.axes))));
+      return true;
+    }
+    if (turning_.misalignment_rad < kHarmfulMisalignment_rad) return false;
+    const double angle_deg = kDegrees * turning_.misalignment_rad;
+    const Vec3 axis_C =
+        calibration_.body_from_camera.rotation.conjugate() * turning_.misalignment_B.normalized();
+    const Mat3 nearest = nearestSignedAxes(turning_.axes);
+    const bool is_whole = !nearest.isIdentity() && Quat(nearest).angularDistance(Quat(turning_.axes)) < 0.3;
+    const std::string where = fmt::format(
+        "extrinsics: the camera's rotation to the IMU is {:.0f} deg off what the calibration (T_BS) says, "
+        "about the "
+        "camera's ({:.2f}, {:.2f}, {:.2f}) axis",
+        angle_deg, axis_C.x(), axis_C.y(), axis_C.z());
+    if (is_whole && angle_deg > 150.0 && std::abs(axis_C.z()) > 0.9) {
+      add(Severity::Serious, 88.0, "images_upside_down",
+          "the images are upside down for this calibration: they are turned by 180 deg about the optical "
+          "axis (or the " +
+              where + ")");
+    } else if (is_whole) {
+      add(Severity::Serious, 88.0, "extrinsics_rotation",
+          fmt::format("{}: wrong T_BS, turned images, or the axes of the IMU swapped (as if {})", where,
+                      describeSignedAxes(nearest)));
+    } else {
+      add(Severity::Serious, 82.0, "extrinsics_rotation", where + "; calibrate camera and IMU together");
+    }
+    return angle_deg > 30.0;
+  }
+
+  void judgeFocalLength() {
+    const double error = turning_.focal_ratio - 1.0;
+    if (std::abs(error) < kHarmfulFocalError ||
+        std::abs(error) < kSignificant_sigmas * turning_.focal_ratio_sigma)
+      return;
+    add(Severity::Serious, 81.0, "intrinsics_focal",
+        fmt::format("intrinsics: the focal length is wrong by about {:.0f} %: pan and tilt look {:.2f} times "
+                    "as large as the "
+                    "gyroscope says; {:.0f} px would fit, not {:.0f} px",
+                    100.0 * std::abs(error), turning_.focal_ratio, calibration_.fx_px * turning_.focal_ratio,
+                    calibration_.fx_px));
+  }
+
+  std::string name_;
+  const CameraCalibration& calibration_;
+  const TurnComparison& turning_;
+  Inspection* inspection_;
+};
+
+}  // namespace
+
+void judgeTurning(Inspection* inspection) {
+  for (size_t i = 0; i < inspection->cameras.size(); ++i) {
+    if (!inspection->cameras[i].turning) continue;
+    TurningJudge(inspection->cameras[i], inspection->rig.cameras[i], inspection).judge();
+  }
+}
+
+}  // namespace lodeline::findings
