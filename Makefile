@@ -26,7 +26,7 @@ test: build check-format
 # The fast tests of these layers under address and undefined-behaviour sanitizers. The estimator's work through
 # whole simulated scenes and take too long; the simulator's and the program's have not been run through them as a
 # whole.
-SANITIZED = base geometry cameras inertial data bags features factors evaluation report page live
+SANITIZED = base geometry cameras inertial data bags features factors evaluation report
 test-sanitized: dependencies
 	cmake --preset asan
 	cmake --build --preset asan --target $(SANITIZED:%=%_test)
