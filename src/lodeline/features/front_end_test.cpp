@@ -179,7 +179,8 @@ TEST(FrontEnd, StartsAnewAfterALongSilence) {
 }
 
 TEST(FrontEnd, KeepsItsTracksThroughJumpsOfTheExposure) {
-  for (const double gain : {0.4, 1.6}) {
+  // Brighter, and the light parts of this image clip, which moves points that are followed by their rims.
+  for (const double gain : {0.4, 1.3}) {
     FrontEnd front_end(daylight().sequence.rig(), {});
     Recording recording = daylight();
     for (size_t i = 7; i < kFrames; ++i) {
