@@ -1,0 +1,99 @@
+#include "lodeline/cli/run_session.h"
+
+#include <filesystem>
+
+#include "lodeline/base/output_file.h"
+#include "lodeline/calibration/calibration_file.h"
+#include "lodeline/cli/process_usage.h"
+
+namespace lodeline {
+namespace {
+
+/// The source with the magnetometer's calibration in it, for all who are made from it.
+RecordedSource* calibrated(const std::string& file, RecordedSource* source) {
+  if (file.empty()) return source;
+  Rig rig = source->rig();
+  applyCalibration(readCalibrationFile(file), file, &rig);
+  source->setMagnetometer(*rig.magnetometer);
+  return source;
+}
+
+AttitudeFilterOptions attitudeOptions(const RunSettings& options) {
+  AttitudeFilterOptions attitude;
+  attitude.site_field_W = options.odometry.estimator.magnetometer.site_field_W;
+  return attitude;
+}
+
+RunDescription describe(const RunRequest& request, const RunSettings& options, const Rig& rig) {
+  RunDescription description;
+  description.version = LODELINE_VERSION;
+  description.data = request.data;
+  description.config = request.config;
+  description.overrides = request.overrides;
+  for (const CameraCalibration& camera : rig.cameras) description.cameras.push_back(camera.name);
+  description.camera_rate_hz = rig.cameras.front().rate_hz;
+  description.imu_rate_hz = rig.imu.rate_hz;
+  description.camera_axis_B = rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ();
+  description.magnetometer = rig.magnetometer;
+  if (rig.magnetometer) description.other_sensors.push_back("magnetometer");
+  if (rig.pressure) description.other_sensors.push_back("pressure");
+  if (rig.sonar) description.other_sensors.push_back("sonar");
+  description.observation_sigma_px = options.odometry.front_end.sigma_px;
+  return description;
+}
+
+void writeSettings(const std::filesystem::path& folder, const Settings& settings) {
+  std::ofstream config = openOutput(folder / "config.yaml");
+  settings.write(config);
+  closeOutput(folder / "config.yaml", &config);
+}
+
+}  // namespace
+
+RunSession::RunSession(const RunRequest& request, const Settings& settings, const RunSettings& options,
+                       RecordedSource* source, Diagnostics* diagnostics)
+    : folder_(request.output),
+      diagnostics_(diagnostics),
+      synchronizer_(calibrated(options.magnetometer_calibration, source), options.synchronizer, diagnostics),
+      odometry_(source->rig(), options.odometry, diagnostics),
+      attitude_(source->rig(), attitudeOptions(options), &unheard_),
+      summary_(describe(request, options, source->rig())) {
+  if (!folder_.empty()) {
+    createOutputFolder(folder_);
+    writeSettings(folder_, settings);
+    output_.emplace(folder_, source->rig(), RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
+  }
+  start_ = Clock::now();
+  start_processor_s_ = ProcessUsage::now().processor_s;
+}
+
+bool RunSession::fetch() {
+  fetched_ = synchronizer_.next();
+  return fetched_.has_value();
+}
+
+void RunSession::process() {
+  processed_ = std::move(*fetched_);
+  fetched_.reset();
+  const FrameEstimate estimate = odometry_.add(processed_);
+  const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
+  if (output_) output_->write(processed_, estimate, attitude, &odometry_);
+  summary_.add(estimate);
+  for (const cv::Mat& image : processed_.images) summary_.images += image.empty() ? 0 : 1;
+  summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+RunSummary RunSession::finish() {
+  if (output_) summary_.map_points = output_->finish(odometry_);
+  summary_.interrupted = fetched_.has_value();
+  summary_.front_end_s = odometry_.times().front_end_s;
+  summary_.estimator_s = odometry_.times().estimator_s;
+  const ProcessUsage usage = ProcessUsage::now();
+  summary_.process_s = usage.processor_s - start_processor_s_;
+  summary_.peak_memory_MB = usage.peak_memory_MB;
+  if (!folder_.empty())
+    writeOutput(std::filesystem::path(folder_) / "run.json", summary_.json(*diagnostics_));
+  return summary_;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/base/settings.h"
+#include "lodeline/cli/run_request.h"
+#include "lodeline/cli/run_settings.h"
+#include "lodeline/data/measurement_source.h"
+#include "lodeline/data/synchronizer.h"
+#include "lodeline/estimator/attitude_track.h"
+#include "lodeline/estimator/odometry.h"
+#include "lodeline/report/run_output.h"
+#include "lodeline/report/run_summary.h"
+
+namespace lodeline {
+
+/// The estimator's way through a source, packet by packet, with the folder of results (see README) that grows
+/// on the way:
+///
+///     while (session.fetch()) session.process();
+///     session.finish();
+class RunSession {
+ public:
+  /// Applies the magnetometer's calibration that `options` name to the source, makes the folder of results
+  /// and writes the settings to it; writes nothing where the request names no folder. `settings` are bound to
+  /// `options`; `source` and `diagnostics` must outlive the session. Throws InputError and UsageError.
+  RunSession(const RunRequest& request, const Settings& settings, const RunSettings& options,
+             RecordedSource* source, Diagnostics* diagnostics);
+
+  /// Waits for the next packet; false at the source's end.
+  bool fetch();
+  /// Takes the fetched packet through front end, estimator and files. Throws InputError.
+  void process();
+  /// Completes the files. A packet that was fetched but not processed says that the user ended the run.
+  RunSummary finish();
+
+  /// Of the packet processed last.
+  const FramePacket& packet() const { return processed_; }
+  const FrameEstimate& estimate() const { return summary_.last(); }
+  const RunSummary& summary() const { return summary_; }
+  const Odometry& odometry() const { return odometry_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string folder_;  ///< empty for none
+  Diagnostics* diagnostics_;
+  Synchronizer synchronizer_;
+  Odometry odometry_;
+  Diagnostics unheard_;  ///< what the filter finds wrong with readings, synchroniser and odometry report too
+  AttitudeTrack attitude_;
+  RunSummary summary_;
+  std::optional<RunOutput> output_;
+  std::optional<FramePacket> fetched_;
+  FramePacket processed_;
+  Clock::time_point start_;
+  double start_processor_s_ = 0.0;
+};
+
+}  // namespace lodeline
