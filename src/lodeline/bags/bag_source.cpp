@@ -2,23 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-#include <memory>
-
+#include "lodeline/bags/checked_reading.h"
 #include "lodeline/bags/image_messages.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/image_loader.h"
 #include "lodeline/data/stream_rate.h"
 
 namespace lodeline {
 namespace {
-
-bool isFinite(const ImuSample& s) {
-  return s.angular_velocity_B.allFinite() && s.specific_force_B.allFinite();
-}
-bool isFinite(const MagnetometerSample& s) { return s.field_M.allFinite(); }
-bool isFinite(const DepthSample& s) { return std::isfinite(s.depth_m); }
-bool isFinite(const std::vector<SonarSample>&) { return true; }  // parsing leaves odd echoes out
 
 RigFile readRig(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics) {
   if (!options.rig_files.empty()) return readRigFiles(options.rig_files, diagnostics);
@@ -47,20 +37,6 @@ void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
   if (!rig.sonar && !topicsFor(bag, "sonar0").empty()) rig.sonar.emplace();
 }
 
-/// Leaves only the cameras that are asked for.
-void selectCameras(const std::vector<int>& indices, const std::filesystem::path& bag, Rig* rig) {
-  if (indices.empty()) return;
-  std::vector<CameraCalibration> selected;
-  for (const int index : indices) {
-    if (index < 0 || index >= static_cast<int>(rig->cameras.size())) {
-      throw InputError(fmt::format("{}: camera {} was asked for, but the rig has {} cameras", bag.string(),
-                                   index, rig->cameras.size()));
-    }
-    selected.push_back(rig->cameras[static_cast<size_t>(index)]);
-  }
-  rig->cameras = std::move(selected);
-}
-
 TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
   TopicWish wish;
   wish.named = rig_file.topics;
@@ -71,16 +47,6 @@ TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
   if (rig_file.rig.pressure) wish.sensors.push_back("pressure0");
   if (rig_file.rig.sonar) wish.sensors.push_back("sonar0");
   return wish;
-}
-
-StoredImage storedImage(bool is_compressed, std::span<const uint8_t> message, const std::string& name) {
-  return is_compressed ? messages::compressedImageFile(message, name) : messages::imagePixels(message, name);
-}
-
-LoadedImage greyImage(bool is_compressed, std::span<const uint8_t> message, const std::string& name) {
-  const StoredImage stored = storedImage(is_compressed, message, name);
-  if (!stored.problem.empty()) return {cv::Mat(), stored.problem};
-  return is_compressed ? decodeGreyImage(stored.file, name) : LoadedImage{greyFrom(stored.pixels), ""};
 }
 
 }  // namespace
@@ -127,7 +93,7 @@ void BagSource::settleCameras(const BagOptions& options) {
                     "images",
                     bag_.file().string()));
   }
-  selectCameras(options.camera_indices, bag_.file(), &rig_);
+  selectCameras(options.camera_indices, bag_.file().string(), &rig_);
   for (const CameraCalibration& camera : rig_.cameras) cameras_.push_back(cursorOf(camera.name));
 }
 
@@ -173,13 +139,8 @@ template <typename Parse>
 auto BagSource::nextReading(Cursor* cursor, const Parse& parse)
     -> std::optional<decltype(parse(std::span<const uint8_t>()))> {
   while (const std::optional<wire::Bytes> message = nextMessage(cursor)) {
-    std::string problem = "holds no finite number where one is due";
-    try {
-      auto reading = parse(std::span<const uint8_t>(*message));
-      if (isFinite(reading)) return reading;
-    } catch (const wire::Reader::CutOff& error) {
-      problem = error.what();
-    }
+    std::string problem;
+    if (auto reading = messages::checkedReading(*message, parse, &problem)) return reading;
     diagnostics_->report(
         Severity::Warning, "bag_message",
         fmt::format("{} {}: the message received at {} ns: {}; passed over", bag_.file().string(),
@@ -195,13 +156,11 @@ std::optional<PendingImage> BagSource::nextImage(size_t camera) {
   Cursor& cursor = cameras_[camera];
   std::optional<wire::Bytes> bytes = nextMessage(&cursor);
   if (!bytes) return std::nullopt;
-  const auto message = std::make_shared<const wire::Bytes>(std::move(*bytes));
-  const Time stamp = messages::stampOf(*message);
-  const std::string name = fmt::format("{} {} at {} ns", bag_.file().string(), cursor.topic->connection.topic,
-                                       stamp.nanoseconds());
-  const bool is_compressed = cursor.topic->connection.type == messages::kCompressedImage.name;
-  return PendingImage{stamp, name, [=] { return greyImage(is_compressed, *message, name); },
-                      [=] { return storedImage(is_compressed, *message, name); }};
+  const messages::ImageForm form = cursor.topic->connection.type == messages::kCompressedImage.name
+                                       ? messages::ImageForm::Compressed
+                                       : messages::ImageForm::Raw;
+  return messages::pendingImage(form, std::move(*bytes),
+                                fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic));
 }
 
 std::optional<MagnetometerSample> BagSource::nextMagnetometer() {

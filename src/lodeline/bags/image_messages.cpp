@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "lodeline/bags/messages.h"
 #include "lodeline/data/image_loader.h"
 
 namespace lodeline::messages {
@@ -111,7 +112,26 @@ std::string whyUnusable(const Parsed& image, const Encoding* encoding) {
                      image.width, image.height, image.encoding, image.step);
 }
 
+StoredImage storedImage(ImageForm form, std::span<const uint8_t> message, const std::string& name) {
+  return form == ImageForm::Compressed ? compressedImageFile(message, name) : imagePixels(message, name);
+}
+
+LoadedImage greyImage(ImageForm form, std::span<const uint8_t> message, const std::string& name) {
+  const StoredImage stored = storedImage(form, message, name);
+  if (!stored.problem.empty()) return {cv::Mat(), stored.problem};
+  return form == ImageForm::Compressed ? decodeGreyImage(stored.file, name)
+                                       : LoadedImage{greyFrom(stored.pixels), ""};
+}
+
 }  // namespace
+
+PendingImage pendingImage(ImageForm form, wire::Bytes bytes, const std::string& where) {
+  const auto message = std::make_shared<const wire::Bytes>(std::move(bytes));
+  const Time stamp = stampOf(*message);
+  const std::string name = fmt::format("{} at {} ns", where, stamp.nanoseconds());
+  return {stamp, name, [=] { return greyImage(form, *message, name); },
+          [=] { return storedImage(form, *message, name); }};
+}
 
 StoredImage imagePixels(std::span<const uint8_t> message, const std::string& name) {
   StoredImage result;

@@ -19,6 +19,12 @@ StoredImage imagePixels(std::span<const uint8_t> message, const std::string& nam
 /// The bytes of the image file in a CompressedImage.
 StoredImage compressedImageFile(std::span<const uint8_t> message, const std::string& name);
 
+enum class ImageForm { Raw, Compressed };
+
+/// An Image or CompressedImage that is decoded on demand. `where` it came from: for messages. Throws
+/// wire::Reader::CutOff where the message ends before its stamp does.
+PendingImage pendingImage(ImageForm form, wire::Bytes message, const std::string& where);
+
 /// An Image from 8 or 16-bit grey, BGR or BGRA pixels.
 wire::Bytes image(Time stamp, const std::string& frame, const cv::Mat& pixels, uint32_t sequence);
 /// `file`: bytes of a JPEG, PNG or other image file.

@@ -55,6 +55,14 @@ bool isWithin(float range, float least, float greatest) {
 
 }  // namespace
 
+std::vector<Type> typesOf(const std::string& sensor) {
+  if (sensor == "imu0") return {messages::kImu};
+  if (sensor == "mag0") return {messages::kMagneticField};
+  if (sensor == "pressure0") return {messages::kFluidPressure};
+  if (sensor == "sonar0") return {messages::kLaserScan, messages::kRange};
+  return {messages::kImage, messages::kCompressedImage};
+}
+
 Time stampOf(std::span<const uint8_t> message) {
   wire::Reader reader(message);
   return takeHeader(&reader);

@@ -30,6 +30,9 @@ inline constexpr Type kImage = {"sensor_msgs/Image", "060021388200f6f0f447d0fcd9
 inline constexpr Type kCompressedImage = {"sensor_msgs/CompressedImage", "8f7a12909da2c9d3332d540a0977563f"};
 inline constexpr Type kPoseStamped = {"geometry_msgs/PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5"};
 
+/// Those that a sensor may publish: imu0, mag0, pressure0, sonar0; any other one is a camera.
+std::vector<Type> typesOf(const std::string& sensor);
+
 /// The stamp that every one of these begins with.
 Time stampOf(std::span<const uint8_t> message);
 

@@ -11,14 +11,7 @@ namespace lodeline {
 namespace {
 
 using messages::Type;
-
-std::vector<Type> typesOf(const std::string& sensor) {
-  if (sensor == "imu0") return {messages::kImu};
-  if (sensor == "mag0") return {messages::kMagneticField};
-  if (sensor == "pressure0") return {messages::kFluidPressure};
-  if (sensor == "sonar0") return {messages::kLaserScan, messages::kRange};
-  return {messages::kImage, messages::kCompressedImage};
-}
+using messages::typesOf;
 
 bool isOf(const BagTopic& topic, const std::vector<Type>& types) {
   return std::any_of(types.begin(), types.end(), [&](const Type& type) {

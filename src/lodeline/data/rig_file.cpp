@@ -185,4 +185,17 @@ RigFile readRigFiles(const std::vector<std::filesystem::path>& files, Diagnostic
   return result;
 }
 
+void selectCameras(const std::vector<int>& indices, const std::string& name, Rig* rig) {
+  if (indices.empty()) return;
+  std::vector<CameraCalibration> selected;
+  for (const int index : indices) {
+    if (index < 0 || index >= static_cast<int>(rig->cameras.size())) {
+      throw InputError(fmt::format("{}: camera {} was asked for, but the rig has {} cameras", name, index,
+                                   rig->cameras.size()));
+    }
+    selected.push_back(rig->cameras[static_cast<size_t>(index)]);
+  }
+  rig->cameras = std::move(selected);
+}
+
 }  // namespace lodeline

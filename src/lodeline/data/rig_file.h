@@ -52,4 +52,8 @@ struct RigFile {
 /// described twice, and for what is missing or wrong.
 RigFile readRigFiles(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics);
 
+/// Leaves only the cameras that are asked for, in that order; all where `indices` is empty. Throws
+/// InputError, beginning with `name`, for a camera that the rig does not have.
+void selectCameras(const std::vector<int>& indices, const std::string& name, Rig* rig);
+
 }  // namespace lodeline
