@@ -44,10 +44,10 @@ package: build
 	cd build/release && cpack
 
 format:
-	clang-format-14 -i $$(find src examples -name '*.h' -o -name '*.cpp')
+	clang-format-14 -i $$(find src examples ros -name '*.h' -o -name '*.cpp')
 
 check-format:
-	clang-format-14 --dry-run --Werror $$(find src examples -name '*.h' -o -name '*.cpp')
+	clang-format-14 --dry-run --Werror $$(find src examples ros -name '*.h' -o -name '*.cpp')
 
 clean:
 	rm -rf build demo

@@ -10,6 +10,8 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libgeographiclib-dev libnanoflann-dev libembree-dev libtbb-dev
   libbz2-dev liblz4-dev librosbag-storage-dev libsensor-msgs-dev  # ROS 1 bags
+  libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
+  python3-roslaunch  # roscore, for the node's test
   python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program, for the tests
   gnuplot-nox
   libcpp-httplib-dev

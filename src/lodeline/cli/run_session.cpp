@@ -85,6 +85,7 @@ void RunSession::process() {
 
 RunSummary RunSession::finish() {
   if (output_) summary_.map_points = output_->finish(odometry_);
+  output_.reset();  // closes what is read next
   summary_.interrupted = fetched_.has_value();
   summary_.front_end_s = odometry_.times().front_end_s;
   summary_.estimator_s = odometry_.times().estimator_s;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lodeline/estimator/estimator.h"
+#include "lodeline_ros/message_types.h"
+
+/// What the estimator knows, in the messages of ROS 1 (packages geometry_msgs, nav_msgs, sensor_msgs 1.13).
+namespace lodeline {
+
+/// Names of the frames in messages: the world (east, north, up) and the body (the IMU).
+struct FrameNames {
+  std::string world = "world";
+  std::string body = "body";
+};
+
+/// How the body turns at the time of an estimate, by the gyroscope.
+struct Turning {
+  Vec3 reading_B = Vec3::Zero();  ///< rad/s, biased
+  double sigma_rad_per_s = 0.0;   ///< white noise of one reading, per axis
+};
+
+/// ROS counts whole seconds since its epoch in 32 bits without sign; throws std::runtime_error beyond them.
+ros::Time rosTime(Time time);
+
+/// Pose of the body in the world with covariance of [x y z, rotation about the world's x y z], m and rad; the
+/// velocities in body axes, as the message asks for, with covariance of [v, omega]. The angular velocity is
+/// the reading freed from the estimated bias. Covariances are relative to the first pose's position and
+/// heading, as in FrameEstimate.
+message::Odometry odometryMessage(const FrameEstimate& estimate, const Turning& turning,
+                                  const FrameNames& names);
+
+message::PoseStamped poseMessage(const FrameEstimate& estimate, const FrameNames& names);
+message::TransformStamped transformMessage(const FrameEstimate& estimate, const FrameNames& names);
+
+/// Points in the world, m, as x, y, z (FLOAT32) and `sightings` (UINT32), 16 bytes a point.
+message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time time, const FrameNames& names);
+
+}  // namespace lodeline
