@@ -26,6 +26,7 @@ void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
   Rig& rig = rig_file->rig;
   rig_file->has_imu = true;
   const size_t cameras = imageTopics(bag).size();
+  if (cameras == 0) rig.cameras.clear();
   while (rig.cameras.size() < cameras) {
     CameraCalibration camera;
     camera.name = fmt::format("cam{}", rig.cameras.size());

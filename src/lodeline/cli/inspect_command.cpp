@@ -10,6 +10,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/open_recording.h"
+#include "lodeline/data/plain_source.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 
@@ -33,13 +34,23 @@ std::optional<Vec3> siteField(const InspectArguments& arguments) {
   return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
 }
 
+/// Also recordings that nothing could be estimated from.
+std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
+                                                   Diagnostics* diagnostics) {
+  if (!isBag(arguments.data) && std::filesystem::is_regular_file(arguments.data)) {
+    return std::make_unique<PlainSource>(arguments.data, diagnostics);
+  }
+  EurocOptions options;
+  options.needs_cameras = options.needs_imu = options.needs_calibration = false;
+  return openRecording(arguments.data, options, arguments.bag, diagnostics);
+}
+
 void inspectRecording(const InspectArguments& arguments) {
   cv::setNumThreads(1);
   InspectionOptions options;
   options.site_field_W = siteField(arguments);
-  const Inspection inspection = inspect(
-      [&](Diagnostics* diagnostics) { return openRecording(arguments.data, {}, arguments.bag, diagnostics); },
-      options);
+  const Inspection inspection =
+      inspect([&](Diagnostics* diagnostics) { return openWhatThereIs(arguments, diagnostics); }, options);
   if (!arguments.json.empty()) writeOutput(arguments.json, inspectionJson(inspection).dump(2) + "\n");
   fmt::print("{}", inspectionText(inspection));
 }
@@ -50,7 +61,9 @@ void addInspectCommand(CLI::App& program) {
   const auto arguments = std::make_shared<InspectArguments>();
   CLI::App* command =
       program.add_subcommand("inspect", "Tell what is wrong with a recording, the most harmful first");
-  command->add_option("DATA", arguments->data, "folder with mav0 (EuRoC ASL layout), or a ROS 1 bag")
+  command
+      ->add_option("DATA", arguments->data,
+                   "folder with mav0 (EuRoC ASL layout), a ROS 1 bag, or a CSV file of IMU readings")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("--json", arguments->json, "write all figures to this file");

@@ -57,6 +57,14 @@ std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data,
   bag_options.topics = topicsOf(bag_arguments);
   bag_options.camera_indices = options.camera_indices;
   bag_options.with_cameras = options.with_cameras;
+  bag_options.needs_calibration = options.needs_calibration;
+  if (!options.needs_calibration && bag_options.rig_files.empty() &&
+      !std::filesystem::exists(rigFileBeside(data))) {
+    diagnostics->report(Severity::Warning, "bag_uncalibrated",
+                        fmt::format("{}: no rig file (--rig) and none beside the bag ({}); sensors are taken "
+                                    "as they are, in body axes",
+                                    data.string(), rigFileBeside(data).string()));
+  }
   return std::make_unique<BagSource>(data, bag_options, diagnostics);
 }
 

@@ -26,24 +26,24 @@ std::filesystem::path findMav0(const std::filesystem::path& data) {
                   data.string()));
 }
 
-std::vector<int> findCameras(const EurocLayout& layout, const std::vector<int>& asked_for) {
+std::vector<int> findCameras(const EurocLayout& layout, const EurocOptions& options) {
   std::vector<int> present;
   for (int i = 0; i < kMostCameras; ++i) {
     if (std::filesystem::exists(layout.csv(fmt::format("cam{}", i)))) present.push_back(i);
   }
-  for (const int index : asked_for) {
+  for (const int index : options.camera_indices) {
     if (std::find(present.begin(), present.end(), index) != present.end()) continue;
     throw InputError(fmt::format("{}: missing, but camera {} was asked for; the recording has cameras [{}]",
                                  layout.csv(fmt::format("cam{}", index)).string(), index,
                                  fmt::join(present, ", ")));
   }
-  if (present.empty()) {
+  if (present.empty() && options.needs_cameras) {
     throw InputError(
         fmt::format("{}: missing, and so is every other camera; a trajectory cannot be estimated "
                     "without images",
                     layout.csv("cam0").string()));
   }
-  return asked_for.empty() ? present : asked_for;
+  return options.camera_indices.empty() ? present : options.camera_indices;
 }
 
 }  // namespace
@@ -51,12 +51,14 @@ std::vector<int> findCameras(const EurocLayout& layout, const std::vector<int>& 
 EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options) {
   EurocLayout layout;
   layout.mav0 = findMav0(data);
-  if (options.with_cameras) layout.camera_indices = findCameras(layout, options.camera_indices);
+  if (options.with_cameras) layout.camera_indices = findCameras(layout, options);
+  layout.needs_cameras = options.needs_cameras;
+  layout.needs_calibration = options.needs_calibration;
   layout.has_imu = std::filesystem::exists(layout.csv("imu0"));
   if (options.needs_imu && !layout.has_imu) {
     throw InputError(fmt::format("{}: missing; inertial readings are needed", layout.csv("imu0").string()));
   }
-  if (!options.with_cameras && !layout.has_imu && !std::filesystem::exists(layout.csv("mag0"))) {
+  if (layout.camera_indices.empty() && !layout.has_imu && !std::filesystem::exists(layout.csv("mag0"))) {
     throw InputError(fmt::format("{}: holds neither imu0/data.csv nor mag0/data.csv", layout.mav0.string()));
   }
   return layout;

@@ -38,6 +38,16 @@ std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_cou
   return std::move(start.stamps);
 }
 
+/// Whether a sensor is to do with the default calibration, as it has none; reports it.
+bool isUncalibrated(const EurocLayout& layout, const std::string& name, Diagnostics* diagnostics) {
+  const std::filesystem::path file = layout.sensor(name) / "sensor.yaml";
+  if (layout.needs_calibration || std::filesystem::exists(file)) return false;
+  diagnostics->report(
+      Severity::Warning, name + "_uncalibrated",
+      fmt::format("{}: calibration file missing; {} is taken as it is, in body axes", file.string(), name));
+  return true;
+}
+
 std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const KalibrFiles& kalibr,
                                            const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
   std::vector<CameraCalibration> chain;
@@ -59,6 +69,9 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
         camera.rate_hz = extras.rate_hz;
         camera.mask_file = extras.mask_file;
       }
+    } else if (isUncalibrated(layout, name, diagnostics)) {
+      camera.name = name;
+      camera.rate_hz = 0.0;
     } else {
       camera = readEurocCamera(yaml, name, diagnostics);
       camera.body_from_camera = body_from_euroc_body * camera.body_from_camera;
@@ -88,7 +101,12 @@ std::optional<Calibration> readOptional(const EurocLayout& layout, const char* n
                         start.why_empty + "; carrying on without this sensor");
     return std::nullopt;
   }
-  Calibration calibration = read(layout.sensor(name) / "sensor.yaml", diagnostics);
+  Calibration calibration;
+  if (isUncalibrated(layout, name, diagnostics)) {
+    calibration.rate_hz = 0.0;
+  } else {
+    calibration = read(layout.sensor(name) / "sensor.yaml", diagnostics);
+  }
   calibration.*body_from_sensor = body_from_euroc_body * (calibration.*body_from_sensor);
   calibration.rate_hz = settleRate(csv.string(), start.stamps, calibration.rate_hz, diagnostics);
   if (!(calibration.rate_hz > 0.0)) calibration.rate_hz = Calibration().rate_hz;
@@ -99,7 +117,11 @@ EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnosti
   if (!layout.has_imu) return {};
   const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
   EurocImu imu;
-  if (!kalibr.imu || std::filesystem::exists(yaml)) imu = readEurocImu(yaml, diagnostics);
+  if (!kalibr.imu && isUncalibrated(layout, "imu0", diagnostics)) {
+    imu.calibration.rate_hz = 0.0;
+  } else if (!kalibr.imu || std::filesystem::exists(yaml)) {
+    imu = readEurocImu(yaml, diagnostics);
+  }
   if (kalibr.imu) {
     const double euroc_rate_hz = imu.calibration.rate_hz;
     imu.calibration = readKalibrImu(*kalibr.imu, diagnostics);

@@ -15,8 +15,13 @@ struct EurocOptions {
   std::vector<int> camera_indices;
   /// False leaves cameras out, whether the recording has any or not.
   bool with_cameras = true;
+  /// False uses the cameras that there are, be it none, or the bare lists of those whose images are missing.
+  bool needs_cameras = true;
   /// False for a recording that may have no `imu0`; EuRoC's body is the body frame then.
   bool needs_imu = true;
+  /// False gives sensors without a calibration file the default one, with a warning; a camera's has no size
+  /// then and cannot project.
+  bool needs_calibration = true;
 };
 
 /// Where the parts of an EuRoC ASL recording lie.
@@ -24,6 +29,7 @@ struct EurocLayout {
   std::filesystem::path mav0;
   std::vector<int> camera_indices;  ///< N of the camN used, in the order of Rig::cameras
   bool has_imu = false;
+  bool needs_cameras = true, needs_calibration = true;  ///< as in EurocOptions
 
   std::filesystem::path sensor(const std::string& name) const { return mav0 / name; }
   std::filesystem::path csv(const std::string& name) const { return mav0 / name / "data.csv"; }
@@ -31,7 +37,7 @@ struct EurocLayout {
 
 /// Finds `mav0` (given itself, or the folder that contains it) and what is in it. Throws InputError where
 /// there is no recording, or nothing of what `options` ask for: no camera, not one of those named, no IMU,
-/// or, with neither needed, no IMU and no magnetometer.
+/// or, with neither needed, no camera, IMU or magnetometer.
 EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options);
 
 /// Reads the calibration of every sensor that has a `data.csv`: Kalibr's files beside or in mav0 before the

@@ -27,7 +27,7 @@ EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
   if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
-    if (!std::filesystem::is_directory(images)) {
+    if (layout_.needs_cameras && !std::filesystem::is_directory(images)) {
       throw InputError(
           fmt::format("{}: folder of images missing; unpack the recording completely", images.string()));
     }

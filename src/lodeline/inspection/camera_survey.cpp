@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
-#include <opencv2/video/tracking.hpp>
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/features/corner_detector.h"
 #include "lodeline/features/mask.h"
+#include "lodeline/inspection/camera_words.h"
+#include "lodeline/inspection/point_following.h"
 #include "lodeline/inspection/visual_rotation.h"
 
 namespace lodeline {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr double kImageGapPeriods = 1.5;
 constexpr int kPyramidLevels = 4;
-constexpr double kForwardBackward_px = 0.7;
 
 bool isWithin(Time time, const std::vector<TimeSpan>& spans) {
   return std::any_of(spans.begin(), spans.end(),
@@ -33,7 +33,8 @@ class Survey {
   Survey(const CameraCalibration& calibration, const CameraSurveyOptions& options, CameraSurvey* result)
       : options_(options),
         offset_(Duration::fromSeconds(calibration.time_offset_to_imu_s)),
-        camera_(makeCamera(calibration)),
+        calibration_(calibration),
+        camera_(isCalibrated(calibration) ? makeCamera(calibration) : nullptr),
         mask_(loadMask(calibration)),
         detector_(CornerDetectorOptions()),
         result_(result) {}
@@ -64,8 +65,8 @@ class Survey {
 
  private:
   bool hasRightSize(const cv::Mat& image) {
-    const CameraCalibration& calibration = camera_->calibration();
-    if (image.cols == calibration.width_px && image.rows == calibration.height_px) return true;
+    if (!camera_) return true;
+    if (image.cols == calibration_.width_px && image.rows == calibration_.height_px) return true;
     if (result_->other_size++ == 0) {
       result_->other_width_px = image.cols;
       result_->other_height_px = image.rows;
@@ -74,6 +75,7 @@ class Survey {
   }
 
   void compare(const Followed& current, FrameSurvey* frame) {
+    if (previous_->image.size() != current.image.size()) return;
     ++result_->compared;
     if (cv::norm(previous_->image, current.image, cv::NORM_INF) == 0.0) {
       ++result_->identical;
@@ -82,40 +84,27 @@ class Survey {
     constexpr double kLongestStep_s = 0.3;
     const double step_s = (current.time - previous_->time).seconds();
     if (previous_->corners.empty() || !(step_s > 0.0) || step_s > kLongestStep_s) return;
+    const std::vector<PointPair> points = followPoints(previous_->image, current.image, previous_->corners);
+    frame->followed = static_cast<int>(points.size());
+    if (!camera_) return;
     std::vector<Vec3> before, after;
-    frame->followed = followCorners(current, &before, &after);
+    for (const PointPair& point : points) {
+      const std::optional<Vec3> ray_before = camera_->unproject(point.first);
+      const std::optional<Vec3> ray_after = camera_->unproject(point.second);
+      if (!ray_before || !ray_after) continue;
+      before.push_back(*ray_before);
+      after.push_back(*ray_after);
+    }
     const std::optional<VisualRotation> rotation = visualRotation(before, after);
     if (!rotation) return;
     result_->turns.push_back(
         {previous_->time + offset_, current.time + offset_, Vec3(rotation->rotation_C / step_s)});
   }
 
-  /// Rays of the corners that are found in the current image and, from there, in the previous one again.
-  int followCorners(const Followed& current, std::vector<Vec3>* before, std::vector<Vec3>* after) const {
-    std::vector<cv::Point2f> forward, back;
-    std::vector<uint8_t> found, found_back;
-    const cv::Size window(21, 21);
-    const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.01);
-    constexpr double kLeastEigenvalue = 1e-6;
-    cv::calcOpticalFlowPyrLK(previous_->image, current.image, previous_->corners, forward, found,
-                             cv::noArray(), window, kPyramidLevels, enough, 0, kLeastEigenvalue);
-    cv::calcOpticalFlowPyrLK(current.image, previous_->image, forward, back, found_back, cv::noArray(),
-                             window, kPyramidLevels, enough, 0, kLeastEigenvalue);
-    for (size_t i = 0; i < forward.size(); ++i) {
-      if (!found[i] || !found_back[i] || cv::norm(back[i] - previous_->corners[i]) > kForwardBackward_px)
-        continue;
-      const auto ray_before = camera_->unproject(Vec2(previous_->corners[i].x, previous_->corners[i].y));
-      const auto ray_after = camera_->unproject(Vec2(forward[i].x, forward[i].y));
-      if (!ray_before || !ray_after) continue;
-      before->push_back(*ray_before);
-      after->push_back(*ray_after);
-    }
-    return static_cast<int>(before->size());
-  }
-
   CameraSurveyOptions options_;
   Duration offset_;
-  std::shared_ptr<const Camera> camera_;
+  const CameraCalibration& calibration_;
+  std::shared_ptr<const Camera> camera_;  ///< none where the camera is not calibrated
   cv::Mat mask_;
   CornerDetector detector_;
   CameraSurvey* result_;

@@ -34,6 +34,8 @@ std::optional<double> widthAngle_deg(const CameraCalibration& calibration) {
 
 }  // namespace
 
+bool isCalibrated(const CameraCalibration& camera) { return camera.width_px > 0; }
+
 std::string describeAxes(const CameraCalibration& camera) {
   const Mat3 rotation = camera.body_from_camera.rotation.toRotationMatrix();
   return fmt::format("looks along the body's {}; the top of its image points along {}, its right along {}",
@@ -58,6 +60,7 @@ std::string describeGravity(const CameraCalibration& camera, const Vec3& up_B) {
 }
 
 std::string oddIntrinsics(const CameraCalibration& camera) {
+  if (!isCalibrated(camera)) return {};
   const double off_x = std::abs(camera.cx_px - 0.5 * camera.width_px) / camera.width_px;
   const double off_y = std::abs(camera.cy_px - 0.5 * camera.height_px) / camera.height_px;
   if (off_x > 0.2 || off_y > 0.2) {

@@ -6,6 +6,9 @@
 
 namespace lodeline {
 
+/// Whether it has what projecting takes; a camera without a calibration file has not.
+bool isCalibrated(const CameraCalibration& camera);
+
 /// Where a camera looks, in words: "looks along the body's +x; the top of its image points along +z".
 std::string describeAxes(const CameraCalibration& camera);
 

@@ -8,6 +8,7 @@ namespace lodeline::findings {
 void judgeStreams(Inspection* inspection);
 void judgeImu(Inspection* inspection);
 void judgeImages(Inspection* inspection);
+void judgeExtrinsics(Inspection* inspection);
 void judgeTurning(Inspection* inspection);
 void judgeMagnetometer(Inspection* inspection);
 

@@ -90,9 +90,24 @@ void judgeIntrinsics(const CameraSurvey& camera, Inspection* inspection) {
   }
 }
 
+/// A rig may be built so; no image tells which way is up.
+void judgeUpright(Inspection* inspection) {
+  if (inspection->imu.samples.empty() || inspection->cameras.empty()) return;
+  const CameraCalibration& calibration = inspection->rig.cameras.front();
+  if (!isCalibrated(calibration)) return;
+  const Vec3 down_C = calibration.body_from_camera.rotation.conjugate() * -inspection->imu.up_B;
+  constexpr double kUpsideDown = -0.8;
+  if (down_C.y() > kUpsideDown) return;
+  add(inspection->cameras.front().survey, Severity::Notice, 1.0, "upside_down",
+      "gravity points to the top of the images: unless the camera is mounted upside down, T_BS is wrong or "
+      "the accelerometer has the wrong sign (at rest it must read +9.8 m/s^2 upwards)",
+      inspection);
+}
+
 }  // namespace
 
 void judgeImages(Inspection* inspection) {
+  judgeUpright(inspection);
   for (const CameraInspection& camera : inspection->cameras) {
     judgeFiles(camera.survey, inspection);
     judgeIntrinsics(camera.survey, inspection);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/findings.h"
 
 namespace lodeline {
@@ -83,6 +84,11 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
   for (size_t i = 0; i < images.size(); ++i) {
     inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, options.images), {}});
   }
+  if (images.size() > 1 && isCalibrated(inspection->rig.cameras[0]) &&
+      isCalibrated(inspection->rig.cameras[1])) {
+    Diagnostics also_reported_before;
+    inspection->stereo = surveyStereo(open(&also_reported_before).get(), images.front());
+  }
   compareCameras(inspection);
   settleRateUnit(inspection);
   if (inspection->rate_to_SI != 1.0) compareCameras(inspection);
@@ -123,6 +129,7 @@ Inspection inspect(const SourceFactory& open, const InspectionOptions& options) 
   }
   findings::judgeStreams(&inspection);
   findings::judgeImages(&inspection);
+  findings::judgeExtrinsics(&inspection);
   findings::judgeTurning(&inspection);
   findings::judgeMagnetometer(&inspection);
   takeReaderFindings(diagnostics, &inspection);

@@ -11,6 +11,7 @@
 #include "lodeline/inspection/camera_survey.h"
 #include "lodeline/inspection/imu_survey.h"
 #include "lodeline/inspection/magnetometer_survey.h"
+#include "lodeline/inspection/stereo_survey.h"
 
 namespace lodeline {
 
@@ -43,6 +44,7 @@ struct Inspection {
   ImuSurvey imu;
   double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be told; pi/180 where it is in deg/s
   std::vector<CameraInspection> cameras;
+  std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
   std::vector<PlainSurvey> others;
   std::optional<Vec3> site_field_W;         ///< east, north, up, T: where and when it was recorded, if told

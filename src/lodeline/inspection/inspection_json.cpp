@@ -65,8 +65,12 @@ Json framesJson(const CameraSurvey& survey) {
 Json cameraJson(const Inspection& inspection, size_t index) {
   const CameraInspection& camera = inspection.cameras[index];
   Json json = streamJson(inspection, camera.survey.name, camera.survey.stream);
-  json["axes"] = describeAxes(inspection.rig.cameras[index]);
-  json["gravity"] = describeGravity(inspection.rig.cameras[index], inspection.imu.up_B);
+  if (isCalibrated(inspection.rig.cameras[index])) {
+    json["axes"] = describeAxes(inspection.rig.cameras[index]);
+    if (!inspection.imu.samples.empty()) {
+      json["gravity"] = describeGravity(inspection.rig.cameras[index], inspection.imu.up_B);
+    }
+  }
   json["unreadable"] = camera.survey.unreadable;
   json["identical"] = camera.survey.identical;
   if (camera.turning) {
@@ -82,6 +86,12 @@ Json cameraJson(const Inspection& inspection, size_t index) {
                        {"gyroscope_scale", turning.gyroscope_scale},
                        {"focal_ratio", turning.focal_ratio},
                        {"explained", turning.explained}};
+  }
+  if (index == 1 && inspection.stereo) {
+    json["stereo"] = {{"baseline_m", inspection.stereo->baseline_m},
+                      {"images", inspection.stereo->images},
+                      {"points", inspection.stereo->points},
+                      {"agreement", inspection.stereo->agreement}};
   }
   json["frames"] = framesJson(camera.survey);
   return json;
@@ -113,7 +123,7 @@ nlohmann::ordered_json inspectionJson(const Inspection& inspection) {
                                 {"message", finding.message}});
   }
   json["sensors"] = Json::array();
-  json["sensors"].push_back(imuJson(inspection));
+  if (!inspection.imu.samples.empty()) json["sensors"].push_back(imuJson(inspection));
   for (size_t i = 0; i < inspection.cameras.size(); ++i) json["sensors"].push_back(cameraJson(inspection, i));
   if (inspection.magnetometer) json["sensors"].push_back(magnetometerJson(inspection));
   for (const PlainSurvey& other : inspection.others) {

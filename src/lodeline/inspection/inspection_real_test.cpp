@@ -15,6 +15,7 @@
 namespace lodeline {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Lines = std::vector<std::string>;
 using Numbers = std::vector<double>;
@@ -91,13 +92,29 @@ class InspectionTest : public testing::Test {
     });
   }
 
+  void addCamera1() const {
+    std::filesystem::create_directories(path("cam1"));
+    const std::filesystem::path recorded = *testData(kMh01Recording) / "mav0" / "cam1";
+    for (const char* file : {"data.csv", "sensor.yaml"}) {
+      std::filesystem::copy_file(recorded / file, path("cam1") / file);
+    }
+    std::filesystem::create_directory_symlink(recorded / "data", path("cam1") / "data");
+  }
+
   /// Turns the camera of the calibration.
   void turnCamera(double angle_deg, const Vec3& axis_C) const {
+    changeCamera(0, [&](const Rigid3& pose) {
+      const Quat turn(Eigen::AngleAxisd(angle_deg * M_PI / 180.0, axis_C));
+      return Rigid3(pose.rotation * turn, pose.translation);
+    });
+  }
+
+  /// Changes T_BS.
+  void changeCamera(size_t index, const std::function<Rigid3(const Rigid3&)>& change) const {
     Diagnostics diagnostics;
     const EurocSource source(folder_, {}, &diagnostics);
-    Rigid3 pose = source.rig().cameras[0].body_from_camera;
-    pose.rotation = pose.rotation * Quat(Eigen::AngleAxisd(angle_deg * M_PI / 180.0, axis_C));
-    edit(path("cam0") / "sensor.yaml", [&](Lines* lines) {
+    const Rigid3 pose = change(source.rig().cameras[index].body_from_camera);
+    edit(path(fmt::format("cam{}", index)) / "sensor.yaml", [&](Lines* lines) {
       bool inside = false;
       std::erase_if(*lines, [&](const std::string& line) {
         if (!line.empty() && line[0] != ' ') inside = line.starts_with("T_BS");
@@ -111,9 +128,11 @@ class InspectionTest : public testing::Test {
   }
 
   std::string inspected() const {
+    EurocOptions whatever;
+    whatever.needs_cameras = whatever.needs_imu = whatever.needs_calibration = false;
     const Inspection inspection = inspect(
         [&](Diagnostics* diagnostics) {
-          return std::make_unique<EurocSource>(folder_, EurocOptions(), diagnostics);
+          return std::make_unique<EurocSource>(folder_, whatever, diagnostics);
         },
         InspectionOptions());
     return inspectionText(inspection);
@@ -216,6 +235,66 @@ TEST_F(InspectionTest, NamesTheMagnetometersUnit) {
     for (double& value : *n) value *= 1e6;
   });
   expectNamed("the magnetometer is in");
+}
+
+TEST_F(InspectionTest, NamesExchangedAxesOfTheMagnetometer) {
+  editNumbers(csv("mag0"), [](size_t, Numbers* n) { std::swap((*n)[0], (*n)[1]); });
+  expectNamed("the axes of the magnetometer do not fit the gyroscope's");
+}
+
+TEST_F(InspectionTest, NamesAWrongSignOfTheMagnetometer) {
+  editNumbers(csv("mag0"), [](size_t, Numbers* n) { (*n)[2] *= -1.0; });
+  expectNamed("the axes of the magnetometer do not fit the gyroscope's");
+}
+
+TEST_F(InspectionTest, FindsNothingInASoundStereoRecording) {
+  addCamera1();
+  EXPECT_THAT(inspected(), HasSubstr("nothing found that would hurt"));
+}
+
+TEST_F(InspectionTest, NamesSwappedCameras) {
+  addCamera1();
+  std::filesystem::rename(path("cam0") / "sensor.yaml", folder_ / "sensor.yaml");
+  std::filesystem::rename(path("cam1") / "sensor.yaml", path("cam0") / "sensor.yaml");
+  std::filesystem::rename(folder_ / "sensor.yaml", path("cam1") / "sensor.yaml");
+  expectNamed("left and right camera swapped");
+}
+
+TEST_F(InspectionTest, NamesABaselineInMillimetres) {
+  addCamera1();
+  for (const size_t camera : {0, 1}) {
+    changeCamera(camera, [](const Rigid3& pose) { return Rigid3(pose.rotation, 1e3 * pose.translation); });
+  }
+  expectNamed("wrong unit (m, not mm)");
+}
+
+TEST_F(InspectionTest, NamesAnInvertedTransform) {
+  changeCamera(0, [](const Rigid3& pose) { return pose.inverse(); });
+  expectNamed("T_BS inverted would fit");
+}
+
+TEST_F(InspectionTest, NamesGravityThatPointsUp) {
+  editNumbers(csv("imu0"), [](size_t, Numbers* n) {
+    for (size_t i = 3; i < 6; ++i) (*n)[i] *= -1.0;
+  });
+  expectNamed("gravity points to the top of the images");
+}
+
+TEST_F(InspectionTest, LooksAtWhatIsThere) {
+  std::filesystem::remove_all(path("cam0"));
+  EXPECT_THAT(inspected(), AllOf(HasSubstr("nothing found that would hurt"), HasSubstr("there are no images"),
+                                 HasSubstr("imu0      good"), HasSubstr("mag0      good")));
+  std::filesystem::remove_all(path("imu0"));
+  EXPECT_THAT(inspected(), AllOf(HasSubstr("there are no inertial readings"), HasSubstr("mag0      good")));
+}
+
+TEST_F(InspectionTest, NamesMissingImagesAndCalibrations) {
+  std::filesystem::remove(path("cam0") / "data");
+  EXPECT_THAT(inspected(), HasSubstr("images looked at are missing"));
+  for (const char* sensor : {"cam0", "imu0", "mag0"}) std::filesystem::remove(path(sensor) / "sensor.yaml");
+  EXPECT_THAT(inspected(),
+              AllOf(HasSubstr("cam0/sensor.yaml: calibration file missing"),
+                    HasSubstr("imu0/sensor.yaml: calibration file missing"), HasSubstr("imu0      good")));
 }
 
 TEST_F(InspectionTest, NamesAFrozenMagnetometer) {

@@ -43,8 +43,8 @@ std::string streamLine(const Inspection& inspection, const std::string& sensor, 
 
 std::string imuText(const Inspection& inspection) {
   const ImuSurvey& imu = inspection.imu;
+  if (imu.samples.empty()) return {};
   std::string text = streamLine(inspection, "imu0", imu.stream);
-  if (imu.samples.empty()) return text;
   text += fmt::format("          specific force {:.3f} m/s^2 (median)", imu.median_force * imu.force_to_SI);
   if (imu.rest_s > 0.0) {
     const Vec3 bias_deg = kDegrees * inspection.rate_to_SI * imu.rest_rate_B;
@@ -93,15 +93,28 @@ std::string turningText(const CameraInspection& camera) {
       turning.focal_ratio);
 }
 
+std::string stereoText(const StereoSurvey& stereo) {
+  std::string text = fmt::format("          {:.4g} m from cam0", stereo.baseline_m);
+  if (stereo.points > 0) {
+    text += fmt::format("; of {} points in {} pairs of images, {:.0f} % lie where the calibration says",
+                        stereo.points, stereo.images, 100.0 * stereo.agreement);
+  }
+  return text + "\n";
+}
+
 std::string cameraText(const Inspection& inspection, size_t index) {
   const CameraInspection& camera = inspection.cameras[index];
   const CameraCalibration& calibration = inspection.rig.cameras[index];
   std::string text = streamLine(inspection, camera.survey.name, camera.survey.stream);
+  if (!isCalibrated(calibration)) return text + qualityText(camera.survey);
   text += fmt::format("          {}\n", describeAxes(calibration));
   if (!inspection.imu.samples.empty()) {
     text += fmt::format("          {}\n", describeGravity(calibration, inspection.imu.up_B));
   }
-  return text + qualityText(camera.survey) + turningText(camera);
+  text += qualityText(camera.survey);
+  if (!inspection.imu.samples.empty()) text += turningText(camera);
+  if (index == 1 && inspection.stereo) text += stereoText(*inspection.stereo);
+  return text;
 }
 
 std::string magnetometerText(const Inspection& inspection) {

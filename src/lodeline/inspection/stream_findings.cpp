@@ -57,14 +57,17 @@ class StreamJudge {
   void judgeGaps() const {
     if (stream_.gaps.empty()) return;
     const StreamGap& longest = stream_.gaps.front();
-    const double lost = stream_.duration_s > 0.0 ? stream_.gap_s / stream_.duration_s : 0.0;
-    const bool harmful = is_imu_ ? longest.length_s > kHarmfulImuGap_s || lost > 0.01 : lost > 0.05;
+    // Between two readings there is a period in any case.
+    const double silent_s =
+        stream_.gap_s - static_cast<double>(stream_.gaps.size()) / std::max(1e-9, stream_.rate_hz);
+    const double lost = stream_.duration_s > 0.0 ? silent_s / stream_.duration_s : 0.0;
+    const bool harmful = is_imu_ ? longest.length_s > kHarmfulImuGap_s || lost > 0.01 : lost > 0.1;
     add(harmful ? (is_imu_ ? Severity::Serious : Severity::Warning) : Severity::Notice,
         is_imu_ ? 64.0 + std::min(10.0, longest.length_s) : 40.0, "gaps",
         fmt::format("gaps: silent {} times, {:.3g} s together ({:.2g} % of the time), the longest {:.3g} s "
                     "after stamp "
                     "{} ns{}",
-                    stream_.gaps.size(), stream_.gap_s, 100.0 * lost, longest.length_s,
+                    stream_.gaps.size(), silent_s, 100.0 * lost, longest.length_s,
                     longest.after.nanoseconds(),
                     harmful && is_imu_ ? "; motion within them is unknown" : ""));
   }
@@ -85,10 +88,28 @@ class StreamJudge {
   Inspection* inspection_;
 };
 
+/// Not all tools need all sensors; what cannot be done with this recording is said.
+void judgeAbsence(Inspection* inspection) {
+  if (inspection->imu.stream.readings == 0) {
+    inspection->findings.push_back(
+        {inspection->cameras.empty() ? Severity::Warning : Severity::Serious, 95.0, "recording", "no_imu",
+         "there are no inertial readings: a magnetometer may be calibrated with it, but neither attitude nor "
+         "trajectory can be estimated"});
+  }
+  if (inspection->cameras.empty()) {
+    inspection->findings.push_back({Severity::Notice, 0.0, "recording", "no_images",
+                                    "there are no images: no trajectory can be estimated (lodeline run), but "
+                                    "attitude, noise and the magnetometer's calibration"});
+  }
+}
+
 }  // namespace
 
 void judgeStreams(Inspection* inspection) {
-  StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
+  judgeAbsence(inspection);
+  if (inspection->imu.stream.readings > 0) {
+    StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
+  }
   for (const CameraInspection& camera : inspection->cameras) {
     StreamJudge(camera.survey.name, camera.survey.stream, false, inspection).judge();
   }

@@ -10,6 +10,8 @@ namespace lodeline {
 namespace {
 
 constexpr int kLeastTurns = 25;
+/// Over a shorter time a rig turns so smoothly that anything correlates with anything, somewhat shifted.
+constexpr double kLeastTime_s = 4.0;
 constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
 /// A camera that turns less than this (root mean square) shows nothing.
@@ -239,6 +241,9 @@ class Comparison {
 std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
                                            const GyroscopeIntegral& gyroscope, const Quat& body_from_camera) {
   if (static_cast<int>(turns.size()) < kLeastTurns) return std::nullopt;
+  double time_s = 0.0;
+  for (const CameraTurn& turn : turns) time_s += (turn.end - turn.begin).seconds();
+  if (time_s < kLeastTime_s) return std::nullopt;
   return Comparison(turns, gyroscope, body_from_camera).run();
 }
 

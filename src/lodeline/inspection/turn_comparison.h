@@ -39,7 +39,8 @@ struct TurnComparison {
   double explained_at_best = 0.0;
 };
 
-/// Nothing where too few turns lie within the gyroscope's readings or the camera hardly turned.
+/// Nothing where too few turns lie within the gyroscope's readings, they last too short a time, or the camera
+/// hardly turned.
 std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
                                            const GyroscopeIntegral& gyroscope, const Quat& body_from_camera);
 

@@ -91,11 +91,16 @@ class TurningJudge {
         calibration_.body_from_camera.rotation.conjugate() * turning_.misalignment_B.normalized();
     const Mat3 nearest = nearestSignedAxes(turning_.axes);
     const bool is_whole = !nearest.isIdentity() && Quat(nearest).angularDistance(Quat(turning_.axes)) < 0.3;
-    const std::string where = fmt::format(
+    std::string where = fmt::format(
         "extrinsics: the camera's rotation to the IMU is {:.0f} deg off what the calibration (T_BS) says, "
         "about the "
         "camera's ({:.2f}, {:.2f}, {:.2f}) axis",
         angle_deg, axis_C.x(), axis_C.y(), axis_C.z());
+    const Quat given = calibration_.body_from_camera.rotation;
+    const double off_inverse_rad = given.conjugate().angularDistance(Quat(turning_.axes) * given);
+    if (off_inverse_rad < kHarmfulMisalignment_rad) {
+      where += "; T_BS inverted would fit (it is to take camera coordinates to those of the body)";
+    }
     if (is_whole && angle_deg > 150.0 && std::abs(axis_C.z()) > 0.9) {
       add(Severity::Serious, 88.0, "images_upside_down",
           "the images are upside down for this calibration: they are turned by 180 deg about the optical "
