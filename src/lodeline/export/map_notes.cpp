@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "lodeline/export/dive_map.h"
+#include "lodeline/export/loop_candidates.h"
 
 namespace lodeline {
 namespace {
@@ -59,6 +61,26 @@ std::string closureNote(const Survey& survey) {
       distance, closure.percent(), *closure.horizontal_between_ways_m, *closure.vertical_between_ways_m);
 }
 
+/// The longest ones; that they are what they seem is for people to judge.
+void addLoopNotes(const Survey& survey, std::vector<std::string>* notes) {
+  constexpr size_t kMostListed = 5;
+  const std::vector<LoopCandidate> loops = findLoopCandidates(survey);
+  if (loops.empty()) return;
+  notes->push_back(fmt::format(
+      "candidate loops: {} where the line comes back to itself within its uncertainty; nothing is "
+      "equated",
+      loops.size()));
+  for (size_t i = 0; i < std::min(kMostListed, loops.size()); ++i) {
+    const LoopCandidate& loop = loops[i];
+    const Vec3& d = loop.misclosure_ENU;
+    notes->push_back(fmt::format(
+        "candidate loop: stations {} to {} come back; station {} to leg {}-{}: misclosure {:.2f} m ({:.2f} m "
+        "horizontal, {:+.2f} m vertical), {:.2f} % of {:.1f} m, one sigma {:.2f} m; median of all {:.2f} m",
+        loop.first, loop.last, loop.station, loop.leg, loop.leg + 1, d.norm(), d.head<2>().norm(), d.z(),
+        loop.percent(), loop.length_m, loop.sigma_ENU.norm(), loop.median_misclosure_m));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> describe(const DiveMap& map, const RunFolder& run) {
@@ -79,6 +101,7 @@ std::vector<std::string> describe(const DiveMap& map, const RunFolder& run) {
       fmt::format("line: {} stations, {:.2f} m", map.survey.stations.size(), map.survey.length_m()));
   notes.push_back(sigmaNote(map.survey));
   notes.push_back(closureNote(map.survey));
+  addLoopNotes(map.survey, &notes);
   return notes;
 }
 
