@@ -48,6 +48,12 @@ export interface Statistics {
   max: number;
 }
 
+export interface Absolute {
+  position_m: Statistics;
+  rotation_deg: Statistics;
+  yaw_deg: Statistics;
+}
+
 export interface Evaluation {
   figures: {
     estimate: { path_m: number };
@@ -59,10 +65,11 @@ export interface Evaluation {
       reference_from_estimate_quaternion_wxyz: number[];
       reference_from_estimate_translation_m: number[];
     };
-    absolute: { position_m: Statistics; rotation_deg: Statistics; yaw_deg: Statistics };
+    absolute: Absolute;
     end_point: { after_alignment_m: number; after_alignment_percent: number; from_equal_starts_percent: number };
     relative?: { length_m: number; translation_percent: Statistics; yaw_deg: Statistics }[];
   };
+  yaw_aligned: Absolute | null; // where the figures' alignment turns more than the heading
   errors: Table; // position [m], yaw [deg], rotation [deg]
   path: { t_s: number[]; x: number[]; y: number[]; z: number[] }; // the reference, in its own world
 }
@@ -119,4 +126,9 @@ export function nearestIndex(times: number[], t: number): number {
     else high = middle;
   }
   return high > 0 && Math.abs(times[high] - t) < Math.abs(times[low] - t) ? high : Math.max(low, 0);
+}
+
+/// Errors of attitude as they are shown: free of what an alignment of positions alone leaves undetermined.
+export function attitudeErrors(evaluation: Evaluation): Absolute {
+  return evaluation.yaw_aligned ?? evaluation.figures.absolute;
 }

@@ -30,3 +30,8 @@ export function niceStep(size: number): number {
   const factor = size / power;
   return power * (factor >= 5 ? 5 : factor >= 2 ? 2 : 1);
 }
+
+/// As people write the names that `--align` takes.
+export function alignmentName(type: string): string {
+  return { se3: "SE(3)", sim3: "Sim(3)" }[type] ?? type;
+}

@@ -1,6 +1,6 @@
 // The page while a run goes on: what the program tells over server-sent events, shown as it comes.
 
-import type { PageData, Run } from "./data";
+import { decodeFloats, type PageData, type Run } from "./data";
 import { append, element, section, toggle } from "./dom";
 import { headingDial } from "./heading_dial";
 import { number } from "./format";
@@ -16,11 +16,13 @@ interface State {
   t_s: number;
   numbers?: Record<string, number | null>;
   words: Record<string, string>;
+  landmarks?: string; // new ones, base64 of 32-bit floats: x y z x y z ...
   run: { frames: number; path_m: number; real_time_factor: number; heading_reference: string; waiting_for: string };
 }
 
 const kRedraw_ms = 500;
 const kMostPictures = 40;
+const kMostLandmarks = 60000;
 const kLivePlots = ["heading", "depth", "heading-sigma", "tracks"];
 
 function emptyRun(data: PageData): Run {
@@ -36,11 +38,11 @@ function emptyRun(data: PageData): Run {
 }
 
 /// The newest words and figures.
-function nowPanel(): { node: HTMLElement; show: (state: State) => void } {
+function nowPanel(): { node: HTMLElement; show: (state: State, mapPoints: number) => void } {
   const dial = headingDial();
   const list = element("dl", "figures");
   const word = element("strong", "status-word", "connecting");
-  const show = (state: State) => {
+  const show = (state: State, mapPoints: number) => {
     const { run, words, numbers } = state;
     word.textContent = words.status === "waiting" ? `waiting for ${run.waiting_for}` : words.status;
     word.dataset.status = words.status;
@@ -49,14 +51,15 @@ function nowPanel(): { node: HTMLElement; show: (state: State) => void } {
       ["Ratio to real time", `${number(run.real_time_factor, 3)} ×`],
       ["Path", `${number(run.path_m, 4)} m`],
       ["Tracks", numbers ? `${numbers["tracks"]}, ${numbers["landmarks"]} of them landmarks` : "–"],
+      ["Map points shown", String(mapPoints)],
       ["Magnetometer", words.magnetometer],
     ];
     list.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", "", name), element("dd", "", value)]));
   };
   return {
     node: element("article", "card now", element("div", "now-text", word, list), dial.node),
-    show: (state) => {
-      show(state);
+    show: (state, mapPoints) => {
+      show(state, mapPoints);
       dial.show(state);
     },
   };
@@ -67,6 +70,7 @@ export function startLive(page: Element, data: PageData): void {
   const track = makeTrack(run);
   const view = new View([track]);
   const now = nowPanel();
+  let landmarks: number[] = []; // x y z x y z ...
   let follow = true;
   let dirty = false;
   append(now.node, toggle("Follow the newest pose", true, (on) => (follow = on)));
@@ -87,7 +91,8 @@ export function startLive(page: Element, data: PageData): void {
     add(run, state);
     if (state.numbers) appendPose(track, run.states.t_s.length - 1);
     run.summary.heading = { reference: state.run.heading_reference };
-    now.show(state);
+    if (state.landmarks) landmarks = added(landmarks, decodeFloats(state.landmarks));
+    now.show(state, landmarks.length / 3);
     dirty = true;
   });
   events.addEventListener("picture", (event) => {
@@ -102,9 +107,16 @@ export function startLive(page: Element, data: PageData): void {
   setInterval(() => {
     if (!dirty || track.t_s.length === 0) return;
     dirty = false;
+    if (landmarks.length !== track.landmarks.length) track.landmarks = Float32Array.from(landmarks);
     view.active.emit();
     if (follow) view.time.set(track.t_s[track.t_s.length - 1]);
   }, kRedraw_ms);
+}
+
+/// When there are many, every second one goes.
+function added(landmarks: number[], more: Float32Array): number[] {
+  landmarks.push(...more);
+  return landmarks.length < 3 * kMostLandmarks ? landmarks : landmarks.filter((_, i) => Math.floor(i / 3) % 2 === 0);
 }
 
 function add(run: Run, state: State): void {

@@ -3,6 +3,7 @@
 import { append, button, element, section } from "./dom";
 import { fileName } from "./download";
 import { findingsList, summaryTiles } from "./summary";
+import { kComparisonPlots } from "./comparison_plots";
 import { kMagnetometerPlots, kPlots } from "./plots";
 import { plotCard } from "./plot";
 import { sphereCard } from "./sphere_view";
@@ -43,6 +44,11 @@ function plots(view: View): HTMLElement {
     element("div", "grid",
       statusCard(view, "status", "Status", [{ name: "images", column: "status" }, { name: "magnetometer", column: "magnetometer" }]),
       ...kPlots.map((spec) => plotCard(view, spec.make))));
+}
+
+function comparison(view: View): HTMLElement {
+  return section("comparison", "Comparison", comparisonTable(view),
+    element("div", "grid", ...kComparisonPlots.map((make) => plotCard(view, make))));
 }
 
 function magnetometer(view: View): HTMLElement | null {
@@ -95,7 +101,7 @@ export function assemble(page: Element, view: View): void {
   append(page, head(view), summaryTiles(view),
     section("findings", "What to know about the data", findingsList(view)),
     trajectorySection(view),
-    several ? section("comparison", "Comparison", comparisonTable(view)) : null,
+    several ? comparison(view) : null,
     view.tracks.some((t) => t.run.evaluation) ? section("evaluation", "Against the reference", evaluationTable(view)) : null,
     plots(view), magnetometer(view), configuration(view),
     element("footer", "", contents(view)));

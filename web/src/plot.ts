@@ -75,7 +75,7 @@ function curves(spec: PlotSpec): uPlot.Series[] {
 
 function paddedRange(low: number, high: number): [number, number] {
   if (low === null || high === null) return [0, 1];
-  const span = high > low ? high - low : Math.max(1e-9, Math.abs(high));
+  const span = high > low ? high - low : Math.abs(high) || 1;
   // A range that nearly reaches zero shows it.
   const from = low >= 0 && low < 0.3 * span ? 0 : low - 0.12 * span;
   return [from, high + 0.12 * span];

@@ -40,7 +40,7 @@ function triad(table: Table, name: (axis: string) => string, factor: number, sig
 }
 
 /// Degrees without jumps at north, as far as the curve is drawn.
-function unwrapped(values: Values): Values {
+export function unwrapped(values: Values): Values {
   let turns = 0;
   let last: number | null = null;
   return values.map((v) => {
@@ -152,6 +152,7 @@ function yawError(view: View): PlotSpec | null {
   return errors ? {
     id: "yaw-error", title: "Heading error against the reference", unit: "°", axis: "degrees", t_s: errors.t_s,
     series: [{ label: "error", values: errors.numbers["yaw [deg]"], colour: kKinds[1] }],
+    note: view.active.value.run.evaluation?.yaw_aligned ? "After turning about the vertical only." : undefined,
   } : null;
 }
 

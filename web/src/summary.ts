@@ -1,7 +1,7 @@
 // The figures of a run at a glance, and what was wrong with its data.
 
 import { element } from "./dom";
-import { duration, number } from "./format";
+import { alignmentName, duration, number } from "./format";
 import type { Finding, Run } from "./data";
 import type { View } from "./view";
 
@@ -36,7 +36,7 @@ function tiles(run: Run): Tile[] {
   if (figures) {
     list.splice(2, 0, {
       name: "Position error", value: `${number(figures.absolute.position_m.rmse)} m`,
-      detail: figures.alignment.type === "none" ? "RMSE, not aligned" : `RMSE after ${figures.alignment.type} alignment`,
+      detail: figures.alignment.type === "none" ? "RMSE, not aligned" : `RMSE after ${alignmentName(figures.alignment.type)} alignment`,
     });
   }
   return list;

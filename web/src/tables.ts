@@ -3,8 +3,8 @@
 import { kKinds } from "./colours";
 import { button, element } from "./dom";
 import { saveCsv } from "./download";
-import { duration, number } from "./format";
-import type { Run } from "./data";
+import { alignmentName, duration, number } from "./format";
+import { attitudeErrors, type Run } from "./data";
 import type { View } from "./view";
 
 function table(head: string[], rows: (string | Node)[][]): HTMLElement {
@@ -21,17 +21,23 @@ export function evaluationTable(view: View): HTMLElement {
     if (!f) return;
     const row = (name: string, s: { rmse: number; mean: number; median: number; max: number }, unit: string) =>
       [name, ...[s.rmse, s.mean, s.median, s.max].map((v) => `${number(v)}${unit}`)];
+    const level = run.evaluation?.yaw_aligned;
+    const attitude = attitudeErrors(run.evaluation!);
+    const after = level ? ", turned about the vertical only" : "";
     const rows = [
       row("Position", f.absolute.position_m, " m"),
-      row("Rotation", f.absolute.rotation_deg, "°"),
-      row("Heading", f.absolute.yaw_deg, "°"),
+      ...(level ? [row(`Position${after}`, level.position_m, " m")] : []),
+      row(`Rotation${after}`, attitude.rotation_deg, "°"),
+      row(`Heading${after}`, attitude.yaw_deg, "°"),
       ...(f.relative ?? []).map((r) => row(`Over ${number(r.length_m)} m of path`, r.translation_percent, " %")),
     ];
     node.replaceChildren(
-      element("p", "note", `Against ${f.reference.name}: ${f.association.pairs} pairs of poses, ${f.alignment.type} alignment` +
+      element("p", "note", `Against ${f.reference.name}: ${f.association.pairs} pairs of poses, ${alignmentName(f.alignment.type)} alignment` +
         ` (scale ${f.alignment.scale.toFixed(4)}), ${number(f.reference.path_m)} m of path. ` +
         `At the end ${number(f.end_point.after_alignment_m)} m off, ${number(f.end_point.after_alignment_percent, 2)} % of the path; ` +
-        `with equal starts ${number(f.end_point.from_equal_starts_percent, 2)} %.`),
+        `with equal starts ${number(f.end_point.from_equal_starts_percent, 2)} %.` +
+        (level ? " Rotation and heading are told after turning about the vertical only: positions along a nearly straight way" +
+          " leave the turn about it open." : "")),
       table(["", "RMSE", "mean", "median", "greatest"], rows));
   });
   return node;
@@ -42,7 +48,7 @@ const kComparison: { name: string; value: (run: Run) => number | null | undefine
   { name: "Duration", value: (r) => r.summary.duration_s, text: duration },
   { name: "Completion (%)", value: (r) => 100 * (r.summary.completion ?? NaN), text: (v) => number(v, 4) },
   { name: "Position RMSE (m)", value: (r) => r.evaluation?.figures.absolute.position_m.rmse, text: (v) => number(v) },
-  { name: "Heading RMSE (°)", value: (r) => r.evaluation?.figures.absolute.yaw_deg.rmse, text: (v) => number(v) },
+  { name: "Heading RMSE (°)", value: (r) => r.evaluation && attitudeErrors(r.evaluation).yaw_deg.rmse, text: (v) => number(v) },
   { name: "Heading σ at the end (°)", value: (r) => (180 / Math.PI) * (r.summary.heading?.sigma_rad ?? NaN), text: (v) => number(v) },
   { name: "Reprojection (px)", value: (r) => r.summary.mean_reprojection_rms_px, text: (v) => number(v) },
   { name: "Tracks a frame", value: (r) => r.summary.mean_tracks, text: (v) => number(v) },

@@ -38,6 +38,19 @@ export async function show(page, selector) {
   await page.$eval(selector, (node) => node.scrollIntoView({ behavior: "instant", block: "center" }));
 }
 
+/// Share of a canvas that is not blank.
+export const inked = (canvas) => {
+  const copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext("2d");
+  context.drawImage(canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  let count = 0;
+  for (let i = 3; i < data.length; i += 4) count += data[i] > 0 ? 1 : 0;
+  return count / (data.length / 4);
+};
+
 /// Opens the page that the command line names, tries `test` on it, and tells by the exit code.
 export async function run(test) {
   const opened = await open(process.argv[2]);

@@ -12,5 +12,7 @@ await run(async ({ page }) => {
   await page.waitForFunction(() => document.querySelector(".pose .time").textContent === "0:12.0");
   assert.match(await text(".pose .figures"), /Position12\.00, 0\.00, −0\.50 m/);
   assert.match(await page.$eval(".picture img", (image) => image.src), /^data:image\/jpeg;base64,AAAA/);
+  // One with each of the states 0 to 12.
+  assert.match(await text(".now"), /Map points shown13/);
   await page.waitForSelector(".ended");
 });

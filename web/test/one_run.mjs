@@ -1,22 +1,9 @@
 // One run: everything is drawn, a click selects a pose and shows its picture, nothing complains.
 import assert from "node:assert/strict";
-import { run, show } from "./browser.mjs";
+import { inked, run, show } from "./browser.mjs";
 
 const kPlots = ["status", "heading", "depth", "heading-sigma", "position-sigma", "yaw-error", "velocity",
   "gyroscope-bias", "accelerometer-bias", "tracks", "reprojection", "timings", "magnetometer-offset", "field"];
-
-/// Share of a canvas that is not blank.
-const inked = (canvas) => {
-  const copy = document.createElement("canvas");
-  copy.width = canvas.width;
-  copy.height = canvas.height;
-  const context = copy.getContext("2d");
-  context.drawImage(canvas, 0, 0);
-  const { data } = context.getImageData(0, 0, copy.width, copy.height);
-  let count = 0;
-  for (let i = 3; i < data.length; i += 4) count += data[i] > 0 ? 1 : 0;
-  return count / (data.length / 4);
-};
 
 const text = (page, selector) => page.$eval(selector, (node) => node.textContent);
 

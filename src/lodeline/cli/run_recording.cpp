@@ -28,7 +28,8 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
   while (session->fetch() && !stop.made()) {
     session->process();
     if (live) {
-      live->show(session->packet(), session->estimate(), session->summary(), session->odometry().frontEnd());
+      live->show(session->packet(), session->estimate(), session->summary(), session->odometry().frontEnd(),
+                 session->landmarks());
     }
     progress.show(session->summary());
   }

@@ -77,7 +77,7 @@ void RunSession::process() {
   fetched_.reset();
   const FrameEstimate estimate = odometry_.add(processed_);
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
-  if (output_) output_->write(processed_, estimate, attitude, &odometry_);
+  if (output_) landmarks_ = output_->write(processed_, estimate, attitude, &odometry_);
   summary_.add(estimate);
   for (const cv::Mat& image : processed_.images) summary_.images += image.empty() ? 0 : 1;
   summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -85,6 +85,7 @@ void RunSession::process() {
 
 RunSummary RunSession::finish() {
   if (output_) summary_.map_points = output_->finish(odometry_);
+  if (output_) summary_.pictures_s = output_->picturesSeconds();
   output_.reset();  // closes what is read next
   summary_.interrupted = fetched_.has_value();
   summary_.front_end_s = odometry_.times().front_end_s;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <optional>
+#include <vector>
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/base/settings.h"
@@ -39,6 +40,8 @@ class RunSession {
   /// Of the packet processed last.
   const FramePacket& packet() const { return processed_; }
   const FrameEstimate& estimate() const { return summary_.last(); }
+  /// That left the window with it and were written.
+  const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }
   const Odometry& odometry() const { return odometry_; }
 
@@ -55,6 +58,7 @@ class RunSession {
   std::optional<RunOutput> output_;
   std::optional<FramePacket> fetched_;
   FramePacket processed_;
+  std::vector<MapPoint> landmarks_;
   Clock::time_point start_;
   double start_processor_s_ = 0.0;
 };

@@ -41,7 +41,7 @@ TEST(LiveBrowser, ShowsWhatIsTold) {
       FrameEstimate estimate = estimateAt(second);
       if (second > 0) summary.add(estimate);
       summary.wall_s = summary.recordingSeconds() / 1.5;
-      server.sendAndKeep("state", liveState(estimate, summary, second));
+      server.sendAndKeep("state", liveState(estimate, summary, second, {{1.0F, 2.0F, -0.5F}}));
     }
     server.sendAndKeep("picture", R"({"t_s":12,"jpeg":"AAAA"})");
     browser = std::thread([&passed, url = server.url()] {

@@ -17,6 +17,8 @@ constexpr std::chrono::milliseconds kPicturePause(500);
 /// take of a run on any machine.
 constexpr int kPauseToWork = 80;
 constexpr int kPictureWidth_px = 480;
+/// Enough to show walls; a whole dive's are in the report.
+constexpr size_t kMostLandmarks = 40;
 
 /// Under the names of states.csv, so that the page can treat both alike.
 nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
@@ -52,7 +54,8 @@ std::string livePage(const std::string& name, const std::string& data, const Vec
                    {"runs", nlohmann::ordered_json::array()}});
 }
 
-std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s) {
+std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s,
+                      const std::vector<Eigen::Vector3f>& landmarks_W) {
   nlohmann::ordered_json json;
   json["t_s"] = shortNumber(t_s);
   const bool has_pose = estimate.status != Status::Waiting;
@@ -64,6 +67,10 @@ std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, 
                  {"real_time_factor", shortNumber(summary.realTimeFactor())},
                  {"heading_reference", toString(estimate.magnetometer.heading_reference)},
                  {"waiting_for", estimate.waiting_for}};
+  if (!landmarks_W.empty()) {
+    const auto* bytes = reinterpret_cast<const uint8_t*>(landmarks_W.data());
+    json["landmarks"] = base64({bytes, landmarks_W.size() * sizeof(Eigen::Vector3f)});
+  }
   return json.dump();
 }
 
@@ -73,14 +80,23 @@ LiveView::LiveView(const std::string& address, int port, const std::string& name
 
 LiveView::~LiveView() { server_.send("end", "{}"); }
 
+std::vector<Eigen::Vector3f> LiveView::takeLandmarks() {
+  std::vector<Eigen::Vector3f> taken;
+  const size_t every = (landmarks_W_.size() + kMostLandmarks - 1) / kMostLandmarks;
+  for (size_t i = 0; i < landmarks_W_.size(); i += every) taken.push_back(landmarks_W_[i]);
+  landmarks_W_.clear();
+  return taken;
+}
+
 void LiveView::show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
-                    const FrontEnd& front_end) {
+                    const FrontEnd& front_end, const std::vector<MapPoint>& landmarks) {
+  for (const MapPoint& landmark : landmarks) landmarks_W_.push_back(landmark.position_W.cast<float>());
   if (!first_time_) first_time_ = packet.time;
   const double t_s = (packet.time - *first_time_).seconds();
   const Clock::time_point now = Clock::now();
   if (now >= next_state_) {
     next_state_ = now + kStatePause;
-    server_.sendAndKeep("state", liveState(estimate, summary, t_s));
+    server_.sendAndKeep("state", liveState(estimate, summary, t_s, takeLandmarks()));
   }
   if (now < next_picture_ || !server_.isWatched()) return;
   const std::vector<uint8_t> jpeg = trackPicture(packet, front_end, kPictureWidth_px);

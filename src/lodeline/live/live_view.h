@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include "lodeline/data/frame_packet.h"
+#include "lodeline/estimator/window.h"
 #include "lodeline/features/front_end.h"
 #include "lodeline/live/live_server.h"
 #include "lodeline/report/run_summary.h"
@@ -15,8 +17,9 @@ namespace lodeline {
 /// UsageError where the program was built without the page.
 std::string livePage(const std::string& name, const std::string& data, const Vec3& camera_axis_B);
 
-/// What a browser is told of a frame, in JSON (`State` in web/src/live.ts).
-std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s);
+/// What a browser is told of a frame, in JSON (`State` in web/src/live.ts). `landmarks_W`: new ones, m.
+std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s,
+                      const std::vector<Eigen::Vector3f>& landmarks_W = {});
 
 /// Shows a run in the browser while it goes on: a few times a second what is known of the newest frame, less
 /// often its image with the tracks. Takes nothing from the run but some of its time, and gives it nothing.
@@ -31,17 +34,20 @@ class LiveView {
 
   std::string url() const { return server_.url(); }
 
-  /// To be called after each frame; does nothing for most of them.
+  /// To be called after each frame, with the landmarks that left the window; does nothing for most of them.
   void show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
-            const FrontEnd& front_end);
+            const FrontEnd& front_end, const std::vector<MapPoint>& landmarks);
 
  private:
+  std::vector<Eigen::Vector3f> takeLandmarks();
+
   using Clock = std::chrono::steady_clock;
 
   LiveServer server_;
   Clock::time_point next_state_ = Clock::now();
   Clock::time_point next_picture_ = Clock::now();
   std::optional<Time> first_time_;
+  std::vector<Eigen::Vector3f> landmarks_W_;  ///< not told yet
 };
 
 }  // namespace lodeline

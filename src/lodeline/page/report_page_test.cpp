@@ -61,6 +61,19 @@ TEST(RunPage, ComparesWithAReference) {
   EXPECT_NEAR(evaluation["figures"]["absolute"]["position_m"]["rmse"].get<double>(), 0.1, 1e-6);
   EXPECT_NEAR(evaluation["errors"]["numbers"]["position [m]"][5].get<double>(), 0.1, 1e-6);
   EXPECT_GT(evaluation["path"]["x"].size(), 100u);
+  EXPECT_TRUE(evaluation["yaw_aligned"].is_null());
+}
+
+TEST(RunPage, TellsErrorsOfAttitudeAfterTurningAboutTheVertical) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  test::writeTestReference(folder.path() / "truth.tum");
+  Diagnostics diagnostics;
+  const ReportReference reference = {folder.path() / "truth.tum", AlignmentType::SE3};
+  const auto evaluation = runPageJson(folder.path() / "dive", reference, &diagnostics)["evaluation"];
+  EXPECT_EQ(evaluation["figures"]["alignment"]["type"], "se3");
+  EXPECT_NEAR(evaluation["yaw_aligned"]["position_m"]["rmse"].get<double>(), 0.0, 1e-6);
+  EXPECT_NEAR(evaluation["yaw_aligned"]["rotation_deg"]["rmse"].get<double>(), 0.0, 1e-5);
 }
 
 TEST(RunPage, LongRunsAreThinnedAndKeepEveryChangeOfStatus) {

@@ -1,6 +1,6 @@
 #include "lodeline/page/run_evaluation.h"
 
-#include <numeric>
+#include <optional>
 
 #include "lodeline/evaluation/evaluation.h"
 #include "lodeline/evaluation/evaluation_report.h"
@@ -11,15 +11,31 @@
 namespace lodeline {
 namespace {
 
-nlohmann::ordered_json errorsJson(const Evaluation& evaluation, int64_t origin_ns) {
+/// `attitudes`: the evaluation whose errors of attitude are shown.
+nlohmann::ordered_json errorsJson(const Evaluation& evaluation, const Evaluation& attitudes,
+                                  int64_t origin_ns) {
   RunTable table;
   for (const Time time : evaluation.pairs.time) table.stamp_ns.push_back(time.nanoseconds());
   for (const Vec3& error : evaluation.absolute.position_m) {
     table.numbers["position [m]"].push_back(error.norm());
   }
-  table.numbers["rotation [deg]"] = evaluation.absolute.rotation_deg;
-  table.numbers["yaw [deg]"] = evaluation.absolute.yaw_deg;
+  table.numbers["rotation [deg]"] = attitudes.absolute.rotation_deg;
+  table.numbers["yaw [deg]"] = attitudes.absolute.yaw_deg;
   return tableJson(table, origin_ns);
+}
+
+/// After SE(3) alignment, the same by rotation about the vertical alone: positions on a nearly straight line
+/// leave the rotation about it free, which then is no error of the run. Nothing where the reference's world
+/// is not level.
+std::optional<Evaluation> yawAligned(const Evaluation& evaluation, Diagnostics* remarks) {
+  if (evaluation.options.alignment != AlignmentType::SE3) return std::nullopt;
+  EvaluationOptions options = evaluation.options;
+  options.alignment = AlignmentType::Yaw;
+  Evaluation level = evaluate(evaluation.estimate, evaluation.reference, options, *remarks);
+  constexpr double kNotLevel_deg = 5.0;
+  if (level.absolute.rotation().rmse > evaluation.absolute.rotation().rmse + kNotLevel_deg)
+    return std::nullopt;
+  return level;
 }
 
 /// The reference while the run lasted.
@@ -55,9 +71,12 @@ nlohmann::ordered_json runEvaluationJson(const std::filesystem::path& run, const
   options.alignment = reference.alignment;
   const Evaluation evaluation = evaluate(readTrajectory(run, {}, remarks),
                                          readTrajectory(reference.trajectory, {}, remarks), options, remarks);
-  return {{"figures", evaluationJson(evaluation, remarks)},
-          {"errors", errorsJson(evaluation, origin_ns)},
-          {"path", pathJson(evaluation, origin_ns)}};
+  const std::optional<Evaluation> level = yawAligned(evaluation, &remarks);
+  nlohmann::ordered_json json = {{"figures", evaluationJson(evaluation, remarks)}, {"yaw_aligned", nullptr}};
+  if (level) json["yaw_aligned"] = evaluationJson(*level, remarks)["absolute"];
+  json["errors"] = errorsJson(evaluation, level ? *level : evaluation, origin_ns);
+  json["path"] = pathJson(evaluation, origin_ns);
+  return json;
 }
 
 }  // namespace lodeline

@@ -20,7 +20,9 @@ struct ReportReference {
 std::optional<std::filesystem::path> referenceOfRecording(const std::filesystem::path& data);
 
 /// The run's trajectory against a reference, as the page reads it (`Evaluation` in web/src/data.ts): the
-/// figures of evaluationJson() with its defaults, errors over time, the reference's path. Throws InputError
+/// figures of evaluationJson() with its defaults, errors over time, the reference's path; after SE(3)
+/// alignment, where the reference's world is level, besides the absolute errors after rotation about the
+/// vertical alone, from which the errors of attitude are taken then. Throws InputError
 /// where either cannot be read or they have nothing in common.
 nlohmann::ordered_json runEvaluationJson(const std::filesystem::path& run, const ReportReference& reference,
                                          int64_t origin_ns);

@@ -102,7 +102,7 @@ void writeTestRun(const std::filesystem::path& folder, const TestRun& run) {
     magnetometer.write(packetAt(t_s));
     times.front_end_s += 0.006;
     times.estimator_s += 0.011;
-    timings.write(estimate.time, times);
+    timings.write(estimate.time, times, 0.0);
   }
   writePictures(folder / "pictures", run);
   Diagnostics diagnostics;

@@ -1,5 +1,7 @@
 #include "lodeline/report/run_output.h"
 
+#include "lodeline/base/thread_clock.h"
+
 namespace lodeline {
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options)
@@ -9,14 +11,18 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const 
   if (options.sample_pictures) sample_pictures_.emplace(folder);
 }
 
-void RunOutput::write(const FramePacket& packet, const FrameEstimate& estimate,
-                      const std::optional<AttitudeEstimate>& attitude, Odometry* odometry) {
+std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEstimate& estimate,
+                                       const std::optional<AttitudeEstimate>& attitude, Odometry* odometry) {
   states_.write(estimate, attitude);
-  landmarks_.write(odometry->estimator().takeMapPoints());
+  std::vector<MapPoint> finished = odometry->estimator().takeMapPoints();
+  landmarks_.write(finished);
   if (magnetometer_) magnetometer_->write(packet);
+  const double start_s = threadSeconds();
   if (track_pictures_) track_pictures_->write(packet, odometry->frontEnd());
   if (sample_pictures_) sample_pictures_->write(packet, odometry->frontEnd());
-  timings_.write(packet.time, odometry->times());
+  pictures_s_ += threadSeconds() - start_s;
+  timings_.write(packet.time, odometry->times(), pictures_s_);
+  return finished;
 }
 
 int64_t RunOutput::finish(const Odometry& odometry) {

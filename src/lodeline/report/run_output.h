@@ -24,12 +24,16 @@ class RunOutput {
   /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
   RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options);
 
-  /// To be called after each packet with what became of it. Throws InputError where writing fails.
-  void write(const FramePacket& packet, const FrameEstimate& estimate,
-             const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
+  /// To be called after each packet with what became of it. Gives the landmarks that left the window and were
+  /// written. Throws InputError where writing fails.
+  std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate& estimate,
+                              const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
 
   /// Adds the landmarks that are still in the window and completes the files; gives the number of landmarks.
   int64_t finish(const Odometry& odometry);
+
+  /// Processor time that pictures have taken so far.
+  double picturesSeconds() const { return pictures_s_; }
 
  private:
   StateWriter states_;
@@ -38,6 +42,7 @@ class RunOutput {
   std::optional<MagnetometerWriter> magnetometer_;
   std::optional<TrackPictures> track_pictures_;
   std::optional<SamplePictures> sample_pictures_;
+  double pictures_s_ = 0.0;
 };
 
 }  // namespace lodeline

@@ -185,10 +185,10 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
   if (last_.camera_corrections) line("calibration", describe(*last_.camera_corrections));
   line("time",
        fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (files {:.1f}, front end {:.1f}, "
-                   "estimator {:.1f})",
+                   "estimator {:.1f}, pictures {:.1f})",
                    wall_s, realTimeFactor(), coreMillisecondsPerFrame(process_s),
                    coreMillisecondsPerFrame(filesSeconds()), coreMillisecondsPerFrame(front_end_s),
-                   coreMillisecondsPerFrame(estimator_s)));
+                   coreMillisecondsPerFrame(estimator_s), coreMillisecondsPerFrame(pictures_s)));
   line("memory", fmt::format("{:.0f} MB at most", peak_memory_MB));
   if (posed_ > 0) line("heading", headingText());
   if (hasMagnetometer()) line("magnetometer", magnetometerText());
@@ -225,7 +225,8 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["core_ms_per_frame"] = {{"total", coreMillisecondsPerFrame(process_s)},
                                {"files", coreMillisecondsPerFrame(filesSeconds())},
                                {"front_end", coreMillisecondsPerFrame(front_end_s)},
-                               {"estimator", coreMillisecondsPerFrame(estimator_s)}};
+                               {"estimator", coreMillisecondsPerFrame(estimator_s)},
+                               {"pictures", coreMillisecondsPerFrame(pictures_s)}};
   json["peak_memory_MB"] = peak_memory_MB;
   const MagnetometerEstimate& magnetometer = last_.magnetometer;
   json["heading"] = {{"reference", toString(magnetometer.heading_reference)},

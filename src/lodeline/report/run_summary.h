@@ -41,7 +41,8 @@ class RunSummary {
   // Filled in by whoever runs the stages; processor seconds.
   double front_end_s = 0.0;
   double estimator_s = 0.0;
-  double process_s = 0.0;  ///< of the whole process, all threads
+  double pictures_s = 0.0;  ///< for the report page
+  double process_s = 0.0;   ///< of the whole process, all threads
   double wall_s = 0.0;
   double peak_memory_MB = 0.0;  ///< of the whole process
   int64_t images = 0;           ///< that could be read
@@ -71,7 +72,7 @@ class RunSummary {
   /// Mean over the frames of what carried the scale; nothing where nothing did.
   std::optional<ScaleInformation> scaleInformation() const;
   /// What the process spent outside of front end and estimator: reading, decoding, writing.
-  double filesSeconds() const { return process_s - front_end_s - estimator_s; }
+  double filesSeconds() const { return process_s - front_end_s - estimator_s - pictures_s; }
 
   RunDescription description_;
   FrameEstimate last_;

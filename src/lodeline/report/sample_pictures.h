@@ -14,7 +14,7 @@ namespace lodeline {
 std::vector<uint8_t> trackPicture(const FramePacket& packet, const FrontEnd& front_end, int max_width_px);
 
 /// Small pictures of what the front end follows, evenly over a run of any length, for report.html:
-/// `pictures/STAMP.jpg` of the output folder, STAMP as in states.csv. They begin close together; whenever
+/// `pictures/STAMP.jpg` of the output folder, STAMP as in states.csv. They begin two seconds apart; whenever
 /// there are kMost of them, every second one is removed and the pause doubles.
 class SamplePictures {
  public:
@@ -31,7 +31,7 @@ class SamplePictures {
   void thin();
 
   std::filesystem::path folder_;
-  Duration pause_ = Duration::fromSeconds(0.5);
+  Duration pause_ = Duration::fromSeconds(2.0);
   std::optional<Time> due_;
   std::deque<std::filesystem::path> files_;
 };

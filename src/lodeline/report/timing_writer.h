@@ -9,14 +9,15 @@
 namespace lodeline {
 
 /// Writes `timings.csv`: how long each frame took by the wall clock, from reading to writing, and how much of
-/// the processor front end and estimator used. A file of its own, because it differs from run to run.
+/// the processor front end, estimator and pictures used. A file of its own, because it differs from run to
+/// run.
 class TimingWriter {
  public:
   /// Throws InputError where the folder cannot be written to.
   explicit TimingWriter(const std::filesystem::path& folder);
 
-  /// To be called once all work of a frame is done. `times`: of all frames so far.
-  void write(Time time, const StageTimes& times);
+  /// To be called once all work of a frame is done. `times`, `pictures_s`: of all frames so far.
+  void write(Time time, const StageTimes& times, double pictures_s);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -24,6 +25,7 @@ class TimingWriter {
   std::ofstream stream_;
   Clock::time_point last_ = Clock::now();
   StageTimes before_;
+  double pictures_before_s_ = 0.0;
 };
 
 }  // namespace lodeline
