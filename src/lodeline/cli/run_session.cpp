@@ -77,7 +77,8 @@ void RunSession::process() {
   fetched_.reset();
   const FrameEstimate estimate = odometry_.add(processed_);
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
-  if (output_) landmarks_ = output_->write(processed_, estimate, attitude, &odometry_);
+  landmarks_ = output_ ? output_->write(processed_, estimate, attitude, &odometry_)
+                       : odometry_.estimator().takeMapPoints();
   summary_.add(estimate);
   for (const cv::Mat& image : processed_.images) summary_.images += image.empty() ? 0 : 1;
   summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();

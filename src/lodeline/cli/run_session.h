@@ -40,7 +40,7 @@ class RunSession {
   /// Of the packet processed last.
   const FramePacket& packet() const { return processed_; }
   const FrameEstimate& estimate() const { return summary_.last(); }
-  /// That left the window with it and were written.
+  /// That left the window with it.
   const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }
   const Odometry& odometry() const { return odometry_; }
