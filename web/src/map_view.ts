@@ -67,7 +67,8 @@ export class MapView {
   private drawNow(): void {
     const width = this.node.clientWidth;
     const height = this.node.clientHeight;
-    const context = this.canvas.getContext("2d");
+    // Drawn by the processor: without a graphics card, an accelerated canvas takes ten times as long.
+    const context = this.canvas.getContext("2d", { willReadFrequently: true });
     if (!context || width === 0 || height === 0) return;
     const ratio = Math.min(2, window.devicePixelRatio);
     this.canvas.width = width * ratio;
@@ -173,12 +174,17 @@ function drawColoured(
   c.lineWidth = 3;
   c.lineCap = "round";
   const faint = themed("faint");
-  for (let i = 1; i < track.position.length; ++i) {
+  const colourAt = (i: number) => {
     const rgb = colours[i];
-    c.strokeStyle = rgb ? css(rgb) : faint;
+    return rgb ? css(rgb.map((v) => 8 * Math.round(v / 8)) as [number, number, number]) : faint;
+  };
+  // Stretches of one colour are drawn at once: thousands of short strokes take seconds where no graphics card helps.
+  for (let i = 1; i < track.position.length;) {
+    const colour = colourAt(i);
+    c.strokeStyle = colour;
     c.beginPath();
     c.moveTo(...place(track.position[i - 1]));
-    c.lineTo(...place(track.position[i]));
+    for (; i < track.position.length && colourAt(i) === colour; ++i) c.lineTo(...place(track.position[i]));
     c.stroke();
   }
 }

@@ -55,16 +55,8 @@ function magnetometer(view: View): HTMLElement | null {
   const has = ({ run }: { run: Run }) => run.magnetometer !== null || (run.states.numbers["field_x [T]"] ?? []).some((v) => v !== null);
   if (!view.tracks.some(has)) return null;
   const cards = kMagnetometerPlots.map((spec) => plotCard(view, spec));
-  const sphere = view.tracks.some((t) => t.run.magnetometer) ? trySphere(view) : null;
+  const sphere = view.tracks.some((t) => t.run.magnetometer) ? sphereCard(view) : null;
   return section("magnetometer", "Magnetometer", element("div", "grid", sphere, ...cards));
-}
-
-function trySphere(view: View): HTMLElement | null {
-  try {
-    return sphereCard(view);
-  } catch {
-    return null; // no WebGL; the view in space says so
-  }
 }
 
 function configuration(view: View): HTMLElement {

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { sequential, themed, whenThemeChanges } from "./colours";
-import { element, whenResized } from "./dom";
+import { element, whenNear, whenResized } from "./dom";
 import { number } from "./format";
 import type { Magnetometer } from "./data";
 import type { View } from "./view";
@@ -34,10 +34,22 @@ function cloud(magnetometer: Magnetometer, stage: string): Cloud {
 /// Off by this much of the field or more has the last colour; the gate on the norm is of this size.
 const kGreatestOff = 0.05;
 
+/// Made once it comes into sight, and gone where there is no WebGL; the view in space says so.
 export function sphereCard(view: View): HTMLElement {
   const drawing = element("div", "sphere");
   const note = element("p", "note");
   const card = element("article", "card", element("header", "", element("h3", "", "Field in body axes")), drawing, note);
+  whenNear(card, () => {
+    try {
+      draw(view, card, drawing, note);
+    } catch {
+      card.remove();
+    }
+  });
+  return card;
+}
+
+function draw(view: View, card: HTMLElement, drawing: HTMLElement, note: HTMLElement): void {
   const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
   drawing.append(renderer.domElement);
@@ -47,8 +59,8 @@ export function sphereCard(view: View): HTMLElement {
   camera.position.set(2.4, -2.6, 1.5);
   const controls = new OrbitControls(camera, renderer.domElement);
   controls.enableZoom = false;
-  const draw = () => renderer.render(scene, camera);
-  controls.addEventListener("change", draw);
+  const render = () => renderer.render(scene, camera);
+  controls.addEventListener("change", render);
   const rebuild = () => {
     const { magnetometer } = view.active.value.run;
     card.hidden = !magnetometer;
@@ -60,7 +72,7 @@ export function sphereCard(view: View): HTMLElement {
     note.textContent = (magnetometer.is_calibrated ? "Readings after calibration" : "Readings as they are: no calibration was given") +
       `; sphere: ${number(corrected.radius_uT)} µT${magnetometer.field_strength_T ? "" : ", their mean"}. ` +
       `RMS distance ${number(100 * rms, 2)} % of it. Yellow and green dots lie on it, violet ones ${100 * kGreatestOff} % or more off.`;
-    draw();
+    render();
   };
   view.active.watch(rebuild);
   whenThemeChanges(rebuild);
@@ -69,9 +81,8 @@ export function sphereCard(view: View): HTMLElement {
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
     renderer.setSize(width, height);
-    draw();
+    render();
   });
-  return card;
 }
 
 function globe(inner: number): THREE.Object3D {

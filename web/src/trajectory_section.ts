@@ -2,7 +2,7 @@
 
 import { available, colourScale } from "./colouring";
 import { gradient, whenThemeChanges } from "./colours";
-import { button, choice, element, section, toggle } from "./dom";
+import { button, choice, element, section, toggle, whenNear } from "./dom";
 import { fileName, saveCsv, savePng } from "./download";
 import { fromAbove, fromTheSide, MapView, type Flattening } from "./map_view";
 import { posePanel } from "./pose_panel";
@@ -47,23 +47,25 @@ function saveStates(track: Track): void {
   ]);
 }
 
+/// Made once it comes into sight, after the rest of the page: without a graphics card it takes its time.
 function spaceCard(view: View): HTMLElement {
-  const tools = element("div", "tools");
-  const card = element("article", "card space-card");
-  const head = element("header", "", element("h3", "", "In space"), tools);
-  try {
-    const space = new SpaceView(view);
-    tools.append(
-      button("Oblique", "Look from the south-west, from above", () => space.lookFrom("oblique")),
-      button("Top", "Look from above", () => space.lookFrom("top")),
-      button("Side", "Look from the south", () => space.lookFrom("side")),
-      button("PNG", "Download this picture",
-        () => savePng(fileName(view.active.value.run.name, "trajectory"), space.canvas, "Trajectory")));
-    card.append(head, space.node);
-  } catch {
-    card.append(head, element("p", "note", "This browser has no WebGL, so there is no view in space; the maps below work without."));
-  }
-  tools.append(button("CSV", "Download the states that this page holds", () => saveStates(view.active.value)));
+  const tools = element("div", "tools",
+    button("CSV", "Download the states that this page holds", () => saveStates(view.active.value)));
+  const card = element("article", "card space-card", element("header", "", element("h3", "", "In space"), tools));
+  whenNear(card, () => {
+    try {
+      const space = new SpaceView(view);
+      tools.prepend(
+        button("Oblique", "Look from the south-west, from above", () => space.lookFrom("oblique")),
+        button("Top", "Look from above", () => space.lookFrom("top")),
+        button("Side", "Look from the south", () => space.lookFrom("side")),
+        button("PNG", "Download this picture",
+          () => savePng(fileName(view.active.value.run.name, "trajectory"), space.canvas, "Trajectory")));
+      card.append(space.node);
+    } catch {
+      card.append(element("p", "note", "This browser has no WebGL, so there is no view in space; the maps below work without."));
+    }
+  });
   return card;
 }
 

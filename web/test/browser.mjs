@@ -1,5 +1,6 @@
 // A page in headless Chromium that remembers every complaint.
 import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
 import puppeteer from "puppeteer-core";
 
 async function open(file) {
@@ -36,6 +37,28 @@ function isDriverTalk(text) {
 export async function show(page, selector) {
   await page.waitForSelector(selector);
   await page.$eval(selector, (node) => node.scrollIntoView({ behavior: "instant", block: "center" }));
+}
+
+/// Processor time of the browser's processes so far, s, by their kind: "renderer", "gpu-process", ….
+export function processorSeconds(browser) {
+  const kTicksPerSecond = 100;
+  const processes = readdirSync("/proc").filter((name) => /^\d+$/.test(name)).flatMap((id) => {
+    try {
+      const stat = readFileSync(`/proc/${id}/stat`, "utf8");
+      const fields = stat.slice(stat.lastIndexOf(")") + 2).split(" ");
+      const kind = /--type=([\w-]+)/.exec(readFileSync(`/proc/${id}/cmdline`, "utf8"))?.[1] ?? "browser";
+      return [{ id, parent: fields[1], kind, seconds: (Number(fields[11]) + Number(fields[12])) / kTicksPerSecond }];
+    } catch {
+      return []; // gone meanwhile
+    }
+  });
+  const sums = {};
+  const add = (process) => {
+    sums[process.kind] = (sums[process.kind] ?? 0) + process.seconds;
+    processes.filter(({ parent }) => parent === process.id).forEach(add);
+  };
+  processes.filter(({ id }) => id === String(browser.process().pid)).forEach(add);
+  return sums;
 }
 
 /// Share of a canvas that is not blank.

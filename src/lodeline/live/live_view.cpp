@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kStatePause(100);
 constexpr std::chrono::milliseconds kPicturePause(500);
 /// A picture that took long to make is followed by a pause so many times as long, which bounds what pictures
 /// take of a run on any machine.
-constexpr int kPauseToWork = 80;
+constexpr int kPauseToWork = 120;
 constexpr int kPictureWidth_px = 480;
 /// Enough to show walls; a whole dive's are in the report.
 constexpr size_t kMostLandmarks = 40;
