@@ -27,9 +27,11 @@ void judgeDead(const char* name, const char* kind, const TriadSurvey& triad, Ins
                   axes));
 }
 
-void judgeSaturation(const char* name, const char* kind, const char* unit, const TriadSurvey& triad,
-                     Inspection* inspection) {
-  if (triad.saturated_share < 1e-3) return;
+/// `least_range`: no sensor on the market has a smaller one; coarse readings of a rig at rest may well have
+/// the same greatest value many times.
+void judgeSaturation(const char* name, const char* kind, const char* unit, double least_range,
+                     const TriadSurvey& triad, Inspection* inspection) {
+  if (triad.saturated_share < 1e-3 || triad.limit < least_range) return;
   add(inspection, Severity::Warning, 55.0, kind,
       fmt::format("the {} is saturated in {:.2g} % of its readings (limit {:.4g} {}); choose a larger range",
                   name, 100.0 * triad.saturated_share, triad.limit, unit));
@@ -106,8 +108,11 @@ void judgeImu(Inspection* inspection) {
   if (imu.samples.empty()) return;
   judgeDead("gyroscope", "gyroscope_dead_axis", imu.gyroscope, inspection);
   judgeDead("accelerometer", "accelerometer_dead_axis", imu.accelerometer, inspection);
-  judgeSaturation("gyroscope", "gyroscope_saturated", "rad/s", imu.gyroscope, inspection);
-  judgeSaturation("accelerometer", "accelerometer_saturated", "m/s^2", imu.accelerometer, inspection);
+  constexpr double kLeastRate_rad_per_s = 2.0, kLeastForce_m_per_s2 = 18.0;
+  judgeSaturation("gyroscope", "gyroscope_saturated", "rad/s", kLeastRate_rad_per_s / inspection->rate_to_SI,
+                  imu.gyroscope, inspection);
+  judgeSaturation("accelerometer", "accelerometer_saturated", "m/s^2", kLeastForce_m_per_s2 / imu.force_to_SI,
+                  imu.accelerometer, inspection);
   judgeForceUnit(imu, inspection);
   judgeRateUnit(imu, inspection);
   judgeRest(imu, inspection);

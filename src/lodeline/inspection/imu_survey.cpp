@@ -63,12 +63,17 @@ TriadSurvey surveyTriad(const std::vector<ImuSample>& samples, Vec3 ImuSample::*
     greatest = greatest.cwiseMax(value);
   }
   survey.limit = least.cwiseAbs().cwiseMax(greatest.cwiseAbs()).maxCoeff();
-  std::array<size_t, 3> at_limit = {0, 0, 0};
+  std::array<size_t, 3> at_limit = {0, 0, 0}, near_limit = {0, 0, 0};
   for (const ImuSample& sample : samples) {
     square += (sample.*reading - mean).cwiseAbs2() / static_cast<double>(samples.size());
     for (int axis = 0; axis < 3; ++axis) {
-      if (std::abs((sample.*reading)[axis]) >= survey.limit * (1.0 - 1e-9))
+      const double size = std::abs((sample.*reading)[axis]);
+      constexpr double kNear = 0.98;
+      if (size >= survey.limit * (1.0 - 1e-9)) {
         ++at_limit[static_cast<size_t>(axis)];
+      } else if (size >= kNear * survey.limit) {
+        ++near_limit[static_cast<size_t>(axis)];
+      }
     }
   }
   survey.spread = square.cwiseSqrt();
@@ -77,7 +82,7 @@ TriadSurvey surveyTriad(const std::vector<ImuSample>& samples, Vec3 ImuSample::*
     survey.is_dead[i] = samples.size() > 50 && survey.spread[axis] <= 0.02 * survey.spread.maxCoeff() &&
                         survey.spread[axis] < 1e-9 + 1e-6 * std::abs(mean[axis]);
     // An axis that never changes is dead, not saturated.
-    if (!survey.is_dead[i] && at_limit[i] > 5) {
+    if (!survey.is_dead[i] && at_limit[i] > 5 && at_limit[i] > near_limit[i]) {
       survey.saturated_share = std::max(
           survey.saturated_share, static_cast<double>(at_limit[i]) / static_cast<double>(samples.size()));
     }

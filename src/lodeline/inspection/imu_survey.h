@@ -22,9 +22,10 @@ struct GravityTurning {
 /// One of gyroscope and accelerometer.
 struct TriadSurvey {
   std::array<bool, 3> is_dead = {false, false, false};  ///< axes that always say the same
-  double saturated_share = 0.0;                         ///< readings at the end of the range
-  double limit = 0.0;                                   ///< that end
-  Vec3 spread = Vec3::Zero();                           ///< standard deviation
+  /// Readings at the end of the range: where more are there than shortly before it, as none can go beyond.
+  double saturated_share = 0.0;
+  double limit = 0.0;          ///< that end
+  Vec3 spread = Vec3::Zero();  ///< standard deviation
 };
 
 /// What the inertial readings look like by themselves.

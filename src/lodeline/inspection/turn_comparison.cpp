@@ -67,9 +67,11 @@ class Comparison {
     const std::vector<Pair> pairs = pairsAt(offset_s);
     if (static_cast<int>(pairs.size()) < kLeastTurns) return std::nullopt;
     const Moments moments(pairs);
-    if (std::sqrt(moments.camera / static_cast<double>(pairs.size())) < kLeastRate_rad_per_s)
-      return std::nullopt;
     TurnComparison result;
+    const auto count = static_cast<double>(pairs.size());
+    result.camera_rate_rad_per_s = std::sqrt(moments.camera / count);
+    result.gyroscope_rate_rad_per_s = std::sqrt(moments.gyroscope.trace() / count);
+    if (result.camera_rate_rad_per_s < kLeastRate_rad_per_s) return std::nullopt;
     result.turns = static_cast<int>(pairs.size());
     result.time_offset_s = offset_s;
     result.correlation = moments.correlation();

@@ -15,8 +15,10 @@ struct CameraTurn {
 
 /// What the turns of a camera say of gyroscope and calibration together.
 struct TurnComparison {
-  int turns = 0;               ///< used
-  double correlation = 0.0;    ///< 0 to 1, at the best time offset, whatever the axes
+  int turns = 0;             ///< used
+  double correlation = 0.0;  ///< 0 to 1, at the best time offset, whatever the axes
+  /// Root mean square of the rates about their means.
+  double camera_rate_rad_per_s = 0.0, gyroscope_rate_rad_per_s = 0.0;
   double time_offset_s = 0.0;  ///< stamps of the images + this = clock of the gyroscope
   double time_offset_sigma_s = 0.0;
   /// Least-squares matrix that turns the gyroscope's rate into the camera's, in body axes: identity where

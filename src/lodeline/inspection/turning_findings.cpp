@@ -28,7 +28,7 @@ class TurningJudge {
         inspection_(inspection) {}
 
   void judge() {
-    if (turning_.correlation < kSame) {
+    if (turning_.correlation < kSame && isTurning()) {
       add(Severity::Warning, 80.0, "camera_unrelated",
           fmt::format("images and gyroscope do not turn together (correlation {:.2f}): recorded at other "
                       "times, clocks "
@@ -53,6 +53,14 @@ class TurningJudge {
  private:
   void add(Severity severity, double harm, const std::string& kind, const std::string& message) {
     inspection_->findings.push_back({severity, harm, name_, kind, message});
+  }
+
+  /// A rig that hangs still is seen to turn by what else moves and by noise. In rad/s as the gyroscope has
+  /// it, or by so much in the images that no noise explains it.
+  bool isTurning() const {
+    constexpr double kTurning_rad_per_s = 0.05, kPlainlyTurning_rad_per_s = 0.2;
+    return turning_.gyroscope_rate_rad_per_s > kTurning_rad_per_s ||
+           turning_.camera_rate_rad_per_s > kPlainlyTurning_rad_per_s;
   }
 
   /// Relations of axes mean nothing then; the dead axis is named already, or here where noise hides it.
