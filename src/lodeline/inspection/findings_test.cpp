@@ -67,6 +67,22 @@ TEST(Saturation, IsNamedWhereReadingsPileUpAtTheEndOfTheRange) {
   EXPECT_TRUE(isNamed(judged(samples), "gyroscope_saturated"));
 }
 
+TEST(Rest, TellsTheBiasOfACheapAccelerometerAndNamesAFault) {
+  const auto severity = [](double force_m_per_s2) {
+    std::vector<ImuSample> samples;
+    for (int i = 0; i < 2000; ++i) {
+      const double wobble = 1e-3 * std::sin(0.7 * i);
+      samples.push_back({Time::fromSeconds(0.005 * i), Vec3(wobble, 0.5 * wobble, 0.01 - wobble),
+                         Vec3(wobble, 0.3 * wobble, force_m_per_s2 + wobble)});
+    }
+    const Inspection inspection = judged(samples);
+    return inspection.findings.empty() ? std::string("none") : toString(inspection.findings.front().severity);
+  };
+  EXPECT_EQ(severity(9.9), "none");
+  EXPECT_EQ(severity(9.3), toString(Severity::Notice));
+  EXPECT_EQ(severity(11.2), toString(Severity::Warning));
+}
+
 Inspection judgedTurning(double correlation, double camera_rate, double gyroscope_rate) {
   Inspection inspection;
   inspection.rig.cameras.emplace_back();

@@ -57,8 +57,11 @@ void judgeForceUnit(const ImuSurvey& imu, Inspection* inspection) {
 void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
   if (imu.rest_s < 1.0) return;
   const double error = imu.rest_force_m_per_s2 - kGravity_m_per_s2;
-  if (imu.force_to_SI == 1.0 && std::abs(error) > 0.25) {
-    add(inspection, Severity::Warning, 45.0, "gravity_at_rest",
+  // Cheap accelerometers leave the factory with up to 80 mg of bias, which the estimator finds out.
+  constexpr double kWorthTelling_m_per_s2 = 0.25, kFaulty_m_per_s2 = 0.9;
+  if (imu.force_to_SI == 1.0 && std::abs(error) > kWorthTelling_m_per_s2) {
+    add(inspection, std::abs(error) > kFaulty_m_per_s2 ? Severity::Warning : Severity::Notice, 45.0,
+        "gravity_at_rest",
         fmt::format(
             "at rest the accelerometer reads {:.3f} m/s^2, {:.2f} off gravity; calibrate its scale and bias",
             imu.rest_force_m_per_s2, error));

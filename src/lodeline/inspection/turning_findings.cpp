@@ -55,8 +55,7 @@ class TurningJudge {
     inspection_->findings.push_back({severity, harm, name_, kind, message});
   }
 
-  /// A rig that hangs still is seen to turn by what else moves and by noise. In rad/s as the gyroscope has
-  /// it, or by so much in the images that no noise explains it.
+  /// A rig that hangs still is seen to turn a little by what else moves and by noise.
   bool isTurning() const {
     constexpr double kTurning_rad_per_s = 0.05, kPlainlyTurning_rad_per_s = 0.2;
     return turning_.gyroscope_rate_rad_per_s > kTurning_rad_per_s ||
