@@ -229,6 +229,38 @@ TEST_F(AttitudeFilterTest, SaysWhenTheMagnetometerFreezes) {
   EXPECT_LT(std::abs(headingError(filter.estimate()->world_from_body, truth(40.0))), 3.0 * kDegree);
 }
 
+TEST_F(AttitudeFilterTest, IsNotMisledByTheUnitOfAWildFirstReading) {
+  for (const Vec3& wild : {Vec3(4e4, 0.0, 0.0), Vec3(0.3, 0.2, 0.1)}) {
+    Diagnostics heard;
+    AttitudeFilter filter(AttitudeFilterOptions{}, MagnetometerCalibration(), &heard);
+    for (int i = 0; i <= 40 * 200; ++i) {
+      const double t = i / kRate_hz;
+      filter.add(imu(t));
+      MagnetometerSample sample = field(t, kNorthField_W);
+      sample.field_M *= 1e6;
+      if (i == 0) sample.field_M = wild;
+      if (i % kEvery == 0) filter.add(sample);
+    }
+    EXPECT_EQ(filter.estimate()->status, HeadingStatus::Magnetic) << wild.transpose();
+    EXPECT_LT(std::abs(headingError(filter.estimate()->world_from_body, truth(40.0))), 2.0 * kDegree);
+    EXPECT_EQ(heard.count("magnetometer_converted"), 1);
+  }
+}
+
+TEST_F(AttitudeFilterTest, TakesReadingsAtAnyRate) {
+  for (const int every : {200, 1}) {  // 1 and 200 Hz, as fast as the IMU here
+    MagnetometerCalibration magnetometer;
+    magnetometer.rate_hz = kRate_hz / every;
+    AttitudeFilter filter(AttitudeFilterOptions{}, magnetometer, &diagnostics);
+    for (int i = 0; i <= 60 * 200; ++i) {
+      filter.add(imu(i / kRate_hz));
+      if (i % every == 0) filter.add(field(i / kRate_hz, kNorthField_W));
+    }
+    EXPECT_EQ(filter.estimate()->status, HeadingStatus::Magnetic) << every;
+    EXPECT_LT(std::abs(headingError(filter.estimate()->world_from_body, truth(60.0))), 3.0 * kDegree);
+  }
+}
+
 TEST_F(AttitudeFilterTest, TakesLaggingReadingsAtTheirOwnTime) {
   // Stamps that were set back to when the field was: readings come in late, for moments before the last one.
   AttitudeFilter filter = filterWithMagnetometer();

@@ -8,11 +8,9 @@
 namespace lodeline {
 namespace {
 
-struct Unit {
-  const char* name;
-  double tesla;
-};
-constexpr Unit kUnits[] = {{"T", 1.0}, {"G", 1e-4}, {"uT", 1e-6}, {"mG", 1e-7}, {"nT", 1e-9}};
+bool isMeasured(const MagnetometerSample& reading) {
+  return reading.field_M.allFinite() && !reading.field_M.isZero(0.0);
+}
 
 }  // namespace
 
@@ -21,29 +19,21 @@ void MagnetometerReadings::report(const std::string& kind, const std::string& me
 }
 
 void MagnetometerReadings::findUnit(std::span<const MagnetometerSample> readings) {
-  std::vector<double> sizes;
+  if (unit_.settled()) return;
   for (const MagnetometerSample& reading : readings) {
-    if (reading.field_M.allFinite() && !reading.field_M.isZero(0.0)) sizes.push_back(reading.field_M.norm());
+    if (isMeasured(reading)) unit_.add(reading.field_M);
   }
-  if (sizes.empty()) return;
-  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
-  const double size = sizes[sizes.size() / 2];
-  for (const Unit& unit : kUnits) {
-    // A decade around the Earth's field, with room for hard iron.
-    if (size * unit.tesla < 1e-5 || size * unit.tesla >= 1e-4) continue;
-    tesla_per_unit_ = unit.tesla;
-    if (unit.tesla == 1.0) return;
-    report("converted",
-           fmt::format("readings of {:.3g} can only be {}, not T; they are converted. Convert the "
-                       "recording, and any calibration made from it, to be safe",
-                       size, unit.name));
+  if (!unit_.settled() || unit_.unit() == FieldUnit::Tesla) return;
+  if (unit_.unit() == FieldUnit::Raw) {
+    report("unusable",
+           fmt::format("readings of {:.3g} fit the Earth's field (22 to 67 uT) in no unit; the magnetometer "
+                       "is not used",
+                       unit_.size()));
     return;
   }
-  tesla_per_unit_ = 0.0;
-  report("unusable",
-         fmt::format("readings of {:.3g} fit the Earth's field (22 to 67 uT) in no unit; the magnetometer "
-                     "is not used",
-                     size));
+  report("converted", fmt::format("readings of {:.3g} can only be {}, not T; they are converted. Convert the "
+                                  "recording, and any calibration made from it, to be safe",
+                                  unit_.size(), toString(unit_.unit())));
 }
 
 bool MagnetometerReadings::isNew(const MagnetometerSample& reading) {
@@ -84,15 +74,15 @@ bool MagnetometerReadings::isSaturated(const Vec3& field_M) {
 
 std::vector<FieldSample> MagnetometerReadings::add(std::span<const MagnetometerSample> readings) {
   std::vector<FieldSample> usable;
-  if (!tesla_per_unit_) findUnit(readings);
+  findUnit(readings);
   for (const MagnetometerSample& reading : readings) {
-    if (!reading.field_M.allFinite() || reading.field_M.isZero(0.0)) {
+    if (!isMeasured(reading)) {
       report("invalid",
              fmt::format("reading at {} ns is zero or no number; left out", reading.time.nanoseconds()));
       continue;
     }
-    if (tesla_per_unit_.value_or(0.0) == 0.0 || !isNew(reading)) continue;
-    const Vec3 field_M = *tesla_per_unit_ * reading.field_M;
+    if (unit_.unit() == FieldUnit::Raw || !isNew(reading)) continue;
+    const Vec3 field_M = teslaPer(unit_.unit()) * reading.field_M;
     if (isSaturated(field_M)) {
       report("saturated",
              fmt::format("an axis reached the end of its range of {:.4g} uT at {} ns; such readings "

@@ -7,6 +7,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/inertial/magnetometer_mean.h"
+#include "lodeline/inertial/reading_unit.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -18,15 +19,13 @@ namespace lodeline {
 ///   than the sensor measures;
 /// - `magnetometer_frozen`: nothing but repetition for a second;
 /// - `magnetometer_saturated`: an axis at the end of its range;
-/// - `magnetometer_converted`, `magnetometer_unusable`: readings are not in tesla. The Earth's field has 22
-/// to 67 uT, so the size of the
-///   first readings tells tesla, gauss, microtesla, milligauss and nanotesla apart, which lie decades away
-///   from each other; readings of any other size are of no use and all left out.
+/// - `magnetometer_converted`, `magnetometer_unusable`: readings are not in tesla but in a unit that
+///   ReadingUnit finds, or in none, and then of no use and all left out.
 class MagnetometerReadings {
  public:
   /// `diagnostics` must outlive the readings.
   MagnetometerReadings(const MagnetometerCalibration& calibration, Diagnostics* diagnostics)
-      : calibration_(calibration), diagnostics_(diagnostics) {}
+      : calibration_(calibration), unit_(calibration), diagnostics_(diagnostics) {}
 
   /// The usable ones among the next readings, which are in order of time.
   std::vector<FieldSample> add(std::span<const MagnetometerSample> readings);
@@ -41,8 +40,8 @@ class MagnetometerReadings {
   void report(const std::string& kind, const std::string& message) const;
 
   MagnetometerCalibration calibration_;
+  ReadingUnit unit_;
   Diagnostics* diagnostics_;
-  std::optional<double> tesla_per_unit_;  ///< 0: no unit fits
   std::optional<MagnetometerSample> last_new_;
   bool frozen_ = false;
   /// The value that an axis has stuck to, since how many readings, and the size of the field meanwhile.
