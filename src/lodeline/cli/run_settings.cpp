@@ -125,7 +125,10 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
   settings->bind("magnetometer.floor_memory_s", &options->floor_memory_s, "over which they teach");
   settings->bind("magnetometer.noise_inflation", &options->noise_inflation,
                  "factor on the noise density of its calibration");
-  settings->bind("magnetometer.offset_sigma_T", &options->offset_sigma_T, "of what calibration leaves");
+  settings->bind("magnetometer.offset_sigma_T", &options->offset_sigma_T,
+                 "of hard iron that comes between calibration and dive");
+  settings->bind("magnetometer.unstated_offset_sigma_T", &options->unstated_offset_sigma_T,
+                 "of what a calibration leaves that does not say how sure it is");
   settings->bind("magnetometer.uncalibrated_offset_sigma_T", &options->uncalibrated_offset_sigma_T,
                  "of one that was never calibrated");
   settings->bind("magnetometer.offset_walk_T_per_sqrt_s", &options->offset_walk_T_per_sqrt_s,
@@ -151,8 +154,10 @@ void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
                  "over which rejections lower the weight of what is used");
   settings->bind("magnetometer.gate.account_s", &gate->account_s,
                  "over which agreement and rejection are weighed against each other");
+  settings->bind("magnetometer.gate.max_rejected_ratio", &gate->max_rejected_ratio,
+                 "of the times of rejection and agreement, beyond which nothing is believed any more");
   settings->bind("magnetometer.gate.credit_s", &gate->credit_s,
-                 "by which rejection has to outweigh agreement before nothing is believed any more");
+                 "by which that has to be exceeded, and agreement to prevail before it is believed again");
   settings->bind("magnetometer.gate.max_lasting_sigma_rad", &gate->max_lasting_sigma_rad,
                  "that the field's lasting error may be worth of heading");
   settings->bind("magnetometer.gate.distrust_s", &gate->distrust_s, "after which that is tried again");

@@ -83,6 +83,7 @@ void calibrate(const MagnetometerErrors& errors, FieldTrouble trouble, uint64_t 
   calibration->iron_correction = errors.soft_iron.inverse();
   calibration->hard_iron_T = errors.hard_iron_T;
   calibration->is_calibrated = true;
+  calibration->hard_iron_sigma_T = 0.01e-6;  // what calibrating on a figure of eight states
   spoil(trouble, random, calibration);
 }
 

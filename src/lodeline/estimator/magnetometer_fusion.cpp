@@ -80,8 +80,9 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
 
 void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
                               const Vec3& gyroscope_bias_B) {
-  if (use_ == MagnetometerUse::Off || imu.empty()) return;
+  // Of what is not used the faults are told all the same: attitude beside the odometry may use it.
   const std::vector<FieldSample> fields = readings_.add(readings);
+  if (use_ == MagnetometerUse::Off || imu.empty()) return;
   const std::span<const FieldSample> samples = recent(fields, imu);
   const Time time = imu.back().time;
   std::erase_if(means_, [&](const auto& entry) { return (time - entry.first).seconds() > kLongestWait_s; });
@@ -130,7 +131,8 @@ void MagnetometerFusion::align(Window* window, Prior* prior) {
 double MagnetometerFusion::offsetSigma() const {
   const MagnetometerOptions& wanted = options_.magnetometer;
   if (!calibration_.is_calibrated) return wanted.uncalibrated_offset_sigma_T;
-  return std::hypot(wanted.offset_sigma_T, calibration_.hard_iron_sigma_T.value_or(0.0));
+  return std::hypot(wanted.offset_sigma_T,
+                    calibration_.hard_iron_sigma_T.value_or(wanted.unstated_offset_sigma_T));
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {

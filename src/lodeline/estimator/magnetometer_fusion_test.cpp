@@ -161,7 +161,8 @@ TEST(MagnetometerFusion, OffChangesNotABit) {
     Estimator estimator(rig, options, &diagnostics);
     FrameEstimate estimate;
     while (const auto frame = scene.next()) {
-      const MagnetometerSample reading{frame->truth.time, kField_W};
+      const Quat& rotation = frame->truth.motion.world_from_body.rotation;
+      const MagnetometerSample reading{frame->truth.time, rotation.conjugate() * kField_W};
       estimate = estimator.add(frame->tracks, frame->imu, std::span(&reading, on_board ? 1 : 0));
     }
     last.push_back(estimate);
@@ -243,6 +244,16 @@ TEST_F(SpoiltMagnetometer, ThatFreezesIsNoData) {
     if (i > 100) s->field_M = Vec3(1e-6, 20e-6, 30e-6);
   });
   EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::NoData);
+  EXPECT_EQ(diagnostics_.count("magnetometer_frozen"), 1);
+}
+
+TEST_F(SpoiltMagnetometer, ThatIsNotWantedStillTellsItsFaults) {
+  const FrameEstimate estimate = run(
+      [](int64_t i, MagnetometerSample* s) {
+        if (i > 100) s->field_M = Vec3(1e-6, 20e-6, 30e-6);
+      },
+      MagnetometerUse::Off);
+  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Off);
   EXPECT_EQ(diagnostics_.count("magnetometer_frozen"), 1);
 }
 

@@ -108,7 +108,7 @@ void MagnetometerGate::keepAccount(MagnetometerStatus status, double since_s) {
 }
 
 bool MagnetometerGate::isInconsistent(const FieldCheck& earth) const {
-  return rejected_s_ > agreed_s_ + options_.credit_s ||
+  return rejected_s_ > options_.max_rejected_ratio * agreed_s_ + options_.credit_s ||
          earth.lasting_sigma_rad > options_.max_lasting_sigma_rad;
 }
 

@@ -173,6 +173,22 @@ TEST_F(MagnetometerGateTest, BelievesNothingOfWhatDisagreesForLongerThanItAgrees
   EXPECT_GT(count_[Status::Inconsistent], 500);
 }
 
+TEST_F(MagnetometerGateTest, BelievesNothingOfWhatFitsOnlyHalfOfTheTime) {
+  for (int i = 0; i < 6; ++i) {
+    run(40.0, headingOff(0.0));
+    run(45.0, normOff(0.1), normOff(0.1));
+  }
+  EXPECT_EQ(last_.status, Status::Inconsistent);
+}
+
+TEST_F(MagnetometerGateTest, BelievesASensorThatIsDisturbedAQuarterOfTheTime) {
+  for (int i = 0; i < 20; ++i) {
+    run(60.0, headingOff(0.0));
+    run(15.0, normOff(0.1), normOff(0.1));
+  }
+  EXPECT_EQ(count_[Status::Inconsistent], 0);
+}
+
 TEST_F(MagnetometerGateTest, BelievesNothingOfAFieldThatNeverAgreesWell) {
   FieldCheck poor = headingOff(0.01);
   poor.lasting_sigma_rad = 0.03;

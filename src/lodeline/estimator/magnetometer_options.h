@@ -36,10 +36,12 @@ struct MagnetometerGateOptions {
   double readmission_s = 60.0;
   /// Over which rejections lower the weight of what is used.
   double memory_s = 60.0;
-  /// A field that within the last `account_s` was rejected for longer than it agreed, by more than
-  /// `credit_s`, is that of a wrong calibration or of a magnet on board: nothing of it is used.
+  /// A field that within the last `account_s` was rejected for longer than `max_rejected_ratio` of the time
+  /// for which it agreed, by more than `credit_s`, is that of a wrong calibration or of a magnet on board:
+  /// nothing of it is used. A good sensor among passing iron is rejected for a tenth to a third of the time.
   double account_s = 600.0;
-  double credit_s = 120.0;
+  double max_rejected_ratio = 0.5;
+  double credit_s = 90.0;  ///< longer than readmission_s, so that a new field is tried before that
   /// The same is said of a field whose lasting error (FieldFloor) is worth more of heading than this.
   double max_lasting_sigma_rad = 0.015;
   /// After so long it is tried again, even so.
@@ -61,9 +63,12 @@ struct MagnetometerOptions {
   double noise_inflation = 1.0;  ///< factor on the density of the magnetometer's white noise
 
   double field_sigma_T = 1e-4;  ///< of the field vector at the start
-  double offset_sigma_T = 0.4e-6;
+  /// Hard iron that comes between calibration and dive: 0.26 uT over the three axes. Joined by the sigma that
+  /// the calibration states; one that states none leaves more.
+  double offset_sigma_T = 0.15e-6;
+  double unstated_offset_sigma_T = 0.3e-6;
   double uncalibrated_offset_sigma_T = 10e-6;
-  double offset_walk_T_per_sqrt_s = 3e-9;  ///< 0.2 uT in half an hour
+  double offset_walk_T_per_sqrt_s = 1e-9;  ///< 0.04 uT in half an hour
   double disturbance_sigma_T = 5e-6;
   double disturbance_walk_T_per_sqrt_s = 5e-8;
 
