@@ -2,6 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+
 #include "lodeline/cli/test_program.h"
 #include "lodeline/evaluation/test_trajectories.h"
 
@@ -18,22 +23,50 @@ class AttitudeTest : public ::testing::Test {
  protected:
   std::string file(const std::string& name) const { return test::quoted(folder_.path() / name); }
 
+  /// Readings of the field where there are any, T: of a time in s, and what is measured then.
+  using Spoil = std::function<std::optional<Vec3>(double, const Vec3&)>;
+
   /// Ten seconds at 100 Hz, level, x axis pointing to an azimuth of 30 degrees, in the units of its header.
-  void writeLevel(const std::string& name, bool with_field) {
-    std::string text =
-        with_field ? "t [s],gx [deg/s],gy [deg/s],gz [deg/s],ax [g],ay [g],az [g],mx [uT],my [uT],mz [uT]\n"
-                   : "t [s],gx [deg/s],gy [deg/s],gz [deg/s],ax [g],ay [g],az [g]\n";
+  void writeLevel(const std::string& name, const Spoil& spoil) {
+    std::string text = "t [s],gx [deg/s],gy [deg/s],gz [deg/s],ax [g],ay [g],az [g]";
+    if (spoil) text += fmt::format(",mx [{0}],my [{0}],mz [{0}]", stated_unit_);
+    text += "\n";
     for (int i = 0; i < 1000; ++i) {
       text += fmt::format("{:.2f},{},0.1,-0.1,0,0,{}", 0.01 * i, i % 2 == 0 ? 0.01 : -0.01,
                           i % 2 == 0 ? 1.001 : 0.999);
       // North, of 20 uT, is seen 30 degrees to the left of x.
-      if (with_field)
-        text += fmt::format(",{:.4f},10,{:.3f}", 20.0 * std::cos(M_PI / 6.0), -40.0 - 1e-3 * (i % 7));
+      const Vec3 field_uT(20.0 * std::cos(M_PI / 6.0), 10.0, -40.0 - 1e-3 * (i % 7));
+      const std::optional<Vec3> seen_uT = spoil ? spoil(0.01 * i, field_uT) : std::nullopt;
+      if (seen_uT) text += fmt::format(",{},{},{}", seen_uT->x(), seen_uT->y(), seen_uT->z());
+      if (spoil && !seen_uT) text += ",,,";
       text += "\n";
     }
     folder_.write(name, text);
   }
+  void writeLevel(const std::string& name, bool with_field) {
+    writeLevel(name, with_field ? Spoil([](double, const Vec3& field_uT) { return field_uT; }) : Spoil());
+  }
 
+  /// attitude.json of readings that `spoil` has spoilt.
+  nlohmann::json attitudeOf(const Spoil& spoil) {
+    writeLevel("spoilt.csv", spoil);
+    const Execution result = runProgram("attitude " + file("spoilt.csv") + " -o " + file("spoilt"));
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return test::readJson(folder_.path() / "spoilt" / "attitude.json");
+  }
+  static int findings(const nlohmann::json& json, const std::string& kind) {
+    int count = 0;
+    for (const auto& finding : json["findings"]) {
+      if (finding["kind"] == kind) count += finding["count"].get<int>();
+    }
+    return count;
+  }
+  static double shareOf(const nlohmann::json& json, const std::string& status) {
+    return json["status_share"].value(status, 0.0);
+  }
+  static double heading_deg(const nlohmann::json& json) { return json["end"]["heading_deg"]; }
+
+  std::string stated_unit_ = "uT";
   test::TemporaryFolder folder_;
 };
 
@@ -62,6 +95,53 @@ TEST_F(AttitudeTest, GoesWithoutAMagnetometer) {
   const Execution result = runProgram("attitude " + file("level.csv") + " -o " + file("out"));
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("no magnetometer"));
+}
+
+TEST_F(AttitudeTest, TellsTheUnitFromTheFieldsSize) {
+  stated_unit_ = "T";
+  for (const double per_uT : {1.0, 1e-2, 10.0, 1e3}) {  // uT, G, mG, nT
+    bool first = true;
+    const auto json = attitudeOf([&](double, const Vec3& field_uT) {
+      // One wild reading before all others decides nothing.
+      const Vec3 reading = first ? Vec3(5.0, 0.0, 0.0) : Vec3(per_uT * field_uT);
+      first = false;
+      return reading;
+    });
+    EXPECT_EQ(findings(json, "magnetometer_converted"), 1) << per_uT;
+    EXPECT_NEAR(heading_deg(json), 30.0, 0.5) << per_uT;
+  }
+}
+
+TEST_F(AttitudeTest, GoesOnWhereTheMagnetometerFails) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  auto json = attitudeOf(
+      [&](double t, const Vec3& field_uT) { return t < 5.0 ? field_uT : Vec3(Vec3::Constant(nan)); });
+  EXPECT_EQ(findings(json, "csv_field"), 500);
+  EXPECT_NEAR(heading_deg(json), 30.0, 0.5);
+  EXPECT_NEAR(shareOf(json, "waiting"), 0.35, 0.02);
+
+  json =
+      attitudeOf([](double t, const Vec3& field_uT) { return t < 5.0 ? field_uT : Vec3(17.0, 9.0, -41.0); });
+  EXPECT_EQ(findings(json, "magnetometer_frozen"), 1);
+  EXPECT_NEAR(heading_deg(json), 30.0, 0.5);
+  EXPECT_NEAR(shareOf(json, "waiting"), 0.35, 0.02);
+
+  // At the end of its range the field is of another size.
+  json = attitudeOf([](double t, const Vec3& field_uT) {
+    return Vec3(t < 5.0 ? field_uT : field_uT.cwiseMin(15.0).cwiseMax(-15.0) + Vec3(0.0, 1e-3 * t, 0.0));
+  });
+  EXPECT_NEAR(heading_deg(json), 30.0, 0.5);
+  EXPECT_NEAR(shareOf(json, "wrong_norm"), 0.5, 0.05);
+}
+
+TEST_F(AttitudeTest, TakesASlowMagnetometer) {
+  // Once a second, and repeated in the rows between.
+  const auto json = attitudeOf([](double t, const Vec3& field_uT) {
+    return Vec3(field_uT.x(), field_uT.y(), -40.0 - 1e-3 * std::floor(t + 1e-6));
+  });
+  EXPECT_NEAR(heading_deg(json), 30.0, 1.0);
+  EXPECT_GT(shareOf(json, "magnetic"), 0.7);
+  EXPECT_EQ(findings(json, "magnetometer_frozen"), 0);
 }
 
 TEST_F(AttitudeTest, ReadsRecordingsWithoutCameras) {

@@ -1,3 +1,7 @@
+#include <cmath>
+#include <fstream>
+#include <limits>
+
 #include "lodeline/cli/test_magnetic_room.h"
 
 // `lodeline run` on a recording with a magnetometer.
@@ -7,7 +11,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class RunMagnetometer : public MagneticRoomTest {};
+class RunMagnetometer : public MagneticRoomTest {
+ protected:
+  int framesUsed() const { return summary()["magnetometer"]["frames"].value("used", 0); }
+};
 
 TEST_F(RunMagnetometer, CalibratedTurnsTheTrajectoryToMagneticNorth) {
   const Execution result = runCalibrated();
@@ -51,11 +58,82 @@ TEST_F(RunMagnetometer, AsInThePaperRunsToo) {
   EXPECT_FALSE(summary()["magnetometer"].contains("field_W_T"));
 }
 
-TEST_F(RunMagnetometer, InGaussIsConvertedWithAWarning) {
-  writeField(1e4);
+TEST_F(RunMagnetometer, InAnotherUnitIsConvertedWithAWarning) {
+  for (const double per_tesla : {1e4, 1e6, 1e7}) {  // G, uT, mG
+    writeField(per_tesla);
+    expectGoodResult(runCalibrated());
+    EXPECT_EQ(findings("magnetometer_converted"), 1) << per_tesla;
+    EXPECT_EQ(summary()["heading"]["reference"], "magnetic north") << per_tesla;
+    EXPECT_NEAR(headingError(), 0.0, 2.0 * kDegree) << per_tesla;
+  }
+}
+
+TEST_F(RunMagnetometer, OfNoNumbersIsNoMagnetometer) {
+  const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  writeReadings([&](int, const Vec3&) { return none; });
+  const Execution refused = runCalibrated();
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("no magnetometer readings"));
+  expectGoodResult(run());
+  EXPECT_EQ(summary()["heading"]["reference"], "start heading");
+  // Now and then only, they are left out and the others used.
+  writeReadings([&](int reading, const Vec3& field_B) { return reading % 3 == 1 ? none : field_B; });
   expectGoodResult(runCalibrated());
-  EXPECT_EQ(findings("magnetometer_converted"), 1);
   EXPECT_EQ(summary()["heading"]["reference"], "magnetic north");
+  EXPECT_NEAR(headingError(), 0.0, 2.0 * kDegree);
+  EXPECT_GT(framesUsed(), 15);
+}
+
+TEST_F(RunMagnetometer, ThatFreezesIsUsedUpToThere) {
+  Vec3 last = Vec3::Zero();
+  const auto freeze = [&last](int reading, const Vec3& field_B) {
+    if (reading < 6) last = field_B;
+    return last;
+  };
+  writeReadings(freeze);
+  expectGoodResult(runCalibrated());
+  EXPECT_EQ(findings("magnetometer_frozen"), 1);
+  EXPECT_NEAR(headingError(), 0.0, 2.0 * kDegree);
+  EXPECT_LE(framesUsed(), 7);
+  EXPECT_GE(framesUsed(), 4);
+  EXPECT_GT(summary()["magnetometer"]["frames"]["no data"].get<int>(), 20);
+  // Where it is not wanted its faults are told all the same.
+  expectGoodResult(runCalibrated("--magnetometer off"));
+  EXPECT_EQ(findings("magnetometer_frozen"), 1);
+}
+
+TEST_F(RunMagnetometer, AtTheEndOfItsRangeIsNotBelieved) {
+  writeReadings([](int reading, const Vec3& field_B) {
+    return Vec3(reading < 10 ? field_B : field_B.cwiseMin(15e-6).cwiseMax(-15e-6));
+  });
+  expectGoodResult(runCalibrated());
+  EXPECT_NEAR(headingError(), 0.0, 2.0 * kDegree);
+  EXPECT_LE(framesUsed(), 11);
+  EXPECT_EQ(findings("magnetometer_rejected"), 1);
+}
+
+TEST_F(RunMagnetometer, MayBeSlowOrFast) {
+  const auto leave = [](int, const Vec3& field_B) { return field_B; };
+  for (const double rate_hz : {1.0, 1000.0}) {
+    writeReadings(leave, rate_hz);
+    expectGoodResult(runCalibrated());
+    EXPECT_EQ(summary()["heading"]["reference"], "magnetic north") << rate_hz;
+    EXPECT_NEAR(headingError(), 0.0, 2.0 * kDegree) << rate_hz;
+    EXPECT_EQ(framesUsed() > 25, rate_hz > 20.0) << framesUsed() << " at " << rate_hz << " Hz";
+  }
+}
+
+TEST_F(RunMagnetometer, ThatLagsIsTakenAtItsOwnTimeWhereTheLagIsKnown) {
+  const auto leave = [](int, const Vec3& field_B) { return field_B; };
+  expectGoodResult(runCalibrated());
+  const double prompt = headingError();
+  writeReadings(leave, 20.0, Duration::fromSeconds(0.2));
+  expectGoodResult(runCalibrated());
+  const double late = headingError();
+  std::ofstream(calibration_, std::ios::app) << "time_offset_to_imu_s: -0.2\n";
+  expectGoodResult(runCalibrated());
+  EXPECT_LT(std::abs(headingError() - prompt), 0.3 * std::abs(late - prompt));
+  EXPECT_GT(std::abs(late - prompt), 0.3 * kDegree) << "the lag does not matter here";
 }
 
 TEST_F(RunMagnetometer, WrongWordsAreUsageErrors) {

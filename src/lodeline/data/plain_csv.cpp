@@ -259,8 +259,12 @@ std::string PlainCsv::parseFields(PlainReading* reading) const {
     *into = valueOf(triad, &is_good);
     return is_good;
   };
-  const bool is_good = read(gyroscope_, &reading->angular_velocity) &&
-                       read(accelerometer_, &reading->specific_force) && read(magnetometer_, &reading->field);
+  const bool has_inertial =
+      read(gyroscope_, &reading->angular_velocity) && read(accelerometer_, &reading->specific_force);
+  const bool has_field = read(magnetometer_, &reading->field);
+  if (!has_field) reading->field.reset();
+  // A magnetometer slower than the rest, or one that fails, must not cost the row's other readings.
+  const bool is_good = has_inertial && (has_field || gyroscope_.isThere() || accelerometer_.isThere());
   return is_good ? std::string() : "a column does not hold a finite number";
 }
 
@@ -269,7 +273,15 @@ bool PlainCsv::next(PlainReading* reading) {
     holds_line_ = false;
     if (line_.front() == '#') continue;
     csv::split(line_, &fields_);
+    // What ends with a comma ends with an empty cell where one more is due.
+    if (fields_.size() + 1 == column_count_ && line_.back() == ',') fields_.emplace_back();
     const std::string problem = parseFields(reading);
+    if (problem.empty() && magnetometer_.isThere() && !reading->field) {
+      diagnostics_->report(
+          Severity::Notice, "csv_field",
+          fmt::format("{}:{}: no magnetometer reading in this row; its other readings are used",
+                      file_.string(), line_number_));
+    }
     if (problem.empty()) return true;
     diagnostics_->report(Severity::Warning, "csv_row",
                          fmt::format("{}:{}: {}; row passed over", file_.string(), line_number_, problem));

@@ -17,7 +17,7 @@ struct PlainReading {
   Time time;
   std::optional<Vec3> angular_velocity;  ///< rad/s
   std::optional<Vec3> specific_force;    ///< m/s^2
-  std::optional<Vec3> field;             ///< T
+  std::optional<Vec3> field;             ///< T; also missing where only this row has none
 };
 
 /// Reads a single CSV file with a time and the readings of gyroscope, accelerometer, magnetometer, all at one

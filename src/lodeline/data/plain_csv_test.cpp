@@ -98,6 +98,21 @@ TEST_F(PlainCsvTest, PassesOverRowsThatCannotBeUsed) {
   EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr(".csv:3"));
 }
 
+TEST_F(PlainCsvTest, KeepsInertialReadingsWhereTheFieldIsMissing) {
+  const auto readings = read(
+      "t,gx,gy,gz,ax,ay,az,mx [T],my [T],mz [T]\n0,0,0,0,0,0,9.8,1e-5,1e-5,1e-5\n"
+      "0.1,0,0,0,0,0,9.8,1e-5,nan,1e-5\n0.2,0,0,0,0,0,9.8,,,\n0.3,0,nan,0,0,0,9.8,1e-5,1e-5,1e-5\n"
+      "0.4,0,0,0,0,0,9.8,2e-5,1e-5,1e-5\n");
+  ASSERT_EQ(readings.size(), 4U);
+  EXPECT_TRUE(readings[0].field);
+  EXPECT_FALSE(readings[1].field);
+  EXPECT_FALSE(readings[2].field);
+  EXPECT_TRUE(readings[3].field);
+  EXPECT_TRUE(readings[1].angular_velocity && readings[2].specific_force);
+  EXPECT_EQ(diagnostics_.count("csv_field"), 2);
+  EXPECT_EQ(diagnostics_.count("csv_row"), 1);
+}
+
 TEST_F(PlainCsvTest, RefusesWhatItCannotUnderstand) {
   expectRefused("", "no row of numbers");
   expectRefused("t,mx,my,mz\n", "no row of numbers");

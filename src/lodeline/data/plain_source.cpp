@@ -52,7 +52,9 @@ std::optional<ImuSample> PlainSource::nextImu() {
 }
 
 std::optional<MagnetometerSample> PlainSource::nextMagnetometer() {
-  if (magnetometer_.empty() && csv_.hasMagnetometer()) readRow();
+  // Rows may lack their field.
+  while (magnetometer_.empty() && csv_.hasMagnetometer() && readRow()) {
+  }
   return takeFirst(&magnetometer_);
 }
 
