@@ -26,6 +26,9 @@ NeesSample neesOf(const Comparison& c) {
   sample.orientation = nees<3>(c.error.tail<3>(), covariance.block<3, 3>(3, 3));
   sample.yaw = c.error[5] * c.error[5] / covariance(5, 5);
   sample.motion = nees<9>(motion_error, covariance.bottomRightCorner<9, 9>());
+  sample.velocity = nees<3>(motion_error.head<3>(), covariance.block<3, 3>(6, 6));
+  sample.gyroscope_bias = nees<3>(motion_error.segment<3>(3), covariance.block<3, 3>(9, 9));
+  sample.accelerometer_bias = nees<3>(motion_error.tail<3>(), covariance.block<3, 3>(12, 12));
   sample.position_error_m = c.positionError();
   sample.position_sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   sample.yaw_error_rad = c.error[5];
@@ -68,12 +71,11 @@ Consistency measureConsistency(const ConsistencyOptions& options) {
   return result;
 }
 
-NeesBounds neesBounds(int coordinates, int count) {
-  constexpr double kQuantile = 3.2905;  // of the normal distribution at 0.9995
+NeesBounds neesBounds(int coordinates, int count, double quantile) {
   const double n = static_cast<double>(coordinates) * count;
   const double spread = 2.0 / (9.0 * n);
   const auto at = [&](double z) { return coordinates * std::pow(1.0 - spread + z * std::sqrt(spread), 3); };
-  return {at(-kQuantile), at(kQuantile)};
+  return {at(-quantile), at(quantile)};
 }
 
 }  // namespace lodeline

@@ -15,6 +15,9 @@ struct NeesSample {
   double orientation = 0.0;                               ///< 3
   double yaw = 0.0;                                       ///< 1, about the world's vertical
   double motion = 0.0;                                    ///< velocity and both biases, 9
+  double velocity = 0.0;                                  ///< 3
+  double gyroscope_bias = 0.0;                            ///< 3
+  double accelerometer_bias = 0.0;                        ///< 3
   double position_error_m = 0.0, position_sigma_m = 0.0;  ///< norm of the error; root of the trace
   double yaw_error_rad = 0.0, yaw_sigma_rad = 0.0;
 };
@@ -45,11 +48,16 @@ struct Consistency {
 /// Runs the scene once a seed.
 Consistency measureConsistency(const ConsistencyOptions& options);
 
-/// Bounds that the mean of `count` independent NEES samples of an honest estimator keeps within with
-/// probability 0.999, by Wilson & Hilferty's approximation of the chi-squared distribution.
+/// Quantiles of the normal distribution: a two-sided band with probability 0.999 or 0.95.
+constexpr double kBand999 = 3.2905;
+constexpr double kBand95 = 1.9600;
+
+/// Bounds that the mean of `count` independent NEES samples of an honest estimator keeps within with the
+/// probability that belongs to `quantile`, by Wilson & Hilferty's approximation of the chi-squared
+/// distribution.
 struct NeesBounds {
   double low, high;
 };
-NeesBounds neesBounds(int coordinates, int count);
+NeesBounds neesBounds(int coordinates, int count, double quantile = kBand999);
 
 }  // namespace lodeline

@@ -108,7 +108,8 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
 
 bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
   const WindowOptions& window = options_.window;
-  if (frames_since_start_ < window.startup_frames) return false;
+  const int least = scale_is_given_ ? window.startup_frames : window.startup_frames_mono;
+  if (frames_since_start_ < least) return false;
   if (scale_is_given_ || frames_since_start_ >= window.startup_max_frames) return true;
   // The way from the origin says nothing of a scale that was lost since.
   const double sigma = lost_scale_ ? speedUncertainty(window_.newest(), covariance)

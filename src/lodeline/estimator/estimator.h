@@ -60,6 +60,8 @@ class Estimator {
 
   bool initialized() const { return !window_.empty(); }
   const Window& window() const { return window_; }
+  const Rig& rig() const { return rig_; }
+  const EstimatorOptions& options() const { return options_; }
   const Prior& prior() const { return marginalizer_.prior(); }
 
   /// Landmarks that left the window since the last call, in order.

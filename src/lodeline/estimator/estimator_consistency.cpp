@@ -1,13 +1,15 @@
-// Monte Carlo of simulated scenes: is the estimator as good as it says? Prints the table of
+// Monte Carlo of simulated scenes and dives: is the estimator as good as it says? Prints the tables of
 // docs/estimator.md.
 
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <span>
 
-#include "lodeline/estimator/consistency.h"
+#include "lodeline/estimator/dive_consistency.h"
 
 namespace {
 
@@ -23,6 +25,14 @@ constexpr Column kColumns[] = {{"pose", 6, &NeesSample::pose},
                                {"orientation", 3, &NeesSample::orientation},
                                {"yaw", 1, &NeesSample::yaw},
                                {"motion", 9, &NeesSample::motion}};
+constexpr Column kDiveColumns[] = {{"position", 3, &NeesSample::position},
+                                   {"orientation", 3, &NeesSample::orientation},
+                                   {"yaw", 1, &NeesSample::yaw},
+                                   {"velocity", 3, &NeesSample::velocity},
+                                   {"b_g", 3, &NeesSample::gyroscope_bias},
+                                   {"b_a", 3, &NeesSample::accelerometer_bias}};
+const std::map<std::string, MagnetometerUse> kUses = {{"off", MagnetometerUse::Off},
+                                                      {"absolute", MagnetometerUse::Absolute}};
 
 void printEach(const Consistency& consistency) {
   for (const ConsistencyRow& row : consistency.rows) {
@@ -34,29 +44,54 @@ void printEach(const Consistency& consistency) {
   }
 }
 
-void print(const Consistency& consistency) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
+void printHeader(std::span<const Column> columns) {
   fmt::print("{:>7} {:>6}", "time s", "seeds");
-  for (const Column& column : kColumns)
+  for (const Column& column : columns)
     fmt::print(" {:>16}", fmt::format("{}/{}", column.name, column.coordinates));
   fmt::print("   position RMS (sigma) cm   yaw RMS (sigma) deg\n");
-  for (const ConsistencyRow& row : consistency.rows) {
-    const int count = static_cast<int>(row.samples.size());
-    if (count == 0) continue;
-    fmt::print("{:7.1f} {:6}", row.time_s, count);
-    for (const Column& column : kColumns) {
-      const NeesBounds bounds = neesBounds(column.coordinates, count);
-      const double mean = row.mean(column.figure);
-      const char* verdict = mean > bounds.high ? "high" : mean < bounds.low ? "low" : "ok";
-      fmt::print(" {:>16}", fmt::format("{:.2f} {}", mean, verdict));
-    }
-    fmt::print("   {:8.2f} ({:.2f})   {:13.3f} ({:.3f})\n",
-               100.0 * row.rootMeanSquare(&NeesSample::position_error_m),
-               100.0 * row.rootMeanSquare(&NeesSample::position_sigma_m),
-               kDegrees * row.rootMeanSquare(&NeesSample::yaw_error_rad),
-               kDegrees * row.rootMeanSquare(&NeesSample::yaw_sigma_rad));
+}
+
+std::string verdict(double mean, const NeesBounds& bounds) {
+  return fmt::format("{:.2f} {}", mean, mean > bounds.high ? "high" : mean < bounds.low ? "low" : "ok");
+}
+
+void printRow(const ConsistencyRow& row, std::span<const Column> columns, double quantile) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const int count = static_cast<int>(row.samples.size());
+  if (count == 0) return;
+  fmt::print("{:7.1f} {:6}", row.time_s, count);
+  for (const Column& column : columns)
+    fmt::print(" {:>16}", verdict(row.mean(column.figure), neesBounds(column.coordinates, count, quantile)));
+  fmt::print("   {:8.2f} ({:.2f})   {:13.3f} ({:.3f})\n",
+             100.0 * row.rootMeanSquare(&NeesSample::position_error_m),
+             100.0 * row.rootMeanSquare(&NeesSample::position_sigma_m),
+             kDegrees * row.rootMeanSquare(&NeesSample::yaw_error_rad),
+             kDegrees * row.rootMeanSquare(&NeesSample::yaw_sigma_rad));
+}
+
+void printBand(std::span<const Column> columns, int seeds) {
+  fmt::print("{:>7} {:>6}", "95 %", "");
+  for (const Column& column : columns) {
+    const NeesBounds band = neesBounds(column.coordinates, seeds, kBand95);
+    fmt::print(" {:>16}", fmt::format("{:.2f}..{:.2f}", band.low, band.high));
   }
+  fmt::print("\n");
+}
+
+void print(const Consistency& consistency, std::span<const Column> columns, double quantile) {
+  printHeader(columns);
+  for (const ConsistencyRow& row : consistency.rows) printRow(row, columns, quantile);
   if (consistency.lost > 0) fmt::print("{} seeds without an estimate in time\n", consistency.lost);
+}
+
+void studyDives(double minutes, int samples, DiveConsistencyOptions options) {
+  options.dive.duration_s = 60.0 * minutes;
+  for (int i = 1; i <= samples; ++i) options.times_s.push_back(60.0 * minutes * i / samples - 1.0);
+  options.progress = [](int done) { fmt::print(stderr, "\r{} dives", done); };
+  const Consistency consistency = measureDiveConsistency(options);
+  fmt::print(stderr, "\n");
+  print(consistency, kDiveColumns, kBand95);
+  printBand(kDiveColumns, options.seeds);
 }
 
 }  // namespace
@@ -64,26 +99,62 @@ void print(const Consistency& consistency) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Mean normalised estimation error squared over simulated scenes; an honest estimator shows the "
-      "number after the slash. ok/high/low: against bounds that hold with probability 0.999.");
+      "number after the slash. ok/high/low: against bounds that hold with probability 0.999. With --minutes, "
+      "over dives of so many minutes, against the band of probability 0.95.");
   ConsistencyOptions options;
-  double seconds = 60.0;
-  bool each = false;
+  DiveConsistencyOptions dives;
+  dives.dive = exactDive(0.0);
+  dives.dive.trouble = FieldTrouble::HardIron;
+  double seconds = 60.0, minutes = 0.0;
+  int samples = 10;
+  bool each = false, as_shipped = false;
+  std::string magnetometer = "off";
   options.estimator = honestOptions(options.scene);
+  SolverOptions solver;
+  WindowOptions window;
   app.add_option("--seeds", options.seeds)->capture_default_str();
   app.add_option("--seconds", seconds)->capture_default_str();
   app.add_option("--cameras", options.scene.cameras)->capture_default_str()->check(CLI::Range(1, 2));
-  app.add_option("--tracks", options.scene.points.tracks)->capture_default_str();
+  app.add_option("--tracks", options.scene.points.tracks, "default of dives: 40")->capture_default_str();
   app.add_option("--pixel-sigma", options.scene.points.pixel_sigma_px)->capture_default_str();
-  app.add_option("--robust-scale", options.estimator.solver.robust_scale_sigmas)->capture_default_str();
-  app.add_option("--iterations", options.estimator.solver.max_iterations)->capture_default_str();
-  app.add_option("--recent-frames", options.estimator.window.recent_frames)->capture_default_str();
-  app.add_option("--keyframes", options.estimator.window.keyframes)->capture_default_str();
+  app.add_option("--robust-scale", solver.robust_scale_sigmas)->capture_default_str();
+  app.add_option("--iterations", solver.max_iterations)->capture_default_str();
+  app.add_option("--recent-frames", window.recent_frames)->capture_default_str();
+  app.add_option("--keyframes", window.keyframes)->capture_default_str();
+  app.add_option("--startup-frames", window.startup_frames)->capture_default_str();
   app.add_flag("--each", each, "list every seed too");
+  app.add_option("--minutes", minutes, "dives of so many minutes in place of scenes");
+  app.add_option("--first-seed", dives.first_seed, "of dives")->capture_default_str();
+  app.add_option("--rate", dives.dive.frame_rate_hz, "of dives, frames a second")->capture_default_str();
+  app.add_option("--samples", samples, "of each dive")->capture_default_str();
+  app.add_option("--threads", dives.threads, "for dives")->capture_default_str();
+  app.add_option("--magnetometer", magnetometer, "of dives")
+      ->check(CLI::IsMember(kUses))
+      ->capture_default_str();
+  app.add_flag("--as-shipped", as_shipped,
+               "dives with flicker noise, and the estimator's default noise, priors and camera calibration");
   CLI11_PARSE(app, argc, argv);
+  options.estimator.solver = solver;
+  options.estimator.window = window;
+  if (minutes > 0.0) {
+    if (as_shipped) {
+      dives.dive.honest_imu = false;
+      dives.dive.bias_instability = true;
+      dives.dive.estimator.camera_calibration.enabled = true;
+    }
+    dives.seeds = options.seeds;
+    dives.dive.cameras = options.scene.cameras;
+    if (app.count("--tracks") > 0) dives.dive.tracks = options.scene.points.tracks;
+    dives.dive.estimator.solver = solver;
+    dives.dive.estimator.window = window;
+    dives.dive.estimator.magnetometer.use = kUses.at(magnetometer);
+    studyDives(minutes, samples, dives);
+    return 0;
+  }
   std::erase_if(options.times_s, [&](double t) { return t > seconds; });
   if (options.times_s.empty() || options.times_s.back() < seconds) options.times_s.push_back(seconds);
   const Consistency consistency = measureConsistency(options);
   if (each) printEach(consistency);
-  print(consistency);
+  print(consistency, kColumns, kBand999);
   return 0;
 }

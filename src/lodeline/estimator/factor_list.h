@@ -22,6 +22,9 @@ struct Factor {
   std::vector<double*> blocks;
 };
 
+/// The cost of a factor at its blocks' values; `residual` is room to work in.
+double costOf(const Factor& factor, std::vector<double>& residual);
+
 /// The terms that one landmark takes part in.
 struct LandmarkFactors {
   double* landmark = nullptr;

@@ -163,9 +163,10 @@ double HeadingTrial::share(MagnetometerStatus status) const {
   return samples.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(samples.size());
 }
 
-HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
+double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& observe) {
   SpecimenOptions specimen;
-  const ImuErrors imu = drawImuErrors(imuGrade(options.imu_grade), specimen, options.seed);
+  ImuErrors imu = drawImuErrors(imuGrade(options.imu_grade), specimen, options.seed);
+  if (!options.bias_instability) imu.gyroscope.bias_instability = imu.accelerometer.bias_instability = 0.0;
   PointDive dive = diveOf(options, imu);
   PointMagnetometer magnetometer;
   magnetometer.field_W = kField_W;
@@ -183,15 +184,24 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
 
   Diagnostics diagnostics;
   Estimator estimator(dive.mounted.rig, estimatorOptions(options), &diagnostics);
-  HeadingTrial trial;
-  std::optional<Quat> estimate_from_truth;
+  double estimator_s = 0.0;
   while (const auto frame = simulation.next()) {
     const double before_s = threadSeconds();
     const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, frame->magnetometer);
-    trial.estimator_s += threadSeconds() - before_s;
-    if (estimate.status == Status::Waiting) continue;
+    estimator_s += threadSeconds() - before_s;
+    observe(*frame, estimate, estimator);
+  }
+  return estimator_s;
+}
+
+HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
+  HeadingTrial trial;
+  std::optional<Quat> estimate_from_truth;
+  const Time begin = PointSimulationOptions().start;
+  const auto observe = [&](const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator&) {
+    if (estimate.status == Status::Waiting) return;
     const Quat& estimated = estimate.state.world_from_body.rotation;
-    const Quat& truth = frame->truth.motion.world_from_body.rotation;
+    const Quat& truth = frame.truth.motion.world_from_body.rotation;
     trial.reference = estimate.magnetometer.heading_reference;
     trial.floor_T = estimate.magnetometer.floor_T.value_or(0.0);
     if (!estimate_from_truth) {
@@ -204,8 +214,9 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
                                  ? std::sqrt(estimate.covariance(5, 5))
                                  : estimate.magnetometer.heading_sigma_rad;
     trial.samples.push_back(
-        {(frame->truth.time - points.start).seconds(), error.z(), sigma_rad, estimate.magnetometer.status});
-  }
+        {(frame.truth.time - begin).seconds(), error.z(), sigma_rad, estimate.magnetometer.status});
+  };
+  trial.estimator_s = runTrialDive(options, observe);
   return trial;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/simulation/magnetometer_model.h"
+#include "lodeline/simulation/point_simulation.h"
 
 namespace lodeline {
 
@@ -37,6 +39,8 @@ struct HeadingTrialOptions {
   FieldTrouble trouble = FieldTrouble::None;
   EstimatorOptions estimator;
   bool honest_imu = true;  ///< the estimator takes the IMU's noise for what it is (noise_inflation 1)
+  /// Flicker noise of the biases, which the estimator's model has as a random walk.
+  bool bias_instability = true;
 };
 
 struct HeadingSample {
@@ -63,5 +67,13 @@ struct HeadingTrial {
 };
 
 HeadingTrial runHeadingTrial(const HeadingTrialOptions& options);
+
+/// Is told of every frame of a trial's dive, with the estimator right after it.
+using TrialObserver = std::function<void(const SimulatedFrame& frame, const FrameEstimate& estimate,
+                                         const Estimator& estimator)>;
+
+/// The dive of a heading trial, for whoever asks more of it than the heading. Gives the estimator's processor
+/// time, s.
+double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& observe);
 
 }  // namespace lodeline

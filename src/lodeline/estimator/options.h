@@ -40,10 +40,12 @@ struct MonoInitializationOptions {
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
   int keyframes = 7;      ///< older keyframes, kept as poses
-  /// Nothing is marginalised before this many frames, nor before the scale is known to `startup_scale_sigma`
-  /// (relative; for at most `startup_max_frames`), so that no early, bad linearisation is frozen.
+  /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen. One
+  /// camera, whose scale settles slowly, waits longer, and until the scale is known to `startup_scale_sigma`
+  /// (relative; for at most `startup_max_frames`).
   int startup_frames = 20;
-  int startup_max_frames = 45;
+  int startup_frames_mono = 45;
+  int startup_max_frames = 60;
   double startup_scale_sigma = 0.03;
 };
 

@@ -134,19 +134,25 @@ Rigid3 estimateFromTruth(const Rigid3& first_estimate, const Rigid3& first_truth
   return Rigid3(heading, first_estimate.translation - heading * first_truth.translation);
 }
 
-Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const DepthSample> depth) {
+Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEstimate& estimate,
+                                    const Estimator& estimator) {
   const Rigid3& truth = frame.truth.motion.world_from_body;
   Comparison result;
-  result.time_s = scene_.secondsOf(frame.truth.time);
+  result.time_s = (frame.truth.time - PointSimulationOptions().start).seconds();
+  result.estimate = estimate;
   if (!estimate_from_truth_) true_poses_[frame.truth.time] = truth;
-  result.estimate = estimator_.add(frame.tracks, frame.imu, {}, depth);
   if (!result.initialized()) return result;
   if (!estimate_from_truth_) {
     // The prior knows the oldest frame best, at its first estimate.
-    const Frame& oldest = *estimator_.window().frames().front();
+    const Frame& oldest = *estimator.window().frames().front();
     const Rigid3 first_estimate =
         oldest.firstPose() ? poseFromBlock(oldest.firstPose()) : oldest.worldFromBody();
-    estimate_from_truth_ = estimateFromTruth(first_estimate, true_poses_.at(oldest.time));
+    const Rigid3& first_truth = true_poses_.at(oldest.time);
+    estimate_from_truth_ = estimateFromTruth(first_estimate, first_truth);
+    if (estimate.magnetometer.heading_reference != HeadingReference::Start) {
+      // The heading is the field's, which the simulation lets point along the world's y axis.
+      *estimate_from_truth_ = Rigid3(Quat::Identity(), first_estimate.translation - first_truth.translation);
+    }
     true_poses_.clear();
   }
   result.true_world_from_body = *estimate_from_truth_ * truth;
@@ -155,6 +161,13 @@ Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const D
   result.true_accelerometer_bias_B = frame.truth.accelerometer_bias_B;
   result.error = perturbationBetween(result.true_world_from_body, result.estimate.state.world_from_body);
   return result;
+}
+
+Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const DepthSample> depth) {
+  const FrameEstimate estimate = estimator_.add(frame.tracks, frame.imu, {}, depth);
+  Comparison comparison = comparison_.compare(frame, estimate, estimator_);
+  comparison.time_s = scene_.secondsOf(frame.truth.time);
+  return comparison;
 }
 
 std::vector<Comparison> compare(TestScene& scene, const EstimatorOptions& options) {

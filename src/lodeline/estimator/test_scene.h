@@ -62,7 +62,7 @@ Rigid3 estimateFromTruth(const Rigid3& first_estimate, const Rigid3& first_truth
 
 /// An estimate beside the truth.
 struct Comparison {
-  double time_s = 0.0;
+  double time_s = 0.0;  ///< since the start of the motion
   FrameEstimate estimate;
   Rigid3 true_world_from_body;  ///< in the estimator's world
   Vec3 true_velocity_W = Vec3::Zero();
@@ -73,6 +73,16 @@ struct Comparison {
   bool initialized() const { return estimate.status != Status::Waiting; }
   double positionError() const { return error.head<3>().norm(); }
   double rotationError() const { return error.tail<3>().norm(); }
+};
+
+/// Sets an estimator's output beside the truth, frame by frame from the first.
+class TruthComparison {
+ public:
+  Comparison compare(const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator& estimator);
+
+ private:
+  std::map<Time, Rigid3> true_poses_;  // until initialised
+  std::optional<Rigid3> estimate_from_truth_;
 };
 
 /// An estimator that is compared with the truth after every frame.
@@ -90,8 +100,7 @@ class ComparedEstimator {
   const TestScene& scene_;
   Diagnostics diagnostics_;
   Estimator estimator_;
-  std::map<Time, Rigid3> true_poses_;  // until initialised
-  std::optional<Rigid3> estimate_from_truth_;
+  TruthComparison comparison_;
 };
 
 /// Runs a whole scene.

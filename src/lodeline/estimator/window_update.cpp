@@ -44,16 +44,6 @@ class Snapshot {
   std::vector<double> values_;
 };
 
-double costOf(const Factor& factor, std::vector<double>& residual) {
-  residual.resize(factor.function->num_residuals());
-  factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
-  const double squared = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()).squaredNorm();
-  if (!factor.loss) return 0.5 * squared;
-  double rho[3];
-  factor.loss->Evaluate(squared, rho);
-  return 0.5 * rho[0];
-}
-
 /// All terms of a window, in a form that is quick to evaluate again and again.
 class QuickTerms {
  public:

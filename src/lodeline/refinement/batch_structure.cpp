@@ -1,0 +1,73 @@
+#include "lodeline/refinement/batch_structure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/estimator/marginalizer.h"
+#include "lodeline/features/triangulation.h"
+
+namespace lodeline {
+namespace {
+
+bool hosts(const TrackHistory& track) {
+  return track.seenIn(track.landmark->host) && track.find(track.landmark->host, 0) != nullptr;
+}
+
+}  // namespace
+
+void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                   TrackHistory* track) {
+  const auto host = std::find_if(track->sightings.begin(), track->sightings.end(),
+                                 [](const Sighting& sighting) { return sighting.camera == 0; });
+  if (host == track->sightings.end() || track->sightings.size() < 2) return;
+  const auto viewOf = [&](const Sighting& sighting) {
+    // Pixels over the angle, both axes together.
+    const double pixels = std::sqrt(std::abs(sighting.measurement.sqrt_information.determinant()));
+    return BearingView{factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera),
+                       sighting.measurement.bearing_C, 1.0 / pixels};
+  };
+  std::vector<BearingView> views = {viewOf(*host)};
+  for (const Sighting& sighting : track->sightings) {
+    if (&sighting != &*host) views.push_back(viewOf(sighting));
+  }
+  TriangulationOptions wanted;
+  wanted.max_rms_sigmas = 3.0 * options.max_error_sigmas;  // single sightings are judged afterwards
+  const Triangulation point = triangulate(views, wanted);
+  const double rho = point.inverse_depth_per_m, sigma = point.inverse_depth_sigma_per_m;
+  const bool is_known =
+      sigma < options.max_relative_sigma * std::abs(rho) || sigma < options.max_inverse_distance_sigma_per_m;
+  const bool is_usable =
+      point.good() || (point.status == TriangulationStatus::LowParallax && is_known && rho > 1e-4);
+  if (!is_usable || rho > 1.0 / options.min_distance_m || rho < 1e-4) return;
+  const Vec3 point_C = views.front().world_from_camera.inverse() * point.point_W;
+  Landmark landmark;
+  landmark.host = host->frame;
+  landmark.base = LandmarkBase(host->measurement.bearing_C);
+  const double depth = landmark.base.bearing_C.dot(point_C);
+  if (depth < options.min_distance_m) return;
+  const Vec2 ab = landmark.base.tangent_C.transpose() * point_C / depth;
+  landmark.parameters = {ab.x(), ab.y(), 1.0 / depth};
+  track->landmark = landmark;
+}
+
+int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                         TrackHistory* track) {
+  const LandmarkFactors terms = factors.landmark(window, *track);
+  std::vector<Sighting> kept;
+  for (size_t i = 0; i < track->sightings.size(); ++i) {
+    const Factor& factor = terms.factors[i];
+    Vec2 residual;
+    factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
+    if (residual.norm() <= options.max_error_sigmas) kept.push_back(track->sightings[i]);
+  }
+  const int removed = static_cast<int>(track->sightings.size() - kept.size());
+  track->sightings = std::move(kept);
+  if (!hosts(*track)) moveToNewHost(window, *track, track->landmark->host, factors);
+  if (!track->landmark) return removed;
+  const double rho = track->landmark->inverseDistance();
+  const bool is_sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
+  if (track->sightings.size() < 2 || !is_sane) track->landmark.reset();
+  return removed;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/options.h"
+
+namespace lodeline {
+
+/// Gives a track a landmark where the window's poses see it, hosted by the first frame that sees it with
+/// camera 0; none where its distance is not known well enough (LandmarkOptions).
+void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                   TrackHistory* track);
+
+/// Removes sightings that contradict the landmark by more than `max_error_sigmas`, and the landmark itself
+/// where too little is left of it or it lies behind its host. Returns the number of sightings removed.
+int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                         TrackHistory* track);
+
+}  // namespace lodeline

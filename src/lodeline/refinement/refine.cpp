@@ -1,0 +1,146 @@
+#include "lodeline/refinement/refine.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lodeline/base/thread_clock.h"
+#include "lodeline/estimator/marginalizer.h"
+#include "lodeline/refinement/batch_problem.h"
+#include "lodeline/refinement/refined_frames.h"
+
+namespace lodeline {
+namespace {
+
+/// One round of Levenberg-Marquardt steps.
+struct Round {
+  int iterations = 0;
+  double initial_cost = 0.0, final_cost = 0.0;
+  bool converged = false;
+};
+
+/// A step that lowers the cost; nothing where no damping gives one. `damping` is adapted.
+std::optional<double> lowerCost(BatchProblem& problem, double cost, SkylineMatrix* hessian, double* damping) {
+  constexpr double kLeastDamping = 1e-9, kMostDamping = 1e1;
+  const std::vector<double> before = problem.values();
+  Eigen::VectorXd gradient;
+  while (*damping <= kMostDamping) {
+    problem.linearise(hessian, &gradient);
+    hessian->damp(*damping);
+    if (hessian->factorise()) {
+      problem.step(hessian->solve(-gradient));
+      const double lowered = problem.cost();
+      if (lowered < cost) {
+        *damping = std::max(kLeastDamping, 0.05 * *damping);
+        return lowered;
+      }
+      problem.setValues(before);
+    }
+    *damping *= 30.0;
+  }
+  return std::nullopt;
+}
+
+Round solve(BatchProblem& problem, const RefinementOptions& wanted, SkylineMatrix* hessian) {
+  Round round;
+  double damping = 1e-7;
+  double cost = round.initial_cost = problem.cost();
+  while (round.iterations < wanted.max_iterations && !round.converged) {
+    ++round.iterations;
+    const std::optional<double> lowered = lowerCost(problem, cost, hessian, &damping);
+    round.converged = !lowered || cost - *lowered < wanted.function_tolerance * cost;
+    cost = lowered.value_or(cost);
+  }
+  round.final_cost = cost;
+  return round;
+}
+
+void measureMoves(const std::vector<FrameEstimate>& before, const std::vector<FrameEstimate>& after,
+                  RefinementSummary* summary) {
+  double squares_m2 = 0.0, squares_rad2 = 0.0;
+  for (size_t i = 0; i < before.size(); ++i) {
+    const Eigen::Matrix<double, 6, 1> moved =
+        perturbationBetween(before[i].state.world_from_body, after[i].state.world_from_body);
+    squares_m2 += moved.head<3>().squaredNorm();
+    squares_rad2 += moved.tail<3>().squaredNorm();
+    summary->moved_max_m = std::max(summary->moved_max_m, moved.head<3>().norm());
+  }
+  const auto count = static_cast<double>(before.size());
+  summary->moved_rms_m = std::sqrt(squares_m2 / count);
+  summary->turned_rms_rad = std::sqrt(squares_rad2 / count);
+  summary->forward_sigma_m = std::sqrt(before.back().covariance.topLeftCorner<3, 3>().trace());
+  summary->sigma_m = std::sqrt(after.back().covariance.topLeftCorner<3, 3>().trace());
+}
+
+std::vector<MapPoint> mapPoints(const BatchProblem& problem) {
+  std::vector<MapPoint> points;
+  for (const auto& [id, track] : problem.window().tracks()) {
+    if (!track.landmark) continue;
+    if (const auto point = mapPointOf(problem.window(), id, track, problem.factors()))
+      points.push_back(*point);
+  }
+  return points;
+}
+
+std::string refusalOf(const RefinementSummary& summary, const RefinementOptions& wanted) {
+  if (!std::isfinite(summary.cost)) return "its cost is not finite";
+  if (summary.outlier_share > wanted.max_outlier_share) {
+    return fmt::format("{:.0f} % of the sightings contradict it, of {:.0f} % allowed",
+                       100.0 * summary.outlier_share, 100.0 * wanted.max_outlier_share);
+  }
+  return {};
+}
+
+}  // namespace
+
+Refinement refine(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record,
+                  const RefinementOptions& wanted) {
+  const double start_s = threadSeconds();
+  Refinement result;
+  RefinementSummary& summary = result.summary;
+  result.frames = record.frames();
+  if (record.states().size() < 2) {
+    summary.refusal = "fewer than two frames have a pose";
+    return result;
+  }
+  BatchProblem problem(rig, options, record);
+  SkylineMatrix hessian = problem.emptyMatrix();
+  summary.states = static_cast<int>(problem.states());
+  const auto all_sightings = static_cast<double>(std::max<size_t>(1, problem.sightings()));
+  int outliers = 0;
+  for (int i = 0; i < wanted.rounds; ++i) {
+    if (i > 0) {
+      problem.relinearise();
+      outliers += problem.removeOutliers();
+    }
+    const Round round = solve(problem, wanted, &hessian);
+    if (i == 0) {
+      summary.forward_cost = round.initial_cost;
+      summary.first_round_cost = round.final_cost;
+    }
+    summary.cost = round.final_cost;
+    summary.iterations += round.iterations;
+    summary.converged = round.converged;
+  }
+  summary.landmarks = static_cast<int64_t>(problem.landmarks());
+  summary.sightings = static_cast<int64_t>(problem.sightings());
+  summary.outlier_share = outliers / all_sightings;
+  summary.refusal = refusalOf(summary, wanted);
+  if (!summary.usable()) return result;
+  if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
+    Eigen::VectorXd gradient;
+    problem.linearise(&hessian, &gradient);
+    summary.has_covariance = hessian.factorise();
+    if (summary.has_covariance) hessian.invert();
+  }
+  result.frames = refinedFrames(problem, rig, options, record, summary.has_covariance ? &hessian : nullptr);
+  result.landmarks = mapPoints(problem);
+  measureMoves(record.frames(), result.frames, &summary);
+  summary.processor_s = threadSeconds() - start_s;
+  return result;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,150 @@
+#include "lodeline/refinement/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lodeline/estimator/test_scene.h"
+
+namespace lodeline {
+namespace {
+
+/// A scene run through the estimator and recorded for the batch solution.
+struct ForwardRun {
+  TestScene scene;
+  EstimatorOptions options;
+  Diagnostics diagnostics;
+  Estimator estimator;
+  ForwardRecord record;
+  std::vector<Comparison> comparisons;  // of the frames that have a pose
+
+  using Tamper = std::function<void(double time_s, SimulatedFrame& frame)>;
+
+  explicit ForwardRun(const TestSceneOptions& wanted, double state_interval_s = 0.0,
+                      const Tamper& tamper = {})
+      : scene(wanted),
+        options(optionsOf(wanted)),
+        estimator(scene.rig(), options, &diagnostics),
+        record(state_interval_s) {
+    TruthComparison truth;
+    while (auto frame = scene.next()) {
+      if (tamper) tamper(scene.secondsOf(frame->truth.time), *frame);
+      const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
+      record.add(frame->tracks, frame->imu, estimate, estimator);
+      const Comparison comparison = truth.compare(*frame, estimate, estimator);
+      if (comparison.initialized()) comparisons.push_back(comparison);
+    }
+    record.finish(estimator);
+  }
+
+  static EstimatorOptions optionsOf(const TestSceneOptions& wanted) {
+    EstimatorOptions options = honestOptions(wanted);
+    options.camera_calibration.enabled = false;
+    return options;
+  }
+
+  Refinement refined() const { return refine(scene.rig(), options, record); }
+
+  double rootMeanSquare(const std::vector<FrameEstimate>& frames) const {
+    double sum = 0.0;
+    for (size_t i = 0; i < frames.size(); ++i)
+      sum += (frames[i].state.world_from_body.translation - comparisons[i].true_world_from_body.translation)
+                 .squaredNorm();
+    return std::sqrt(sum / static_cast<double>(frames.size()));
+  }
+};
+
+TestSceneOptions smallScene(int cameras) {
+  TestSceneOptions options;
+  options.cameras = cameras;
+  options.duration_s = 12.0;
+  options.points.tracks = cameras == 1 ? 80 : 40;
+  options.points.frame_rate_hz = 10.0;
+  return options;
+}
+
+class RefineTest : public testing::TestWithParam<int> {};
+
+TEST_P(RefineTest, LowersTheCostAndTheErrorAndStaysWithinItsSigmas) {
+  const ForwardRun run(smallScene(GetParam()));
+  const Refinement refinement = run.refined();
+  const RefinementSummary& summary = refinement.summary;
+  ASSERT_TRUE(summary.usable()) << summary.refusal;
+  EXPECT_TRUE(summary.converged);
+  EXPECT_LT(summary.first_round_cost, summary.forward_cost);
+  // Whitened residuals of honest noise: two of each sighting, under a loss that makes them count for less.
+  EXPECT_NEAR(2.0 * summary.cost / (2.0 * static_cast<double>(summary.sightings)), 0.7, 0.2);
+  ASSERT_EQ(refinement.frames.size(), run.comparisons.size());
+  EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
+  for (size_t i = 0; i < refinement.frames.size(); i += 10) {
+    const FrameEstimate& frame = refinement.frames[i];
+    const Eigen::Matrix<double, 6, 1> error =
+        perturbationBetween(run.comparisons[i].true_world_from_body, frame.state.world_from_body);
+    const double nees = error.dot(frame.covariance.topLeftCorner<6, 6>().ldlt().solve(error));
+    EXPECT_LT(nees, 30.0) << "at " << run.comparisons[i].time_s << " s";  // 0.00004 beyond for an honest one
+  }
+}
+
+TEST_P(RefineTest, FramesBetweenStatesAreAsGoodAsStates) {
+  const ForwardRun run(smallScene(GetParam()), 0.5);
+  const Refinement refinement = run.refined();
+  ASSERT_TRUE(refinement.summary.usable());
+  EXPECT_LT(refinement.summary.states, static_cast<int>(refinement.frames.size()));
+  EXPECT_LT(run.rootMeanSquare(refinement.frames), 1.1 * run.rootMeanSquare(run.record.frames()));
+  for (size_t i = 1; i < refinement.frames.size(); ++i) {
+    // No jumps where a frame is followed by a state.
+    const NavigationState& before = refinement.frames[i - 1].state;
+    const NavigationState& now = refinement.frames[i].state;
+    const double dt_s = (now.time - before.time).seconds();
+    const Vec3 mean_velocity_W = 0.5 * (before.velocity_W + now.velocity_W);
+    EXPECT_LT((now.world_from_body.translation - before.world_from_body.translation - dt_s * mean_velocity_W)
+                  .norm(),
+              0.01);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, RefineTest, testing::Values(1, 2));
+
+TEST(Refine, LeavesOutOutliers) {
+  TestSceneOptions options = smallScene(2);
+  options.points.outlier_share = 0.05;
+  const ForwardRun run(options);
+  const Refinement refinement = run.refined();
+  ASSERT_TRUE(refinement.summary.usable());
+  EXPECT_LT(run.rootMeanSquare(refinement.frames), 0.05);
+}
+
+TEST(Refine, CarriesOnThroughDarkness) {
+  TestSceneOptions options = smallScene(2);
+  options.points.blackouts = {{5.0, 2.0}};
+  const ForwardRun run(options);
+  const Refinement refinement = run.refined();
+  ASSERT_TRUE(refinement.summary.usable());
+  EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
+}
+
+TEST(Refine, GivesTheSameBytesAgain) {
+  const ForwardRun run(smallScene(2));
+  const Refinement first = run.refined(), second = run.refined();
+  for (size_t i = 0; i < first.frames.size(); ++i)
+    ASSERT_EQ(first.frames[i].state.world_from_body.translation,
+              second.frames[i].state.world_from_body.translation);
+}
+
+TEST(Refine, RefusesWhatMostSightingsContradict) {
+  const ForwardRun run(smallScene(2));
+  RefinementOptions strict;
+  strict.max_outlier_share = -1.0;  // any share is too much
+  const Refinement refinement = refine(run.scene.rig(), run.options, run.record, strict);
+  EXPECT_FALSE(refinement.summary.usable());
+  EXPECT_EQ(refinement.frames.back().state.world_from_body.translation,
+            run.record.frames().back().state.world_from_body.translation);
+}
+
+TEST(Refine, RefusesARecordWithoutPoses) {
+  const ForwardRecord record;
+  EXPECT_FALSE(refine(testRig(2), {}, record).summary.usable());
+}
+
+}  // namespace
+}  // namespace lodeline

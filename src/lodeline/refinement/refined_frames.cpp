@@ -1,0 +1,108 @@
+#include "lodeline/refinement/refined_frames.h"
+
+#include <cmath>
+#include <limits>
+
+#include "lodeline/estimator/depth_states.h"
+#include "lodeline/estimator/magnetometer_states.h"
+
+namespace lodeline {
+namespace {
+
+using Mat15 = Eigen::Matrix<double, 15, 15>;
+
+class FrameMaker {
+ public:
+  FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
+             const ForwardRecord& record, const SkylineMatrix* inverse)
+      : problem_(problem), rig_(rig), options_(options), record_(record) {
+    for (size_t k = 0; inverse && k < problem.states(); ++k)
+      covariances_.push_back(problem.covarianceOf(k, *inverse));
+  }
+
+  FrameEstimate make(const FrameEstimate& forward) {
+    while (state_ + 1 < problem_.states() && problem_.state(state_ + 1).time <= forward.time) ++state_;
+    FrameEstimate refined = forward;
+    const Frame& begin = problem_.state(state_);
+    const bool is_state = begin.time == forward.time;
+    const double share = is_state || state_ + 1 == problem_.states()
+                             ? 0.0
+                             : (forward.time - begin.time).seconds() /
+                                   (problem_.state(state_ + 1).time - begin.time).seconds();
+    refined.state = is_state ? begin.state() : between(begin, forward.time, share);
+    refined.covariance = covarianceAt(share);
+    refined.camera_corrections = cameraCorrections(problem_.window());
+    describeMagnetometer(forward, &refined);
+    describeDepth(&refined);
+    return refined;
+  }
+
+ private:
+  NavigationState predictTo(const Frame& begin, Time time) const {
+    const Preintegration interval(record_.imuBetween(begin.time, time), begin.gyroscopeBias(),
+                                  begin.accelerometerBias(), rig_.imu, options_.preintegration);
+    return predict(begin.state(), interval, options_.gravity_W);
+  }
+
+  NavigationState between(const Frame& begin, Time time, double share) const {
+    NavigationState state = predictTo(begin, time);
+    if (state_ + 1 == problem_.states()) return state;
+    const Frame& end = problem_.state(state_ + 1);
+    const NavigationState missed = predictTo(begin, end.time);
+    state.world_from_body = perturbed(
+        state.world_from_body, share * perturbationBetween(missed.world_from_body, end.worldFromBody()));
+    state.velocity_W += share * (end.velocity_W() - missed.velocity_W);
+    state.gyroscope_bias_B += share * (end.gyroscopeBias() - begin.gyroscopeBias());
+    state.accelerometer_bias_B += share * (end.accelerometerBias() - begin.accelerometerBias());
+    return state;
+  }
+
+  Mat15 covarianceAt(double share) const {
+    if (covariances_.empty()) return Mat15::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (share == 0.0) return covariances_[state_];
+    return (1.0 - share) * covariances_[state_] + share * covariances_[state_ + 1];
+  }
+
+  void describeMagnetometer(const FrameEstimate& forward, FrameEstimate* refined) const {
+    const double forward_variance =
+        forward.magnetometer.heading_sigma_rad * forward.magnetometer.heading_sigma_rad;
+    // The declination's part stays.
+    const double beside = std::max(0.0, forward_variance - forward.covariance(5, 5));
+    refined->magnetometer.heading_sigma_rad = std::sqrt(refined->covariance(5, 5) + beside);
+    const MagnetometerStates states(problem_.window());
+    if (states.field == nullptr || !refined->magnetometer.field_W) return;
+    refined->magnetometer.field_W = states.field_W();
+    refined->magnetometer.offset_B = Vec3(problem_.fieldOffset(state_));
+  }
+
+  void describeDepth(FrameEstimate* refined) const {
+    const DepthStates states(problem_.window());
+    if (!states || !refined->depth.gauge) return;
+    DepthEstimate::Gauge& gauge = *refined->depth.gauge;
+    gauge.depth_at_origin_m = *problem_.depthOffset(state_);
+    gauge.density_ratio = states.density_ratio();
+    gauge.lag_s = states.lag_s();
+    gauge.body_depth_m =
+        gauge.depth_at_origin_m - gauge.density_ratio * refined->state.world_from_body.translation.z();
+  }
+
+  const BatchProblem& problem_;
+  const Rig& rig_;
+  const EstimatorOptions& options_;
+  const ForwardRecord& record_;
+  std::vector<Mat15> covariances_;
+  size_t state_ = 0;  ///< the last one at or before the frame
+};
+
+}  // namespace
+
+std::vector<FrameEstimate> refinedFrames(const BatchProblem& problem, const Rig& rig,
+                                         const EstimatorOptions& options, const ForwardRecord& record,
+                                         const SkylineMatrix* inverse) {
+  FrameMaker maker(problem, rig, options, record, inverse);
+  std::vector<FrameEstimate> frames;
+  for (const FrameEstimate& forward : record.frames()) frames.push_back(maker.make(forward));
+  return frames;
+}
+
+}  // namespace lodeline
