@@ -15,6 +15,7 @@
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/export_command.h"
 #include "lodeline/cli/inspect_command.h"
+#include "lodeline/cli/refine_command.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_command.h"
 #include "lodeline/cli/simulate_command.h"
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("`lodeline COMMAND --help` explains a command, with examples.");
   lodeline::addRunCommand(program);
+  lodeline::addRefineCommand(program);
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);
   lodeline::addExportCommand(program);

@@ -27,7 +27,10 @@ void requireResult(const RunRequest& request, const RunSummary& summary) {
                                     summary.frames(), summary.last().waiting_for));
 }
 
-void run(RunRequest request, bool with_report) {
+}  // namespace
+
+void executeRun(RunRequest request) {
+  const bool with_report = !request.no_report;
   request.sample_pictures = with_report && !pageTemplate().empty();
   Diagnostics diagnostics;
   const RunSummary summary = runRecording(request, &diagnostics);
@@ -39,11 +42,7 @@ void run(RunRequest request, bool with_report) {
   requireResult(request, summary);
 }
 
-}  // namespace
-
-void addRunCommand(CLI::App& program) {
-  auto arguments = std::make_shared<RunRequest>();
-  CLI::App* command = program.add_subcommand("run", "Estimate a trajectory and a map from a recording");
+void addRunOptions(RunRequest* arguments, CLI::App* command) {
   command
       ->add_option("DATA", arguments->data,
                    "folder that contains mav0 (EuRoC ASL layout), or mav0 itself; or a ROS 1 bag (NAME.bag)")
@@ -76,10 +75,15 @@ void addRunCommand(CLI::App& program) {
       ->add_option("--live-address", arguments->live_address,
                    "network address for --live; 0.0.0.0 lets other machines see it")
       ->capture_default_str();
-  auto no_report = std::make_shared<bool>(false);
-  command->add_flag("--no-report", *no_report, "leave out report.html and its pictures");
+  command->add_flag("--no-report", arguments->no_report, "leave out report.html and its pictures");
   addBagOptions(&arguments->bag, command);
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
+}
+
+void addRunCommand(CLI::App& program) {
+  auto arguments = std::make_shared<RunRequest>();
+  CLI::App* command = program.add_subcommand("run", "Estimate a trajectory and a map from a recording");
+  addRunOptions(arguments.get(), command);
   command->footer(
       "Examples:\n"
       "  lodeline run dive1 -o dive1_result\n"
@@ -90,7 +94,7 @@ void addRunCommand(CLI::App& program) {
       "  lodeline run dive1.bag -o dive1_result --rig camchain-imucam.yaml --rig imu.yaml\n"
       "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json,\n"
       "report.html (all of it to look at); pictures of tracks in frames.");
-  command->callback([arguments, no_report] { run(*arguments, !*no_report); });
+  command->callback([arguments] { executeRun(*arguments); });
 }
 
 }  // namespace lodeline

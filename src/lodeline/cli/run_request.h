@@ -20,10 +20,13 @@ struct RunRequest {
   std::string magnetometer;      ///< setting magnetometer.model; empty for what the configuration says
   std::string site;              ///< LAT,LON,HEIGHT (degrees, m); empty likewise
   std::string date;              ///< YYYY-MM-DD; empty likewise
+  bool no_report = false;        ///< leave out report.html
   bool sample_pictures = false;  ///< keep pictures for report.html
   std::optional<int> live_port;  ///< show the run in the browser; 0 for any port
   std::string live_address = "127.0.0.1";  ///< from where that can be seen
   bool quiet = false;                      ///< no progress
+  /// Solve for the whole recording afterwards, with states so far apart (`lodeline refine`).
+  std::optional<double> refine_interval_s;
 };
 
 }  // namespace lodeline

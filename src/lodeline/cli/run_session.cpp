@@ -5,6 +5,7 @@
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/process_usage.h"
+#include "lodeline/cli/refine_run.h"
 
 namespace lodeline {
 namespace {
@@ -60,6 +61,8 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
       summary_(describe(request, options, source->rig())) {
   if (!folder_.empty()) {
     createOutputFolder(folder_);
+    removeRefinedFiles(folder_);
+    if (request.refine_interval_s) record_.emplace(*request.refine_interval_s);
     writeSettings(folder_, settings);
     output_.emplace(folder_, source->rig(), RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
   }
@@ -76,6 +79,7 @@ void RunSession::process() {
   processed_ = std::move(*fetched_);
   fetched_.reset();
   const FrameEstimate estimate = odometry_.add(processed_);
+  if (record_) record_->add(odometry_.tracks(), processed_.imu, estimate, odometry_.estimator());
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
   landmarks_ = output_ ? output_->write(processed_, estimate, attitude, &odometry_)
                        : odometry_.estimator().takeMapPoints();
@@ -91,8 +95,13 @@ RunSummary RunSession::finish() {
   summary_.interrupted = fetched_.has_value();
   summary_.front_end_s = odometry_.times().front_end_s;
   summary_.estimator_s = odometry_.times().estimator_s;
-  const ProcessUsage usage = ProcessUsage::now();
+  ProcessUsage usage = ProcessUsage::now();
   summary_.process_s = usage.processor_s - start_processor_s_;
+  if (record_) {
+    record_->finish(odometry_.estimator());
+    summary_.refinement = refineRun(odometry_.estimator(), *record_, folder_, diagnostics_);
+    usage = ProcessUsage::now();
+  }
   summary_.peak_memory_MB = usage.peak_memory_MB;
   if (!folder_.empty())
     writeOutput(std::filesystem::path(folder_) / "run.json", summary_.json(*diagnostics_));

@@ -12,6 +12,7 @@
 #include "lodeline/data/synchronizer.h"
 #include "lodeline/estimator/attitude_track.h"
 #include "lodeline/estimator/odometry.h"
+#include "lodeline/refinement/forward_record.h"
 #include "lodeline/report/run_output.h"
 #include "lodeline/report/run_summary.h"
 
@@ -34,7 +35,8 @@ class RunSession {
   bool fetch();
   /// Takes the fetched packet through front end, estimator and files. Throws InputError.
   void process();
-  /// Completes the files. A packet that was fetched but not processed says that the user ended the run.
+  /// Completes the files, the refined ones too where the request asks for them. A packet that was fetched but
+  /// not processed says that the user ended the run.
   RunSummary finish();
 
   /// Of the packet processed last.
@@ -56,6 +58,7 @@ class RunSession {
   AttitudeTrack attitude_;
   RunSummary summary_;
   std::optional<RunOutput> output_;
+  std::optional<ForwardRecord> record_;  ///< of a run that is to be refined
   std::optional<FramePacket> fetched_;
   FramePacket processed_;
   std::vector<MapPoint> landmarks_;

@@ -81,6 +81,8 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "newest frames, with velocity and biases");
   settings->bind("window.keyframes", &options->window.keyframes, "older keyframes");
   settings->bind("window.startup_frames", &options->window.startup_frames, "nothing is marginalised before");
+  settings->bind("window.startup_frames_mono", &options->window.startup_frames_mono,
+                 "the same with one camera");
   settings->bind("keyframe.min_tracked_share", &options->keyframe.min_tracked_share,
                  "of the last keyframe's landmarks; fewer ask for a keyframe");
   settings->bind("keyframe.min_parallax_rad", &options->keyframe.min_parallax_rad,

@@ -9,9 +9,9 @@ Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* 
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
-  const FrameTracks tracks = front_end_.process(packet.time, packet.images, previousFromCurrent(packet));
+  tracks_ = front_end_.process(packet.time, packet.images, previousFromCurrent(packet));
   const double tracked_s = threadSeconds();
-  const FrameEstimate estimate = estimator_.add(tracks, packet.imu, packet.magnetometer, packet.depth);
+  const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
   times_.front_end_s += tracked_s - start_s;
   times_.estimator_s += threadSeconds() - tracked_s;
   if (estimate.status != Status::Waiting) gyroscope_bias_B_ = estimate.state.gyroscope_bias_B;

@@ -29,6 +29,8 @@ class Odometry {
   Estimator& estimator() { return estimator_; }
   const Estimator& estimator() const { return estimator_; }
   const FrontEnd& frontEnd() const { return front_end_; }
+  /// What the front end followed in the newest packet.
+  const FrameTracks& tracks() const { return tracks_; }
   const StageTimes& times() const { return times_; }
 
  private:
@@ -37,6 +39,7 @@ class Odometry {
 
   ImuCalibration imu_;
   FrontEnd front_end_;
+  FrameTracks tracks_;
   Estimator estimator_;
   Vec3 gyroscope_bias_B_ = Vec3::Zero();
   bool first_ = true;

@@ -17,8 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kCausalTrajectory = "trajectory.tum";
+
 Trajectory readPoses(const fs::path& folder, std::string* file, Diagnostics* diagnostics) {
-  for (const char* name : {"trajectory_refined.tum", "trajectory.tum"}) {
+  for (const char* name : {"trajectory_refined.tum", kCausalTrajectory}) {
     if (!fs::exists(folder / name)) continue;
     *file = name;
     TrajectoryReadOptions options;
@@ -155,12 +157,16 @@ RunFolder readRunFolder(const fs::path& folder, Diagnostics* diagnostics) {
     return false;
   };
   if (there("run.json", "its heading is taken to be arbitrary")) readSummary(folder / "run.json", &run);
-  if (there("states.csv", "how well positions are known is assumed")) {
-    run.uncertainties = readUncertainties(folder / "states.csv");
-  }
-  if (there("landmarks.ply", "the passage has no walls")) {
-    run.landmarks = readLandmarkFile(folder / "landmarks.ply");
-  }
+  // What belongs to the refined trajectory, where that is what counts.
+  const bool refined = run.trajectory_file != kCausalTrajectory;
+  const auto choose = [&](const char* name, const char* causal) {
+    return refined && fs::exists(folder / name) ? name : causal;
+  };
+  const char* states = choose("states_refined.csv", "states.csv");
+  const char* landmarks = choose("landmarks_refined.ply", "landmarks.ply");
+  if (there(states, "how well positions are known is assumed"))
+    run.uncertainties = readUncertainties(folder / states);
+  if (there(landmarks, "the passage has no walls")) run.landmarks = readLandmarkFile(folder / landmarks);
   if (fs::exists(folder / "config.yaml")) readSite(folder / "config.yaml", &run);
   return run;
 }

@@ -37,7 +37,8 @@ struct RunFolder {
   std::vector<Eigen::Matrix<double, 6, 1>> camera_corrections;
 };
 
-/// Reads a run folder: poses from `trajectory_refined.tum` where there is one, else from `trajectory.tum`;
+/// Reads a run folder: poses from `trajectory_refined.tum` where there is one (with `states_refined.csv` and
+/// `landmarks_refined.ply`), else from `trajectory.tum`;
 /// what else is missing is reported as a finding. Throws InputError where there are no poses, or a file
 /// cannot be understood.
 RunFolder readRunFolder(const std::filesystem::path& folder, Diagnostics* diagnostics);

@@ -75,7 +75,12 @@ TEST_F(RunFolderTest, GivesWhatTheRunKnew) {
 
 TEST_F(RunFolderTest, PrefersTheRefinedTrajectory) {
   folder_.write("trajectory_refined.tum", "100.5 0 0 0 0 0 0 1\n101.5 9 2 3 0 0 0 1\n");
-  EXPECT_EQ(read().trajectory.poses[1].world_from_body.translation.x(), 9.0);
+  folder_.write("landmarks_refined.ply", plyOf({{{1, 2, 3}, 8}, {{1, 2, 3}, 9}}));
+  const RunFolder run = read();
+  EXPECT_EQ(run.trajectory.poses[1].world_from_body.translation.x(), 9.0);
+  ASSERT_EQ(run.landmarks.size(), 2U);
+  EXPECT_EQ(run.landmarks[1].sightings, 9);
+  EXPECT_EQ(run.uncertainties.size(), 2U) << "of states.csv, where there is no refined one";
 }
 
 TEST_F(RunFolderTest, MakesDoWithPosesAlone) {

@@ -27,8 +27,10 @@ struct RecordedState {
 /// others where these are far apart.
 class ForwardRecord {
  public:
+  static constexpr double kStateInterval_s = 0.5;
+
   /// Two states are at most about `state_interval_s` apart; 0 makes every frame a state.
-  explicit ForwardRecord(double state_interval_s = 0.5) : state_interval_s_(state_interval_s) {}
+  explicit ForwardRecord(double state_interval_s = kStateInterval_s) : state_interval_s_(state_interval_s) {}
 
   /// To be called after every Estimator::add() with what went in and what came out.
   void add(const FrameTracks& tracks, std::span<const ImuSample> imu, const FrameEstimate& estimate,

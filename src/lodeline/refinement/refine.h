@@ -8,9 +8,9 @@
 namespace lodeline {
 
 struct RefinementOptions {
-  double state_interval_s = 0.5;  ///< see ForwardRecord
-  int max_iterations = 25;        ///< of each round
-  int rounds = 3;                 ///< outliers are sorted out before each
+  double state_interval_s = ForwardRecord::kStateInterval_s;  ///< see ForwardRecord
+  int max_iterations = 25;                                    ///< of each round
+  int rounds = 3;                                             ///< outliers are sorted out before each
   /// Relative change of the cost that ends a round.
   double function_tolerance = 1e-5;
   /// More sightings than this share that contradict the solution speak against it.

@@ -15,8 +15,8 @@ constexpr const char* kAfterCount =
 
 }  // namespace
 
-LandmarkWriter::LandmarkWriter(const std::filesystem::path& folder)
-    : file_(folder / "landmarks.ply"), stream_(openOutput(file_)) {
+LandmarkWriter::LandmarkWriter(const std::filesystem::path& folder, const std::string& name)
+    : file_(folder / name), stream_(openOutput(file_)) {
   // Zero-padded so that the final count takes the same room.
   fmt::print(stream_, "{}{:012}{}", kBeforeCount, 0, kAfterCount);
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <vector>
 
 #include "lodeline/estimator/window.h"
@@ -13,7 +14,7 @@ namespace lodeline {
 class LandmarkWriter {
  public:
   /// Throws InputError where the folder cannot be written to.
-  explicit LandmarkWriter(const std::filesystem::path& folder);
+  explicit LandmarkWriter(const std::filesystem::path& folder, const std::string& name = "landmarks.ply");
   ~LandmarkWriter();
   LandmarkWriter(const LandmarkWriter&) = delete;
   LandmarkWriter& operator=(const LandmarkWriter&) = delete;

@@ -62,6 +62,38 @@ nlohmann::ordered_json toJson(const DepthEstimate::Gauge& gauge) {
           {"lag_sigma_s", gauge.lag_sigma_s}};
 }
 
+std::string describe(const RefinementSummary& refined) {
+  if (!refined.usable()) return "refused: " + refined.refusal + "; the forward run is what there is";
+  return fmt::format(
+      "{} states, {} landmarks, {} sightings ({:.1f} % left out), {} steps{}; cost {:.4g} of {:.4g}; moved "
+      "by "
+      "{:.3f} m and {:.2f} deg rms, {:.3f} m at most; {:.1f} core-s",
+      refined.states, refined.landmarks, refined.sightings, 100.0 * refined.outlier_share, refined.iterations,
+      refined.converged ? "" : " (not converged)", refined.first_round_cost, refined.forward_cost,
+      refined.moved_rms_m, refined.turned_rms_rad * 180.0 / M_PI, refined.moved_max_m, refined.processor_s);
+}
+
+nlohmann::ordered_json toJson(const RefinementSummary& refined) {
+  nlohmann::ordered_json json;
+  json["used"] = refined.usable();
+  if (!refined.usable()) json["refusal"] = refined.refusal;
+  json["converged"] = refined.converged;
+  json["states"] = refined.states;
+  json["landmarks"] = refined.landmarks;
+  json["sightings"] = refined.sightings;
+  json["outlier_share"] = refined.outlier_share;
+  json["iterations"] = refined.iterations;
+  json["cost"] = {
+      {"forward", refined.forward_cost}, {"first_round", refined.first_round_cost}, {"end", refined.cost}};
+  json["moved_rms_m"] = refined.moved_rms_m;
+  json["moved_max_m"] = refined.moved_max_m;
+  json["turned_rms_rad"] = refined.turned_rms_rad;
+  json["end_sigma_m"] = {{"forward", refined.forward_sigma_m}, {"refined", refined.sigma_m}};
+  json["has_covariance"] = refined.has_covariance;
+  json["processor_s"] = refined.processor_s;
+  return json;
+}
+
 using ScaleSource = std::pair<const char*, double ScaleInformation::*>;
 constexpr ScaleSource kScaleSources[] = {{"stereo", &ScaleInformation::stereo},
                                          {"accelerometer", &ScaleInformation::accelerometer},
@@ -194,6 +226,7 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
   if (hasMagnetometer()) line("magnetometer", magnetometerText());
   if (!depth_frames_.empty()) line("pressure", depthText());
   if (const auto scale = scaleInformation()) line("scale", describe(*scale));
+  if (refinement) line("refinement", describe(*refinement));
   if (interrupted) line("interrupted", "the recording goes on; results cover what was read");
   for (const Finding& finding : diagnostics.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : "";
@@ -245,6 +278,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   for (const auto& [status, frames] : depth_frames_) json["pressure"]["frames"][toString(status)] = frames;
   if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
+  if (refinement) json["refinement"] = toJson(*refinement);
   json["findings"] = findingsJson(diagnostics);
   return json.dump(2) + "\n";
 }

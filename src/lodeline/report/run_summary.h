@@ -8,6 +8,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/estimator.h"
+#include "lodeline/refinement/refine.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -47,7 +48,8 @@ class RunSummary {
   double peak_memory_MB = 0.0;  ///< of the whole process
   int64_t images = 0;           ///< that could be read
   int64_t map_points = 0;
-  bool interrupted = false;  ///< ended by the user before the recording did
+  bool interrupted = false;                     ///< ended by the user before the recording did
+  std::optional<RefinementSummary> refinement;  ///< of a run that was refined
 
   double recordingSeconds() const;
   /// Share of the frames that got a pose.

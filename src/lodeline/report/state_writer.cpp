@@ -120,10 +120,10 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
 
 }  // namespace
 
-StateWriter::StateWriter(const std::filesystem::path& folder)
-    : folder_(folder),
-      trajectory_(openOutput(folder / "trajectory.tum")),
-      states_(openOutput(folder / "states.csv")) {
+StateWriter::StateWriter(const std::filesystem::path& folder, const std::string& suffix)
+    : file_(folder / ("trajectory" + suffix + ".tum")),
+      trajectory_(openOutput(file_)),
+      states_(openOutput(folder / ("states" + suffix + ".csv"))) {
   trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
   states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader
           << "\n"
@@ -140,8 +140,8 @@ void StateWriter::write(const FrameEstimate& estimate, const std::optional<Attit
   appendDepth(line, estimate.depth);
   states_ << fmt::to_string(line) << "\n" << std::flush;
   if (!trajectory_ || !states_) {
-    throw InputError((folder_ / "trajectory.tum").string() + ": writing failed at " +
-                     std::to_string(estimate.time.nanoseconds()) + " ns; is the disk full?");
+    throw InputError(file_.string() + ": writing failed at " + std::to_string(estimate.time.nanoseconds()) +
+                     " ns; is the disk full?");
   }
 }
 

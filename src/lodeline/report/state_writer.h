@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string>
 
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/inertial/attitude_filter.h"
@@ -13,8 +14,9 @@ namespace lodeline {
 /// frame, flushed as it goes so that an interrupted run keeps what it had.
 class StateWriter {
  public:
-  /// Throws InputError where the folder cannot be written to.
-  explicit StateWriter(const std::filesystem::path& folder);
+  /// `suffix` goes to the names of both files, before the dot. Throws InputError where the folder cannot be
+  /// written to.
+  explicit StateWriter(const std::filesystem::path& folder, const std::string& suffix = "");
 
   /// `attitude`: what the attitude filter knows at the same time, in its own columns. A frame without a pose
   /// is no line of the trajectory; in the states it has the status `attitude` and nan for what is not known,
@@ -24,7 +26,7 @@ class StateWriter {
  private:
   void writeTrajectory(const FrameEstimate& estimate);
 
-  std::filesystem::path folder_;
+  std::filesystem::path file_;  ///< of the trajectory
   std::ofstream trajectory_;
   std::ofstream states_;
 };

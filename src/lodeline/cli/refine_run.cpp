@@ -1,0 +1,40 @@
+#include "lodeline/cli/refine_run.h"
+
+#include "lodeline/report/landmark_writer.h"
+#include "lodeline/report/state_writer.h"
+
+namespace lodeline {
+namespace {
+
+constexpr const char* kSuffix = "_refined";
+constexpr const char* kLandmarks = "landmarks_refined.ply";
+
+}  // namespace
+
+RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& record,
+                            const std::filesystem::path& folder, Diagnostics* diagnostics) {
+  const Refinement refinement = refine(estimator.rig(), estimator.options(), record);
+  const RefinementSummary& summary = refinement.summary;
+  if (!summary.usable()) {
+    diagnostics->report(Severity::Serious, "refinement_refused",
+                        "no refined trajectory: " + summary.refusal + "; use trajectory.tum");
+    return summary;
+  }
+  if (!summary.converged) {
+    diagnostics->report(Severity::Warning, "refinement_not_converged",
+                        "refinement: its last round ended before the cost had settled");
+  }
+  StateWriter states(folder, kSuffix);
+  for (const FrameEstimate& frame : refinement.frames) states.write(frame);
+  LandmarkWriter landmarks(folder, kLandmarks);
+  landmarks.write(refinement.landmarks);
+  landmarks.finish();
+  return summary;
+}
+
+void removeRefinedFiles(const std::filesystem::path& folder) {
+  for (const char* name : {"trajectory_refined.tum", "states_refined.csv", kLandmarks})
+    std::filesystem::remove(folder / name);
+}
+
+}  // namespace lodeline

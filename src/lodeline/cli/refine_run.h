@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/refinement/refine.h"
+
+namespace lodeline {
+
+/// Solves a finished run as a whole and writes trajectory_refined.tum, states_refined.csv and
+/// landmarks_refined.ply beside the run's own files; nothing, but a finding, where the solution is refused.
+/// Throws InputError where writing fails.
+RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& record,
+                            const std::filesystem::path& folder, Diagnostics* diagnostics);
+
+/// What a refined run left in the folder would otherwise stand for the run that overwrites it.
+void removeRefinedFiles(const std::filesystem::path& folder);
+
+}  // namespace lodeline
