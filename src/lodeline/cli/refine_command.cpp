@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "lodeline/cli/run_command.h"
+#include "lodeline/refinement/forward_record.h"
 
 namespace lodeline {
 

@@ -1,4 +1,4 @@
-#include "lodeline/estimator/consistency.h"
+#include "lodeline/estimator/dive_consistency.h"
 
 #include <gtest/gtest.h>
 
@@ -41,6 +41,37 @@ void expectConsistent(int cameras) {
 
 TEST(Consistency, StereoIsAsGoodAsItSays) { expectConsistent(2); }
 TEST(Consistency, MonoIsAsGoodAsItSays) { expectConsistent(1); }
+
+// The short version of what estimator_consistency --minutes 20 measures.
+TEST(Consistency, NoBlockOfADiveIsWorseThanClaimed) {
+  DiveConsistencyOptions options;
+  options.dive = exactDive(45.0);
+  options.seeds = 8;
+  options.times_s = {20.0, 44.0};
+  const Consistency consistency = measureDiveConsistency(options);
+  EXPECT_EQ(consistency.lost, 0);
+  for (const ConsistencyRow& row : consistency.rows) {
+    const NeesBounds bounds = neesBounds(3, options.seeds);
+    for (const auto figure : {&NeesSample::position, &NeesSample::orientation, &NeesSample::velocity,
+                              &NeesSample::gyroscope_bias, &NeesSample::accelerometer_bias}) {
+      EXPECT_LT(row.mean(figure), bounds.high) << "at " << row.time_s << " s";
+      EXPECT_GT(row.mean(figure), 0.5 * bounds.low) << "at " << row.time_s << " s";
+    }
+  }
+}
+
+TEST(Consistency, DivesDoNotDependOnTheNumberOfThreads) {
+  DiveConsistencyOptions options;
+  options.dive = exactDive(12.0);
+  options.seeds = 3;
+  options.times_s = {11.0};
+  const Consistency alone = measureDiveConsistency(options);
+  options.threads = 2;
+  const Consistency together = measureDiveConsistency(options);
+  ASSERT_EQ(together.rows[0].samples.size(), alone.rows[0].samples.size());
+  for (size_t i = 0; i < alone.rows[0].samples.size(); ++i)
+    EXPECT_EQ(together.rows[0].samples[i].pose, alone.rows[0].samples[i].pose);
+}
 
 }  // namespace
 }  // namespace lodeline

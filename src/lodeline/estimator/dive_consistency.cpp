@@ -1,7 +1,6 @@
 #include "lodeline/estimator/dive_consistency.h"
 
 #include <atomic>
-#include <mutex>
 #include <thread>
 
 namespace lodeline {
@@ -36,15 +35,11 @@ HeadingTrialOptions exactDive(double duration_s) {
 Consistency measureDiveConsistency(const DiveConsistencyOptions& options) {
   std::vector<std::vector<NeesSample>> by_seed(static_cast<size_t>(options.seeds));
   std::atomic<size_t> next = 0;
-  std::mutex mutex;
-  int done = 0;
   const auto work = [&] {
     for (size_t i = next++; i < by_seed.size(); i = next++) {
       HeadingTrialOptions dive = options.dive;
       dive.seed = options.first_seed + i;
       by_seed[i] = samplesOf(dive, options.times_s);
-      const std::lock_guard lock(mutex);
-      if (options.progress) options.progress(++done);
     }
   };
   std::vector<std::jthread> threads;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "lodeline/estimator/consistency.h"
 #include "lodeline/estimator/heading_trial.h"
 
@@ -14,7 +12,6 @@ struct DiveConsistencyOptions {
   uint64_t first_seed = 1;
   std::vector<double> times_s;  ///< of the samples, from the start of the motion, ascending
   int threads = 1;
-  std::function<void(int done)> progress;  ///< called after each dive, from any thread but one at a time
 };
 
 /// Options of dives that the estimator's model describes exactly: IMU noise as stated and without flicker,

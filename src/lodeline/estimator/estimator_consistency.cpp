@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
 #include <span>
@@ -84,14 +86,28 @@ void print(const Consistency& consistency, std::span<const Column> columns, doub
   if (consistency.lost > 0) fmt::print("{} seeds without an estimate in time\n", consistency.lost);
 }
 
+/// In batches, each of which adds to the table, so that a long study shows early what it will come to.
 void studyDives(double minutes, int samples, DiveConsistencyOptions options) {
+  constexpr int kBatch = 10;
   options.dive.duration_s = 60.0 * minutes;
   for (int i = 1; i <= samples; ++i) options.times_s.push_back(60.0 * minutes * i / samples - 1.0);
-  options.progress = [](int done) { fmt::print(stderr, "\r{} dives", done); };
-  const Consistency consistency = measureDiveConsistency(options);
-  fmt::print(stderr, "\n");
-  print(consistency, kDiveColumns, kBand95);
-  printBand(kDiveColumns, options.seeds);
+  const int seeds = options.seeds;
+  Consistency all;
+  for (int done = 0; done < seeds; done += options.seeds) {
+    options.seeds = std::min(kBatch, seeds - done);
+    const Consistency batch = measureDiveConsistency(options);
+    options.first_seed += static_cast<uint64_t>(options.seeds);
+    all.rows.resize(batch.rows.size());
+    for (size_t row = 0; row < batch.rows.size(); ++row) {
+      all.rows[row].time_s = batch.rows[row].time_s;
+      const std::vector<NeesSample>& samples_now = batch.rows[row].samples;
+      all.rows[row].samples.insert(all.rows[row].samples.end(), samples_now.begin(), samples_now.end());
+    }
+    all.lost += batch.lost;
+    print(all, kDiveColumns, kBand95);
+    printBand(kDiveColumns, done + options.seeds);
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace

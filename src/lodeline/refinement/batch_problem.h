@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -45,9 +46,9 @@ class BatchProblem {
   /// Brings up to date what is held while the values move a little: preintegrations and the motion at the
   /// images. Changes the cost.
   void relinearise();
-  /// Leaves out sightings that contradict the present values, and landmarks that are then seen too little.
-  /// Returns how many sightings went.
-  int removeOutliers();
+  /// Places all landmarks anew by the present poses and leaves out the sightings that contradict them,
+  /// whatever was left out before. Returns the share of the sightings that went.
+  double renewLandmarks();
 
   /// The offset of the magnetometer's corrected readings (T) and the depth at the origin (m) that are in
   /// force for a state; null where there is no such sensor.
@@ -63,7 +64,6 @@ class BatchProblem {
   void addTracks(const ForwardRecord& record);
   void addGlobals(const ForwardRecord& record);
   void addStartPrior(const ForwardRecord::StartPrior& start, const GlobalValues& globals);
-  void addLandmarks();
   GlobalState* addGlobal(const ForwardRecord& record, const std::string& name, const std::string& as);
   void addKnowledge(GlobalState* state, double sigma);
   void orderBlocks();
@@ -90,6 +90,7 @@ class BatchProblem {
   FactorMaker factors_;
   std::unique_ptr<ceres::LossFunction> loss_;  ///< on magnetometer and depth
   Window window_;
+  std::map<TrackId, TrackHistory> all_tracks_;  ///< with all their sightings, without landmarks
   std::vector<Prior> priors_;
   Chain field_offsets_, depth_offsets_;
   // Blocks in the order of the system:

@@ -109,12 +109,10 @@ Refinement refine(const Rig& rig, const EstimatorOptions& options, const Forward
   BatchProblem problem(rig, options, record);
   SkylineMatrix hessian = problem.emptyMatrix();
   summary.states = static_cast<int>(problem.states());
-  const auto all_sightings = static_cast<double>(std::max<size_t>(1, problem.sightings()));
-  int outliers = 0;
   for (int i = 0; i < wanted.rounds; ++i) {
     if (i > 0) {
       problem.relinearise();
-      outliers += problem.removeOutliers();
+      summary.outlier_share = problem.renewLandmarks();
     }
     const Round round = solve(problem, wanted, &hessian);
     if (i == 0) {
@@ -127,7 +125,6 @@ Refinement refine(const Rig& rig, const EstimatorOptions& options, const Forward
   }
   summary.landmarks = static_cast<int64_t>(problem.landmarks());
   summary.sightings = static_cast<int64_t>(problem.sightings());
-  summary.outlier_share = outliers / all_sightings;
   summary.refusal = refusalOf(summary, wanted);
   if (!summary.usable()) return result;
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {

@@ -10,7 +10,7 @@ namespace lodeline {
 struct RefinementOptions {
   double state_interval_s = ForwardRecord::kStateInterval_s;  ///< see ForwardRecord
   int max_iterations = 25;                                    ///< of each round
-  int rounds = 3;                                             ///< outliers are sorted out before each
+  int rounds = 3;  ///< landmarks and outliers are sorted out before each
   /// Relative change of the cost that ends a round.
   double function_tolerance = 1e-5;
   /// More sightings than this share that contradict the solution speak against it.
@@ -26,7 +26,7 @@ struct RefinementSummary {
   int states = 0;
   int64_t landmarks = 0;
   int64_t sightings = 0;          ///< of these
-  double outlier_share = 0.0;     ///< of the sightings, left out after the first round
+  double outlier_share = 0.0;     ///< of the sightings, left out at the end
   int iterations = 0;             ///< of all rounds
   double forward_cost = 0.0;      ///< of the forward run's states
   double first_round_cost = 0.0;  ///< of the same terms after the first round
