@@ -23,7 +23,7 @@ void addRefineCommand(CLI::App& program) {
       "Examples:\n"
       "  lodeline refine dive1 -o dive1_result\n"
       "  lodeline refine dive1 -o dive1_result --mag-calibration mag.yaml\n"
-      "  lodeline export dive1_result --svx dive1.svx\n"
+      "  lodeline export dive1_result --format survex\n"
       "Results: those of `lodeline run`, and trajectory_refined.tum, states_refined.csv and\n"
       "landmarks_refined.ply, which `lodeline export` takes in place of the others.");
   command->callback([arguments] { executeRun(*arguments); });

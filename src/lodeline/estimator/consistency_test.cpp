@@ -62,7 +62,7 @@ TEST(Consistency, NoBlockOfADiveIsWorseThanClaimed) {
 
 TEST(Consistency, DivesDoNotDependOnTheNumberOfThreads) {
   DiveConsistencyOptions options;
-  options.dive = exactDive(12.0);
+  options.dive = exactDive(40.0);
   options.seeds = 3;
   options.times_s = {11.0};
   const Consistency alone = measureDiveConsistency(options);
