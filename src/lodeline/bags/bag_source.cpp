@@ -33,9 +33,15 @@ void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
     camera.rate_hz = 0.0;
     rig.cameras.push_back(camera);
   }
-  if (!rig.magnetometer && !topicsFor(bag, "mag0").empty()) rig.magnetometer.emplace();
-  if (!rig.pressure && !topicsFor(bag, "pressure0").empty()) rig.pressure.emplace();
-  if (!rig.sonar && !topicsFor(bag, "sonar0").empty()) rig.sonar.emplace();
+  const auto add = [&](const char* name, auto* sensor) {
+    if (*sensor || topicsFor(bag, name).empty()) return;
+    sensor->emplace();
+    (*sensor)->rate_hz = 0.0;  // nobody stated one
+  };
+  add("mag0", &rig.magnetometer);
+  add("pressure0", &rig.pressure);
+  add("sonar0", &rig.sonar);
+  if (!rig_file->sections.contains("imu0")) rig.imu.rate_hz = 0.0;
 }
 
 TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {

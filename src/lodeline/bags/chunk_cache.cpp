@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <thread>
 
 #include "lodeline/base/error.h"
 
@@ -16,6 +17,8 @@ namespace {
 
 /// Two cameras, the IMU and three slower sensors, each perhaps in a chunk of its own.
 constexpr size_t kKeptChunks = 8;
+/// That unpack ahead; each holds a chunk.
+constexpr uint32_t kMostThreads = 4;
 
 }  // namespace
 
@@ -52,6 +55,22 @@ uint32_t ChunkCache::add(const BagChunk& chunk) {
   return static_cast<uint32_t>(chunks_.size() - 1);
 }
 
+ChunkCache::Unpacking ChunkCache::unpackNow(const BagChunk& chunk) const {
+  return std::make_shared<const Unpacked>(
+      unpackChunk(chunk.compression, file_.read(chunk.position, chunk.packed_size), chunk.unpacked_size));
+}
+
+void ChunkCache::unpackAhead(uint32_t from) {
+  std::erase_if(ahead_, [&](const auto& entry) { return entry.first < from; });
+  const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads);
+  const uint32_t end = std::min(from + threads, static_cast<uint32_t>(chunks_.size()));
+  for (uint32_t number = from; number < end; ++number) {
+    if (chunks_[number].compression != "bz2" || ahead_.contains(number)) continue;
+    ahead_[number] =
+        std::async(std::launch::async, [this, chunk = chunks_[number]] { return unpackNow(chunk); });
+  }
+}
+
 std::shared_ptr<const Unpacked> ChunkCache::unpack(uint32_t number) {
   const auto known = std::find_if(unpacked_.begin(), unpacked_.end(),
                                   [&](const auto& kept) { return kept.first == number; });
@@ -59,9 +78,11 @@ std::shared_ptr<const Unpacked> ChunkCache::unpack(uint32_t number) {
     std::rotate(unpacked_.begin(), known, known + 1);
     return unpacked_.front().second;
   }
-  const BagChunk& chunk = chunks_[number];
-  auto unpacked = std::make_shared<const Unpacked>(
-      unpackChunk(chunk.compression, file_.read(chunk.position, chunk.packed_size), chunk.unpacked_size));
+  const auto started = ahead_.find(number);
+  Unpacking unpacked = started == ahead_.end() ? unpackNow(chunks_[number]) : started->second.get();
+  if (started != ahead_.end()) ahead_.erase(started);
+  if (newest_ && number == *newest_ + 1) unpackAhead(number + 1);
+  newest_ = number;
   unpacked_.emplace_front(number, unpacked);
   if (unpacked_.size() > kKeptChunks) unpacked_.pop_back();
   return unpacked;

@@ -40,13 +40,24 @@ void merge(const std::vector<Pull>& streams) {
   }
 }
 
+/// All that a folder has; inertial and magnetic readings alone are a recording too.
+EurocOptions optionsFor(const std::filesystem::path& folder) {
+  EurocOptions options;
+  options.with_cameras = false;
+  const EurocLayout layout = findEurocLayout(folder, options);
+  for (const auto& entry : std::filesystem::directory_iterator(layout.mav0)) {
+    if (entry.path().filename().string().starts_with("cam")) options.with_cameras = true;
+  }
+  return options;
+}
+
 class FolderConversion {
  public:
   FolderConversion(const std::filesystem::path& folder, const std::filesystem::path& bag,
                    const ConvertOptions& options, Diagnostics* diagnostics)
-      : layout_(findEurocLayout(folder, {})),
+      : layout_(findEurocLayout(folder, optionsFor(folder))),
         diagnostics_(diagnostics),
-        source_(folder, {}, diagnostics),
+        source_(folder, optionsFor(folder), diagnostics),
         writer_(bag, options.compression) {}
 
   ConvertSummary run() {

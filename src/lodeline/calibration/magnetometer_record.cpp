@@ -12,6 +12,7 @@
 #include "lodeline/data/euroc_calibration.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/kalibr_calibration.h"
+#include "lodeline/data/ordered_stream.h"
 #include "lodeline/data/plain_csv.h"
 #include "lodeline/evaluation/text_table.h"
 
@@ -221,18 +222,45 @@ void settleUnit(const std::string& data, const RecordOptions& options, std::opti
   for (MagnetometerSample& sample : record->magnetometer) sample.field_M *= teslaPer(unit);
 }
 
+Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostics* diagnostics) {
+  Reading reading;
+  reading.unit = FieldUnit::Tesla;
+  reading.record.imu_noise = source.rig().imu.noise;
+  if (is_mounting_known && source.rig().magnetometer) {
+    reading.record.body_from_magnetometer = source.rig().magnetometer->body_from_magnetometer.rotation;
+  }
+  OrderedStream<ImuSample> imu(
+      {"imu", "IMU", 0.0, 0.0, Duration()}, [&] { return source.nextImu(); }, diagnostics);
+  while (imu.peek() != nullptr) reading.record.imu.push_back(imu.pop());
+  while (const std::optional<MagnetometerSample> sample = source.nextMagnetometer()) {
+    reading.record.magnetometer.push_back(*sample);
+  }
+  return reading;
+}
+
+MagnetometerRecord settled(Reading reading, const std::string& name, const RecordOptions& options,
+                           Diagnostics* diagnostics) {
+  if (reading.record.magnetometer.empty()) {
+    throw InputError(name + ": holds no magnetometer reading that can be used");
+  }
+  cut(options, &reading.record);
+  settleUnit(name, options, reading.unit, &reading.record, diagnostics);
+  return std::move(reading.record);
+}
+
 }  // namespace
+
+MagnetometerRecord readMagnetometerRecord(MeasurementSource& source, const std::string& name,
+                                          bool is_mounting_known, const RecordOptions& options,
+                                          Diagnostics* diagnostics) {
+  return settled(readSource(source, is_mounting_known, diagnostics), name, options, diagnostics);
+}
 
 MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
                                           Diagnostics* diagnostics) {
   Reading reading = std::filesystem::is_regular_file(data) ? readFile(data, options, diagnostics)
                                                            : readFolder(data, diagnostics);
-  if (reading.record.magnetometer.empty()) {
-    throw InputError(data.string() + ": holds no magnetometer reading that can be used");
-  }
-  cut(options, &reading.record);
-  settleUnit(data.string(), options, reading.unit, &reading.record, diagnostics);
-  return std::move(reading.record);
+  return settled(std::move(reading), data.string(), options, diagnostics);
 }
 
 }  // namespace lodeline

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/data/measurement_source.h"
 #include "lodeline/magnetism/field_unit.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
@@ -35,6 +37,12 @@ struct MagnetometerRecord {
 /// are no magnetometer readings, and UsageError where a part is asked for that is empty or cannot be found
 /// without times.
 MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
+                                          Diagnostics* diagnostics);
+
+/// The same from a recording that is open already, of which the readings are pulled to their end. `name`: for
+/// messages; `is_mounting_known`: whether the rig's rotation of the magnetometer is more than a default.
+MagnetometerRecord readMagnetometerRecord(MeasurementSource& source, const std::string& name,
+                                          bool is_mounting_known, const RecordOptions& options,
                                           Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -8,6 +8,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
+#include "lodeline/cli/open_recording.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/plain_csv.h"
@@ -19,6 +20,7 @@ namespace {
 
 struct AllanArguments {
   std::string data;
+  BagArguments bag;
   std::string output;
   std::string json;
   double skip_s = 0.0;
@@ -84,6 +86,24 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   }
 }
 
+void readBag(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
+  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
+  Part imu_part(arguments);
+  while (const std::optional<ImuSample> sample = bag->nextImu()) {
+    analyses->has_gyroscope = analyses->has_accelerometer = true;
+    if (!imu_part.holds(sample->time)) continue;
+    analyses->gyroscope.add(sample->time, sample->angular_velocity_B);
+    analyses->accelerometer.add(sample->time, sample->specific_force_B);
+  }
+  Part magnetometer_part(arguments);
+  while (const std::optional<MagnetometerSample> sample = bag->nextMagnetometer()) {
+    analyses->has_magnetometer = true;
+    if (magnetometer_part.holds(sample->time)) analyses->magnetometer.add(sample->time, sample->field_M);
+  }
+  if (analyses->has_gyroscope || analyses->has_magnetometer) return;
+  throw InputError(arguments.data + ": holds no readings of an IMU or a magnetometer");
+}
+
 void readFile(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
   PlainCsv file(arguments.data, diagnostics);
   analyses->has_gyroscope = file.hasGyroscope();
@@ -113,7 +133,10 @@ void drawFigures(const std::vector<SensorNoise>& sensors, const std::filesystem:
 void allan(const AllanArguments& arguments) {
   Diagnostics diagnostics;
   Analyses analyses(&diagnostics);
-  if (std::filesystem::is_regular_file(arguments.data)) {
+  refuseBagOptions(arguments.data, arguments.bag);
+  if (isBag(arguments.data)) {
+    readBag(arguments, &diagnostics, &analyses);
+  } else if (std::filesystem::is_regular_file(arguments.data)) {
     readFile(arguments, &diagnostics, &analyses);
   } else {
     readFolder(arguments, &diagnostics, &analyses);
@@ -144,10 +167,12 @@ void addAllanCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
-      ->add_option(
-          "DATA", arguments->data,
-          "folder with mav0 (EuRoC ASL layout; cameras and calibration may be missing), or a CSV file")
+      ->add_option("DATA", arguments->data,
+                   "folder with mav0 (EuRoC ASL layout) or ROS 1 bag, cameras and calibration may be "
+                   "missing; or a CSV "
+                   "file")
       ->required();
+  addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,
                       "folder for imu.yaml (Kalibr), magnetometer.yaml and plots; made where it is missing");
   command->add_option("--json", arguments->json, "write all figures and curves to this file");

@@ -41,6 +41,20 @@ TEST_F(AllanTest, FindsTheNoiseOfASimulatedBenchRecord) {
               HasSubstr("magnetometer_noise_density: "));
 }
 
+TEST_F(AllanTest, ReadsABagLikeAFolder) {
+  ASSERT_EQ(runProgram("simulate bench --seconds 60 --quiet -o " + file("bench")).exit_code, 0);
+  const Execution converted = runProgram("convert " + file("bench") + " " + file("bench.bag"));
+  if (converted.exit_code == 2) GTEST_SKIP() << converted.output;  // built without librosbag-storage
+  ASSERT_EQ(converted.exit_code, 0) << converted.output;
+  std::filesystem::remove(folder_.path() / "bench.rig.yaml");  // nothing of it is needed
+  ASSERT_EQ(runProgram("allan " + file("bench") + " --json " + file("folder.json")).exit_code, 0);
+  const Execution result = runProgram("allan " + file("bench.bag") + " --json " + file("bag.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(test::readJson(folder_.path() / "bag.json")["sensors"],
+            test::readJson(folder_.path() / "folder.json")["sensors"]);
+  EXPECT_EQ(runProgram("allan " + file("bench") + " --rig " + file("bench.rig.yaml")).exit_code, 2);
+}
+
 TEST_F(AllanTest, EndsWithOneWhereThereIsNothingToAnalyse) {
   const Execution absent = runProgram("allan " + file("absent"));
   EXPECT_EQ(absent.exit_code, 1);

@@ -9,7 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
-#include "lodeline/data/euroc_source.h"
+#include "lodeline/cli/open_recording.h"
 #include "lodeline/data/ordered_stream.h"
 #include "lodeline/data/plain_source.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
@@ -21,6 +21,7 @@ namespace {
 
 struct AttitudeArguments {
   std::string data;
+  BagArguments bag;
   std::string output;
   std::string magnetometer_calibration;
   std::vector<double> site;
@@ -47,12 +48,13 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
 }
 
 std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
-  if (std::filesystem::is_regular_file(arguments.data)) {
+  refuseBagOptions(arguments.data, arguments.bag);
+  if (std::filesystem::is_regular_file(arguments.data) && !isBag(arguments.data)) {
     return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments);
   }
   EurocOptions options;
   options.with_cameras = false;
-  return prepared(std::make_unique<EurocSource>(arguments.data, options, diagnostics), arguments);
+  return prepared(openRecording(arguments.data, options, arguments.bag, diagnostics), arguments);
 }
 
 AttitudeFilterOptions filterOptions(const AttitudeArguments& arguments) {
@@ -130,8 +132,9 @@ void addAttitudeCommand(CLI::App& program) {
       "attitude", "Orientation and heading from gyroscope, accelerometer and magnetometer, without images");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout; cameras may be missing), or a CSV file")
+                   "folder with mav0 (EuRoC ASL layout) or ROS 1 bag, cameras may be missing; or a CSV file")
       ->required();
+  addBagOptions(&arguments->bag, command);
   command
       ->add_option("-o,--output", arguments->output, "folder for attitude.csv, attitude.tum, attitude.json")
       ->required();

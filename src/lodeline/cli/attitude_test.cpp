@@ -151,6 +151,20 @@ TEST_F(AttitudeTest, ReadsRecordingsWithoutCameras) {
   EXPECT_EQ(test::readJson(folder_.path() / "out" / "attitude.json")["estimates"], 6001);
 }
 
+TEST_F(AttitudeTest, ReadsABagLikeAFolder) {
+  ASSERT_EQ(runProgram("simulate figure_eight --seconds 20 --quiet -o " + file("eight")).exit_code, 0);
+  const Execution converted = runProgram("convert " + file("eight") + " " + file("eight.bag"));
+  if (converted.exit_code == 2) GTEST_SKIP() << converted.output;  // built without librosbag-storage
+  ASSERT_EQ(converted.exit_code, 0) << converted.output;
+  const Execution folder = runProgram("attitude " + file("eight") + " -o " + file("folder"));
+  ASSERT_EQ(folder.exit_code, 0) << folder.output;
+  const Execution bag =
+      runProgram("attitude " + file("eight.bag") + " --rig " + file("eight.rig.yaml") + " -o " + file("bag"));
+  ASSERT_EQ(bag.exit_code, 0) << bag.output;
+  EXPECT_EQ(test::readText(folder_.path() / "bag" / "attitude.csv"),
+            test::readText(folder_.path() / "folder" / "attitude.csv"));
+}
+
 TEST_F(AttitudeTest, RefusesBadInputAndUsage) {
   folder_.write("field.csv", "0.0,1e-5,1e-5,1e-5\n0.1,1e-5,1e-5,2e-5\n");
   const Execution no_imu = runProgram("attitude " + file("field.csv") + " -o " + file("out"));

@@ -146,6 +146,25 @@ TEST_F(BagTest, TruncatedBagIsUsedUpToThere) {
   EXPECT_GT(poses(), 15);
 }
 
+TEST_F(BagTest, ExportTakesCamerasAndImagesFromABag) {
+  const std::filesystem::path bag = path("room.bag");
+  ASSERT_EQ(runProgram(fmt::format("convert {} {}", quoted(recording_.data), quoted(bag))).exit_code, 0);
+  ASSERT_EQ(run("-q --no-report").exit_code, 0);
+  const auto model = [&](const std::filesystem::path& recording, const std::string& name) {
+    const Execution result = runProgram(fmt::format("export {} -f colmap --recording {} -o {}",
+                                                    quoted(output_), quoted(recording), quoted(path(name))));
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path(name))) {
+      if (entry.is_regular_file()) files[entry.path().filename().string()] = readText(entry.path());
+    }
+    return files;
+  };
+  const std::map<std::string, std::string> from_folder = model(recording_.data, "from_folder");
+  EXPECT_THAT(from_folder.at("images.txt"), HasSubstr("cam1/data/"));
+  EXPECT_EQ(model(bag, "from_bag"), from_folder);
+}
+
 TEST_F(BagTest, SaysWhatToDo) {
   const std::filesystem::path bag = rosbagOfRoom("none", "compressed");
   const Execution no_rig = runProgram(fmt::format("run {} -o {}", quoted(bag), quoted(output_)));

@@ -12,6 +12,7 @@
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/calibration/calibration_plots.h"
 #include "lodeline/calibration/calibration_report.h"
+#include "lodeline/cli/open_recording.h"
 #include "lodeline/evaluation/plots.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/findings.h"
@@ -20,7 +21,8 @@ namespace lodeline {
 namespace {
 
 const char* const kFooter =
-    R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag),
+    R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
+ROS 1 bag (--rig may be missing; the noise of a usual IMU is assumed then),
 a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
 How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
 while rolling the rig over; 60 to 90 s. docs/magnetometer_calibration.md explains every figure.
@@ -32,6 +34,7 @@ Ends with 3, and writes nothing, where the readings cannot calibrate the magneto
 
 struct CalibrateArguments {
   std::string data;
+  BagArguments bag;
   std::string output;
   std::string unit;
   double from_s = 0.0;
@@ -83,6 +86,16 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
   }
 }
 
+MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
+  refuseBagOptions(arguments.data, arguments.bag);
+  if (!isBag(arguments.data)) {
+    return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
+  }
+  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
+  return readMagnetometerRecord(*bag, arguments.data, bag->rigFile().sections.contains("mag0"),
+                                recordOptions(arguments), diagnostics);
+}
+
 bool isCalibrationFile(const std::filesystem::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
 }
@@ -103,8 +116,7 @@ void calibrate(const CalibrateArguments& arguments) {
     CalibrationOptions options;
     options.site_field_ENU = site_field_ENU;
     if (!arguments.old.empty()) options.old = readCalibrationFile(arguments.old);
-    const MagnetometerRecord record =
-        readMagnetometerRecord(arguments.data, recordOptions(arguments), &diagnostics);
+    const MagnetometerRecord record = readRecord(arguments, &diagnostics);
     MagnetometerCalibrationResult result;
     try {
       result = calibrateMagnetometer(record, options, &diagnostics);
@@ -135,8 +147,11 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
   CLI::App* command = calibrate_command.add_subcommand(
       "magnetometer",
       "Soft iron, hard iron, rotation to the IMU and lag, with their uncertainties and a verdict");
-  command->add_option("DATA", arguments->data, "recording, CSV file or, with --compare, a calibration")
+  command
+      ->add_option("DATA", arguments->data,
+                   "recording, ROS 1 bag, CSV file or, with --compare, a calibration")
       ->required();
+  addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,
                       "calibration file, for `lodeline run --mag-calibration`");
   command->add_option(

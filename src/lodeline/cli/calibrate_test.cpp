@@ -96,6 +96,23 @@ TEST_F(CalibrateTest, FindsTheLagOfAFieldRecordingAndComparesCalibrations) {
   EXPECT_EQ(files.exit_code, 0) << files.output;
 }
 
+TEST_F(CalibrateTest, ReadsABagLikeAFolder) {
+  simulate("eight", "");
+  const Execution converted = runProgram("convert " + file("eight") + " " + file("eight.bag"));
+  if (converted.exit_code == 2) GTEST_SKIP() << converted.output;  // built without librosbag-storage
+  ASSERT_EQ(converted.exit_code, 0) << converted.output;
+  ASSERT_EQ(calibrate(file("eight") + " -o " + file("folder.yaml")).exit_code, 0);
+  const Execution result = calibrate(file("eight.bag") + " -o " + file("bag.yaml"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const MagnetometerFit folder = fitOf("folder.yaml");
+  const MagnetometerFit bag = fitOf("bag.yaml");
+  EXPECT_LT((bag.hard_iron - folder.hard_iron).norm(), 1e-12);
+  EXPECT_LT((bag.iron_correction - folder.iron_correction).norm(), 1e-9);
+  EXPECT_LT(bag.body_from_magnetometer->angularDistance(*folder.body_from_magnetometer), 1e-9);
+  std::filesystem::remove(folder_.path() / "eight.rig.yaml");
+  EXPECT_EQ(calibrate(file("eight.bag") + " -o " + file("bare.yaml")).exit_code, 0);
+}
+
 TEST_F(CalibrateTest, RefusesATooShortPartAndWritesNothing) {
   simulate("eight", "");
   const Execution result = calibrate(file("eight") + " --to 4 -o " + file("mag.yaml"));

@@ -9,6 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/compared_run.h"
+#include "lodeline/cli/interruption.h"
 #include "lodeline/cli/simulate_command.h"
 #include "lodeline/evaluation/comparison_report.h"
 #include "lodeline/evaluation/plots.h"
@@ -22,6 +23,7 @@ const char* const kFooter =
     R"(Methods: off (images and inertial readings alone), paper and absolute (docs/magnetometer.md), azimuth (the finished
 trajectory of off, its heading corrected by the 20 s running median of the field's azimuth).
 Runs of a scenario differ by the noise of its sensors, with the same images; runs of a folder by the front end's seed.
+Bags are turned into folders first, as by `lodeline convert`, in OUT/recordings or the folder of --recordings.
 Results: compare.json, compare.md, plots and one folder a run. Given again, the command makes only what is missing.
 Examples:
   lodeline compare demo --realism field -o demo_compared
@@ -129,10 +131,7 @@ void compare(ComparisonRequest request) {
     bool finished = prepareComparison(name, request, &input);
     input.name = distinctName(input.name, recordings);
     finished = finished && makeRuns(input, request, &recording);
-    if (!finished) {
-      fmt::print("interrupted; the same command goes on from there\n");
-      return;
-    }
+    if (!finished) throw Interruption("the same command goes on from there");
     recordings.push_back(std::move(recording));
   }
   writeResults(recordings, request);
@@ -166,7 +165,8 @@ void addCompareCommand(CLI::App& program) {
       "compare", "Compare methods of using the magnetometer on recordings with ground truth");
   command
       ->add_option("DATA|SCENARIO", request->inputs,
-                   "folders in the EuRoC ASL layout with ground truth, or scenarios of `lodeline simulate`")
+                   "folders in the EuRoC ASL layout or ROS 1 bags, with ground truth, or scenarios of "
+                   "`lodeline simulate`")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
       ->required();
@@ -177,6 +177,7 @@ void addCompareCommand(CLI::App& program) {
       ->check(CLI::Range(1, 99))
       ->capture_default_str();
   addRunOptions(command, request.get());
+  addBagOptions(&request->run.bag, command);
   command->add_option("--recordings", request->recordings,
                       "folder of simulated recordings, NAME_REALISM each; default OUT/recordings");
   command->add_flag(

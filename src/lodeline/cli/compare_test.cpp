@@ -1,4 +1,7 @@
+#include <fstream>
+
 #include "lodeline/cli/test_magnetic_room.h"
+#include "lodeline/evaluation/read_trajectory.h"
 
 // `lodeline compare` as a script sees it.
 
@@ -106,7 +109,7 @@ TEST_F(Compare, WrongWordsAndMissingTruthAreNamed) {
   expectError(compareRoom("--methods off,best"), 2, "no such method");
   expectError(compareRoom("--runs 0"), 2, "--runs");
   expectError(compareRoom("--site 29.83,-82.60,0"), 2, "--date");
-  expectError(compare("cave9", ""), 2, "neither a folder nor a scenario");
+  expectError(compare("cave9", ""), 2, "neither a folder, a bag nor a scenario");
   expectError(compare("figure_eight", ""), 2, "without images");
   fs::remove_all(recording_.sensor("state_groundtruth_estimate0"));
   expectError(compareRoom("--runs 1"), 1, "ground truth");
@@ -119,6 +122,28 @@ TEST_F(Compare, RecordingsOfOneNameAreKeptApart) {
   EXPECT_TRUE(fs::exists(runs() / "off_features_1" / "trajectory.tum"));
   EXPECT_TRUE(fs::exists(runs().string() + "_2/off_features_1/trajectory.tum"));
   EXPECT_EQ(readJson(output_ / "compare.json")["recordings"].size(), 2u);
+}
+
+TEST_F(Compare, TakesABagWithItsTruth) {
+  Diagnostics diagnostics;
+  std::string truth = "#timestamp,x,y,z,qw,qx,qy,qz\n";
+  for (const StampedPose& pose : readTrajectory(recording_.truth, {}, diagnostics).poses) {
+    const Vec3& p = pose.world_from_body.translation;
+    const Quat& q = pose.world_from_body.rotation;
+    truth += fmt::format("{},{},{},{},{},{},{},{}\n", pose.time.nanoseconds(), p.x(), p.y(), p.z(), q.w(),
+                         q.x(), q.y(), q.z());
+  }
+  fs::remove(recording_.sensor("state_groundtruth_estimate0") / "gt_tum.txt");
+  std::ofstream(recording_.sensor("state_groundtruth_estimate0") / "data.csv") << truth;
+  const fs::path bag = folder_.path() / "walk.bag";
+  const Execution converted = runProgram(fmt::format("convert {} {}", quoted(recording_.data), quoted(bag)));
+  if (converted.exit_code == 2) GTEST_SKIP() << converted.output;  // built without librosbag-storage
+  ASSERT_EQ(converted.exit_code, 0) << converted.output;
+  const Execution result = compare(quoted(bag), "--methods off --runs 1");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(recording()["methods"][0]["mean"]["completion_percent"], 100.0);
+  EXPECT_LT(recording()["methods"][0]["mean"]["after_sim3"]["position_rmse_m"].get<double>(), 0.01);
+  EXPECT_TRUE(fs::exists(output_ / "recordings" / "walk_from_bag" / "mav0" / "cam0"));
 }
 
 TEST_F(Compare, AzimuthWithoutCalibrationSaysWhatItTakes) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "lodeline/bags/convert.h"
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibrate_magnetometer.h"
@@ -117,6 +118,23 @@ void prepareFolder(const fs::path& folder, const ComparisonRequest& request, Com
   }
 }
 
+/// Bags have no list of images to count on and compare by; a folder has.
+fs::path convertedBag(const fs::path& bag, const ComparisonRequest& request) {
+  const fs::path folder = recordingsFolder(request) / (bag.stem().string() + "_from_bag");
+  if (fs::exists(folder) && fs::last_write_time(folder) >= fs::last_write_time(bag)) return folder;
+  ConvertOptions options;
+  options.rig_files.assign(request.run.bag.rig_files.begin(), request.run.bag.rig_files.end());
+  options.topics = topicsOf(request.run.bag);
+  const fs::path unfinished = folder.string() + "_unfinished";
+  fs::remove_all(unfinished);
+  Diagnostics diagnostics;  // what is wrong with the data, the runs find too
+  convertBagToFolder(bag, unfinished, options, &diagnostics);
+  fs::remove_all(folder);
+  fs::rename(unfinished, folder);
+  fs::last_write_time(folder, fs::file_time_type::clock::now());
+  return folder;
+}
+
 /// Leaves the end of a recording out that has no images yet, and says what is measured.
 void limitToImages(ComparisonInput* prepared) {
   RunSettings options;
@@ -161,10 +179,14 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
     if (!prepareScenario(input, request, prepared)) return false;
   } else if (fs::is_directory(input)) {
     prepareFolder(input, request, prepared);
+  } else if (isBag(input)) {
+    prepareFolder(convertedBag(input, request), request, prepared);
+    prepared->run.bag = {};
   } else {
     std::string names;
     for (const Scenario& s : all) names += (names.empty() ? "" : ", ") + s.name;
-    throw UsageError(fmt::format("{}: neither a folder nor a scenario; scenarios are {}", input, names));
+    throw UsageError(
+        fmt::format("{}: neither a folder, a bag nor a scenario; scenarios are {}", input, names));
   }
   limitToImages(prepared);
   return true;

@@ -10,7 +10,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/export_depth.h"
-#include "lodeline/data/euroc_source.h"
+#include "lodeline/cli/open_recording.h"
 #include "lodeline/export/map_files.h"
 #include "lodeline/export/recording_images.h"
 #include "lodeline/export/recording_walls.h"
@@ -24,6 +24,7 @@ struct ExportArguments {
   std::vector<std::string> formats;
   std::string output;
   std::string recording;
+  BagArguments bag;
   std::vector<double> entrance;
   std::vector<double> entrance_sigma = {3.0, 5.0};
   bool no_splays = false;
@@ -44,9 +45,10 @@ RecordingParts readRecording(const ExportArguments& arguments, const std::vector
   if (arguments.recording.empty()) return parts;
   EurocOptions options;
   options.with_cameras = std::find(formats.begin(), formats.end(), MapFormat::Colmap) != formats.end();
-  EurocSource source(arguments.recording, options, diagnostics);
-  parts.walls_W = sonarWalls(source, run.trajectory, diagnostics);
-  if (options.with_cameras) parts.images = recordingImages(source, run, diagnostics);
+  const std::unique_ptr<RecordedSource> source =
+      openRecording(arguments.recording, options, arguments.bag, diagnostics);
+  parts.walls_W = sonarWalls(*source, run.trajectory, diagnostics);
+  if (options.with_cameras) parts.images = recordingImages(*source, run, diagnostics);
   return parts;
 }
 
@@ -134,8 +136,11 @@ void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
       "--closed", map.is_closed,
       "the dive ended exactly where it began: equate both and let the program spread the misclosure");
   command->add_flag("--no-splays", arguments->no_splays, "leave the legs to the walls out");
-  command->add_option("--recording", arguments->recording,
-                      "the run's recording: its sonar adds walls; COLMAP takes cameras and images from it");
+  command->add_option(
+      "--recording", arguments->recording,
+      "the run's recording, a folder or a ROS 1 bag: its sonar adds walls; COLMAP takes cameras "
+      "and images from it");
+  addBagOptions(&arguments->bag, command);
 }
 
 }  // namespace

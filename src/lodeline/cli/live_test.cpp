@@ -82,6 +82,24 @@ TEST_F(Live, TakesAnyPortForNoughtAndADefaultForNone) {
   EXPECT_EQ(run("--live=here").exit_code, 2);
 }
 
+TEST_F(Live, DoesNotTakeTheRecordingForAPort) {
+  const std::string data = quoted(recording_.data);
+  const std::string output = "-q --no-report -o " + quoted(output_);
+  // Any order of the arguments; with the default port, which may be in use, only the parsing is looked at.
+  for (const std::string& command :
+       {"run --live 0 " + data + " " + output, "run " + data + " " + output + " --live 0",
+        "run --live=0 " + data + " " + output}) {
+    EXPECT_EQ(runProgram(command).exit_code, 0) << command;
+  }
+  for (const std::string& command : {"run --live nowhere " + output, "run nowhere --live " + output,
+                                     "run nowhere " + output + " --live"}) {
+    const Execution result = runProgram(command);
+    EXPECT_EQ(result.exit_code, 1) << command;
+    EXPECT_THAT(result.output, HasSubstr("bad input: nowhere")) << command;
+  }
+  EXPECT_EQ(run("--live here").exit_code, 2);
+}
+
 TEST_F(Live, PortInUseIsSaidBeforeTheRunBegins) {
   const LiveServer other("127.0.0.1", 0, "");
   const std::string url = other.url();

@@ -4,7 +4,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "lodeline/base/error.h"
 #include "lodeline/cli/allan_command.h"
@@ -15,6 +18,7 @@
 #include "lodeline/cli/evaluate_command.h"
 #include "lodeline/cli/export_command.h"
 #include "lodeline/cli/inspect_command.h"
+#include "lodeline/cli/interruption.h"
 #include "lodeline/cli/refine_command.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_command.h"
@@ -23,7 +27,7 @@
 namespace {
 
 // The contract with scripts: what ended the program can be told from its exit code.
-enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3 };
+enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3, kInterrupted = 130 };
 
 int fail(const char* kind, const std::exception& error, ExitCode code) {
   fmt::print(stderr, "{}: {}\n", kind, error.what());
@@ -60,7 +64,9 @@ int main(int argc, char** argv) {
   lodeline::addConvertCommand(program);
   lodeline::addInspectCommand(program);
   try {
-    program.parse(argc, argv);
+    std::vector<std::string> arguments = lodeline::completeLiveOption({argv + 1, argv + argc});
+    std::reverse(arguments.begin(), arguments.end());  // which is how CLI11 takes them
+    program.parse(std::move(arguments));
     return kGood;
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kGood : kBadUsage;
@@ -70,6 +76,8 @@ int main(int argc, char** argv) {
     return fail("bad usage", error, kBadUsage);
   } catch (const lodeline::EstimationError& error) {
     return fail("estimation failed", error, kEstimationFailed);
+  } catch (const lodeline::Interruption& error) {
+    return fail("interrupted", error, kInterrupted);
   } catch (const std::exception& error) {
     return fail("unexpected failure", error, kEstimationFailed);
   }

@@ -6,11 +6,20 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "lodeline/bags/bag_source.h"
 #include "lodeline/base/error.h"
 #include "lodeline/data/euroc_source.h"
 
 namespace lodeline {
+namespace {
+
+BagOptions bagOptions(const BagArguments& arguments) {
+  BagOptions options;
+  options.rig_files.assign(arguments.rig_files.begin(), arguments.rig_files.end());
+  options.topics = topicsOf(arguments);
+  return options;
+}
+
+}  // namespace
 
 void addBagOptions(BagArguments* arguments, CLI::App* command) {
   command
@@ -44,17 +53,26 @@ bool isBag(const std::filesystem::path& data) {
   return data.extension() == ".bag" || name.ends_with(".bag.active");
 }
 
+void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
+  if (isBag(data) || (bag_arguments.rig_files.empty() && bag_arguments.topics.empty())) return;
+  throw UsageError(fmt::format("--rig and --topic are for ROS bags; {} is none", data.string()));
+}
+
+std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
+                                           const BagArguments& bag_arguments, Diagnostics* diagnostics) {
+  BagOptions options = bagOptions(bag_arguments);
+  options.with_cameras = false;
+  options.needs_calibration = false;
+  return std::make_unique<BagSource>(bag, options, diagnostics);
+}
+
 std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics) {
   if (!isBag(data)) {
-    if (!bag_arguments.rig_files.empty() || !bag_arguments.topics.empty()) {
-      throw UsageError(fmt::format("--rig and --topic are for ROS bags; {} is none", data.string()));
-    }
+    refuseBagOptions(data, bag_arguments);
     return std::make_unique<EurocSource>(data, options, diagnostics);
   }
-  BagOptions bag_options;
-  bag_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
-  bag_options.topics = topicsOf(bag_arguments);
+  BagOptions bag_options = bagOptions(bag_arguments);
   bag_options.camera_indices = options.camera_indices;
   bag_options.with_cameras = options.with_cameras;
   bag_options.needs_calibration = options.needs_calibration;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/bags/bag_source.h"
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/measurement_source.h"
@@ -29,6 +30,14 @@ void addBagOptions(BagArguments* arguments, CLI::App* command);
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments);
 
 bool isBag(const std::filesystem::path& data);
+
+/// Throws UsageError for options of bags where `data` is none.
+void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments);
+
+/// Opens a bag for its readings alone: without images, and sensors of which no rig file tells have the
+/// default calibration. Throws as BagSource does; `diagnostics` must outlive the source.
+std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
+                                           const BagArguments& bag_arguments, Diagnostics* diagnostics);
 
 /// Opens a folder in the EuRoC ASL layout, or a ROS 1 bag. Throws as EurocSource and BagSource do, and
 /// UsageError for options of bags with a folder. `diagnostics` must outlive the source.

@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/cli/interruption.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_recording.h"
 #include "lodeline/page/page_template.h"
@@ -15,9 +18,15 @@ namespace {
 
 constexpr int kLivePort = 8642;
 
+bool isNumber(const std::string& text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
+}
+
 /// Turns a run without a result into the error that explains it.
 void requireResult(const RunRequest& request, const RunSummary& summary) {
-  if (summary.interrupted || summary.posed() > 0) return;
+  if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
+  if (summary.posed() > 0) return;
   if (summary.images == 0) {
     throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",
                                  request.data,
@@ -66,10 +75,10 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
   command->add_option("--date", arguments->date, "YYYY-MM-DD of the recording, for true north");
   command
       ->add_option("--live", arguments->live_port,
-                   "show the run in the browser while it goes on, at this port; 0 for any")
+                   fmt::format("show the run in the browser while it goes on, at this port ({} where none is "
+                               "named); 0 for any",
+                               kLivePort))
       ->type_name("[PORT]")
-      ->expected(0, 1)
-      ->default_str(std::to_string(kLivePort))
       ->check(CLI::Range(0, 65535));
   command
       ->add_option("--live-address", arguments->live_address,
@@ -78,6 +87,16 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
   command->add_flag("--no-report", arguments->no_report, "leave out report.html and its pictures");
   addBagOptions(&arguments->bag, command);
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
+}
+
+std::vector<std::string> completeLiveOption(std::vector<std::string> arguments) {
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] != "--live") continue;
+    const bool has_port = i + 1 < arguments.size() && isNumber(arguments[i + 1]);
+    arguments[i] = fmt::format("--live={}", has_port ? arguments[i + 1] : std::to_string(kLivePort));
+    if (has_port) arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+  }
+  return arguments;
 }
 
 void addRunCommand(CLI::App& program) {

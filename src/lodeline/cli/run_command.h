@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <string>
+#include <vector>
 
 #include "lodeline/cli/run_request.h"
 
@@ -14,7 +16,11 @@ void addRunOptions(RunRequest* arguments, CLI::App* command);
 void executeRun(RunRequest request);
 
 /// `lodeline run DATA -o OUT`: from a recording to a trajectory, its uncertainty and a map. Its callback
-/// throws InputError, UsageError and EstimationError.
+/// throws InputError, UsageError, EstimationError and Interruption.
 void addRunCommand(CLI::App& program);
+
+/// The command line with `--live` as `--live=PORT`, whether a number follows or not. An option whose value
+/// may be left out would take whatever follows for its value, as the recording in `run --live dive1`.
+std::vector<std::string> completeLiveOption(std::vector<std::string> arguments);
 
 }  // namespace lodeline

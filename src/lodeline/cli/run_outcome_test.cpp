@@ -143,7 +143,7 @@ int signalAfterPoses(const RoomRecording& recording, const std::filesystem::path
 TEST_F(RunOutcome, InterruptCompletesTheResultsSoFar) {
   prolong(recording_);
   for (const int signal : {SIGINT, SIGTERM}) {
-    EXPECT_EQ(signalAfterPoses(recording_, output_, 10, signal), 0);
+    EXPECT_EQ(signalAfterPoses(recording_, output_, 10, signal), 130);
     const nlohmann::json json = summary();
     EXPECT_TRUE(json["interrupted"]);
     EXPECT_GE(json["frames"], 10);

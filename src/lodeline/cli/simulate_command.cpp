@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lodeline/base/error.h"
+#include "lodeline/cli/interruption.h"
 #include "lodeline/cli/simulate_recording.h"
 
 namespace lodeline {
@@ -48,9 +49,8 @@ void simulate(const SimulateArguments& arguments) {
   const RecordingSummary summary =
       simulateRecording(scenario, arguments.output, {.threads = arguments.threads, .quiet = arguments.quiet});
   if (!summary.complete) {
-    fmt::print("interrupted: {} of {} images are in {}; the same command goes on from there\n",
-               summary.images.done, summary.images.total, arguments.output);
-    return;
+    throw Interruption(fmt::format("{} of {} images are in {}; the same command goes on from there",
+                                   summary.images.done, summary.images.total, arguments.output));
   }
   fmt::print("{}: {:.1f} s, {:.1f} m, {} images in {}\n", scenario.name, summary.duration_s,
              summary.path_length_m, summary.images.total, arguments.output);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "lodeline/data/image_loader.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 
 namespace lodeline {
@@ -41,10 +42,17 @@ void correct(const std::vector<Eigen::Matrix<double, 6, 1>>& corrections,
   }
 }
 
-/// The last three parts of a path: cam0/data/STAMP.png.
-std::string shortName(const std::filesystem::path& file) {
-  const std::filesystem::path data = file.parent_path();
-  return (data.parent_path().filename() / data.filename() / file.filename()).generic_string();
+/// The last three parts of a file's path: cam0/data/STAMP.png. An image of a bag has the name that
+/// `lodeline convert` gives it.
+std::string shortName(const PendingImage& image, const std::string& camera) {
+  const std::filesystem::path file = image.name;
+  if (std::filesystem::exists(file)) {
+    const std::filesystem::path data = file.parent_path();
+    return (data.parent_path().filename() / data.filename() / file.filename()).generic_string();
+  }
+  const StoredImage stored = image.stored ? image.stored() : StoredImage();
+  const bool is_png = stored.file.empty() || isPng(stored.file);
+  return fmt::format("{}/data/{}.{}", camera, image.time.nanoseconds(), is_png ? "png" : "jpg");
 }
 
 }  // namespace
@@ -56,7 +64,7 @@ MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagn
     const Duration offset = Duration::fromSeconds(result.cameras[camera].time_offset_to_imu_s);
     while (const std::optional<PendingImage> image = source.nextImage(camera)) {
       const std::optional<size_t> pose = poseNear(run.trajectory, image->time + offset);
-      if (pose) result.images.push_back({camera, *pose, shortName(image->name)});
+      if (pose) result.images.push_back({camera, *pose, shortName(*image, result.cameras[camera].name)});
     }
   }
   correct(run.camera_corrections, &result.cameras);
