@@ -32,13 +32,17 @@ bool looksLikeNanoseconds(const std::string& field) { return isInteger(field) &&
 TrajectoryFormat detectFormat(const std::filesystem::path& file) {
   if (file.extension() == ".bin") return TrajectoryFormat::ColmapBinary;
   const TextTable head = readTextTable(file, 1);
+  bool header_says_nanoseconds = false;  // of a clock that starts at zero, too
   for (const std::string& comment : head.comments) {
+    header_says_nanoseconds = header_says_nanoseconds || comment.find("timestamp [ns]") != std::string::npos;
     if (comment.find("IMAGE_ID") != std::string::npos) return TrajectoryFormat::ColmapText;
   }
   const std::vector<std::string>& fields = head.lines.front().fields;
   const std::string file_name = file.filename().string();
   if (file_name == "images.txt" || file_name == "images.txt.gz") return TrajectoryFormat::ColmapText;
-  if (looksLikeNanoseconds(fields[0]) && fields.size() >= 8) return TrajectoryFormat::Euroc;
+  const bool is_nanoseconds =
+      looksLikeNanoseconds(fields[0]) || (header_says_nanoseconds && isInteger(fields[0]));
+  if (is_nanoseconds && fields.size() >= 8) return TrajectoryFormat::Euroc;
   if (fields.size() == 12) return TrajectoryFormat::Kitti;
   if (fields.size() >= 8) return TrajectoryFormat::Tum;
   throw InputError(
