@@ -30,6 +30,20 @@ DiveMapOptions devilsEye() {
   return options;
 }
 
+// Both programs give positions in whole centimetres.
+constexpr double kHalfCentimetre_m = 0.0051;
+
+/// Stations and, at the same places, the poses on the grid.
+void expectAt(const Stations& stations, const DiveMap& map) {
+  ASSERT_EQ(stations.size(), map.survey.stations.size());
+  for (const auto& [index, position] : stations) {
+    const Vec3 point = map.survey.stations[static_cast<size_t>(index)].position_ENU;
+    const Vec3 expected =
+        map.place ? map.place->grid(point) : Vec3(point - map.start_depth_m * Vec3::UnitZ());
+    EXPECT_LT((position - expected).cwiseAbs().maxCoeff(), kHalfCentimetre_m) << "station " << index;
+  }
+}
+
 class SurveyPrograms : public ::testing::Test {
  protected:
   DiveMap write(const RunFolder& run, const DiveMapOptions& options) {
@@ -73,6 +87,12 @@ class SurveyPrograms : public ::testing::Test {
     return stations;
   }
 
+  /// Both programs accept the map and put its stations where the poses are.
+  void expectBothAt(const DiveMap& map) const {
+    expectAt(cavern(map.name), map);
+    expectAt(therion(map.name), map);
+  }
+
   void replaceIn(const std::string& file, const std::string& pattern, const std::string& by) const {
     const std::string text = test::runIn(folder_.path(), "cat " + file).output;
     writeOutput(folder_.path() / file, std::regex_replace(text, std::regex(pattern), by));
@@ -81,27 +101,12 @@ class SurveyPrograms : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-/// Stations and, at the same places, the poses on the grid.
-void expectAt(const Stations& stations, const DiveMap& map, double tolerance_m) {
-  ASSERT_EQ(stations.size(), map.survey.stations.size());
-  for (const auto& [index, position] : stations) {
-    const Vec3 point = map.survey.stations[static_cast<size_t>(index)].position_ENU;
-    const Vec3 expected =
-        map.place ? map.place->grid(point) : Vec3(point - map.start_depth_m * Vec3::UnitZ());
-    EXPECT_LT((position - expected).cwiseAbs().maxCoeff(), tolerance_m) << "station " << index;
-  }
-}
-
-// Both programs give positions in whole centimetres.
-constexpr double kHalfCentimetre_m = 0.0051;
-
 TEST_F(SurveyPrograms, PutEveryStationOnItsPose) {
   LODELINE_NEEDS_PROGRAM("cavern", "survex");
   LODELINE_NEEDS_PROGRAM("therion", "therion");
   const DiveMap map = write(test::windingDive(400.0), devilsEye());
   EXPECT_GT(map.survey.stations.size(), 60U);
-  expectAt(cavern(map.name), map, kHalfCentimetre_m);
-  expectAt(therion(map.name), map, kHalfCentimetre_m);
+  expectBothAt(map);
 }
 
 TEST_F(SurveyPrograms, PutEveryStationOnItsPoseToAMillimetre) {
@@ -132,8 +137,7 @@ TEST_F(SurveyPrograms, AgreeInTheSouthAndFarFromTheZonesMiddle) {
   options.entrance = GeodeticPosition{-37.72, 142.9, 30.0};
   options.crs = "UTM55S";  // not its own zone: convergence 2.5 degrees
   const DiveMap map = write(test::windingDive(), options);
-  expectAt(cavern(map.name), map, kHalfCentimetre_m);
-  expectAt(therion(map.name), map, kHalfCentimetre_m);
+  expectBothAt(map);
 }
 
 TEST_F(SurveyPrograms, TakeMagneticNorthTurnedByTheDeclination) {
@@ -148,8 +152,7 @@ TEST_F(SurveyPrograms, TakeMagneticNorthTurnedByTheDeclination) {
     pose.world_from_body.translation = turnedClockwise(pose.world_from_body.translation, -declination);
   }
   write(run, devilsEye());
-  expectAt(cavern(expected.name), expected, kHalfCentimetre_m);
-  expectAt(therion(expected.name), expected, kHalfCentimetre_m);
+  expectBothAt(expected);
 }
 
 TEST_F(SurveyPrograms, TakeALocalMap) {
@@ -164,8 +167,7 @@ TEST_F(SurveyPrograms, TakeALocalMap) {
   options.start_depth_m = 3.0;
   const DiveMap map = write(run, options);
   EXPECT_EQ(map.name, "H__hle_7");
-  expectAt(cavern(map.name), map, kHalfCentimetre_m);
-  expectAt(therion(map.name), map, kHalfCentimetre_m);
+  expectBothAt(map);
 }
 
 TEST_F(SurveyPrograms, SpreadTheMisclosureOfAClosedDive) {

@@ -2,37 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include "lodeline/factors/numeric_jacobian.h"
-#include "lodeline/geometry/so3.h"
+#include "lodeline/factors/reprojection_scene.h"
 
 namespace lodeline {
 namespace {
 
-CameraCalibration testCalibration() {
-  CameraCalibration calibration;
-  calibration.name = "cam0";
-  calibration.width_px = 640;
-  calibration.height_px = 480;
-  calibration.fx_px = 460.0;
-  calibration.fy_px = 459.0;
-  calibration.cx_px = 322.0;
-  calibration.cy_px = 238.0;
-  return calibration;
-}
-
 /// A landmark seen from two moving bodies, with calibration files that are wrong by known corrections.
-struct Scene {
-  std::shared_ptr<const Camera> camera = makeCamera(testCalibration());
+struct Scene : ReprojectionScene {
   Rigid3 body_from_camera0{so3::exp(Vec3(0.1, -1.5, 0.2)), Vec3(-0.02, -0.06, 0.01)};
   Rigid3 camera0_from_camera1{so3::exp(Vec3(0.01, -0.02, 0.005)), Vec3(0.11, 0.002, -0.001)};
-  Rigid3 world_from_host{so3::exp(Vec3(0.3, 0.2, 1.0)), Vec3(1.0, -2.0, 0.5)};
-  Rigid3 world_from_target{so3::exp(Vec3(0.35, 0.15, 1.1)), Vec3(1.2, -1.8, 0.6)};
   ImageMotion host_motion{Vec3(0.3, -0.1, 0.05), Vec3(0.2, -0.4, 0.3)};
   ImageMotion target_motion{Vec3(0.25, 0.1, -0.02), Vec3(-0.1, 0.5, 0.2)};
   Eigen::VectorXd camera0 = (Eigen::VectorXd(6) << 0.01, -0.015, 0.008, 0.004, -0.01, 0.006).finished();
   Eigen::VectorXd camera1 = (Eigen::VectorXd(6) << -0.003, 0.002, 0.004, 5e-4, -3e-4, 2e-4).finished();
   Eigen::VectorXd time_offset = Eigen::VectorXd::Constant(1, 0.008);
-  Vec3 point_host_C{0.4, -0.3, 2.5};
 
   Rigid3 worldFromTrueCamera(const Rigid3& world_from_body, const ImageMotion& motion, bool further) const {
     const Rigid3 world_from_camera0 = motion.poseAfter(world_from_body, time_offset[0]) *
@@ -44,14 +27,7 @@ struct Scene {
                                 const Vec3& error_C = Vec3::Zero()) const {
     const Vec3 point_W = worldFromTrueCamera(world_from_host, host_motion, false) * point_host_C;
     const Vec3 point_C = worldFromTrueCamera(world_from_body, motion, further).inverse() * point_W;
-    return DirectionMeasurement::fromBearing(*camera, (point_C + error_C).normalized(), 0.7);
-  }
-  LandmarkBase base() const { return LandmarkBase((point_host_C + Vec3(0.02, 0.01, 0.0)).normalized()); }
-  Eigen::VectorXd landmark() const {
-    const LandmarkBase b = base();
-    const double depth = b.bearing_C.dot(point_host_C);
-    const Vec2 ab = b.tangent_C.transpose() * point_host_C / depth;
-    return Vec3(ab.x(), ab.y(), 1.0 / depth);
+    return measurement(point_C + error_C);
   }
   CameraPlacement placement(bool further) const {
     return {body_from_camera0, further ? std::optional<Rigid3>(camera0_from_camera1) : std::nullopt};
@@ -72,14 +48,6 @@ struct Scene {
     return blocks;
   }
 };
-
-Vec2 evaluate(const ceres::CostFunction& factor, const std::vector<Eigen::VectorXd>& parameters) {
-  std::vector<const double*> pointers;
-  for (const auto& block : parameters) pointers.push_back(block.data());
-  Vec2 residual;
-  EXPECT_TRUE(factor.Evaluate(pointers.data(), residual.data(), nullptr));
-  return residual;
-}
 
 class CalibratedReprojection : public testing::TestWithParam<bool> {};
 

@@ -4,48 +4,19 @@
 
 #include <random>
 
-#include "lodeline/factors/numeric_jacobian.h"
-#include "lodeline/geometry/so3.h"
+#include "lodeline/factors/reprojection_scene.h"
 
 namespace lodeline {
 namespace {
 
-CameraCalibration testCalibration() {
-  CameraCalibration calibration;
-  calibration.name = "cam0";
-  calibration.width_px = 752;
-  calibration.height_px = 480;
-  calibration.fx_px = 458.0;
-  calibration.fy_px = 457.0;
-  calibration.cx_px = 367.0;
-  calibration.cy_px = 248.0;
-  calibration.distortion_model = DistortionModel::RadialTangential;
-  calibration.distortion = {-0.283, 0.074, 0.0002, 1.8e-5};
-  return calibration;
-}
-
 /// A landmark seen from two body poses with different extrinsics.
-struct Scene {
-  std::shared_ptr<const Camera> camera = makeCamera(testCalibration());
+struct Scene : ReprojectionScene {
   Rigid3 body_from_host_camera{so3::exp(Vec3(0.1, -1.5, 0.2)), Vec3(-0.02, -0.06, 0.01)};
   Rigid3 body_from_target_camera{so3::exp(Vec3(0.12, -1.48, 0.22)), Vec3(-0.02, 0.05, 0.02)};
-  Rigid3 world_from_host{so3::exp(Vec3(0.3, 0.2, 1.0)), Vec3(1.0, -2.0, 0.5)};
-  Rigid3 world_from_target{so3::exp(Vec3(0.35, 0.15, 1.1)), Vec3(1.2, -1.8, 0.6)};
-  Vec3 point_host_C{0.4, -0.3, 2.5};
 
   Vec3 pointInTarget() const {
     const Vec3 point_W = world_from_host * (body_from_host_camera * point_host_C);
     return body_from_target_camera.inverse() * (world_from_target.inverse() * point_W);
-  }
-  LandmarkBase base() const { return LandmarkBase((point_host_C + Vec3(0.02, 0.01, 0.0)).normalized()); }
-  Eigen::VectorXd landmark() const {
-    const LandmarkBase b = base();
-    const double depth = b.bearing_C.dot(point_host_C);
-    const Vec2 ab = b.tangent_C.transpose() * point_host_C / depth;
-    return Vec3(ab.x(), ab.y(), 1.0 / depth);
-  }
-  DirectionMeasurement measurement(const Vec3& point_C, double sigma_px = 0.7) const {
-    return DirectionMeasurement::fromBearing(*camera, point_C.normalized(), sigma_px);
   }
   ReprojectionFactor factor(const DirectionMeasurement& m, const double* host_first = nullptr,
                             const double* target_first = nullptr) const {
@@ -55,14 +26,6 @@ struct Scene {
     return {poseVector(world_from_host), poseVector(world_from_target), landmark()};
   }
 };
-
-Vec2 evaluate(const ceres::CostFunction& factor, const std::vector<Eigen::VectorXd>& parameters) {
-  std::vector<const double*> pointers;
-  for (const auto& block : parameters) pointers.push_back(block.data());
-  Vec2 residual;
-  EXPECT_TRUE(factor.Evaluate(pointers.data(), residual.data(), nullptr));
-  return residual;
-}
 
 TEST(ReprojectionFactor, IsZeroAtTruth) {
   const Scene scene;
