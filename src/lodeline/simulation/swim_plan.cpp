@@ -109,13 +109,19 @@ void SwimPlan::integrateSpeed() {
     (timeOf(i) < middle_s ? in : out) += kick_[i] * kStep_s;
     if (kick_[i] > 0.3) swimming_s += kStep_s;
   }
-  mean_speed_ = o.penetration_m * (o.round_trip ? 2.0 : 1.0) / std::max(swimming_s, 1e-9);
+  const double path_m = o.penetration_m * (o.round_trip ? 2.0 : 1.0);
+  if (swimming_s == 0.0) {
+    throw UsageError(
+        fmt::format("{:.0f} s leave no time to swim beside standing still and turning; "
+                    "make the dive longer",
+                    o.duration_s));
+  }
+  mean_speed_ = path_m / swimming_s;
   if (!(mean_speed_ >= 0.05 && mean_speed_ <= 0.6)) {
     throw UsageError(
         fmt::format("{:.1f} m in {:.0f} s asks for swimming at {:.2f} m/s; a diver swims at 0.05 to 0.6 m/s, "
-                    "so change the "
-                    "length or the duration",
-                    o.penetration_m * (o.round_trip ? 2.0 : 1.0), o.duration_s, mean_speed_));
+                    "so change the length or the duration",
+                    path_m, o.duration_s, mean_speed_));
   }
   const size_t zero = static_cast<size_t>(std::lround(kBorder_s / kStep_s));
   std::vector<double> signed_speed(kick_.size());
