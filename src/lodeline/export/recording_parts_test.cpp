@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "lodeline/base/output_file.h"
+#include "lodeline/evaluation/test_trajectories.h"
 #include "lodeline/export/recording_images.h"
 #include "lodeline/export/recording_walls.h"
 
@@ -66,10 +68,16 @@ TEST(RecordingImages, BelongToThePosesOfTheirTimes) {
   CameraCalibration camera;
   camera.time_offset_to_imu_s = 0.02;
   camera.body_from_camera = Rigid3(Quat::Identity(), Vec3(0.1, 0.0, 0.0));
+  camera.name = "cam0";
   source.rig_.cameras = {camera};
-  for (double stamp_s : {9.98, 10.083, 10.23, 50.0}) {
-    source.images_.push_back({Time::fromSeconds(stamp_s), "/data/dive/mav0/cam0/data/7.png", {}});
-  }
+  const test::TemporaryFolder recording;
+  const std::filesystem::path file = recording.path() / "cam0" / "data" / "7.png";
+  std::filesystem::create_directories(file.parent_path());
+  writeOutput(file, "");
+  source.images_ = {{Time::fromSeconds(9.98), file.string(), {}},
+                    {Time::fromSeconds(10.083), "dive.bag: /camera/image at 10.083", {}},
+                    {Time::fromSeconds(10.23), file.string(), {}},
+                    {Time::fromSeconds(50.0), file.string(), {}}};
   RunFolder run;
   run.trajectory = straightWay();
   Eigen::Matrix<double, 6, 1> correction;
@@ -81,6 +89,7 @@ TEST(RecordingImages, BelongToThePosesOfTheirTimes) {
   EXPECT_EQ(images.images[0].pose, 0U);
   EXPECT_EQ(images.images[1].pose, 1U);
   EXPECT_EQ(images.images[0].name, "cam0/data/7.png");
+  EXPECT_EQ(images.images[1].name, "cam0/data/10083000000.png");
   EXPECT_NEAR(images.cameras[0].body_from_camera.translation.x(), 0.102, 1e-12);
   EXPECT_NEAR(images.cameras[0].body_from_camera.rotation.angularDistance(Quat::Identity()), 0.01, 1e-9);
 }
