@@ -203,7 +203,9 @@ TEST_F(Mh01Program, MemoryDoesNotGrowWithTime) {
       writeCsv(csv(variant, camera), play.images(readCsv(csv(data_, camera))));
     }
     writeCsv(csv(variant, "imu0"), play.inertial(readCsv(csv(data_, "imu0"))));
-    const nlohmann::json summary = readJson(run(variant, fmt::format("run{}", passes)) / "run.json");
+    // Without the page, which holds up to a hundred pictures and has a bound of its own.
+    const std::filesystem::path output = run(variant, fmt::format("run{}", passes), "--no-report");
+    const nlohmann::json summary = readJson(output / "run.json");
     EXPECT_GE(summary["frames"], 280 * passes);
     EXPECT_GE(summary["completion"], 0.99);
     EXPECT_LE(summary["frames_inertial"], 0.01 * summary["frames"].get<double>());
