@@ -7,7 +7,6 @@ namespace lodeline {
 namespace {
 
 constexpr size_t kReadings = 20;
-constexpr size_t kLeastReadings = 3;  // a wild one among them is outvoted
 constexpr std::array kLargestFirst = {FieldUnit::Tesla, FieldUnit::Gauss, FieldUnit::Microtesla,
                                       FieldUnit::Milligauss, FieldUnit::Nanotesla};
 
@@ -25,7 +24,7 @@ double medianSize(const std::vector<Vec3>& readings, const Size& size) {
 void ReadingUnit::add(const Vec3& reading) {
   if (settled()) return;
   readings_.push_back(reading);
-  if (readings_.size() >= kLeastReadings) unit_ = find();
+  unit_ = find();
 }
 
 bool ReadingUnit::settled() const { return readings_.size() >= kReadings; }

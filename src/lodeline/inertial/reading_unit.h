@@ -9,8 +9,8 @@
 namespace lodeline {
 
 /// The unit of a magnetometer's readings, by the size that the field then has: the Earth's has 22 to 67 uT,
-/// and the units lie a decade or more apart. Judged by the first readings together, three at least, so that a
-/// wild one among them misleads nobody; further ones change nothing.
+/// and the units lie a decade or more apart. Judged by the first readings together, so that a wild one among
+/// them misleads for two readings at most; further ones change nothing.
 class ReadingUnit {
  public:
   /// The calibration's hard iron can be larger than the field; its figures are in tesla.
@@ -21,7 +21,7 @@ class ReadingUnit {
 
   /// Whether enough readings were seen for the unit to stay.
   bool settled() const;
-  /// Raw before the third reading, and where no unit fits.
+  /// Raw before the first reading, and where no unit fits.
   FieldUnit unit() const { return unit_; }
   /// Median size of the readings seen, as recorded.
   double size() const;
