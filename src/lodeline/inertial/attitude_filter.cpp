@@ -150,7 +150,13 @@ void AttitudeFilter::remember(Time time) {
 
 void AttitudeFilter::add(const MagnetometerSample& sample) {
   if (!readings_) return;
-  for (const FieldSample& usable : readings_->add({&sample, 1})) waiting_.push_back(usable);
+  // The first readings only tell the unit: a wild one among them, taken alone, would set the heading.
+  constexpr int kForTheUnit = 2;
+  const bool tells_unit = readings_for_unit_ < kForTheUnit;
+  if (tells_unit) ++readings_for_unit_;
+  for (const FieldSample& usable : readings_->add({&sample, 1})) {
+    if (!tells_unit) waiting_.push_back(usable);
+  }
   takeFields();
 }
 

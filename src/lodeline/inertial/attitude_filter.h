@@ -113,6 +113,7 @@ class AttitudeFilter {
   double turned_rad_ = 0.0;
 
   std::deque<Moment> history_;
+  int readings_for_unit_ = 0;
   std::deque<FieldSample> waiting_;
   std::optional<Time> last_field_time_;
   double last_field_turned_rad_ = 0.0;
