@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lodeline/estimator/window_cholesky.h"
 #include "lodeline/estimator/window_terms.h"
 
 namespace lodeline {
@@ -30,39 +31,22 @@ double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
   return lengthUncertainty(newest.velocity_W(), covariance.block<3, 3>(6, 6));
 }
 
-Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks) {
-  std::vector<bool> wanted(static_cast<size_t>(system.size()), false);
-  std::vector<int> last;
+Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
+                             const std::vector<const double*>& eliminated_first) {
+  WindowCholesky cholesky(system, eliminated_first, blocks);
+  if (cholesky.factorise(0.0)) return cholesky.covarianceOfLast();
+  // Nearly singular: slower, but it finds what there is.
+  std::vector<int> rows;
   for (const double* value : blocks) {
     const NormalEquations::Block& block = *system.find(value);
-    for (int row = block.offset; row < block.offset + block.tangentSize(); ++row) {
-      last.push_back(row);
-      wanted[static_cast<size_t>(row)] = true;
-    }
+    for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
   }
-  std::vector<int> order;
-  for (int row = 0; row < system.size(); ++row) {
-    if (!wanted[static_cast<size_t>(row)]) order.push_back(row);
-  }
-  order.insert(order.end(), last.begin(), last.end());
   const Eigen::MatrixXd hessian = system.hessian();
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse()(order);
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian(order, order) * scale.asDiagonal();
-  const auto size = static_cast<Eigen::Index>(last.size());
-  const Eigen::LLT<Eigen::MatrixXd> factorised(scaled);
-  Eigen::MatrixXd covariance;
-  if (factorised.info() == Eigen::Success) {
-    // With the wanted rows last, what the others say of them is all in the factor's last block.
-    const Eigen::MatrixXd inverse_root = factorised.matrixLLT()
-                                             .bottomRightCorner(size, size)
-                                             .triangularView<Eigen::Lower>()
-                                             .solve(Eigen::MatrixXd::Identity(size, size));
-    covariance = inverse_root.transpose() * inverse_root;
-  } else {
-    const Eigen::MatrixXd selection = Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()).rightCols(size);
-    covariance = scaled.ldlt().solve(selection).bottomRows(size);
-  }
-  covariance = scale.tail(size).asDiagonal() * covariance * scale.tail(size).asDiagonal();
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(system.size(), system.size());
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  Eigen::MatrixXd covariance = scaled.ldlt().solve(identity)(rows, rows);
+  covariance = scale(rows).asDiagonal() * covariance * scale(rows).asDiagonal();
   return 0.5 * (covariance + covariance.transpose());
 }
 
@@ -83,7 +67,7 @@ JointCovariance::JointCovariance(const NormalEquations& system, const Window& wi
     offsets_[value] = {row, size};
     row += size;
   }
-  matrix_ = covarianceOf(system, blocks);
+  matrix_ = covarianceOf(system, blocks, motionsButTheNewest(window));
 }
 
 Eigen::MatrixXd JointCovariance::between(const double* rows, const double* columns) const {

@@ -12,8 +12,10 @@ namespace lodeline {
 /// Covariance of one frame's [dp, dtheta, dv, db_g, db_a] in a linearised window.
 Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame);
 
-/// Joint covariance of some of the blocks that a system holds, stacked in the order given.
-Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks);
+/// Joint covariance of some of the blocks that a system holds, stacked in the order given. Other blocks in
+/// the order in which they are best eliminated (see WindowCholesky), as far as one is known.
+Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
+                             const std::vector<const double*>& eliminated_first = {});
 
 /// Covariance of the newest frame together with those global states that the system knows and whose
 /// correlation is wanted (GlobalState::is_correlation_wanted).

@@ -216,9 +216,8 @@ void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* es
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  const SolveLimits limits = starting_up_ ? SolveLimits{options_.solver.max_iterations_startup, 1e-6}
-                                          : SolveLimits{options_.solver.max_iterations, 1e-4};
-  WindowUpdate update = updateWindow(window_, marginalizer_.prior(), factors_, limits);
+  WindowUpdate update = updateWindow(window_, marginalizer_.prior(), factors_,
+                                     {options_.solver.max_iterations, options_.solver.function_tolerance});
   const SolveSummary summary = update.summary;
   rememberCovariance(std::move(update.covariance), estimate);
   estimate->solver_iterations = summary.iterations;

@@ -43,6 +43,8 @@ class NormalEquations {
 
   /// Symmetric, size() x size().
   Eigen::MatrixXd hessian() const;
+  /// The same without what stands above its diagonal; of no meaning after the next change.
+  Eigen::Block<const Eigen::MatrixXd> lowerTriangle() const { return h_.topLeftCorner(size_, size_); }
   const Eigen::VectorXd gradient() const { return g_.head(size_); }
 
  private:

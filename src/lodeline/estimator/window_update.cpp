@@ -1,14 +1,13 @@
 #include "lodeline/estimator/window_update.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/prior_terms.h"
 #include "lodeline/estimator/visual_terms.h"
+#include "lodeline/estimator/window_cholesky.h"
 
 namespace lodeline {
 namespace {
@@ -83,19 +82,6 @@ class QuickTerms {
   std::vector<double> residual_;
 };
 
-/// H d = -g with `damping` times the diagonal added; nothing where that is not positive definite.
-std::optional<Eigen::VectorXd> solveDamped(const Eigen::MatrixXd& h, const Eigen::VectorXd& g,
-                                           double damping) {
-  const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
-  scaled.diagonal().array() += damping;
-  const Eigen::LLT<Eigen::MatrixXd> factorised(scaled);
-  if (factorised.info() != Eigen::Success) return std::nullopt;
-  Eigen::VectorXd step = -(scale.asDiagonal() * factorised.solve(scale.asDiagonal() * g));
-  if (!step.allFinite()) return std::nullopt;
-  return step;
-}
-
 }  // namespace
 
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker& factors,
@@ -111,12 +97,12 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
   while (update.summary.iterations < limits.max_iterations) {
     ++update.summary.iterations;
     system = terms.linearise();
-    const Eigen::MatrixXd h = system.hessian();
+    WindowCholesky cholesky(system, motionsButTheNewest(window), {});
     const Snapshot before(window);
     double gain = 0.0;
     while (!(gain > 0.0) && damping <= kMostDamping) {
-      if (const std::optional<Eigen::VectorXd> step = solveDamped(h, system.gradient(), damping)) {
-        terms.apply(system, *step);
+      if (cholesky.factorise(damping)) {
+        terms.apply(system, -cholesky.solve(system.gradient()));
         gain = cost - terms.cost();
         if (!(gain > 0.0)) before.restore();
       }
