@@ -6,6 +6,14 @@ namespace lodeline {
 namespace {
 
 constexpr double kMemory_s = 30.0;
+// Relative sigma of what no file states: the scale of a triad of accelerometers (0.05 to 1 % by their
+// makers), the length of a baseline that counts as exact.
+constexpr double kUnstated = 1e-3;
+
+/// What is left of some information when an unstated error of the scale is added.
+double trusted(double information) {
+  return information > 0.0 ? 1.0 / (1.0 / information + kUnstated * kUnstated) : 0.0;
+}
 
 }  // namespace
 
@@ -50,7 +58,7 @@ ScaleInformation ScaleBudget::add(const Window& window) {
                  1.0 / std::pow(newest.depth->sigma_m, 2));
   ScaleInformation information;
   information.stereo = stereoInformation(window);
-  information.accelerometer = accelerations_.sum();
+  information.accelerometer = trusted(accelerations_.sum());
   if (heights_.sum() > 0.0)
     information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma_ * density_sigma_);
   return information;
@@ -67,13 +75,11 @@ double ScaleBudget::stereoInformation(const Window& window) const {
     ++count;
   }
   if (count == 0) return 0.0;
-  // A calibration that is held is trusted, but not beyond what files state.
-  constexpr double kTrust = 1e-3;
   const double by_position = calibration_.enabled ? calibration_.stereo_position_sigma_m / *baseline_m_ : 0.0;
   const double by_rotation =
       calibration_.enabled ? calibration_.stereo_rotation_sigma_rad * count / inverse_distances / *baseline_m_
                            : 0.0;
-  return 1.0 / (by_position * by_position + by_rotation * by_rotation + kTrust * kTrust);
+  return 1.0 / (by_position * by_position + by_rotation * by_rotation + kUnstated * kUnstated);
 }
 
 }  // namespace lodeline

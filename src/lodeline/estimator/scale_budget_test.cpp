@@ -45,6 +45,11 @@ TEST(ScaleBudget, AccelerationCountsWithItsSquare) {
   EXPECT_GT(lively, 100.0);
 }
 
+TEST(ScaleBudget, NoAccelerometerIsTrustedBeyondItsScale) {
+  EXPECT_LT(informationAfter(1, 50.0, 0.0, 0.0).accelerometer, 1.0 / (1e-3 * 1e-3));
+  EXPECT_GT(informationAfter(1, 50.0, 0.0, 0.0).accelerometer, 0.5 / (1e-3 * 1e-3));
+}
+
 TEST(ScaleBudget, StereoIsAsGoodAsItsCalibration) {
   EstimatorOptions coarse, fine;
   coarse.camera_calibration.stereo_rotation_sigma_rad = 0.004;
