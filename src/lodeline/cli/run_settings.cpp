@@ -106,6 +106,13 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "of further cameras to camera 0; 0 holds it");
   settings->bind("camera_calibration.stereo_position_sigma_m", &cameras->stereo_position_sigma_m,
                  "of further cameras to camera 0; 0 holds it");
+  settings->bind("camera_calibration.intrinsics", &cameras->intrinsics, "refine the lenses as well");
+  settings->bind("camera_calibration.focal_length_sigma", &cameras->focal_length_sigma,
+                 "relative, of both focal lengths; 0 holds them");
+  settings->bind("camera_calibration.principal_point_sigma_px", &cameras->principal_point_sigma_px,
+                 "0 holds it");
+  settings->bind("camera_calibration.radial_sigma", &cameras->radial_sigma,
+                 "of the radial profile at the image's border, relative; 0 holds it");
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "of the Cauchy loss");
   settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 namespace {
@@ -11,6 +12,8 @@ constexpr const char* kTimeOffset = "camera.dt";
 
 // Short enough to need no memory of their own: they are looked up for every landmark.
 std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".T_BC"; }
+
+std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
 
 void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas) {
   // Small enough to hold a state, large enough to keep the prior well conditioned.
@@ -28,6 +31,13 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
+Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options) {
+  Eigen::VectorXd sigmas(kIntrinsicsSize);
+  sigmas << Vec2::Constant(options.focal_length_sigma), Vec2::Constant(options.principal_point_sigma_px),
+      Vec2::Constant(options.radial_sigma);
+  return sigmas;
+}
+
 }  // namespace
 
 void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
@@ -39,6 +49,8 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
     addState(window, prior, extrinsicsName(static_cast<size_t>(camera)),
              extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m));
   }
+  for (int camera = 0; options.intrinsics && camera < cameras; ++camera)
+    addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), intrinsicsSigmas(options));
 }
 
 CameraStates cameraStates(const Window& window) {
@@ -48,6 +60,8 @@ CameraStates cameraStates(const Window& window) {
   states.time_offset = window.findGlobal(kTimeOffset);
   while (GlobalState* further = window.findGlobal(extrinsicsName(states.further.size() + 1)))
     states.further.push_back(further);
+  while (GlobalState* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
+    states.intrinsics.push_back(lens);
   return states;
 }
 
@@ -60,6 +74,8 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   for (const GlobalState* further : states.further)
     corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(further->value.data()));
   corrections.time_offset_s = states.timeOffset_s();
+  for (const GlobalState* lens : states.intrinsics)
+    corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));
   return corrections;
 }
 

@@ -14,7 +14,8 @@ namespace lodeline {
 struct CameraStates {
   GlobalState* camera0 = nullptr;
   GlobalState* time_offset = nullptr;
-  std::vector<GlobalState*> further;  ///< of camera 1, 2, ...
+  std::vector<GlobalState*> further;     ///< of camera 1, 2, ...
+  std::vector<GlobalState*> intrinsics;  ///< of every camera; empty where the lenses are not estimated
 
   explicit operator bool() const { return camera0 != nullptr; }
   double timeOffset_s() const { return time_offset ? time_offset->value[0] : 0.0; }
@@ -29,6 +30,8 @@ CameraStates cameraStates(const Window& window);
 struct CameraCorrections {
   std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m
   double time_offset_s = 0.0;                           ///< to add to the images' stamps
+  /// Of each camera as in factors/intrinsics_factor.h; empty where the lenses are not estimated.
+  std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
 };
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 

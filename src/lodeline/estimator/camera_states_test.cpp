@@ -4,6 +4,7 @@
 
 #include "lodeline/estimator/test_scene.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -69,6 +70,69 @@ TEST(CameraStates, FindAWrongStereoRotation) {
             0.15 * rotation.norm());
 }
 
+/// The scene's tracks as someone reads them who takes `files` for the cameras.
+FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
+  for (Observation& observation : tracks.observations) {
+    const auto camera = static_cast<size_t>(observation.camera);
+    const Vec2 pixel = *makeCamera(truth.cameras[camera])->project(observation.bearing_C);
+    observation.bearing_C = *makeCamera(files.cameras[camera])->unproject(pixel);
+  }
+  return tracks;
+}
+
+/// Mean square of the distance to the truth, from the start on; `last` is the last estimate.
+double squaredPositionError_m2(bool lenses, uint64_t seed, const Eigen::Matrix<double, 6, 1>& lens,
+                               FrameEstimate* last) {
+  TestSceneOptions scene_options = sceneOptions();
+  scene_options.seed = seed;
+  TestScene scene(scene_options);
+  Rig files = scene.rig();
+  const Eigen::Matrix<double, 6, 1> undone = -lens;
+  for (CameraCalibration& camera : files.cameras) camera = correctedLens(camera, undone.data());
+  EstimatorOptions options = honestOptions(scene_options);
+  options.camera_calibration.intrinsics = lenses;
+  Diagnostics diagnostics;
+  Estimator estimator(files, options, &diagnostics);
+  TruthComparison truth;
+  double squares = 0.0;
+  int frames = 0;
+  while (const auto frame = scene.next()) {
+    *last = estimator.add(readWith(files, scene.rig(), frame->tracks), frame->imu);
+    const Comparison compared = truth.compare(*frame, *last, estimator);
+    if (!compared.initialized()) continue;
+    squares += compared.positionError() * compared.positionError();
+    ++frames;
+  }
+  return squares / frames;
+}
+
+TEST(CameraStates, FindAWrongLens) {
+  Eigen::Matrix<double, 6, 1> lens;
+  lens << 0.008, 0.006, 3.0, -2.0, 0.0, 0.0;
+  FrameEstimate held, found;
+  const double held_m2 = squaredPositionError_m2(false, 1, lens, &held);
+  const double found_m2 = squaredPositionError_m2(true, 1, lens, &found);
+  EXPECT_TRUE(held.camera_corrections->intrinsics.empty());
+  ASSERT_EQ(found.camera_corrections->intrinsics.size(), 2U);
+  for (const auto& estimate : found.camera_corrections->intrinsics) {
+    EXPECT_LT((estimate - lens).head<2>().norm(), 0.3 * lens.head<2>().norm()) << estimate.transpose();
+    EXPECT_LT((estimate - lens).segment<2>(2).norm(), 0.5 * lens.segment<2>(2).norm())
+        << estimate.transpose();
+  }
+  EXPECT_LT(found_m2, 0.5 * held_m2);
+}
+
+TEST(CameraStates, StayNearARightLens) {
+  FrameEstimate last;
+  squaredPositionError_m2(true, 1, Eigen::Matrix<double, 6, 1>::Zero(), &last);
+  for (const auto& estimate : last.camera_corrections->intrinsics) {
+    const CameraCalibrationOptions prior;
+    EXPECT_LT(estimate.head<2>().cwiseAbs().maxCoeff(), prior.focal_length_sigma) << estimate.transpose();
+    EXPECT_LT(estimate.segment<2>(2).cwiseAbs().maxCoeff(), prior.principal_point_sigma_px)
+        << estimate.transpose();
+  }
+}
+
 TEST(CameraStates, StayNearARightCalibration) {
   TestScene scene(sceneOptions());
   const FrameEstimate last = lastEstimate(scene, scene.rig(), honestOptions(sceneOptions()));
@@ -80,7 +144,7 @@ TEST(CameraStates, StayNearARightCalibration) {
 
 TEST(CameraStates, AreHeldByASigmaOfZeroAndAbsentWhenOff) {
   EstimatorOptions options = honestOptions(sceneOptions());
-  options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0};
+  options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0, true, 0.0, 0.0, 0.0};
   TestSceneOptions shorter = sceneOptions();
   shorter.duration_s = 6.0;
   TestScene held_scene(shorter);

@@ -4,6 +4,7 @@
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
+#include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/factors/magnetometer_relative_factor.h"
 
 namespace lodeline {
@@ -132,6 +133,9 @@ LandmarkFactors FactorMaker::calibratedLandmark(Window& window, TrackHistory& tr
                        states.time_offset->value.data()};
       if (further) factor.blocks.push_back(further->value.data());
     }
+    if (states.intrinsics.empty()) continue;
+    factor.function = std::make_unique<IntrinsicsFactor>(std::move(factor.function), sighting.measurement);
+    factor.blocks.push_back(states.intrinsics[sighting.camera]->value.data());
   }
   return result;
 }

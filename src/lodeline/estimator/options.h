@@ -74,8 +74,9 @@ struct SolverOptions {
   double robust_scale_sigmas = 2.0;  ///< Cauchy
 };
 
-/// How far the camera calibration of the files may be off, one sigma; a sigma of 0 holds it. The lens itself
-/// is left alone: a wrong principal point looks like a turned camera, and is made good as one.
+/// How far the camera calibration of the files may be off, one sigma; a sigma of 0 holds it. Without
+/// `intrinsics` the lens is left alone: a wrong principal point looks like a turned camera, and is made good
+/// as one.
 struct CameraCalibrationOptions {
   bool enabled = true;
   double rotation_sigma_rad = 0.01;  ///< camera 0 to the IMU, each axis
@@ -84,6 +85,12 @@ struct CameraCalibrationOptions {
   /// Further cameras to camera 0. Their distance is the only ruler a stereo rig has; files state it well.
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
+  /// The lens as well (factors/intrinsics_factor.h). Off: in slow forward motion little tells a wrong lens
+  /// from a turned camera.
+  bool intrinsics = false;
+  double focal_length_sigma = 0.005;  ///< relative
+  double principal_point_sigma_px = 2.0;
+  double radial_sigma = 0.01;
 };
 
 struct EstimatorOptions {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/factors/intrinsics_factor.h"
+
 namespace lodeline {
 namespace {
 
@@ -24,6 +26,7 @@ struct VisualTerms::Linearised {
   Mat23 by_landmark;
   Mat26 by_host, by_target;  ///< the poses of the two frames' cameras 0; of no meaning in the host frame
   Mat26 by_further;          ///< of no meaning for camera 0
+  Mat26 by_lens;             ///< of no meaning where lenses are not estimated
 };
 
 VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
@@ -33,7 +36,7 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
       values_(window, states_, factors, CameraViews::At::kValues),
       first_(window, states_, factors, CameraViews::At::kFirstEstimates),
       frames_(static_cast<int>(window.frames().size())),
-      nodes_(frames_ + factors.cameraCount() - 1) {
+      nodes_(frames_ + factors.cameraCount() - 1 + static_cast<int>(states_.intrinsics.size())) {
   const auto indexOf = [&](FrameId id) {
     const auto& frames = window.frames();
     const auto found = std::lower_bound(frames.begin(), frames.end(), id,
@@ -59,7 +62,12 @@ Vec2 VisualTerms::residual(const Landmark& landmark, const Sighting& sighting) c
   const CameraViews::Relative& seen = values_.relative(landmark.host, sighting.frame, sighting.camera);
   const Vec3 point_C =
       seen.rotation * landmark.base.direction(landmark.value) + landmark.value[2] * seen.translation;
-  return directionResidual(*sighting.measurement, point_C, nullptr);
+  Vec2 residual = directionResidual(*sighting.measurement, point_C, nullptr);
+  if (!states_.intrinsics.empty()) {
+    const std::vector<double>& lens = states_.intrinsics[static_cast<size_t>(sighting.camera)]->value;
+    residual += residualByIntrinsics(*sighting.measurement) * Eigen::Map<const Vec6>(lens.data());
+  }
+  return residual;
 }
 
 double VisualTerms::cost() {
@@ -94,6 +102,7 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   const double weight = 1.0 / std::sqrt(1.0 + term.residual.squaredNorm() / (robust_scale_ * robust_scale_));
   term.residual *= weight;
   by_point *= weight;
+  if (!states_.intrinsics.empty()) term.by_lens = weight * residualByIntrinsics(*sighting.measurement);
   term.by_landmark << by_point * seen.rotation * landmark.base.tangent_C, by_point * seen.translation;
 
   const CameraViews::Placement& host = first_.placement(landmark.host);
@@ -154,12 +163,18 @@ void VisualTerms::eliminate(Landmark* landmark) {
       addNode(sighting.frame, term.by_target, term);
       addProduct(landmark->host, term.by_host, sighting.frame, term.by_target);
     }
-    if (sighting.camera == 0 || !states_) continue;
-    const int further = furtherNode(sighting.camera);
-    addNode(further, term.by_further, term);
-    if (in_host) continue;
-    addProduct(further, term.by_further, landmark->host, term.by_host);
-    addProduct(further, term.by_further, sighting.frame, term.by_target);
+    if (!states_) continue;
+    const auto addCalibration = [&](int node, const Mat26& by_node) {
+      addNode(node, by_node, term);
+      if (in_host) return;
+      addProduct(node, by_node, landmark->host, term.by_host);
+      addProduct(node, by_node, sighting.frame, term.by_target);
+    };
+    if (sighting.camera > 0) addCalibration(furtherNode(sighting.camera), term.by_further);
+    if (states_.intrinsics.empty()) continue;
+    addCalibration(lensNode(sighting.camera), term.by_lens);
+    if (sighting.camera > 0)
+      addProduct(lensNode(sighting.camera), term.by_lens, furtherNode(sighting.camera), term.by_further);
   }
   landmark->end_coupling = couplings_.size();
   landmark->inverse_hessian = landmarkInverse(h_landmark);
@@ -196,6 +211,7 @@ std::vector<NormalEquations::Block> VisualTerms::blocks() const {
   for (const auto& frame : window_.frames()) append(frame->pose.data(), kPoseSize);
   if (!states_) return blocks;
   for (GlobalState* state : states_.further) append(state->value.data(), kExtrinsicsSize);
+  for (GlobalState* state : states_.intrinsics) append(state->value.data(), kIntrinsicsSize);
   append(states_.camera0->value.data(), kExtrinsicsSize);
   append(states_.time_offset->value.data(), kTimeOffsetSize);
   return blocks;
@@ -250,6 +266,8 @@ void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::Vect
     calibration[kExtrinsicsSize] = step[system.find(states_.time_offset->value.data())->offset];
     for (size_t i = 0; i < states_.further.size(); ++i)
       steps[static_cast<size_t>(frames_) + i] = stepOf(states_.further[i]->value.data());
+    for (size_t i = 0; i < states_.intrinsics.size(); ++i)
+      steps[static_cast<size_t>(lensNode(static_cast<int>(i)))] = stepOf(states_.intrinsics[i]->value.data());
   }
   for (int i = 0; i < frames_; ++i) {
     const CameraViews::Placement& placement = first_.placement(i);

@@ -38,7 +38,7 @@ class VisualTerms {
     const DirectionMeasurement* measurement;
   };
   /// Nodes are what landmarks are eliminated against: the camera poses of the frames in the window's order,
-  /// then the extrinsics of further cameras.
+  /// then the extrinsics of further cameras, then the lenses where they are estimated.
   struct Coupling {
     int node;
     Mat63 by_landmark;
@@ -62,6 +62,7 @@ class VisualTerms {
   void addProduct(int a, const Eigen::Matrix<double, 2, 6>& by_a, int b,
                   const Eigen::Matrix<double, 2, 6>& by_b);
   int furtherNode(int camera) const { return frames_ + camera - 1; }
+  int lensNode(int camera) const { return frames_ + static_cast<int>(states_.further.size()) + camera; }
   Vec2 residual(const Landmark& landmark, const Sighting& sighting) const;
   void addNodesTo(NormalEquations* system) const;
   std::vector<NormalEquations::Block> blocks() const;

@@ -10,13 +10,15 @@
 namespace lodeline {
 namespace {
 
-// A window of a moving rig in two versions of the calibration, each block off its first estimate, as after
+enum class Calibrated { No, Placement, PlacementAndLens };
+
+// A window of a moving rig in three versions of the calibration, each block off its first estimate, as after
 // marginalisation.
-class VisualTermsTest : public testing::TestWithParam<std::pair<int, bool>> {
+class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated>> {
  protected:
-  VisualTermsTest() : test_(GetParam().first) {
+  VisualTermsTest() : test_(std::get<0>(GetParam())) {
     TestSceneOptions scene_options;
-    scene_options.cameras = GetParam().first;
+    scene_options.cameras = std::get<0>(GetParam());
     scene_options.duration_s = 2.0;
     scene_options.points.tracks = 40;
     scene_options.points.frame_rate_hz = 5.0;
@@ -28,11 +30,12 @@ class VisualTermsTest : public testing::TestWithParam<std::pair<int, bool>> {
     Frame& second = *test_.window.frames()[1];
     second.first_pose = second.pose;
     (*second.first_pose)[0] += 0.02;
-    if (GetParam().second) disturbCalibration();
+    if (std::get<1>(GetParam()) != Calibrated::No) disturbCalibration();
   }
 
   void disturbCalibration() {
-    addCameraStates(test_.window, prior_, GetParam().first, test_.options.camera_calibration);
+    test_.options.camera_calibration.intrinsics = std::get<1>(GetParam()) == Calibrated::PlacementAndLens;
+    addCameraStates(test_.window, prior_, std::get<0>(GetParam()), test_.options.camera_calibration);
     double offset = 0.0;
     for (const auto& state : test_.window.globals()) {
       state->first = state->value;
@@ -136,14 +139,15 @@ TEST_P(VisualTermsTest, StepLandmarksLikeTheFactors) {
     EXPECT_LT((stepped[i] - wanted[i]).norm(), 1e-8 * (wanted[i] - before[i]).norm()) << "landmark " << i;
 }
 
-std::string nameOf(const testing::TestParamInfo<std::pair<int, bool>>& info) {
-  return std::to_string(info.param.first) +
-         (info.param.second ? "CamerasCalibrated" : "CamerasAsTheFilesSay");
+std::string nameOf(const testing::TestParamInfo<std::tuple<int, Calibrated>>& info) {
+  constexpr const char* kNames[] = {"CamerasAsTheFilesSay", "CamerasCalibrated", "CamerasWithLenses"};
+  return std::to_string(std::get<0>(info.param)) + kNames[static_cast<int>(std::get<1>(info.param))];
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, VisualTermsTest,
-                         testing::Values(std::pair(1, false), std::pair(1, true), std::pair(2, false),
-                                         std::pair(2, true)),
+                         testing::Combine(testing::Values(1, 2),
+                                          testing::Values(Calibrated::No, Calibrated::Placement,
+                                                          Calibrated::PlacementAndLens)),
                          nameOf);
 
 // A point that moved behind a camera holds its constant error there and pulls at nothing.

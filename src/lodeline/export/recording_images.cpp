@@ -7,6 +7,7 @@
 
 #include "lodeline/data/image_loader.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 namespace {
@@ -68,6 +69,10 @@ MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagn
     }
   }
   correct(run.camera_corrections, &result.cameras);
+  if (run.lens_corrections.size() == result.cameras.size()) {
+    for (size_t i = 0; i < result.cameras.size(); ++i)
+      result.cameras[i] = correctedLens(result.cameras[i], run.lens_corrections[i].data());
+  }
   if (result.images.empty()) {
     diagnostics->report(Severity::Warning, "no_image_with_pose",
                         "no image of the recording lies within 5 ms of a pose: is it the run's recording?");

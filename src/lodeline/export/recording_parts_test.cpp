@@ -83,6 +83,11 @@ TEST(RecordingImages, BelongToThePosesOfTheirTimes) {
   Eigen::Matrix<double, 6, 1> correction;
   correction << 0.0, 0.0, 0.01, 0.002, 0.0, 0.0;
   run.camera_corrections = {correction};
+  camera.fx_px = 400.0;
+  source.rig_.cameras = {camera};
+  Eigen::Matrix<double, 6, 1> lens = Eigen::Matrix<double, 6, 1>::Zero();
+  lens[0] = 0.01;
+  run.lens_corrections = {lens};
   Diagnostics diagnostics;
   const MapImages images = recordingImages(source, run, &diagnostics);
   ASSERT_EQ(images.images.size(), 2U);
@@ -91,6 +96,7 @@ TEST(RecordingImages, BelongToThePosesOfTheirTimes) {
   EXPECT_EQ(images.images[0].name, "cam0/data/7.png");
   EXPECT_EQ(images.images[1].name, "cam0/data/10083000000.png");
   EXPECT_NEAR(images.cameras[0].body_from_camera.translation.x(), 0.102, 1e-12);
+  EXPECT_NEAR(images.cameras[0].fx_px, 404.0, 1e-9);
   EXPECT_NEAR(images.cameras[0].body_from_camera.rotation.angularDistance(Quat::Identity()), 0.01, 1e-9);
 }
 

@@ -114,6 +114,14 @@ void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
       correction[static_cast<Eigen::Index>(i) + 3] = camera.at("position_m").at(i).get<double>();
     }
     run->camera_corrections.push_back(correction);
+    if (!camera.contains("focal_length")) continue;
+    for (size_t i = 0; i < 2; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      correction[row] = camera["focal_length"].at(i).get<double>();
+      correction[row + 2] = camera.at("principal_point_px").at(i).get<double>();
+      correction[row + 4] = camera.at("radial").at(i).get<double>();
+    }
+    run->lens_corrections.push_back(correction);
   }
 }
 

@@ -22,8 +22,11 @@ DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, con
   measurement.bearing_C = bearing_C;
   measurement.tangent_C = tangentBasis(bearing_C);
   Mat23 pixel_by_point;
-  camera.project(bearing_C, &pixel_by_point);
+  const auto pixel = camera.project(bearing_C, &pixel_by_point);
   measurement.sqrt_information = pixel_by_point * measurement.tangent_C / sigma_px;
+  measurement.sigmas_per_px = 1.0 / sigma_px;
+  if (const auto centre = camera.project(Vec3::UnitZ()); pixel && centre)
+    measurement.from_centre_sigmas = (*pixel - *centre) / sigma_px;
   return measurement;
 }
 

@@ -17,6 +17,8 @@ struct DirectionMeasurement {
   Vec3 bearing_C = Vec3::UnitZ();
   Mat32 tangent_C = Mat32::Identity();
   Mat2 sqrt_information = Mat2::Identity();
+  Vec2 from_centre_sigmas = Vec2::Zero();  ///< pixel minus principal point, over sigma_px
+  double sigmas_per_px = 1.0;              ///< 1 / sigma_px
 
   /// From a pixel's ray. The camera must be able to project that ray.
   static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);

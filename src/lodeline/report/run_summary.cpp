@@ -41,6 +41,11 @@ std::string describe(const CameraCorrections& corrections) {
     text += fmt::format(", camera {}{} {:.2f} deg {:.1f} mm", i, i > 0 ? " to camera 0" : "",
                         extrinsics.head<3>().norm() * 180.0 / M_PI, 1e3 * extrinsics.tail<3>().norm());
   }
+  for (size_t i = 0; i < corrections.intrinsics.size(); ++i) {
+    const auto& lens = corrections.intrinsics[i];
+    text += fmt::format(", lens {} focal length {:+.2f} % {:+.2f} %, centre {:+.1f} {:+.1f} px", i,
+                        100.0 * lens[0], 100.0 * lens[1], lens[2], lens[3]);
+  }
   return text + " off the files";
 }
 
@@ -50,6 +55,12 @@ nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
   for (const auto& extrinsics : corrections.extrinsics) {
     json["cameras"].push_back({{"rotation_rad", {extrinsics[0], extrinsics[1], extrinsics[2]}},
                                {"position_m", {extrinsics[3], extrinsics[4], extrinsics[5]}}});
+  }
+  for (size_t i = 0; i < corrections.intrinsics.size(); ++i) {
+    const auto& lens = corrections.intrinsics[i];
+    json["cameras"][i]["focal_length"] = {lens[0], lens[1]};
+    json["cameras"][i]["principal_point_px"] = {lens[2], lens[3]};
+    json["cameras"][i]["radial"] = {lens[4], lens[5]};
   }
   return json;
 }

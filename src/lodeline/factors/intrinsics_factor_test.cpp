@@ -1,0 +1,85 @@
+#include "lodeline/factors/intrinsics_factor.h"
+
+#include <gtest/gtest.h>
+
+#include "lodeline/factors/reprojection_scene.h"
+
+namespace lodeline {
+namespace {
+
+using Intrinsics = Eigen::VectorXd;
+
+Intrinsics intrinsics(double focal_u, double focal_v, double centre_u_px, double centre_v_px,
+                      double k_1 = 0.0, double k_2 = 0.0) {
+  return (Intrinsics(kIntrinsicsSize) << focal_u, focal_v, centre_u_px, centre_v_px, k_1, k_2).finished();
+}
+
+const Intrinsics kWrongLens = intrinsics(0.006, -0.004, 2.5, -1.5, 0.008, -0.01);
+
+CameraCalibration withModel(DistortionModel model) {
+  CameraCalibration file = ReprojectionScene::calibration();
+  file.distortion_model = model;
+  if (model == DistortionModel::None) file.distortion.clear();
+  if (model == DistortionModel::Equidistant) file.distortion = {-0.02, 0.01, -0.003, 0.001};
+  return file;
+}
+
+/// What a camera with `lens` beyond its file sees of the scene's landmark, read with the file.
+DirectionMeasurement seenThrough(const CameraCalibration& file, const Intrinsics& lens, const Vec3& point_C,
+                                 double sigma_px) {
+  const Vec2 pixel = *makeCamera(correctedLens(file, lens.data()))->project(point_C);
+  const auto camera = makeCamera(file);
+  return DirectionMeasurement::fromBearing(*camera, *camera->unproject(pixel), sigma_px);
+}
+
+class IntrinsicsOfAModel : public testing::TestWithParam<DistortionModel> {
+ protected:
+  ReprojectionScene scene_;
+  CameraCalibration file_ = withModel(GetParam());
+
+  IntrinsicsFactor factor(const DirectionMeasurement& measurement) const {
+    return {std::make_unique<HostReprojectionFactor>(measurement, scene_.base(), Rigid3()), measurement};
+  }
+};
+
+TEST_P(IntrinsicsOfAModel, LeaveNothingAtTheTrueLens) {
+  constexpr double kSigma_px = 0.5;
+  const IntrinsicsFactor with = factor(seenThrough(file_, kWrongLens, scene_.point_host_C, kSigma_px));
+  const double uncorrected = kSigma_px * evaluate(with, {scene_.landmark(), intrinsics(0, 0, 0, 0)}).norm();
+  const double corrected = kSigma_px * evaluate(with, {scene_.landmark(), kWrongLens}).norm();
+  EXPECT_GT(uncorrected, 1.0);
+  // What is left is of second order, and what the models differ by beyond the fourth power.
+  EXPECT_LT(corrected, 0.06);
+}
+
+TEST_P(IntrinsicsOfAModel, AreNothingToARightLens) {
+  const IntrinsicsFactor right = factor(seenThrough(file_, Intrinsics::Zero(6), scene_.point_host_C, 0.5));
+  EXPECT_LT(evaluate(right, {scene_.landmark(), Intrinsics::Zero(6)}).norm(), 1e-6);
+}
+
+TEST_P(IntrinsicsOfAModel, HaveTheJacobianOfTheirResidual) {
+  expectJacobiansMatch(factor(seenThrough(file_, kWrongLens, scene_.point_host_C, 0.5)),
+                       {scene_.landmark(), kWrongLens});
+}
+
+TEST_P(IntrinsicsOfAModel, CountInSigmas) {
+  const auto fine = seenThrough(file_, kWrongLens, scene_.point_host_C, 0.5);
+  const auto coarse = seenThrough(file_, kWrongLens, scene_.point_host_C, 1.0);
+  EXPECT_LT((residualByIntrinsics(fine) - 2.0 * residualByIntrinsics(coarse)).norm(), 1e-9);
+}
+
+// A centre that is shifted by a pixel is a pixel everywhere, a longer focal length shows at the border only.
+TEST_P(IntrinsicsOfAModel, OnTheAxisOnlyTheCentreShows) {
+  const auto measurement = DirectionMeasurement::fromBearing(*makeCamera(file_), Vec3::UnitZ(), 1.0);
+  Eigen::Matrix<double, 2, kIntrinsicsSize> expected;
+  expected.setZero();
+  expected.block<2, 2>(0, 2).setIdentity();
+  EXPECT_LT((residualByIntrinsics(measurement) - expected).norm(), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, IntrinsicsOfAModel,
+                         testing::Values(DistortionModel::None, DistortionModel::RadialTangential,
+                                         DistortionModel::Equidistant));
+
+}  // namespace
+}  // namespace lodeline
