@@ -42,6 +42,30 @@ void expectConsistent(int cameras) {
 TEST(Consistency, StereoIsAsGoodAsItSays) { expectConsistent(2); }
 TEST(Consistency, MonoIsAsGoodAsItSays) { expectConsistent(1); }
 
+// One camera without images for six seconds in which its carrier comes to rest, then images again, rest for
+// six more seconds, and on. Neither the speed that dead reckoning leaves nor the first look from almost one
+// place tells the scale, and neither may be taken for it.
+TEST(Consistency, MonoIsAsGoodAsItSaysAfterItCameToRestInTheDark) {
+  constexpr double kDark_s = 7.0, kLight_s = 13.0, kOn_s = 19.0;
+  ConsistencyOptions options;
+  options.scene.cameras = 1;
+  options.scene.liveliness = 0.3;
+  options.scene.still = {{kDark_s, kOn_s - kDark_s}};
+  options.scene.points.blackouts = {{kDark_s, kLight_s - kDark_s}};
+  options.scene.points.tracks = 90;
+  options.scene.points.frame_rate_hz = 10.0;
+  options.scene.points.longest_track_s = 100.0;
+  options.estimator = honestOptions(options.scene);
+  options.seeds = 4;
+  options.times_s = {kOn_s + 2.0};
+  const Consistency consistency = measureConsistency(options);
+  EXPECT_EQ(consistency.lost, 0);
+  const ConsistencyRow& row = consistency.rows.back();
+  const int count = static_cast<int>(row.samples.size());
+  EXPECT_LT(row.mean(&NeesSample::pose), neesBounds(6, count).high);
+  EXPECT_LT(row.mean(&NeesSample::velocity), neesBounds(3, count).high);
+}
+
 // The short version of what estimator_consistency --minutes 20 measures.
 TEST(Consistency, NoBlockOfADiveIsWorseThanClaimed) {
   DiveConsistencyOptions options;

@@ -66,10 +66,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   createLandmarks(window_, factors_, options_.landmark);
   ++frames_since_start_;
   startAgainAfterDarkness(estimate);
-  starting_up_ = starting_up_ && !isSettled(estimate.covariance);
-  if (!starting_up_) {
-    marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
-  }
+  shortenWindow(estimate);
   return estimate;
 }
 
@@ -101,16 +98,30 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
   }
   const bool was_dark = blind_since_ && (estimate.time - *blind_since_).seconds() > kDarkness_s;
   blind_since_.reset();
-  if (!was_dark || scale_is_given_) return;
+  if (!was_dark) return;
+  // The first estimates are those of dead reckoning, which images now move by more than the rig does.
+  marginalizer_.relinearise(window_);
+  if (scale_is_given_) return;
+  is_settled_ = false;
   starting_up_ = lost_scale_ = true;
   frames_since_start_ = 0;
+}
+
+void Estimator::shortenWindow(const FrameEstimate& estimate) {
+  const bool was_settled = is_settled_;
+  is_settled_ = is_settled_ || isSettled(estimate.covariance);
+  starting_up_ = starting_up_ && !is_settled_ && frames_since_start_ < options_.window.startup_max_frames;
+  if (starting_up_) return;
+  if (!was_settled) marginalizer_.relinearise(window_);
+  marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
+  if (!is_settled_) marginalizer_.relinearise(window_);
 }
 
 bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
   const WindowOptions& window = options_.window;
   const int least = scale_is_given_ ? window.startup_frames : window.startup_frames_mono;
   if (frames_since_start_ < least) return false;
-  if (scale_is_given_ || frames_since_start_ >= window.startup_max_frames) return true;
+  if (scale_is_given_) return true;
   // The way from the origin says nothing of a scale that was lost since.
   const double sigma = lost_scale_ ? speedUncertainty(window_.newest(), covariance)
                                    : scaleUncertainty(window_.newest(), covariance);

@@ -79,9 +79,13 @@ class Estimator {
   void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
   /// After darkness one camera is at a start again: the scale of what it now sees hangs on the speed that
-  /// dead reckoning left, and must not be frozen while that is known badly.
+  /// dead reckoning left, and must not be frozen while that is known badly. Any rig's window is linearised
+  /// anew.
   void startAgainAfterDarkness(const FrameEstimate& estimate);
-  /// Whether the window may begin to be marginalised.
+  /// Marginalises what the window has no room for, once it is not starting up any more. Unless it is settled,
+  /// that freezes no first estimate.
+  void shortenWindow(const FrameEstimate& estimate);
+  /// Whether the window may begin to be marginalised for good.
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   /// Turns a window that has just started to north.
   void startMagnetometer();
@@ -103,7 +107,8 @@ class Estimator {
   std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
-  bool starting_up_ = true;
+  bool starting_up_ = true;          ///< nothing is marginalised
+  bool is_settled_ = false;          ///< the scale is known: first estimates are kept
   bool scale_is_given_ = false;      ///< by a stereo start
   std::optional<Time> blind_since_;  ///< the newest frames see nothing known
   bool lost_scale_ = false;          ///< at some time since the start

@@ -1,6 +1,7 @@
 #include "lodeline/estimator/marginalizer.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 
 #include "lodeline/estimator/magnetometer_states.h"
@@ -83,6 +84,34 @@ void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, 
   }
 }
 
+/// How the prior's first estimates of the frames' poses and velocities change when everything is turned about
+/// gravity, per rad.
+Eigen::VectorXd turnAboutGravity(const Window& window, const Prior& prior) {
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(prior.tangentSize());
+  int row = 0;
+  for (const Prior::Block& block : prior.blocks) {
+    for (const auto& frame : window.frames()) {
+      const bool is_pose = block.value == frame->pose.data();
+      if (!is_pose && block.value != frame->motion.data()) continue;
+      turn.segment<3>(row) = Vec3::UnitZ().cross(block.first_estimate.head<3>());
+      if (is_pose) turn[row + 5] = 1.0;
+    }
+    row += block.tangentSize();
+  }
+  return turn;
+}
+
+/// The share of each yaw in a turn of all poses: s with s . turnAboutGravity() = 1.
+Eigen::VectorXd yawShares(const Prior& prior) {
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(prior.tangentSize());
+  int row = 0;
+  for (const Prior::Block& block : prior.blocks) {
+    if (block.isPose()) shares[row + 5] = 1.0;
+    row += block.tangentSize();
+  }
+  return shares / std::max(shares.sum(), 1.0);
+}
+
 }  // namespace
 
 std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
@@ -120,6 +149,34 @@ void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded, const 
 void Marginalizer::shorten(Window& window, int max_recent_frames, int max_keyframes) {
   while (window.recentCount() > max_recent_frames) retireOldestRecent(window);
   while (window.poseOnlyCount() > max_keyframes) removeOldestKeyframe(window);
+}
+
+void Marginalizer::relinearise(Window& window) {
+  if (prior_.empty()) return;
+  const auto difference = [&] {
+    std::vector<const double*> values;
+    for (const Prior::Block& block : prior_.blocks) values.push_back(block.value);
+    return prior_.difference(values.data());
+  };
+  const Eigen::VectorXd residual = prior_.sqrt_information * difference() + prior_.offset;
+  const Eigen::VectorXd turn_before = turnAboutGravity(window, prior_);
+  for (const auto& frame : window.frames()) {
+    frame->first_pose.reset();
+    frame->first_motion.reset();
+    for (Prior::Block& block : prior_.blocks) {
+      if (block.value == frame->pose.data() || block.value == frame->motion.data())
+        block.first_estimate = Eigen::Map<const Eigen::VectorXd>(block.value, block.first_estimate.size());
+    }
+  }
+  // Where relative positions have changed, a turn about gravity moves the frames otherwise than it did, and
+  // the prior would take offence at it. It may say as much of a turn as before.
+  const Eigen::VectorXd turn_after = turnAboutGravity(window, prior_);
+  const Eigen::MatrixXd root = prior_.sqrt_information + prior_.sqrt_information *
+                                                             (turn_before - turn_after) *
+                                                             yawShares(prior_).transpose();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> triangular(root);
+  prior_.sqrt_information = triangular.matrixQR().triangularView<Eigen::Upper>();
+  prior_.offset = triangular.householderQ().transpose() * (residual - root * difference());
 }
 
 void Marginalizer::forget(Window& window, GlobalState& state) {

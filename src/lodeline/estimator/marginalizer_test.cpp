@@ -7,6 +7,7 @@
 
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/prior_terms.h"
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/estimator/window_solver.h"
@@ -115,7 +116,8 @@ Eigen::Vector4d unobservableInformation(const Prior& prior) {
 
 // Runs a window without any prior on where it is, and returns what its marginalisations claim to know of
 // that.
-Eigen::Vector4d informationAfter(int frames, bool first_estimates) {
+enum class FirstEstimates { Kept, Forgotten, Relinearised };
+Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates) {
   EstimatorOptions options;
   // A poor IMU: estimates then move far enough from their first values for the difference to show.
   options.preintegration.noise_inflation = 10.0;
@@ -129,8 +131,10 @@ Eigen::Vector4d informationAfter(int frames, bool first_estimates) {
     if (k < 3) continue;
     EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
     removeOutliers(test.window, test.factors, options.landmark);
+    if (first_estimates == FirstEstimates::Relinearised) marginalizer.relinearise(test.window);
     marginalizer.shorten(test.window, 3, 3);
-    if (first_estimates) continue;
+    if (first_estimates == FirstEstimates::Relinearised) marginalizer.relinearise(test.window);
+    if (first_estimates != FirstEstimates::Forgotten) continue;
     for (const auto& frame : test.window.frames()) {
       frame->first_pose.reset();
       frame->first_motion.reset();
@@ -141,19 +145,65 @@ Eigen::Vector4d informationAfter(int frames, bool first_estimates) {
 }
 
 TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
-  const Eigen::Vector4d information = informationAfter(30, true);
-  // What is left is rounding and the factorisation's jitter: less than 10 m and 0.1 rad once.
-  EXPECT_LT(information[0], 1e-2);
-  EXPECT_LT(information[1], 1e-2);
-  EXPECT_LT(information[2], 1e-2);
-  EXPECT_LT(information[3], 1e2);
+  for (const FirstEstimates first_estimates : {FirstEstimates::Kept, FirstEstimates::Relinearised}) {
+    const Eigen::Vector4d information = informationAfter(30, first_estimates);
+    // What is left is rounding and the factorisation's jitter: less than 10 m and 0.1 rad once.
+    EXPECT_LT(information[0], 1e-2);
+    EXPECT_LT(information[1], 1e-2);
+    EXPECT_LT(information[2], 1e-2);
+    EXPECT_LT(information[3], 1e2);
+  }
 }
 
 TEST(Marginalizer, WithoutFirstEstimatesWouldInventAHeading) {
-  const Eigen::Vector4d with = informationAfter(30, true);
-  const Eigen::Vector4d without = informationAfter(30, false);
+  const Eigen::Vector4d with = informationAfter(30, FirstEstimates::Kept);
+  const Eigen::Vector4d without = informationAfter(30, FirstEstimates::Forgotten);
   EXPECT_GT(without[3], 1e4) << "a heading known to 0.6 degrees out of nothing";
   EXPECT_GT(without[3], 1e3 * with[3]);
+}
+
+TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
+  TestWindow test(2);
+  Marginalizer marginalizer(test.factors);
+  TestScene scene(sceneOptions(3.0, 10.0));
+  for (int k = 0; k < 15; ++k) {
+    Frame& added = test.add(*scene.next(), k % 2 == 0);
+    if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
+    createLandmarks(test.window, test.factors, test.options.landmark);
+    marginalizer.shorten(test.window, 3, 3);
+  }
+  test.disturb(0.02, 3);
+  const auto gradient = [&] {
+    NormalEquations system;
+    PriorTerms(marginalizer.prior()).addTo(&system);
+    return Eigen::VectorXd(system.gradient().head(marginalizer.prior().tangentSize()));
+  };
+  const double cost = PriorTerms(marginalizer.prior()).cost();
+  const Eigen::VectorXd gradient_before = gradient();
+  const Eigen::Vector4d information = unobservableInformation(marginalizer.prior());
+  ASSERT_GT(cost, 100.0) << "the frames must have moved by more than the prior likes";
+
+  marginalizer.relinearise(test.window);
+  EXPECT_NEAR(PriorTerms(marginalizer.prior()).cost(), cost, 1e-6 * cost);
+  const Eigen::Vector4d after = unobservableInformation(marginalizer.prior());
+  for (int i = 0; i < 4; ++i)
+    EXPECT_NEAR(after[i], information[i], 1e-6 * information[i]) << "direction " << i;
+  // Of all derivatives only those by yaw may change.
+  const Eigen::VectorXd gradient_after = gradient();
+  int row = 0;
+  for (const Prior::Block& block : marginalizer.prior().blocks) {
+    EXPECT_EQ(block.first_estimate,
+              Eigen::Map<const Eigen::VectorXd>(block.value, block.first_estimate.size()));
+    for (int i = 0; i < block.tangentSize(); ++i) {
+      if (block.isPose() && i == 5) continue;
+      EXPECT_NEAR(gradient_after[row + i], gradient_before[row + i], 1e-6 * gradient_before.norm());
+    }
+    row += block.tangentSize();
+  }
+  for (const auto& frame : test.window.frames()) {
+    EXPECT_FALSE(frame->first_pose.has_value());
+    EXPECT_FALSE(frame->first_motion.has_value());
+  }
 }
 
 TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {

@@ -42,7 +42,7 @@ struct WindowOptions {
   int keyframes = 7;      ///< older keyframes, kept as poses
   /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen. One
   /// camera, whose scale settles slowly, waits longer, and until the scale is known to `startup_scale_sigma`
-  /// (relative; for at most `startup_max_frames`).
+  /// (relative). After `startup_max_frames` frames go all the same, but no linearisation is kept until it is.
   int startup_frames = 20;
   int startup_frames_mono = 45;
   int startup_max_frames = 60;
