@@ -70,7 +70,7 @@ struct LandmarkOptions {
 
 struct SolverOptions {
   int max_iterations = 4;
-  double function_tolerance = 3e-3;  ///< relative change of the cost that ends a frame's iterations
+  double function_tolerance = 2e-3;  ///< relative change of the cost that ends a frame's iterations
   double robust_scale_sigmas = 2.0;  ///< Cauchy
 };
 
