@@ -114,6 +114,8 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("camera_calibration.radial_sigma", &cameras->radial_sigma,
                  "of the radial profile at the image's border, relative; 0 holds it");
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
+  settings->bind("solver.function_tolerance", &options->solver.function_tolerance,
+                 "relative gain below which a frame's iterations end");
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "of the Cauchy loss");
   settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,
                  "with fewer a frame counts as carried by inertial readings alone");
