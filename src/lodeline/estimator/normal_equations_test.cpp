@@ -4,8 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "lodeline/estimator/landmarks.h"
-#include "lodeline/estimator/start.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/geometry/so3.h"
 
@@ -21,15 +19,8 @@ double deviation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 class NormalEquationsTest : public testing::Test {
  protected:
   NormalEquationsTest() {
-    TestSceneOptions scene_options;
-    scene_options.duration_s = 2.0;
-    scene_options.points.tracks = 40;
-    scene_options.points.frame_rate_hz = 5.0;
-    TestScene scene(scene_options);
-    while (const auto frame = scene.next()) test_.add(*frame);
-    createLandmarks(test_.window, test_.factors, test_.options.landmark);
+    prior_ = test_.fill();
     test_.disturb(0.01, 3);
-    prior_ = startPrior(*test_.window.frames().front(), test_.options.initial_state, 0.05, false);
     // Some blocks keep a first estimate that is not their value, as after marginalisation.
     Frame& second = *test_.window.frames()[1];
     second.first_pose = second.pose;

@@ -5,6 +5,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/start.h"
+
 namespace lodeline {
 
 TestWindow::TestWindow(int cameras, const EstimatorOptions& options_in)
@@ -38,6 +41,18 @@ Frame& TestWindow::add(const SimulatedFrame& simulated, bool is_keyframe) {
       addSighting(o.track, o.bearing_C, frame, o.camera, o.sigma_px);
   }
   return frame;
+}
+
+Prior TestWindow::fill() {
+  TestSceneOptions scene_options;
+  scene_options.cameras = static_cast<int>(cameras_.size());
+  scene_options.duration_s = 2.0;
+  scene_options.points.tracks = 40;
+  scene_options.points.frame_rate_hz = 5.0;
+  TestScene scene(scene_options);
+  while (const auto frame = scene.next()) add(*frame);
+  createLandmarks(window, factors, options.landmark);
+  return startPrior(*window.frames().front(), options.initial_state, 0.05, false);
 }
 
 void TestWindow::addSighting(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera,

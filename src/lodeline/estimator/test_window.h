@@ -29,6 +29,10 @@ class TestWindow {
   Landmark& place(TrackId track, const Vec3& point_W, const Frame& host);
   Vec3 position(TrackId track) const;
 
+  /// Fills it with two seconds of a moving rig: ten frames, 40 tracks and their landmarks. Returns the prior
+  /// of its first frame.
+  Prior fill();
+
   /// Moves all states by normal noise: metres and radians by `sigma`, m/s by `sigma`, biases by a tenth.
   void disturb(double sigma, uint64_t seed);
 

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/prior_terms.h"
-#include "lodeline/estimator/start.h"
 #include "lodeline/estimator/test_window.h"
 
 namespace lodeline {
@@ -17,15 +15,7 @@ enum class Calibrated { No, Placement, PlacementAndLens };
 class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated>> {
  protected:
   VisualTermsTest() : test_(std::get<0>(GetParam())) {
-    TestSceneOptions scene_options;
-    scene_options.cameras = std::get<0>(GetParam());
-    scene_options.duration_s = 2.0;
-    scene_options.points.tracks = 40;
-    scene_options.points.frame_rate_hz = 5.0;
-    TestScene scene(scene_options);
-    while (const auto frame = scene.next()) test_.add(*frame);
-    createLandmarks(test_.window, test_.factors, test_.options.landmark);
-    prior_ = startPrior(*test_.window.frames().front(), test_.options.initial_state, 0.05, false);
+    prior_ = test_.fill();
     test_.disturb(0.01, 3);
     Frame& second = *test_.window.frames()[1];
     second.first_pose = second.pose;

@@ -5,8 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "lodeline/estimator/landmarks.h"
-#include "lodeline/estimator/start.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/estimator/window_terms.h"
 
@@ -16,14 +14,7 @@ namespace {
 class WindowCholeskyTest : public testing::Test {
  protected:
   WindowCholeskyTest() {
-    TestSceneOptions options;
-    options.duration_s = 2.0;
-    options.points.tracks = 40;
-    options.points.frame_rate_hz = 5.0;
-    TestScene scene(options);
-    while (const auto frame = scene.next()) test_.add(*frame);
-    createLandmarks(test_.window, test_.factors, test_.options.landmark);
-    const Prior prior = startPrior(*test_.window.frames().front(), test_.options.initial_state, 0.05, false);
+    const Prior prior = test_.fill();
     system_ = linearise(collectTerms(test_.window, prior, test_.factors));
     const Frame& newest = test_.window.newest();
     last_ = {newest.pose.data(), newest.motion.data()};
