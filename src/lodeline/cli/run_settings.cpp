@@ -89,6 +89,8 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "more asks for a keyframe");
   settings->bind("keyframe.min_landmarks", &options->keyframe.min_landmarks, "fewer ask for a keyframe");
   settings->bind("landmark.max_count", &options->landmark.max_landmarks, "in the window");
+  settings->bind("landmark.least_in_view", &options->landmark.least_in_view,
+                 "new ones are made for as long as fewer are seen, however many the window holds");
   settings->bind("landmark.min_distance_m", &options->landmark.min_distance_m,
                  "nearer ones are taken for errors");
   settings->bind("landmark.max_error_sigmas", &options->landmark.max_error_sigmas,

@@ -83,9 +83,11 @@ bool isUsable(const InverseDistance& rho, const LandmarkOptions& options) {
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
   std::vector<TrackHistory*> candidates;
   int landmarks = 0;
+  int in_view = 0;
   for (auto& [id, track] : window.tracks()) {
     if (track.landmark) {
       ++landmarks;
+      in_view += track.seenIn(window.newest().id);
     } else if (track.sightings.size() >= 2 && track.seenIn(window.newest().id)) {
       candidates.push_back(&track);
     }
@@ -93,9 +95,11 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
   std::stable_sort(candidates.begin(), candidates.end(), [](const TrackHistory* a, const TrackHistory* b) {
     return a->sightings.size() > b->sightings.size();
   });
+  const int wanted = std::max(options.max_landmarks - landmarks,
+                              std::min(options.least_in_view, options.max_landmarks) - in_view);
   int created = 0;
   for (TrackHistory* track : candidates) {
-    if (landmarks + created >= options.max_landmarks) break;
+    if (created >= wanted) break;
     const Sighting* host = hostSighting(window, *track);
     if (!host) continue;
     const InverseDistance rho = solveInverseDistance(window, *track, *host, factors);

@@ -108,6 +108,22 @@ TEST_F(LandmarksTest, AreLimitedToThoseSeenLongest) {
   EXPECT_FALSE(track(12).landmark.has_value());
 }
 
+// After darkness the window is full of points that are out of view.
+TEST_F(LandmarksTest, AreMadeWhenFewAreInViewHoweverManyTheWindowHolds) {
+  const auto& frames = test_.window.frames();
+  for (int i = 0; i < 12; ++i) {
+    const Vec3 point_W(3.0, -1.0 + 0.1 * i, 0.0);
+    test_.see(i, point_W, *frames[0]);
+    test_.see(i, point_W, *frames[1]);
+    test_.place(i, point_W, *frames[0]);
+  }
+  for (int i = 12; i < 20; ++i) seeInAll(i, Vec3(3.0, -1.0 + 0.1 * (i - 12), 0.2));
+  options_.max_landmarks = 12;
+  options_.least_in_view = 5;
+  EXPECT_EQ(create(), 5);
+  EXPECT_EQ(create(), 0);
+}
+
 TEST_F(LandmarksTest, LoseASightingThatContradictsThem) {
   const Vec3 point_W(3.0, -0.5, 0.2);
   for (const auto& frame : test_.window.frames()) {

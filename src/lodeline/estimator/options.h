@@ -60,6 +60,9 @@ struct KeyframeOptions {
 
 struct LandmarkOptions {
   int max_landmarks = 200;
+  /// As long as fewer are seen, new points become landmarks however many the window holds: after darkness it
+  /// may be full of those that were seen before.
+  int least_in_view = 50;
   double min_distance_m = 0.05;
   /// Largest sigma of the inverse distance, relative to it, at which a point becomes a landmark...
   double max_relative_sigma = 0.4;
