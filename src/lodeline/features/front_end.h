@@ -26,7 +26,7 @@ struct FrontEndOptions {
   /// Tracks are looked for again after images of camera 0 were missing for at most this long.
   double max_gap_s = 1.0;
   /// Standard deviation of an observation.
-  double sigma_px = 0.5;
+  double sigma_px = 1.0;
 };
 
 /// What became of the tracks in one frame.
