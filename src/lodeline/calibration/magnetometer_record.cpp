@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/csv_fields.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_calibration.h"
 #include "lodeline/data/euroc_rig.h"

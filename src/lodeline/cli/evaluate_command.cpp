@@ -85,7 +85,8 @@ void evaluateCommand(const Arguments& arguments) {
   const Trajectory estimate = readTrajectory(arguments.estimate, estimate_options, diagnostics);
   const Trajectory reference = readTrajectory(arguments.reference, reference_options, diagnostics);
 
-  const Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
+  Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
+  evaluation.claims = checkClaims(readClaims(arguments.estimate), reference, options.association);
   if (!arguments.plots.empty()) writePlots(evaluation, arguments.plots, diagnostics);
   if (!arguments.json.empty()) writeJson(arguments.json, evaluationJson(evaluation, diagnostics));
   fmt::print("{}", evaluationTable(evaluation, diagnostics));

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/csv_fields.h"
 #include "lodeline/inertial/gravity.h"
 
 namespace lodeline {

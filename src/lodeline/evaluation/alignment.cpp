@@ -144,6 +144,16 @@ Alignment alignFirstPose(AlignmentType type, const PosePairs& pairs, double scal
   return result;
 }
 
+const char* toString(HeadingBasis basis) { return basis == HeadingBasis::North ? "north" : "start"; }
+
+Alignment alignStarts(HeadingBasis basis, const PosePairs& pairs) {
+  if (basis == HeadingBasis::Start) return alignFirstPose(AlignmentType::Yaw, pairs, 1.0);
+  Alignment shift;
+  shift.reference_from_estimate.translation =
+      pairs.reference.front().translation - pairs.estimate.front().translation;
+  return shift;
+}
+
 std::vector<Rigid3> applyAlignment(const Alignment& alignment, const std::vector<Rigid3>& estimate) {
   std::vector<Rigid3> aligned;
   aligned.reserve(estimate.size());

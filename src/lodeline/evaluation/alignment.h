@@ -44,6 +44,17 @@ Alignment align(AlignmentType type, const PosePairs& pairs);
 /// keeps `scale`, which a single pose cannot give.
 Alignment alignFirstPose(AlignmentType type, const PosePairs& pairs, double scale);
 
+/// What the heading of an estimate is measured from.
+enum class HeadingBasis {
+  North,  ///< its y axis claims to be north as the reference's: nothing about its heading is free
+  Start,  ///< its first heading is arbitrary
+};
+
+const char* toString(HeadingBasis basis);
+
+/// Makes the first positions coincide and, with HeadingBasis::Start, the first headings.
+Alignment alignStarts(HeadingBasis basis, const PosePairs& pairs);
+
 /// The estimate's poses in the world of the reference.
 std::vector<Rigid3> applyAlignment(const Alignment& alignment, const std::vector<Rigid3>& estimate);
 

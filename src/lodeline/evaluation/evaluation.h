@@ -7,6 +7,7 @@
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/evaluation/alignment.h"
 #include "lodeline/evaluation/association.h"
+#include "lodeline/evaluation/claims.h"
 #include "lodeline/evaluation/completion.h"
 #include "lodeline/evaluation/pose_error.h"
 #include "lodeline/evaluation/trajectory.h"
@@ -48,6 +49,7 @@ struct Evaluation {
   double drift_m = 0.0;           ///< position error of the last pair once the first pair is made to coincide
 
   Completion completion;
+  ClaimCheck claims;  ///< no poses unless filled in by checkClaims()
 
   double percentOfPath(double length_m) const;
 };

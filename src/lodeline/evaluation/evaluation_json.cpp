@@ -57,6 +57,13 @@ Json toJson(const Diagnostics& diagnostics) {
   return list;
 }
 
+Json toJson(const Vec3& axes) { return {axes.x(), axes.y(), axes.z()}; }
+
+Json toJson(const ClaimedAxes& axes) {
+  return {{"within_3_sigma_percent", toJson(axes.within_3_sigma_percent)},
+          {"rms_sigmas", toJson(axes.rms_sigmas)}};
+}
+
 }  // namespace
 
 Json evaluationJson(const Evaluation& e, const Diagnostics& diagnostics) {
@@ -85,6 +92,12 @@ Json evaluationJson(const Evaluation& e, const Diagnostics& diagnostics) {
                        {"after_alignment_percent", e.percentOfPath(e.end_point_m)},
                        {"from_equal_starts_m", e.drift_m},
                        {"from_equal_starts_percent", e.percentOfPath(e.drift_m)}};
+  if (e.claims.poses > 0) {
+    json["claims"] = {{"poses", e.claims.poses},
+                      {"heading_from", toString(e.claims.basis)},
+                      {"position", toJson(e.claims.position)},
+                      {"rotation", toJson(e.claims.rotation)}};
+  }
   json["remarks"] = toJson(diagnostics);
   return json;
 }

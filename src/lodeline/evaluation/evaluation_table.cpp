@@ -93,12 +93,29 @@ std::string endPointLines(const Evaluation& e) {
       e.end_point_m, e.percentOfPath(e.end_point_m), e.drift_m, e.percentOfPath(e.drift_m));
 }
 
+std::string claimsRow(const char* name, const ClaimedAxes& axes) {
+  return fmt::format("  {:<16}{:>10.1f}{:>8.1f}{:>8.1f}{:>16.2f}{:>8.2f}{:>8.2f}\n", name,
+                     axes.within_3_sigma_percent.x(), axes.within_3_sigma_percent.y(),
+                     axes.within_3_sigma_percent.z(), axes.rms_sigmas.x(), axes.rms_sigmas.y(),
+                     axes.rms_sigmas.z());
+}
+
+std::string claimsTable(const ClaimCheck& claims) {
+  if (claims.poses == 0) return "";
+  std::string text = fmt::format(
+      "errors against claimed sigmas from equal {}, {} poses\n",
+      claims.basis == HeadingBasis::Start ? "starts" : "positions, heading from north", claims.poses);
+  text += fmt::format("  {:<16}{:>10}{:>8}{:>8}{:>16}{:>8}{:>8}\n", "", "x (% < 3)", "y", "z",
+                      "x (rms sigmas)", "y", "z");
+  return text + claimsRow("position", claims.position) + claimsRow("rotation", claims.rotation);
+}
+
 }  // namespace
 
 std::string evaluationTable(const Evaluation& e, const Diagnostics& diagnostics) {
   std::string text = overview(e);
   for (const std::string& part :
-       {absoluteTable(e), consecutiveTable(e), relativeTable(e), endPointLines(e)}) {
+       {absoluteTable(e), consecutiveTable(e), relativeTable(e), endPointLines(e), claimsTable(e.claims)}) {
     if (!part.empty()) text += "\n" + part;
   }
   const auto findings = diagnostics.ranked();

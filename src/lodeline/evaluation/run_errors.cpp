@@ -8,14 +8,6 @@ namespace {
 
 PoseRmse rmseOf(const AbsoluteErrors& errors) { return {errors.rotation().rmse, errors.position().rmse}; }
 
-/// Only the first positions are made to coincide.
-Alignment alignOrigin(const PosePairs& pairs) {
-  Alignment alignment;
-  alignment.reference_from_estimate.translation =
-      pairs.reference.front().translation - pairs.estimate.front().translation;
-  return alignment;
-}
-
 double medianYaw_deg(const RelativeErrors& errors) { return computeStatistics(errors.yaw_deg).median; }
 
 /// Least-squares slope of the medians over the lengths.
@@ -38,7 +30,7 @@ double yawGrowth_deg(const std::vector<RelativeErrors>& relative) {
 /// What the world as it is says about the aligned poses.
 void compareWithWorld(const Evaluation& e, HeadingBasis basis, RunErrors* errors) {
   const Alignment equal_start = alignFirstPose(AlignmentType::Yaw, e.pairs, 1.0);
-  const Alignment alignment = basis == HeadingBasis::North ? alignOrigin(e.pairs) : equal_start;
+  const Alignment alignment = alignStarts(basis, e.pairs);
   const std::vector<Rigid3> poses = applyAlignment(alignment, e.pairs.estimate);
   const AbsoluteErrors absolute = computeAbsoluteErrors(poses, e.pairs.reference);
   const Statistics yaw = absolute.yaw();
@@ -58,8 +50,6 @@ void compareWithWorld(const Evaluation& e, HeadingBasis basis, RunErrors* errors
 }
 
 }  // namespace
-
-const char* toString(HeadingBasis basis) { return basis == HeadingBasis::North ? "north" : "start"; }
 
 double RunErrors::relativeYaw_deg() const { return relative.empty() ? 0.0 : medianYaw_deg(relative.back()); }
 

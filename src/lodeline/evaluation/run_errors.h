@@ -6,14 +6,6 @@
 
 namespace lodeline {
 
-/// What the heading of an estimate is measured from.
-enum class HeadingBasis {
-  North,  ///< its y axis claims to be north as the reference's: nothing about its heading is free
-  Start,  ///< its first heading is arbitrary
-};
-
-const char* toString(HeadingBasis basis);
-
 /// Root mean square errors over the poses of a run.
 struct PoseRmse {
   double rotation_deg = 0.0;

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/csv_fields.h"
 #include "lodeline/export/profile_time.h"
 
 namespace lodeline {

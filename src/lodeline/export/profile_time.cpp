@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/data/csv_fields.h"
+#include "lodeline/base/csv_fields.h"
 
 namespace lodeline {
 namespace {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/csv_fields.h"
 #include "lodeline/data/yaml_file.h"
 #include "lodeline/evaluation/read_trajectory.h"
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/csv_fields.h"
 #include "lodeline/page/base64.h"
 #include "lodeline/page/row_choice.h"
 #include "lodeline/page/table_json.h"

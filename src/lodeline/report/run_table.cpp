@@ -4,8 +4,8 @@
 
 #include <fstream>
 
+#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/csv_fields.h"
 
 namespace lodeline {
 namespace {
