@@ -24,7 +24,7 @@ struct InitialStateOptions {
 
 struct MonoInitializationOptions {
   double min_frame_distance_s = 0.08;  ///< images in between are left out
-  double max_duration_s = 2.5;
+  double max_duration_s = 5.0;         ///< a slow swimmer sees far points turn by 10 px only after some way
   int min_frames = 6;
   int min_common_tracks = 40;  ///< seen by the oldest and the newest frame
   double min_parallax_px = 10.0;
