@@ -185,6 +185,8 @@ void bindDepth(Settings* settings, DepthOptions* options) {
       "density of the water over that which the gauge assumes: 0.975 for a gauge set to salt water "
       "in fresh water");
   settings->bind("pressure.density_ratio_sigma", &options->density_ratio_sigma, "of that ratio; 0 holds it");
+  settings->bind("pressure.least_density_sigma", &options->least_density_sigma,
+                 "what images tell of that ratio is never taken for better than this in what heights claim");
   settings->bind("pressure.lag_s", &options->lag_s, "time constant of the gauge's answer");
   settings->bind("pressure.lag_sigma_s", &options->lag_sigma_s, "of that lag; 0 holds it");
   settings->bind("pressure.offset_walk_m_per_sqrt_s", &options->offset_walk_m_per_sqrt_s,

@@ -34,12 +34,13 @@ Eigen::VectorXd single(double value) { return Eigen::VectorXd::Constant(1, value
 
 }  // namespace
 
-DepthFusion::DepthFusion(const Rig& rig, const DepthOptions& options, Diagnostics* diagnostics)
-    : options_(options),
+DepthFusion::DepthFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
+    : options_(options.depth),
+      unmodelled_density_sigma_(unmodelledDensitySigma(options)),
       diagnostics_(diagnostics),
-      health_(options.gate, statedSigma(rig, options)),
-      gate_(options.gate) {
-  if (!options.use || !rig.pressure) return;
+      health_(options_.gate, statedSigma(rig, options_)),
+      gate_(options_.gate) {
+  if (!options_.use || !rig.pressure) return;
   gauge_ = rig.pressure;
   status_ = DepthStatus::NoData;
 }
@@ -229,13 +230,24 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
   DepthEstimate::Gauge gauge;
   gauge.depth_at_origin_m = states.offset_m();
   gauge.density_ratio = states.density_ratio();
-  gauge.density_ratio_sigma = sigma(*states.scale);
+  gauge.density_ratio_sigma = std::hypot(sigma(*states.scale), unmodelled_density_sigma_);
   gauge.lag_s = states.lag_s();
   gauge.lag_sigma_s = sigma(*states.lag);
   gauge.body_depth_m =
       gauge.depth_at_origin_m - gauge.density_ratio * window.newest().worldFromBody().translation.z();
   estimate.gauge = gauge;
   return estimate;
+}
+
+double DepthFusion::unmodelledHeightSigma(const Window& window) const {
+  if (!DepthStates(window)) return 0.0;
+  return unmodelled_density_sigma_ * std::abs(window.newest().worldFromBody().translation.z());
+}
+
+double unmodelledDensitySigma(const EstimatorOptions& options) {
+  if (!options.camera_calibration.enabled) return 0.0;
+  // Who was told the density better than that learns nothing of it from images.
+  return std::min(options.depth.least_density_sigma, options.depth.density_ratio_sigma);
 }
 
 }  // namespace lodeline

@@ -10,6 +10,7 @@
 #include "lodeline/estimator/depth_health.h"
 #include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/marginalizer.h"
+#include "lodeline/estimator/options.h"
 #include "lodeline/estimator/vertical_motion.h"
 
 namespace lodeline {
@@ -26,13 +27,17 @@ struct DepthEstimate {
   std::optional<Gauge> gauge;  ///< nothing until it was heard
 };
 
+/// Of the density ratio, beyond what the covariance says; see DepthOptions::least_density_sigma.
+/// Zero where the cameras' calibration is believed.
+double unmodelledDensitySigma(const EstimatorOptions& options);
+
 /// Brings the pressure sensor into a window: keeps its global states, carries readings to their frame, asks
 /// health and gate, and hands the frame its depth (Frame::depth), of which FactorMaker makes a factor.
 /// Without a sensor, or switched off, it leaves everything as it is.
 class DepthFusion {
  public:
   /// `diagnostics` must outlive it.
-  DepthFusion(const Rig& rig, const DepthOptions& options, Diagnostics* diagnostics);
+  DepthFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
   /// Takes the readings that belong to the next frame.
   void take(std::span<const DepthSample> readings);
@@ -42,6 +47,9 @@ class DepthFusion {
   void remember(const JointCovariance& covariance) { covariance_ = covariance; }
 
   DepthEstimate estimate(const Window& window) const;
+  /// Sigma of the newest frame's height above the origin, m, beyond what the covariance says; zero without a
+  /// gauge.
+  double unmodelledHeightSigma(const Window& window) const;
 
  private:
   /// A reading less what is expected.
@@ -65,6 +73,7 @@ class DepthFusion {
   void report(DepthStatus status, const DepthSample& reading);
 
   DepthOptions options_;
+  double unmodelled_density_sigma_ = 0.0;
   Diagnostics* diagnostics_;
   std::optional<PressureCalibration> gauge_;
   DepthStatus status_ = DepthStatus::Off;

@@ -122,6 +122,28 @@ TEST(DepthFusion, FindsLagAndDensity) {
   EXPECT_EQ(found.statuses.count(DepthStatus::Slope), 0u) << "a lag is no other unit";
 }
 
+TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
+  TestSceneOptions options = sceneOptions(8.0);
+  options.drift_m_per_s = Vec3(0.0, 0.0, -0.2);
+  EstimatorOptions estimator = honestOptions(options);
+  estimator.camera_calibration.enabled = true;
+  const auto lastWith = [&](double least_density_sigma) {
+    estimator.depth.least_density_sigma = least_density_sigma;
+    return dive(options, Gauge(), estimator).last();
+  };
+  const FrameEstimate believed = lastWith(0.0);
+  const FrameEstimate doubted = lastWith(0.007);
+  const double height_m = doubted.state.world_from_body.translation.z();
+  ASSERT_LT(height_m, -0.5);
+  EXPECT_EQ(believed.state.world_from_body.translation, doubted.state.world_from_body.translation);
+  EXPECT_NEAR(doubted.covariance(2, 2) - believed.covariance(2, 2), 0.007 * 0.007 * height_m * height_m,
+              1e-12);
+  EXPECT_GT(doubted.depth.gauge->density_ratio_sigma, believed.depth.gauge->density_ratio_sigma);
+  estimator.depth.density_ratio_sigma = 0.001;
+  const double told = lastWith(0.007).covariance(2, 2) - lastWith(0.0).covariance(2, 2);
+  EXPECT_NEAR(told, 1e-6 * height_m * height_m, 1e-8) << "a density that was told";
+}
+
 TEST(DepthFusion, CarriesTheScaleOfOneCameraThatSinks) {
   TestSceneOptions options = sceneOptions(30.0);
   options.cameras = 1;

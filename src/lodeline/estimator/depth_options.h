@@ -22,6 +22,11 @@ struct DepthOptions {
   /// 1000, 1020 or 1030 kg/m^3, water has 997 to 1030.
   double density_ratio = 1.0;
   double density_ratio_sigma = 0.015;
+  /// Images learn the density from the direction in which they see the rig move. A lens that is not as its
+  /// file says puts that off by one or two tenths of a degree for minutes, which no covariance knows: in a
+  /// passage that descends by one metre in seven it is worth so much. Heights are claimed no better than
+  /// that.
+  double least_density_sigma = 0.007;
   double lag_s = 0.3;
   double lag_sigma_s = 0.4;
   /// Of the depth read at the start, before the first reading.

@@ -35,7 +35,7 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       marginalizer_(factors_),
       mono_initializer_(rig_, options_, factors_),
       magnetometer_(rig_, options_, diagnostics),
-      depth_(rig_, options_.depth, diagnostics),
+      depth_(rig_, options_, diagnostics),
       scale_(rig_, options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
@@ -222,6 +222,8 @@ void Estimator::startMagnetometer() {
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
   estimate->covariance = covariance.newest();
+  const double height_sigma_m = depth_.unmodelledHeightSigma(window_);
+  estimate->covariance(2, 2) += height_sigma_m * height_sigma_m;
   depth_.remember(covariance);
   magnetometer_.remember(std::move(covariance));
 }

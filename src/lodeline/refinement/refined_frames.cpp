@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lodeline/estimator/depth_fusion.h"
 #include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
 
@@ -82,8 +83,10 @@ class FrameMaker {
     gauge.depth_at_origin_m = *problem_.depthOffset(state_);
     gauge.density_ratio = states.density_ratio();
     gauge.lag_s = states.lag_s();
-    gauge.body_depth_m =
-        gauge.depth_at_origin_m - gauge.density_ratio * refined->state.world_from_body.translation.z();
+    const double height_m = refined->state.world_from_body.translation.z();
+    gauge.body_depth_m = gauge.depth_at_origin_m - gauge.density_ratio * height_m;
+    const double height_sigma_m = unmodelledDensitySigma(options_) * height_m;
+    refined->covariance(2, 2) += height_sigma_m * height_sigma_m;
   }
 
   const BatchProblem& problem_;
