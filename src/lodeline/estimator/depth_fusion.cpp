@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/lasting_error.h"
+#include "lodeline/estimator/unmodelled_errors.h"
 #include "lodeline/factors/depth_factor.h"
 
 namespace lodeline {
@@ -237,17 +238,6 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
       gauge.depth_at_origin_m - gauge.density_ratio * window.newest().worldFromBody().translation.z();
   estimate.gauge = gauge;
   return estimate;
-}
-
-double DepthFusion::unmodelledHeightSigma(const Window& window) const {
-  if (!DepthStates(window)) return 0.0;
-  return unmodelled_density_sigma_ * std::abs(window.newest().worldFromBody().translation.z());
-}
-
-double unmodelledDensitySigma(const EstimatorOptions& options) {
-  if (!options.camera_calibration.enabled) return 0.0;
-  // Who was told the density better than that learns nothing of it from images.
-  return std::min(options.depth.least_density_sigma, options.depth.density_ratio_sigma);
 }
 
 }  // namespace lodeline

@@ -27,10 +27,6 @@ struct DepthEstimate {
   std::optional<Gauge> gauge;  ///< nothing until it was heard
 };
 
-/// Of the density ratio, beyond what the covariance says; see DepthOptions::least_density_sigma.
-/// Zero where the cameras' calibration is believed.
-double unmodelledDensitySigma(const EstimatorOptions& options);
-
 /// Brings the pressure sensor into a window: keeps its global states, carries readings to their frame, asks
 /// health and gate, and hands the frame its depth (Frame::depth), of which FactorMaker makes a factor.
 /// Without a sensor, or switched off, it leaves everything as it is.
@@ -47,9 +43,6 @@ class DepthFusion {
   void remember(const JointCovariance& covariance) { covariance_ = covariance; }
 
   DepthEstimate estimate(const Window& window) const;
-  /// Sigma of the newest frame's height above the origin, m, beyond what the covariance says; zero without a
-  /// gauge.
-  double unmodelledHeightSigma(const Window& window) const;
 
  private:
   /// A reading less what is expected.

@@ -11,6 +11,7 @@
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
+#include "lodeline/estimator/unmodelled_errors.h"
 #include "lodeline/estimator/window_update.h"
 
 namespace lodeline {
@@ -67,6 +68,8 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   ++frames_since_start_;
   startAgainAfterDarkness(estimate);
   shortenWindow(estimate);
+  addUnmodelledErrors(options_, {scale_is_given_, estimate.depth.gauge.has_value()},
+                      estimate.state.world_from_body.translation, &estimate.covariance);
   return estimate;
 }
 
@@ -222,8 +225,6 @@ void Estimator::startMagnetometer() {
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
   estimate->covariance = covariance.newest();
-  const double height_sigma_m = depth_.unmodelledHeightSigma(window_);
-  estimate->covariance(2, 2) += height_sigma_m * height_sigma_m;
   depth_.remember(covariance);
   magnetometer_.remember(std::move(covariance));
 }

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "lodeline/estimator/depth_fusion.h"
 #include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
+#include "lodeline/estimator/unmodelled_errors.h"
 
 namespace lodeline {
 namespace {
@@ -35,6 +35,8 @@ class FrameMaker {
     refined.camera_corrections = cameraCorrections(problem_.window());
     describeMagnetometer(forward, &refined);
     describeDepth(&refined);
+    addUnmodelledErrors(options_, {rig_.cameras.size() > 1, refined.depth.gauge.has_value()},
+                        refined.state.world_from_body.translation, &refined.covariance);
     return refined;
   }
 
@@ -83,10 +85,8 @@ class FrameMaker {
     gauge.depth_at_origin_m = *problem_.depthOffset(state_);
     gauge.density_ratio = states.density_ratio();
     gauge.lag_s = states.lag_s();
-    const double height_m = refined->state.world_from_body.translation.z();
-    gauge.body_depth_m = gauge.depth_at_origin_m - gauge.density_ratio * height_m;
-    const double height_sigma_m = unmodelledDensitySigma(options_) * height_m;
-    refined->covariance(2, 2) += height_sigma_m * height_sigma_m;
+    gauge.body_depth_m =
+        gauge.depth_at_origin_m - gauge.density_ratio * refined->state.world_from_body.translation.z();
   }
 
   const BatchProblem& problem_;
