@@ -14,6 +14,7 @@
 #include "lodeline/evaluation/plots.h"
 #include "lodeline/evaluation/read_body_from_camera.h"
 #include "lodeline/evaluation/read_trajectory.h"
+#include "lodeline/report/read_claims.h"
 
 namespace lodeline {
 namespace {
@@ -69,6 +70,18 @@ void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& 
     throw InputError(fmt::format("{}: cannot be written; check the folder and its rights", path.string()));
 }
 
+/// A run of another version, or one that is damaged beside its trajectory, is evaluated all the same.
+ClaimCheck claimsOf(const std::filesystem::path& run, const Trajectory& reference,
+                    const AssociationOptions& association, Diagnostics* diagnostics) {
+  try {
+    return checkClaims(readClaims(run, diagnostics), reference, association);
+  } catch (const InputError& error) {
+    diagnostics->report(Severity::Warning, "claims_unknown",
+                        fmt::format("errors are not compared with claimed sigmas: {}", error.what()));
+    return {};
+  }
+}
+
 void evaluateCommand(const Arguments& arguments) {
   Diagnostics diagnostics;
   EvaluationOptions options = arguments.options;
@@ -86,7 +99,7 @@ void evaluateCommand(const Arguments& arguments) {
   const Trajectory reference = readTrajectory(arguments.reference, reference_options, diagnostics);
 
   Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
-  evaluation.claims = checkClaims(readClaims(arguments.estimate), reference, options.association);
+  evaluation.claims = claimsOf(arguments.estimate, reference, options.association, &diagnostics);
   if (!arguments.plots.empty()) writePlots(evaluation, arguments.plots, diagnostics);
   if (!arguments.json.empty()) writeJson(arguments.json, evaluationJson(evaluation, diagnostics));
   fmt::print("{}", evaluationTable(evaluation, diagnostics));

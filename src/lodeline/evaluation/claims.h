@@ -1,6 +1,6 @@
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
 #include <vector>
 
 #include "lodeline/evaluation/alignment.h"
@@ -20,10 +20,6 @@ struct RunClaims {
   std::vector<ClaimedPose> poses;
   HeadingBasis basis = HeadingBasis::Start;  ///< what the heading's sigma is measured from
 };
-
-/// Reads `states.csv` and the heading's reference from `run.json` of a run folder; no poses where it has none
-/// of the first. Throws InputError where either cannot be understood.
-RunClaims readClaims(const std::filesystem::path& run_folder);
 
 /// Errors of one kind beside their standard deviations, each axis of the world for itself.
 struct ClaimedAxes {
