@@ -59,6 +59,16 @@ TEST_F(ProgramTest, RefusesColmapOptionsWithoutAColmapModel) {
   EXPECT_THAT(result.output, HasSubstr("COLMAP"));
 }
 
+TEST_F(ProgramTest, EvaluatesARunWhoseClaimsCannotBeRead) {
+  folder_.write("a.tum", tum_);
+  std::filesystem::create_directories(folder_.path() / "run");
+  folder_.write("run/trajectory.tum", tum_);
+  folder_.write("run/states.csv", "#timestamp [ns],status\n1000000000,tracking\n");
+  const Execution result = runProgram("evaluate " + file("run") + " " + file("a.tum"));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("not compared with claimed sigmas"));
+}
+
 TEST_F(ProgramTest, EndsWithOneOnBadInputAndSaysWhere) {
   folder_.write("a.tum", tum_);
   folder_.write("bad.tum", "1.0 0 0 0 0 0 0 1\n2.0 0 x 0 0 0 0 1\n");
