@@ -1,6 +1,7 @@
 #include "lodeline/cli/run_recording.h"
 
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <filesystem>
 #include <opencv2/core/utility.hpp>
@@ -36,6 +37,14 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
   progress.end();
 }
 
+/// By default glibc gives every thread a heap of its own. Images are decoded by one short-lived thread each,
+/// and what is freed in one heap does not serve another: memory would depend on how threads happen to run.
+void shareOneHeap() {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 }  // namespace
 
 void applyRequest(const RunRequest& request, Settings* settings, RunSettings* options) {
@@ -59,6 +68,7 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   // One thread for image operations: the same bytes on every machine, and core-milliseconds that mean
   // something.
   cv::setNumThreads(1);
+  shareOneHeap();
   RunSettings options;
   Settings settings;
   applyRequest(request, &settings, &options);
