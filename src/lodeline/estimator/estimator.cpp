@@ -11,7 +11,6 @@
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
-#include "lodeline/estimator/unmodelled_errors.h"
 #include "lodeline/estimator/window_update.h"
 
 namespace lodeline {
@@ -37,7 +36,8 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       mono_initializer_(rig_, options_, factors_),
       magnetometer_(rig_, options_, diagnostics),
       depth_(rig_, options_, diagnostics),
-      scale_(rig_, options_) {
+      scale_(rig_, options_),
+      unmodelled_(options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
 
@@ -68,8 +68,8 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   ++frames_since_start_;
   startAgainAfterDarkness(estimate);
   shortenWindow(estimate);
-  addUnmodelledErrors(options_, {scale_is_given_, estimate.depth.gauge.has_value()},
-                      estimate.state.world_from_body.translation, &estimate.covariance);
+  unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
+  unmodelled_.addTo({scale_is_given_, estimate.depth.gauge.has_value()}, &estimate.covariance);
   return estimate;
 }
 
@@ -254,6 +254,7 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->depth = depth_.estimate(window_);
   estimate->scale = scale_.add(window_);
   estimate->landmarks = statistics.landmarks;
+  estimate->scene_distance_m = meanLandmarkDistance_m(window_, newest.id, 0);
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
   for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;
   const bool first = window_.frames().size() == 1;

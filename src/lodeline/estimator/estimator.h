@@ -13,6 +13,7 @@
 #include "lodeline/estimator/mono_initializer.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/scale_budget.h"
+#include "lodeline/estimator/unmodelled_errors.h"
 #include "lodeline/estimator/window.h"
 
 namespace lodeline {
@@ -37,6 +38,7 @@ struct FrameEstimate {
   int tracks = 0;     ///< seen in this frame
   int landmarks = 0;  ///< of which have a position
   double reprojection_rms_sigmas = 0.0;
+  std::optional<double> scene_distance_m;  ///< of the landmarks, in harmonic mean
   int solver_iterations = 0;
   /// Nothing where the calibration is taken as the files give it.
   std::optional<CameraCorrections> camera_corrections;
@@ -102,6 +104,7 @@ class Estimator {
   MagnetometerFusion magnetometer_;
   DepthFusion depth_;
   ScaleBudget scale_;
+  UnmodelledErrors unmodelled_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
   std::optional<Time> last_time_;

@@ -162,4 +162,16 @@ ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker&
   return statistics;
 }
 
+std::optional<double> meanLandmarkDistance_m(const Window& window, FrameId frame, int camera) {
+  double inverse_distances = 0.0;
+  int count = 0;
+  for (const auto& [id, track] : window.tracks()) {
+    if (!track.landmark || track.landmark->inverseDistance() <= 0.0 || !track.find(frame, camera)) continue;
+    inverse_distances += track.landmark->inverseDistance();
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return count / inverse_distances;
+}
+
 }  // namespace lodeline

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/window.h"
@@ -22,5 +24,9 @@ struct ReprojectionStatistics {
   double rms_sigmas = 0.0;
 };
 ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame);
+
+/// Harmonic mean of the distances of the landmarks that a camera sees in a frame, counted from their hosts,
+/// m: flow by translation goes with the inverse distance. Nothing where it sees none at a finite distance.
+std::optional<double> meanLandmarkDistance_m(const Window& window, FrameId frame, int camera);
 
 }  // namespace lodeline

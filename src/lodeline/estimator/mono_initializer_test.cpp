@@ -59,7 +59,7 @@ TEST(MonoInitializer, WaitsForParallaxWhileTheRigStandsStill) {
   const std::vector<Comparison> comparisons = untilStarted(options);
   EXPECT_FALSE(comparisons.back().initialized());
   EXPECT_THAT(comparisons.back().estimate.waiting_for, StartsWith("parallax"));
-  EXPECT_THAT(comparisons.back().estimate.waiting_for, HasSubstr("of 10 px"));
+  EXPECT_THAT(comparisons.back().estimate.waiting_for, HasSubstr("of 5 px"));
 }
 
 TEST(MonoInitializer, WaitsForParallaxWhileTheRigOnlyTurns) {

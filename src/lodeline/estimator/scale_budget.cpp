@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lodeline/estimator/landmarks.h"
+
 namespace lodeline {
 namespace {
 
@@ -66,19 +68,11 @@ ScaleInformation ScaleBudget::add(const Window& window) {
 
 double ScaleBudget::stereoInformation(const Window& window) const {
   if (!baseline_m_) return 0.0;
-  const FrameId newest = window.newest().id;
-  double inverse_distances = 0.0;
-  int count = 0;
-  for (const auto& [id, track] : window.tracks()) {
-    if (!track.landmark || track.landmark->inverseDistance() <= 0.0 || !track.find(newest, 1)) continue;
-    inverse_distances += track.landmark->inverseDistance();
-    ++count;
-  }
-  if (count == 0) return 0.0;
+  const std::optional<double> distance_m = meanLandmarkDistance_m(window, window.newest().id, 1);
+  if (!distance_m) return 0.0;
   const double by_position = calibration_.enabled ? calibration_.stereo_position_sigma_m / *baseline_m_ : 0.0;
   const double by_rotation =
-      calibration_.enabled ? calibration_.stereo_rotation_sigma_rad * count / inverse_distances / *baseline_m_
-                           : 0.0;
+      calibration_.enabled ? calibration_.stereo_rotation_sigma_rad * *distance_m / *baseline_m_ : 0.0;
   return 1.0 / (by_position * by_position + by_rotation * by_rotation + kUnstated * kUnstated);
 }
 

@@ -1,6 +1,9 @@
 #include "lodeline/estimator/unmodelled_errors.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 
@@ -10,17 +13,46 @@ double unmodelledDensitySigma(const EstimatorOptions& options) {
   return std::min(options.depth.least_density_sigma, options.depth.density_ratio_sigma);
 }
 
-void addUnmodelledErrors(const EstimatorOptions& options, const EstimateSources& sources,
-                         const Vec3& position_W, Eigen::Matrix<double, 15, 15>* covariance) {
-  if (!options.camera_calibration.enabled) return;
+void UnmodelledErrors::follow(const Rigid3& world_from_body, std::optional<double> scene_distance_m) {
+  scene_distance_m_ = scene_distance_m.value_or(scene_distance_m_);
+  if (newest_) {
+    const Rigid3 step = newest_->inverse() * world_from_body;
+    const Mat3 world_from_newest = newest_->rotation.toRotationMatrix();
+    const Vec3 turn = scene_distance_m_ * so3::log(step.rotation);
+    for (int k = 0; k < 3; ++k) {
+      by_way_[k] += step.translation[k] * world_from_newest;
+      by_turn_[k] += turn[k] * world_from_newest;
+    }
+  }
+  newest_ = world_from_body;
+}
+
+Mat3 UnmodelledErrors::byTheWay() const {
+  Mat3 covariance = Mat3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    covariance += kWayPerWaySigma * kWayPerWaySigma * by_way_[k] * by_way_[k].transpose();
+    covariance += kWayPerTurnSigma * kWayPerTurnSigma * by_turn_[k] * by_turn_[k].transpose();
+  }
+  return covariance;
+}
+
+void UnmodelledErrors::addTo(const EstimateSources& sources,
+                             Eigen::Matrix<double, 15, 15>* covariance) const {
+  if (!options_.camera_calibration.enabled || !newest_) return;
+  const Vec3& position_W = newest_->translation;
+  Mat3 added = byTheWay();
   if (!sources.is_scale_given) {
     const Vec3 by_scale = kOneCameraScaleSigma * position_W;
-    covariance->topLeftCorner<3, 3>() += by_scale * by_scale.transpose();
+    added += by_scale * by_scale.transpose();
   }
   if (sources.has_depth) {
-    const double height_sigma_m = unmodelledDensitySigma(options) * position_W.z();
-    (*covariance)(2, 2) += height_sigma_m * height_sigma_m;
+    const double held = std::min(1.0, kLeastHeightSigma_m / std::sqrt(std::max(added(2, 2), 1e-12)));
+    added.row(2) *= held;
+    added.col(2) *= held;
+    const double height_sigma_m = unmodelledDensitySigma(options_) * position_W.z();
+    added(2, 2) += height_sigma_m * height_sigma_m;
   }
+  covariance->topLeftCorner<3, 3>() += added;
 }
 
 }  // namespace lodeline

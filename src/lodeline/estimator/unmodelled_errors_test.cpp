@@ -2,47 +2,113 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <numbers>
+
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
 
 using Mat15 = Eigen::Matrix<double, 15, 15>;
 
-Mat15 added(const EstimatorOptions& options, const EstimateSources& sources, const Vec3& position_W) {
+Rigid3 heading(double yaw_rad, const Vec3& position_W) {
+  return Rigid3(so3::exp(yaw_rad * Vec3::UnitZ()), position_W);
+}
+
+/// In steps, as frames come: from the newest pose to this one.
+void swim(const Rigid3& from, const Rigid3& to, double scene_distance_m, UnmodelledErrors* errors) {
+  constexpr int kSteps = 2000;
+  const Vec3 turn = so3::log(from.rotation.conjugate() * to.rotation);
+  for (int k = 1; k <= kSteps; ++k) {
+    const double share = static_cast<double>(k) / kSteps;
+    errors->follow(Rigid3(from.rotation * so3::exp(share * turn),
+                          from.translation + share * (to.translation - from.translation)),
+                   scene_distance_m);
+  }
+}
+
+Mat15 added(const UnmodelledErrors& errors, const EstimateSources& sources) {
   Mat15 covariance = Mat15::Zero();
-  addUnmodelledErrors(options, sources, position_W, &covariance);
+  errors.addTo(sources, &covariance);
+  EXPECT_EQ(covariance.bottomRightCorner(12, 12).norm(), 0.0);
+  EXPECT_EQ(covariance.topRightCorner(3, 12).norm(), 0.0);
   return covariance;
 }
 
+constexpr EstimateSources kTwoCameras{.is_scale_given = true};
+constexpr EstimateSources kOneCamera{.is_scale_given = false};
 const Vec3 kPosition(30.0, 40.0, -20.0);
 
-TEST(UnmodelledErrors, OfOneCameraLieAlongTheWayFromTheOrigin) {
-  const Mat15 covariance = added({}, {.is_scale_given = false}, kPosition);
-  const Mat3 position = covariance.topLeftCorner<3, 3>();
+TEST(UnmodelledErrors, OfAStraightWayGrowInProportionToIt) {
+  UnmodelledErrors errors({});
+  errors.follow(heading(0.7, Vec3::Zero()), 2.0);
+  EXPECT_EQ(added(errors, kTwoCameras).norm(), 0.0);
+  swim(heading(0.7, Vec3::Zero()), heading(0.7, kPosition), 2.0, &errors);
+  const double sigma_m = kWayPerWaySigma * kPosition.norm();
+  EXPECT_NEAR(
+      (added(errors, kTwoCameras).topLeftCorner<3, 3>() - sigma_m * sigma_m * Mat3::Identity()).norm(), 0.0,
+      1e-12);
+}
+
+TEST(UnmodelledErrors, OfATurnGrowWithItsAngleAndTheDistanceOfTheScene) {
+  UnmodelledErrors errors({});
+  errors.follow(heading(0.0, kPosition), 2.0);
+  swim(heading(0.0, kPosition), heading(3.0, kPosition), 2.0, &errors);
+  const Mat15 covariance = added(errors, kTwoCameras);
+  EXPECT_NEAR(std::sqrt(covariance(2, 2)), kWayPerTurnSigma * 2.0 * 3.0, 1e-6);
+  // A slide to a side of the body turns with it.
+  const double chord = 2.0 * std::sin(1.5);
+  EXPECT_NEAR(std::sqrt(covariance(0, 0)), kWayPerTurnSigma * 2.0 * chord, 1e-5);
+  swim(heading(3.0, kPosition), heading(0.0, kPosition), 2.0, &errors);
+  EXPECT_NEAR(added(errors, kTwoCameras).norm(), 0.0, 1e-6)
+      << "what sways back and forth slides back and forth";
+}
+
+TEST(UnmodelledErrors, OfADirectionCancelOnTheWayBackOnlyWhereTheRigTurnsRound) {
+  UnmodelledErrors errors({});
+  const Vec3 end(20.0, 0.0, 0.0);
+  errors.follow(heading(0.0, Vec3::Zero()), std::nullopt);
+  swim(heading(0.0, Vec3::Zero()), heading(0.0, end), 0.0, &errors);
+  errors.follow(heading(std::numbers::pi, end), std::nullopt);
+  swim(heading(std::numbers::pi, end), heading(std::numbers::pi, Vec3::Zero()), 0.0, &errors);
+  const Mat15 covariance = added(errors, kTwoCameras);
+  EXPECT_NEAR(std::sqrt(covariance(2, 2)), kWayPerWaySigma * 40.0, 1e-9);
+  EXPECT_NEAR(covariance.topLeftCorner(2, 2).norm(), 0.0, 1e-9);
+}
+
+TEST(UnmodelledErrors, OfOneCameraCountItsScaleToo) {
+  UnmodelledErrors errors({});
+  errors.follow(heading(0.0, kPosition), 2.0);
+  const Mat3 position = added(errors, kOneCamera).topLeftCorner<3, 3>();
   EXPECT_NEAR(kPosition.normalized().dot(position * kPosition.normalized()),
               std::pow(kOneCameraScaleSigma * kPosition.norm(), 2), 1e-12);
   EXPECT_NEAR((position * Vec3(40.0, -30.0, 0.0)).norm(), 0.0, 1e-12);
-  EXPECT_EQ(covariance.bottomRightCorner(12, 12).norm(), 0.0);
-  EXPECT_EQ(added({}, {.is_scale_given = false}, Vec3::Zero()).norm(), 0.0);
 }
 
-TEST(UnmodelledErrors, OfTheDensityAreOfTheHeightAlone) {
+TEST(UnmodelledErrors, OfTheHeightAreHeldByAPressureSensorUpToItsDensity) {
   EstimatorOptions options;
-  Mat15 covariance = added(options, {.is_scale_given = true, .has_depth = true}, kPosition);
-  EXPECT_NEAR(covariance(2, 2), std::pow(0.007 * 20.0, 2), 1e-12);
-  covariance(2, 2) = 0.0;
-  EXPECT_EQ(covariance.norm(), 0.0);
   options.depth.density_ratio_sigma = 0.001;
-  EXPECT_NEAR(added(options, {.is_scale_given = true, .has_depth = true}, kPosition)(2, 2),
-              std::pow(0.001 * 20.0, 2), 1e-12);
+  UnmodelledErrors errors(options);
+  errors.follow(heading(0.0, Vec3::Zero()), 2.0);
+  swim(heading(0.0, Vec3::Zero()), heading(0.0, kPosition), 2.0, &errors);
+  const Mat15 free = added(errors, kTwoCameras);
+  const Mat15 held = added(errors, {.is_scale_given = true, .has_depth = true});
+  EXPECT_NEAR(held(2, 2), std::pow(kLeastHeightSigma_m, 2) + std::pow(0.001 * 20.0, 2), 1e-12);
+  EXPECT_NEAR((held - free).topLeftCorner(2, 2).norm(), 0.0, 1e-15);
+
+  UnmodelledErrors at_start(EstimatorOptions{});
+  at_start.follow(heading(0.0, kPosition), 2.0);
+  EXPECT_NEAR(added(at_start, {.is_scale_given = true, .has_depth = true})(2, 2), std::pow(0.007 * 20.0, 2),
+              1e-12);
 }
 
-TEST(UnmodelledErrors, AreNoneOfTwoCamerasOrWhereTheCalibrationIsBelieved) {
+TEST(UnmodelledErrors, AreNoneWhereTheCalibrationIsBelieved) {
   EstimatorOptions options;
-  EXPECT_EQ(added(options, {.is_scale_given = true}, kPosition).norm(), 0.0);
   options.camera_calibration.enabled = false;
-  EXPECT_EQ(added(options, {.is_scale_given = false, .has_depth = true}, kPosition).norm(), 0.0);
+  UnmodelledErrors errors(options);
+  errors.follow(heading(0.0, Vec3::Zero()), 2.0);
+  swim(heading(0.0, Vec3::Zero()), heading(2.0, kPosition), 2.0, &errors);
+  EXPECT_EQ(added(errors, {.is_scale_given = false, .has_depth = true}).norm(), 0.0);
   EXPECT_EQ(unmodelledDensitySigma(options), 0.0);
 }
 

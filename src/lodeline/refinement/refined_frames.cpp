@@ -16,7 +16,7 @@ class FrameMaker {
  public:
   FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
              const ForwardRecord& record, const SkylineMatrix* inverse)
-      : problem_(problem), rig_(rig), options_(options), record_(record) {
+      : problem_(problem), rig_(rig), options_(options), record_(record), unmodelled_(options) {
     for (size_t k = 0; inverse && k < problem.states(); ++k)
       covariances_.push_back(problem.covarianceOf(k, *inverse));
   }
@@ -35,8 +35,8 @@ class FrameMaker {
     refined.camera_corrections = cameraCorrections(problem_.window());
     describeMagnetometer(forward, &refined);
     describeDepth(&refined);
-    addUnmodelledErrors(options_, {rig_.cameras.size() > 1, refined.depth.gauge.has_value()},
-                        refined.state.world_from_body.translation, &refined.covariance);
+    unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
+    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.gauge.has_value()}, &refined.covariance);
     return refined;
   }
 
@@ -93,6 +93,7 @@ class FrameMaker {
   const Rig& rig_;
   const EstimatorOptions& options_;
   const ForwardRecord& record_;
+  UnmodelledErrors unmodelled_;
   std::vector<Mat15> covariances_;
   size_t state_ = 0;  ///< the last one at or before the frame
 };
