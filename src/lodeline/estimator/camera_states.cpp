@@ -49,7 +49,11 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
     addState(window, prior, extrinsicsName(static_cast<size_t>(camera)),
              extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m));
   }
-  for (int camera = 0; options.intrinsics && camera < cameras; ++camera)
+}
+
+void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
+  if (!options.enabled || !options.intrinsics) return;
+  for (int camera = 0; camera < cameras; ++camera)
     addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), intrinsicsSigmas(options));
 }
 

@@ -21,8 +21,10 @@ struct CameraStates {
   double timeOffset_s() const { return time_offset ? time_offset->value[0] : 0.0; }
 };
 
-/// Adds the states for as many cameras as the rig has, and to the prior what `options` say of them.
+/// Adds placement and delay of as many cameras as the rig has, and to the prior what `options` say of them.
 void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
+/// The same for their lenses, where these are to be estimated.
+void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
 
 CameraStates cameraStates(const Window& window);
 

@@ -70,6 +70,17 @@ TEST(CameraStates, FindAWrongStereoRotation) {
             0.15 * rotation.norm());
 }
 
+/// For a scene too short to hold the lens for long, and files that are wrong by more than usual.
+CameraCalibrationOptions shortSceneCalibration(bool lenses) {
+  CameraCalibrationOptions options;
+  options.intrinsics = lenses;
+  options.lens_held_s = 0.0;
+  options.focal_length_sigma = 0.005;
+  options.principal_point_sigma_px = 2.0;
+  options.radial_sigma = 0.01;
+  return options;
+}
+
 /// The scene's tracks as someone reads them who takes `files` for the cameras.
 FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
   for (Observation& observation : tracks.observations) {
@@ -90,7 +101,7 @@ double squaredPositionError_m2(bool lenses, uint64_t seed, const Eigen::Matrix<d
   const Eigen::Matrix<double, 6, 1> undone = -lens;
   for (CameraCalibration& camera : files.cameras) camera = correctedLens(camera, undone.data());
   EstimatorOptions options = honestOptions(scene_options);
-  options.camera_calibration.intrinsics = lenses;
+  options.camera_calibration = shortSceneCalibration(lenses);
   Diagnostics diagnostics;
   Estimator estimator(files, options, &diagnostics);
   TruthComparison truth;
@@ -126,11 +137,30 @@ TEST(CameraStates, StayNearARightLens) {
   FrameEstimate last;
   squaredPositionError_m2(true, 1, Eigen::Matrix<double, 6, 1>::Zero(), &last);
   for (const auto& estimate : last.camera_corrections->intrinsics) {
-    const CameraCalibrationOptions prior;
+    const CameraCalibrationOptions prior = shortSceneCalibration(true);
     EXPECT_LT(estimate.head<2>().cwiseAbs().maxCoeff(), prior.focal_length_sigma) << estimate.transpose();
     EXPECT_LT(estimate.segment<2>(2).cwiseAbs().maxCoeff(), prior.principal_point_sigma_px)
         << estimate.transpose();
   }
+}
+
+TEST(CameraStates, HoldTheLensUntilTheRigHasBeenUnderWay) {
+  TestScene scene(sceneOptions());
+  const EstimatorOptions options = honestOptions(sceneOptions());
+  Diagnostics diagnostics;
+  Estimator estimator(scene.rig(), options, &diagnostics);
+  std::optional<Time> begin;
+  double held_s = 0.0;
+  size_t lenses = 0;
+  while (const auto frame = scene.next()) {
+    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
+    begin = begin.value_or(estimate.time);
+    ASSERT_TRUE(estimate.camera_corrections);
+    lenses = estimate.camera_corrections->intrinsics.size();
+    if (lenses == 0) held_s = (estimate.time - *begin).seconds();
+  }
+  EXPECT_GE(held_s, options.camera_calibration.lens_held_s);
+  EXPECT_EQ(lenses, 2U);
 }
 
 TEST(CameraStates, StayNearARightCalibration) {
@@ -144,7 +174,7 @@ TEST(CameraStates, StayNearARightCalibration) {
 
 TEST(CameraStates, AreHeldByASigmaOfZeroAndAbsentWhenOff) {
   EstimatorOptions options = honestOptions(sceneOptions());
-  options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0, true, 0.0, 0.0, 0.0};
+  options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0, true, 0.0, 0.0, 0.0, 0.0};
   TestSceneOptions shorter = sceneOptions();
   shorter.duration_s = 6.0;
   TestScene held_scene(shorter);

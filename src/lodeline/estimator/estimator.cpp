@@ -118,6 +118,16 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
   if (!was_settled) marginalizer_.relinearise(window_);
   marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
   if (!is_settled_) marginalizer_.relinearise(window_);
+  if (is_settled_) freeLenses(estimate.time);
+}
+
+void Estimator::freeLenses(Time time) {
+  settled_time_ = settled_time_.value_or(time);
+  if ((time - *settled_time_).seconds() < options_.camera_calibration.lens_held_s) return;
+  if (!cameraStates(window_).intrinsics.empty()) return;
+  Prior prior = marginalizer_.prior();
+  addLensStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  marginalizer_.start(std::move(prior));
 }
 
 bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {

@@ -79,7 +79,7 @@ struct SolverOptions {
 
 /// How far the camera calibration of the files may be off, one sigma; a sigma of 0 holds it. Without
 /// `intrinsics` the lens is left alone: a wrong principal point looks like a turned camera, and is made good
-/// as one.
+/// as one, but part of every turn then counts as way.
 struct CameraCalibrationOptions {
   bool enabled = true;
   double rotation_sigma_rad = 0.01;  ///< camera 0 to the IMU, each axis
@@ -88,12 +88,13 @@ struct CameraCalibrationOptions {
   /// Further cameras to camera 0. Their distance is the only ruler a stereo rig has; files state it well.
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
-  /// The lens as well (factors/intrinsics_factor.h). Off: in slow forward motion little tells a wrong lens
-  /// from a turned camera.
-  bool intrinsics = false;
-  double focal_length_sigma = 0.005;  ///< relative
-  double principal_point_sigma_px = 2.0;
-  double radial_sigma = 0.01;
+  /// The lens as well (factors/intrinsics_factor.h), once the scale is known and the rig has been under way
+  /// for a while: a start tells too little of it.
+  bool intrinsics = true;
+  double lens_held_s = 15.0;          ///< since the window has settled
+  double focal_length_sigma = 0.003;  ///< relative
+  double principal_point_sigma_px = 1.5;
+  double radial_sigma = 0.005;
 };
 
 struct EstimatorOptions {

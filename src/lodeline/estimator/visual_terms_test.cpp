@@ -26,6 +26,7 @@ class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated
   void disturbCalibration() {
     test_.options.camera_calibration.intrinsics = std::get<1>(GetParam()) == Calibrated::PlacementAndLens;
     addCameraStates(test_.window, prior_, std::get<0>(GetParam()), test_.options.camera_calibration);
+    addLensStates(test_.window, prior_, std::get<0>(GetParam()), test_.options.camera_calibration);
     double offset = 0.0;
     for (const auto& state : test_.window.globals()) {
       state->first = state->value;

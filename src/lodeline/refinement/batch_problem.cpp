@@ -19,6 +19,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addTracks(record);
   addGlobals(record);
   addStartPrior(record.startPrior(), record.globals());
+  addLenses(record.globals());
   orderBlocks();
   relinearise();
   renewLandmarks();

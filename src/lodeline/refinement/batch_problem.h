@@ -64,6 +64,8 @@ class BatchProblem {
   void addTracks(const ForwardRecord& record);
   void addGlobals(const ForwardRecord& record);
   void addStartPrior(const ForwardRecord::StartPrior& start, const GlobalValues& globals);
+  /// At a start the run held them; `globals` has what it found later.
+  void addLenses(const GlobalValues& globals);
   GlobalState* addGlobal(const ForwardRecord& record, const std::string& name, const std::string& as);
   void addKnowledge(GlobalState* state, double sigma);
   void orderBlocks();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/refinement/batch_problem.h"
@@ -141,7 +142,7 @@ void BatchProblem::addStartPrior(const ForwardRecord::StartPrior& start, const G
     if (name == "motion") value = first.motion.data();
     if (value == nullptr) {
       GlobalState* state = window_.findGlobal(name);
-      // Camera calibration is in no chain, and has not been added yet.
+      // The cameras' placement is in no chain, and has not been added yet.
       if (state == nullptr) {
         const Eigen::VectorXd& at = prior.blocks[i].first_estimate;
         state = &window_.add({name, {at.data(), at.data() + at.size()}, std::nullopt, 0.0, false});
@@ -163,6 +164,16 @@ void BatchProblem::addStartPrior(const ForwardRecord::StartPrior& start, const G
     addKnowledge(magnetometer.field, options_.magnetometer.field_sigma_T);
   if (magnetometer.offset && !isKnown(magnetometer.offset))
     addKnowledge(magnetometer.offset, options_.magnetometer.offset_sigma_T);
+}
+
+void BatchProblem::addLenses(const GlobalValues& globals) {
+  Prior prior;
+  addLensStates(window_, prior, static_cast<int>(cameras_.size()), options_.camera_calibration);
+  for (GlobalState* lens : cameraStates(window_).intrinsics) {
+    const auto end = globals.find(lens->name);
+    if (end != globals.end()) lens->value = end->second;
+  }
+  priors_.push_back(std::move(prior));
 }
 
 void BatchProblem::appendBlock(double* value, int tangent_size, int first) {
