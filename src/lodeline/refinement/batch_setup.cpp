@@ -169,6 +169,7 @@ void BatchProblem::addStartPrior(const ForwardRecord::StartPrior& start, const G
 void BatchProblem::addLenses(const GlobalValues& globals) {
   Prior prior;
   addLensStates(window_, prior, static_cast<int>(cameras_.size()), options_.camera_calibration);
+  if (prior.empty()) return;
   for (GlobalState* lens : cameraStates(window_).intrinsics) {
     const auto end = globals.find(lens->name);
     if (end != globals.end()) lens->value = end->second;
