@@ -146,7 +146,8 @@ TEST(CameraStates, StayNearARightLens) {
 
 TEST(CameraStates, HoldTheLensUntilTheRigHasBeenUnderWay) {
   TestScene scene(sceneOptions());
-  const EstimatorOptions options = honestOptions(sceneOptions());
+  EstimatorOptions options = honestOptions(sceneOptions());
+  options.camera_calibration.intrinsics = true;
   Diagnostics diagnostics;
   Estimator estimator(scene.rig(), options, &diagnostics);
   std::optional<Time> begin;
