@@ -46,7 +46,7 @@ void UnmodelledErrors::addTo(const EstimateSources& sources,
     added += by_scale * by_scale.transpose();
   }
   if (sources.has_depth) {
-    const double held = std::min(1.0, kLeastHeightSigma_m / std::sqrt(std::max(added(2, 2), 1e-12)));
+    const double held = std::min(1.0, kHeldHeightSigma_m / std::sqrt(std::max(added(2, 2), 1e-12)));
     added.row(2) *= held;
     added.col(2) *= held;
     const double height_sigma_m = unmodelledDensitySigma(options_) * position_W.z();

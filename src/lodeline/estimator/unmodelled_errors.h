@@ -17,11 +17,12 @@ constexpr double kOneCameraScaleSigma = 0.01;
 /// Such a lens sees a way v as v + C v and a turn w as a way d D w, d the distance of what it sees, with
 /// matrices C and D that stay for a whole dive: a bent direction of travel, or part of a turn taken for a
 /// slide. One sigma of each entry. Dives with a real rig's errors have slid by 2 to 3 cm in every half turn
-/// 2 m from the wall, the same way in every run, and 3 mm in every metre; those without, a tenth of it.
+/// 2 m from the wall, the same way in every run, and 3 mm in every metre; those without, by a tenth of the
+/// former and a third of the latter.
 constexpr double kWayPerWaySigma = 0.003;
 constexpr double kWayPerTurnSigma = 0.005;
-/// A pressure sensor keeps the height of this; 1 sigma.
-constexpr double kLeastHeightSigma_m = 0.05;
+/// With a pressure sensor these errors move the height by no more than this; 1 sigma.
+constexpr double kHeldHeightSigma_m = 0.05;
 
 /// What a frame's estimate hangs on, as far as it matters here.
 struct EstimateSources {

@@ -93,7 +93,7 @@ TEST(UnmodelledErrors, OfTheHeightAreHeldByAPressureSensorUpToItsDensity) {
   swim(heading(0.0, Vec3::Zero()), heading(0.0, kPosition), 2.0, &errors);
   const Mat15 free = added(errors, kTwoCameras);
   const Mat15 held = added(errors, {.is_scale_given = true, .has_depth = true});
-  EXPECT_NEAR(held(2, 2), std::pow(kLeastHeightSigma_m, 2) + std::pow(0.001 * 20.0, 2), 1e-12);
+  EXPECT_NEAR(held(2, 2), std::pow(kHeldHeightSigma_m, 2) + std::pow(0.001 * 20.0, 2), 1e-12);
   EXPECT_NEAR((held - free).topLeftCorner(2, 2).norm(), 0.0, 1e-15);
 
   UnmodelledErrors at_start(EstimatorOptions{});
