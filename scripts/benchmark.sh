@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs all microbenchmarks, then measures the whole program on a recording: processor time of a frame by stage, ratio
-# to real time and memory, with all cameras and with the first alone; last, memory and cost over a long dive.
+# to real time and memory, with all cameras and with the first alone; what opening the page of a long dive takes;
+# last, memory and cost over a long dive.
 #
 #   RECORDING=DIR    a folder with mav0 (EuRoC's MH_01_easy where the tests look for it)
 #   SECONDS_USED=N   only its first N seconds of images (all)
@@ -100,6 +101,11 @@ header=$(printf '%-12s %7s %7s %10s %10s %12s %10s %8s' cameras core-ms files fr
 echo "$header"
 measure all "$recording"
 measure 'first alone' "$recording" --set 'source.cameras=[0]'
+
+if [ -x "$bin/page_browser_test" ]; then
+  echo "== the page of a 50-minute dive"
+  "$bin/page_browser_test" --gtest_filter='*FiftyMinutes*' --gtest_brief=1
+fi
 
 [ "$minutes" != 0 ] || exit 0
 echo "== the same to and fro for $minutes minutes"
