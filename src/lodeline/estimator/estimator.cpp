@@ -10,6 +10,7 @@
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/robust_scale.h"
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/window_update.h"
 
@@ -105,6 +106,7 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
   // The first estimates are those of dead reckoning, which images now move by more than the rig does.
   marginalizer_.relinearise(window_);
   if (scale_is_given_) return;
+  for (const auto& frame : window_.frames()) frame->robust_scale_sigmas.reset();
   is_settled_ = false;
   starting_up_ = lost_scale_ = true;
   frames_since_start_ = 0;
@@ -122,6 +124,7 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
 }
 
 void Estimator::freeLenses(Time time) {
+  if (!options_.camera_calibration.intrinsics) return;
   settled_time_ = settled_time_.value_or(time);
   if ((time - *settled_time_).seconds() < options_.camera_calibration.lens_held_s) return;
   if (!cameraStates(window_).intrinsics.empty()) return;
@@ -252,7 +255,10 @@ void Estimator::optimize(FrameEstimate* estimate) {
                     "prediction",
                     estimate->time.nanoseconds()));
   }
-  removeOutliers(window_, factors_, options_.landmark);
+  FrameErrors errors_sigmas;
+  removeOutliers(window_, factors_, options_.landmark, &errors_sigmas);
+  // As long as the scale is unknown, small errors do not mean that the poses are right.
+  if (is_settled_) adaptRobustScales(window_, std::move(errors_sigmas), options_.solver);
 }
 
 void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {

@@ -20,9 +20,7 @@ double costOf(const Factor& factor, std::vector<double>& residual) {
 }
 
 FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
-    : gravity_W_(options.gravity_W),
-      robust_scale_(options.solver.robust_scale_sigmas),
-      reprojection_loss_(std::make_unique<ceres::CauchyLoss>(options.solver.robust_scale_sigmas)) {
+    : gravity_W_(options.gravity_W), robust_scale_(options.solver.robust_scale_sigmas) {
   if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);
@@ -108,7 +106,8 @@ LandmarkFactors FactorMaker::calibratedLandmark(Window& window, TrackHistory& tr
   result.factors.reserve(track.sightings.size());
   for (const Sighting& sighting : track.sightings) {
     Factor& factor = result.factors.emplace_back();
-    factor.loss = reprojection_loss_.get();
+    Frame& target = *window.find(sighting.frame);
+    factor.loss = std::make_shared<ceres::CauchyLoss>(robustScale(target));
     const bool in_host = sighting.frame == landmark.host;
     GlobalState* further = sighting.camera > 0 ? states.further[sighting.camera - 1] : nullptr;
     if (in_host && !further) {
@@ -121,7 +120,6 @@ LandmarkFactors FactorMaker::calibratedLandmark(Window& window, TrackHistory& tr
                                                                  further->firstEstimate());
       factor.blocks = {result.landmark, further->value.data()};
     } else {
-      Frame& target = *window.find(sighting.frame);
       CameraPlacement placement{body_from_camera_[0], std::nullopt};
       if (further) placement.camera0_from_target = camera0_from_camera_[sighting.camera];
       const CalibratedFirstEstimates first{
@@ -149,14 +147,14 @@ LandmarkFactors FactorMaker::plainLandmark(Window& window, TrackHistory& track) 
   const Rigid3& body_from_host_camera = body_from_camera_[0];
   for (const Sighting& sighting : track.sightings) {
     Factor& factor = result.factors.emplace_back();
-    factor.loss = reprojection_loss_.get();
+    Frame& target = *window.find(sighting.frame);
+    factor.loss = std::make_shared<ceres::CauchyLoss>(robustScale(target));
     const Rigid3& body_from_target_camera = body_from_camera_[sighting.camera];
     if (sighting.frame == landmark.host) {
       factor.function = std::make_unique<HostReprojectionFactor>(
           sighting.measurement, landmark.base, body_from_target_camera.inverse() * body_from_host_camera);
       factor.blocks = {result.landmark};
     } else {
-      Frame& target = *window.find(sighting.frame);
       factor.function =
           std::make_unique<ReprojectionFactor>(sighting.measurement, landmark.base, body_from_host_camera,
                                                body_from_target_camera, host.firstPose(), target.firstPose());

@@ -18,7 +18,7 @@ namespace lodeline {
 /// One term of the cost: a function, the blocks it reads (in its order) and a robust loss (null for none).
 struct Factor {
   std::unique_ptr<ceres::CostFunction> function;
-  const ceres::LossFunction* loss = nullptr;
+  std::shared_ptr<const ceres::LossFunction> loss;
   std::vector<double*> blocks;
 };
 
@@ -51,8 +51,8 @@ class FactorMaker {
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
   const Rigid3& camera0FromCamera(int camera) const { return camera0_from_camera_[camera]; }
   int cameraCount() const { return static_cast<int>(body_from_camera_.size()); }
-  /// Of the Cauchy loss on reprojection errors, in standard deviations.
-  double robustScale() const { return robust_scale_; }
+  /// Of the Cauchy loss on the reprojection errors in a frame's images, in standard deviations.
+  double robustScale(const Frame& frame) const { return frame.robust_scale_sigmas.value_or(robust_scale_); }
   /// At the true time of a frame's images, with the calibration as estimated so far.
   Rigid3 worldFromCamera(const Window& window, const Frame& frame, int camera) const;
 
@@ -65,7 +65,6 @@ class FactorMaker {
   Vec3 port_B_ = Vec3::Zero();  ///< pressure port, m
   Vec3 gravity_W_;
   double robust_scale_;
-  std::unique_ptr<ceres::LossFunction> reprojection_loss_;
 };
 
 }  // namespace lodeline

@@ -114,7 +114,8 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
   return created;
 }
 
-int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
+int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                   FrameErrors* errors_sigmas) {
   int removed = 0;
   const std::vector<double> errors = VisualTerms(window, factors).errors();
   auto error = errors.begin();
@@ -124,8 +125,10 @@ int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOpt
     bool host_kept = false;
     bool other_kept = false;
     for (const Sighting& sighting : track.sightings) {
-      if (*error++ > options.max_error_sigmas) continue;
+      const double sigmas = *error++;
       const bool is_host = sighting.frame == track.landmark->host && sighting.camera == 0;
+      if (errors_sigmas && !is_host) (*errors_sigmas)[sighting.frame].push_back(sigmas);
+      if (sigmas > options.max_error_sigmas) continue;
       (is_host ? host_kept : other_kept) = true;
       kept.push_back(sighting);
     }

@@ -4,6 +4,7 @@
 
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
+#include "lodeline/estimator/robust_scale.h"
 #include "lodeline/estimator/window.h"
 
 namespace lodeline {
@@ -14,8 +15,10 @@ namespace lodeline {
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
 
 /// Removes sightings that contradict the window by more than `max_error_sigmas`, and the landmarks that are
-/// then seen too little or lie behind their host. Returns the number of sightings removed.
-int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
+/// then seen too little or lie behind their host. Returns the number of sightings removed. `errors_sigmas`,
+/// where given, receives the errors of all.
+int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                   FrameErrors* errors_sigmas = nullptr);
 
 /// Root mean square of the whitened reprojection errors of one frame.
 struct ReprojectionStatistics {

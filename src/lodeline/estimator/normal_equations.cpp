@@ -82,7 +82,7 @@ void NormalEquations::add(const Factor& factor) {
   for (const int size : sizes) jacobians.emplace_back(rows, size);
   for (RowMajor& jacobian : jacobians) pointers.push_back(jacobian.data());
   factor.function->Evaluate(factor.blocks.data(), residual.data(), pointers.data());
-  const double scale = robustScale(factor.loss, residual.squaredNorm());
+  const double scale = robustScale(factor.loss.get(), residual.squaredNorm());
 
   std::vector<int> offsets;
   int columns = 0;
@@ -144,7 +144,7 @@ NormalEquations::LandmarkTerm NormalEquations::linearised(const Factor& factor, 
   for (size_t b = 0; b < sizes.size(); ++b)
     pointers[b] = factor.blocks[b] == landmark ? term.by_landmark.data() : by_block[b].data();
   factor.function->Evaluate(factor.blocks.data(), term.residual.data(), pointers);
-  const double scale = robustScale(factor.loss, term.residual.squaredNorm());
+  const double scale = robustScale(factor.loss.get(), term.residual.squaredNorm());
   term.residual *= scale;
   term.by_landmark *= scale;
   for (size_t b = 0; b < sizes.size(); ++b) {

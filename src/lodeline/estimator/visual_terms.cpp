@@ -32,7 +32,6 @@ struct VisualTerms::Linearised {
 VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
     : window_(window),
       states_(cameraStates(window)),
-      robust_scale_(factors.robustScale()),
       values_(window, states_, factors, CameraViews::At::kValues),
       first_(window, states_, factors, CameraViews::At::kFirstEstimates),
       frames_(static_cast<int>(window.frames().size())),
@@ -51,7 +50,9 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
     landmark.base = track.landmark->base;
     landmark.first_sighting = sightings_.size();
     for (const lodeline::Sighting& sighting : track.sightings) {
-      sightings_.push_back({indexOf(sighting.frame), sighting.camera, &sighting.measurement});
+      const int frame = indexOf(sighting.frame);
+      const double scale = factors.robustScale(*window.frames()[static_cast<size_t>(frame)]);
+      sightings_.push_back({frame, sighting.camera, &sighting.measurement, scale * scale});
     }
     landmark.end_sighting = sightings_.size();
     landmarks_.push_back(landmark);
@@ -72,13 +73,14 @@ Vec2 VisualTerms::residual(const Landmark& landmark, const Sighting& sighting) c
 
 double VisualTerms::cost() {
   values_.update();
-  const double scale_squared = robust_scale_ * robust_scale_;
   double sum = 0.0;
   for (const Landmark& landmark : landmarks_) {
-    for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i)
-      sum += std::log1p(residual(landmark, sightings_[i]).squaredNorm() / scale_squared);
+    for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
+      const double squared = residual(landmark, sightings_[i]).squaredNorm();
+      sum += sightings_[i].scale_squared * std::log1p(squared / sightings_[i].scale_squared);
+    }
   }
-  return 0.5 * scale_squared * sum;
+  return 0.5 * sum;
 }
 
 std::vector<double> VisualTerms::errors() const {
@@ -99,7 +101,7 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   term.residual = residual(landmark, sighting);
   Mat23 by_point;
   directionResidual(*sighting.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
-  const double weight = 1.0 / std::sqrt(1.0 + term.residual.squaredNorm() / (robust_scale_ * robust_scale_));
+  const double weight = 1.0 / std::sqrt(1.0 + term.residual.squaredNorm() / sighting.scale_squared);
   term.residual *= weight;
   by_point *= weight;
   if (!states_.intrinsics.empty()) term.by_lens = weight * residualByIntrinsics(*sighting.measurement);

@@ -36,6 +36,7 @@ class VisualTerms {
   struct Sighting {
     int frame, camera;
     const DirectionMeasurement* measurement;
+    double scale_squared;  ///< of the robust loss
   };
   /// Nodes are what landmarks are eliminated against: the camera poses of the frames in the window's order,
   /// then the extrinsics of further cameras, then the lenses where they are estimated.
@@ -69,7 +70,6 @@ class VisualTerms {
 
   const Window& window_;
   CameraStates states_;
-  double robust_scale_;
   CameraViews values_;
   CameraViews first_;
   int frames_;

@@ -20,6 +20,7 @@ class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated
     Frame& second = *test_.window.frames()[1];
     second.first_pose = second.pose;
     (*second.first_pose)[0] += 0.02;
+    second.robust_scale_sigmas = 0.3;
     if (std::get<1>(GetParam()) != Calibrated::No) disturbCalibration();
   }
 

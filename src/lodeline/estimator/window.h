@@ -60,6 +60,9 @@ struct Frame {
   /// Until it has become part of the prior.
   std::optional<FieldMeasurement> magnetometer;
   std::optional<DepthMeasurement> depth;
+  /// Width of the robust loss on its reprojection errors, standard deviations; as the options say until these
+  /// have shown what it should be.
+  std::optional<double> robust_scale_sigmas;
 
   Rigid3 worldFromBody() const { return poseFromBlock(pose.data()); }
   Vec3 velocity_W() const { return Vec3(motion.data()); }

@@ -103,7 +103,8 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
     std::vector<double*> blocks;
     for (const double* block : factor.blocks) blocks.push_back(copies.copyOf(block));
     // Ceres takes no notice of the loss's constness.
-    problem.AddResidualBlock(factor.function.get(), const_cast<ceres::LossFunction*>(factor.loss), blocks);
+    problem.AddResidualBlock(factor.function.get(), const_cast<ceres::LossFunction*>(factor.loss.get()),
+                             blocks);
   };
   for (const Factor& factor : terms.dense) add(factor);
   for (const LandmarkFactors& landmark : terms.landmarks) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/robust_scale.h"
 #include "lodeline/refinement/batch_structure.h"
 
 namespace lodeline {
@@ -13,7 +14,7 @@ constexpr double kSensorLoss = 3.0;  // Cauchy, in standard deviations
 }  // namespace
 
 BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record)
-    : options_(options), factors_(rig, options_), loss_(std::make_unique<ceres::CauchyLoss>(kSensorLoss)) {
+    : options_(options), factors_(rig, options_), loss_(std::make_shared<ceres::CauchyLoss>(kSensorLoss)) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
   addStates(rig, record);
   addTracks(record);
@@ -52,14 +53,14 @@ std::vector<Factor> BatchProblem::motionFactors() {
     if (!field_offsets_.empty()) {
       if (auto field = factors_.magnetometer(window_, nullptr, frame)) {
         field->blocks[2] = nodeOf(field_offsets_, k);
-        field->loss = loss_.get();
+        field->loss = loss_;
         terms.push_back(std::move(*field));
       }
     }
     if (!depth_offsets_.empty()) {
       if (auto depth = factors_.depth(window_, frame)) {
         depth->blocks[1] = nodeOf(depth_offsets_, k);
-        depth->loss = loss_.get();
+        depth->loss = loss_;
         terms.push_back(std::move(*depth));
       }
     }
@@ -178,12 +179,14 @@ void BatchProblem::relinearise() {
 double BatchProblem::renewLandmarks() {
   window_.tracks() = all_tracks_;
   double placed = 0.0, removed = 0.0;
+  FrameErrors errors_sigmas;
   for (auto& [id, track] : window_.tracks()) {
     placeLandmark(window_, factors_, options_.landmark, &track);
     if (!track.landmark) continue;
     placed += static_cast<double>(track.sightings.size());
-    removed += removeContradictions(window_, factors_, options_.landmark, &track);
+    removed += removeContradictions(window_, factors_, options_.landmark, &track, &errors_sigmas);
   }
+  adaptRobustScales(window_, std::move(errors_sigmas), options_.solver);
   return placed > 0.0 ? removed / placed : 0.0;
 }
 

@@ -47,7 +47,8 @@ class BatchProblem {
   /// images. Changes the cost.
   void relinearise();
   /// Places all landmarks anew by the present poses and leaves out the sightings that contradict them,
-  /// whatever was left out before. Returns the share of the sightings that went.
+  /// whatever was left out before. The robust loss becomes as wide as the errors ask. Returns the share of
+  /// the sightings that went.
   double renewLandmarks();
 
   /// The offset of the magnetometer's corrected readings (T) and the depth at the origin (m) that are in
@@ -90,7 +91,7 @@ class BatchProblem {
   EstimatorOptions options_;
   std::vector<std::shared_ptr<const Camera>> cameras_;
   FactorMaker factors_;
-  std::unique_ptr<ceres::LossFunction> loss_;  ///< on magnetometer and depth
+  std::shared_ptr<const ceres::LossFunction> loss_;  ///< on magnetometer and depth
   Window window_;
   std::map<TrackId, TrackHistory> all_tracks_;  ///< with all their sightings, without landmarks
   std::vector<Prior> priors_;

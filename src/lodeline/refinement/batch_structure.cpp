@@ -51,14 +51,17 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
 }
 
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                         TrackHistory* track) {
+                         TrackHistory* track, FrameErrors* errors_sigmas) {
   const LandmarkFactors terms = factors.landmark(window, *track);
   std::vector<Sighting> kept;
   for (size_t i = 0; i < track->sightings.size(); ++i) {
     const Factor& factor = terms.factors[i];
     Vec2 residual;
     factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
-    if (residual.norm() <= options.max_error_sigmas) kept.push_back(track->sightings[i]);
+    const Sighting& sighting = track->sightings[i];
+    const bool is_host = sighting.frame == track->landmark->host && sighting.camera == 0;
+    if (!is_host) (*errors_sigmas)[sighting.frame].push_back(residual.norm());
+    if (residual.norm() <= options.max_error_sigmas) kept.push_back(sighting);
   }
   const int removed = static_cast<int>(track->sightings.size() - kept.size());
   track->sightings = std::move(kept);

@@ -2,6 +2,7 @@
 
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
+#include "lodeline/estimator/robust_scale.h"
 
 namespace lodeline {
 
@@ -11,8 +12,9 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
                    TrackHistory* track);
 
 /// Removes sightings that contradict the landmark by more than `max_error_sigmas`, and the landmark itself
-/// where too little is left of it or it lies behind its host. Returns the number of sightings removed.
+/// where too little is left of it or it lies behind its host. Returns the number of sightings removed, and
+/// adds the errors of all to `errors_sigmas`.
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                         TrackHistory* track);
+                         TrackHistory* track, FrameErrors* errors_sigmas);
 
 }  // namespace lodeline
