@@ -146,8 +146,7 @@ TEST(CameraStates, StayNearARightLens) {
 
 TEST(CameraStates, HoldTheLensUntilTheRigHasBeenUnderWay) {
   TestScene scene(sceneOptions());
-  EstimatorOptions options = honestOptions(sceneOptions());
-  options.camera_calibration.intrinsics = true;
+  const EstimatorOptions options = honestOptions(sceneOptions());
   Diagnostics diagnostics;
   Estimator estimator(scene.rig(), options, &diagnostics);
   std::optional<Time> begin;

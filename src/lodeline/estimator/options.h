@@ -90,9 +90,8 @@ struct CameraCalibrationOptions {
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
   /// The lens as well (factors/intrinsics_factor.h), once the scale is known and the rig has been under way
-  /// for a while: a start tells too little of it. Off, since lasting errors of the tracker look like a lens
-  /// too, and a right file is worth more than what they make of it (docs/estimator.md).
-  bool intrinsics = false;
+  /// for a while: a start tells too little of it.
+  bool intrinsics = true;
   double lens_held_s = 15.0;          ///< since the window has settled
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
