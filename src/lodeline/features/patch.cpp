@@ -101,11 +101,11 @@ bool PatchTemplate::shiftOnLevel(const Level& level, const cv::Mat& image, float
     if (!staysInside(image, warp, 0.0F)) return false;
     PatchValues values;
     sample(image, warp, values);
-    normalise(values);
-    correlation = dot(values, level.values);
     // The gain's rows are orthogonal to the template, so it need not be subtracted from the values.
-    const Eigen::Vector2f shift(dot(level.shift_gain[0], values), dot(level.shift_gain[1], values));
-    const Eigen::Vector2f move = warp.linear * shift;
+    const auto along =
+        normalisedAlong<3>(values, {&level.values, &level.shift_gain[0], &level.shift_gain[1]});
+    correlation = along[0];
+    const Eigen::Vector2f move = warp.linear * Eigen::Vector2f(along[1], along[2]);
     warp.position -= move;
     if ((warp.position - start).squaredNorm() > PatchPattern::kReach * PatchPattern::kReach) return false;
     if (move.squaredNorm() < converged_px * converged_px) break;
@@ -115,14 +115,15 @@ bool PatchTemplate::shiftOnLevel(const Level& level, const cv::Mat& image, float
 
 bool PatchTemplate::deform(const cv::Mat& image, PatchWarp& warp, float& correlation) const {
   const Eigen::Vector2f start = warp.position;
+  std::array<const PatchValues*, 1 + kParameters> rows{&levels_.front().values};
+  for (size_t p = 0; p < deformation_gain_.size(); ++p) rows[1 + p] = &deformation_gain_[p];
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (!staysInside(image, warp, 0.0F)) return false;
     PatchValues values;
     sample(image, warp, values);
-    normalise(values);
-    correlation = dot(values, levels_.front().values);
-    std::array<float, kParameters> step{};
-    for (size_t p = 0; p < step.size(); ++p) step[p] = dot(deformation_gain_[p], values);
+    const auto along = normalisedAlong(values, rows);
+    correlation = along[0];
+    const float* step = along.data() + 1;
     Eigen::Matrix2f deformation;
     deformation << 1.0F + step[2], step[3], step[4], 1.0F + step[5];
     const float determinant = deformation.determinant();
@@ -171,8 +172,7 @@ std::optional<float> PatchTemplate::correlate(const ImagePyramid& image, int lev
   if (!staysInside(image.level(level), scaled, 0.0F)) return std::nullopt;
   PatchValues values;
   sample(image.level(level), scaled, values);
-  normalise(values);
-  return dot(values, levels_[static_cast<size_t>(level)].values);
+  return normalisedAlong<1>(values, {&levels_[static_cast<size_t>(level)].values})[0];
 }
 
 }  // namespace lodeline

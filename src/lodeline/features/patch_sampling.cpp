@@ -13,6 +13,9 @@ constexpr float sumOfSquares(const PatchValues& values) {
   return sum;
 }
 
+constexpr float kInverseCount = 1.0F / static_cast<float>(kPatchSize);
+constexpr float kInverseSpread = 1.0F / sumOfSquares(kPatchU);
+
 float sum(const PatchValues& a) {
   std::array<float, 4> sums{};
   for (size_t i = 0; i < a.size(); i += 4) {
@@ -62,8 +65,6 @@ float dot(const PatchValues& a, const PatchValues& b) {
 }
 
 void detrend(PatchValues& values) {
-  constexpr float kInverseCount = 1.0F / static_cast<float>(kPatchSize);
-  constexpr float kInverseSpread = 1.0F / sumOfSquares(kPatchU);
   const float mean = sum(values) * kInverseCount;
   const float slope_u = dot(values, kPatchU) * kInverseSpread;
   const float slope_v = dot(values, kPatchV) * kInverseSpread;
@@ -77,6 +78,40 @@ float normalise(PatchValues& values) {
   for (float& value : values) value *= scale;
   return norm;
 }
+
+template <size_t kRows>
+std::array<float, kRows> normalisedAlong(const PatchValues& values,
+                                         const std::array<const PatchValues*, kRows>& rows) {
+  // All sums side by side: one after the other, each would wait for its own additions.
+  using Lanes = Eigen::Array4f;
+  const auto lanes = [](const PatchValues& of, size_t i) { return Eigen::Map<const Lanes>(of.data() + i); };
+  Lanes constant = Lanes::Zero(), along_u = Lanes::Zero(), along_v = Lanes::Zero(), squares = Lanes::Zero();
+  std::array<Lanes, kRows> along;
+  along.fill(Lanes::Zero());
+  // The squares lose digits to what the values have in common.
+  const float pivot = values[kPatchSize / 2];
+  for (size_t i = 0; i < values.size(); i += 4) {
+    const Lanes value = lanes(values, i) - pivot;
+    constant += value;
+    along_u += value * lanes(kPatchU, i);
+    along_v += value * lanes(kPatchV, i);
+    squares += value.square();
+    for (size_t row = 0; row < kRows; ++row) along[row] += value * lanes(*rows[row], i);
+  }
+  const float u = along_u.sum(), v = along_v.sum(), sum = constant.sum();
+  const float squared = squares.sum() - sum * sum * kInverseCount - (u * u + v * v) * kInverseSpread;
+  const float scale = squared > 0.0F ? 1.0F / std::sqrt(squared) : 0.0F;
+  std::array<float, kRows> result;
+  for (size_t row = 0; row < kRows; ++row) result[row] = scale * along[row].sum();
+  return result;
+}
+
+template std::array<float, 1> normalisedAlong<1>(const PatchValues&,
+                                                 const std::array<const PatchValues*, 1>&);
+template std::array<float, 3> normalisedAlong<3>(const PatchValues&,
+                                                 const std::array<const PatchValues*, 3>&);
+template std::array<float, 7> normalisedAlong<7>(const PatchValues&,
+                                                 const std::array<const PatchValues*, 7>&);
 
 void projectOutNormalisation(const PatchValues& normalised, PatchValues& column) {
   detrend(column);

@@ -28,6 +28,12 @@ void detrend(PatchValues& values);
 /// Detrends and scales to unit norm; returns the norm before.
 float normalise(PatchValues& values);
 
+/// What normalised values would be along rows that are free of trend, without normalising them: the trend
+/// drops out of every such product. All zero where the values have no contrast.
+template <size_t kRows>
+std::array<float, kRows> normalisedAlong(const PatchValues& values,
+                                         const std::array<const PatchValues*, kRows>& rows);
+
 /// Derivative of `normalise`, up to the scale, applied to a column of a Jacobian: trend and the normalised
 /// values themselves are projected out.
 void projectOutNormalisation(const PatchValues& normalised, PatchValues& column);
