@@ -1,5 +1,6 @@
 #include "lodeline/estimator/normal_equations.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
@@ -28,22 +29,20 @@ double robustScale(const ceres::LossFunction* loss, double squared_norm) {
 
 }  // namespace
 
-Mat3 landmarkInverse(const Mat3& hessian) {
+Mat3 landmarkInverseRoot(const Mat3& hessian) {
   const Vec3 scale = hessian.diagonal().cwiseMax(kLeastInformation).cwiseSqrt().cwiseInverse();
   const Mat3 scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  // The eigenvalues of `scaled` are at most 3, so this bounds the smallest: far from any doubt about the
-  // rank.
-  Mat3 inverse;
-  double determinant = 0.0;
-  bool invertible = false;
-  scaled.computeInverseAndDetWithCheck(inverse, determinant, invertible, kClearDeterminant);
-  if (invertible && determinant > 0.0) return scale.asDiagonal() * inverse * scale.asDiagonal();
+  // The eigenvalues of `scaled` are at most 3, so its determinant bounds the smallest: far from any doubt
+  // about the rank.
+  const Eigen::LLT<Mat3> root(scaled);
+  const Vec3 diagonal = root.matrixLLT().diagonal();
+  if (root.info() == Eigen::Success && diagonal.prod() * diagonal.prod() > kClearDeterminant)
+    return scale.asDiagonal() * root.matrixU().solve(Mat3::Identity());
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(scaled);
   const double threshold = kRankTolerance * solver.eigenvalues()[2];
   const Vec3 inverted =
       (solver.eigenvalues().array() > threshold).select(solver.eigenvalues().cwiseInverse(), Vec3::Zero());
-  return scale.asDiagonal() * solver.eigenvectors() * inverted.asDiagonal() *
-         solver.eigenvectors().transpose() * scale.asDiagonal();
+  return scale.asDiagonal() * solver.eigenvectors() * inverted.cwiseSqrt().asDiagonal();
 }
 
 void NormalEquations::reserve(int size) {
@@ -198,7 +197,8 @@ void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
     }
   }
 
-  const Mat3 inverse = landmarkInverse(h_landmark);
+  const Mat3 inverse_root = landmarkInverseRoot(h_landmark);
+  const Mat3 inverse = inverse_root * inverse_root.transpose();
   for (const Coupling& row : couplings) {
     const Mat63 weighted = row.by_landmark * inverse;
     g_.segment(row.offset, row.size) -= (weighted * g_landmark).head(row.size);

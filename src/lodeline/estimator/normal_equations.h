@@ -7,9 +7,9 @@
 
 namespace lodeline {
 
-/// Inverse of a landmark's positive semi-definite Hessian on its range, insensitive to the units of its
-/// coordinates; what hardly anything is known of counts as unobserved and comes out as zero.
-Mat3 landmarkInverse(const Mat3& hessian);
+/// W with W W^T the inverse of a landmark's positive semi-definite Hessian on its range, insensitive to the
+/// units of its coordinates; what hardly anything is known of counts as unobserved and comes out as zero.
+Mat3 landmarkInverseRoot(const Mat3& hessian);
 
 /// The Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
 /// Jacobians are those the factors give (first estimates where they hold them), residuals are current.

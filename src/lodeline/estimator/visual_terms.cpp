@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
@@ -24,9 +25,9 @@ Mat23 timesSkew(const Mat23& rows, const Vec3& a) {
 struct VisualTerms::Linearised {
   Vec2 residual;
   Mat23 by_landmark;
-  Mat26 by_host, by_target;  ///< the poses of the two frames' cameras 0; of no meaning in the host frame
-  Mat26 by_further;          ///< of no meaning for camera 0
-  Mat26 by_lens;             ///< of no meaning where lenses are not estimated
+  Mat26 by_host;     ///< the pose of the host's camera 0; of no meaning in the host frame
+  Mat26 by_further;  ///< of no meaning for camera 0
+  Mat26 by_lens;     ///< of no meaning where lenses are not estimated
 };
 
 VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
@@ -105,90 +106,95 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   term.residual *= weight;
   by_point *= weight;
   if (!states_.intrinsics.empty()) term.by_lens = weight * residualByIntrinsics(*sighting.measurement);
-  term.by_landmark << by_point * seen.rotation * landmark.base.tangent_C, by_point * seen.translation;
+  const Mat23 by_direction = by_point * seen.rotation;
+  term.by_landmark << by_direction * landmark.base.tangent_C, by_point * seen.translation;
 
-  const CameraViews::Placement& host = first_.placement(landmark.host);
-  const CameraViews::Placement& target = first_.placement(sighting.frame);
-  Mat23 by_point_C0 = by_point;
   if (sighting.camera > 0) {
     const CameraViews::Further& further = first_.further(sighting.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, sighting.frame, 0);
     const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - further.position_C0);
-    by_point_C0 = by_point * further.camera0_from_camera.transpose();
+    const Mat23 by_point_C0 = by_point * further.camera0_from_camera.transpose();
     term.by_further << timesSkew(by_point_C0, offset_C0) * further.left_jacobian, -rho * by_point_C0;
   }
   if (sighting.frame == landmark.host) return term;
-  const Mat23 by_world = by_point_C0 * target.world_from_camera.transpose();
-  const Vec3 from_host_W = host.world_from_camera * direction;
-  const Vec3 from_target_W = from_host_W + rho * (host.position_W - target.position_W);
-  term.by_host << rho * by_world, -timesSkew(by_world, from_host_W);
-  term.by_target << -rho * by_world, timesSkew(by_world, from_target_W);
+  const Mat3& world_from_host = first_.placement(landmark.host).world_from_camera;
+  const Mat23 by_world = by_direction * world_from_host.transpose();
+  term.by_host << rho * by_world, -timesSkew(by_world, world_from_host * direction);
   return term;
 }
 
-Mat6& VisualTerms::hessian(int row, int column) {
-  return hessian_[static_cast<size_t>(row * (row + 1) / 2 + column)];
-}
-
-void VisualTerms::addProduct(int a, const Mat26& by_a, int b, const Mat26& by_b) {
-  if (a >= b) {
-    hessian(a, b).noalias() += by_a.transpose() * by_b;
-  } else {
-    hessian(b, a).noalias() += by_b.transpose() * by_a;
-  }
-}
-
-VisualTerms::Coupling& VisualTerms::couplingOf(const Landmark& landmark, int node) {
-  for (size_t i = landmark.first_coupling; i < couplings_.size(); ++i) {
-    if (couplings_[i].node == node) return couplings_[i];
-  }
-  return couplings_.emplace_back(Coupling{node, Mat63::Zero()});
-}
-
-void VisualTerms::eliminate(Landmark* landmark) {
+void VisualTerms::eliminate(size_t index) {
+  Landmark& landmark = landmarks_[index];
+  auto coupling = couplings_.middleCols<kLandmarkSize>(kLandmarkSize * static_cast<Eigen::Index>(index));
   Mat3 h_landmark = Mat3::Zero();
   Vec3 g_landmark = Vec3::Zero();
-  landmark->first_coupling = couplings_.size();
-  const auto addNode = [&](int node, const Mat26& by_node, const Linearised& term) {
-    gradient_[static_cast<size_t>(node)].noalias() += by_node.transpose() * term.residual;
-    couplingOf(*landmark, node).by_landmark.noalias() += by_node.transpose() * term.by_landmark;
-    addProduct(node, by_node, node, by_node);
-  };
-  for (size_t i = landmark->first_sighting; i < landmark->end_sighting; ++i) {
+  for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
     const Sighting& sighting = sightings_[i];
-    const Linearised term = linearise(*landmark, sighting);
+    const Linearised term = linearise(landmark, sighting);
     h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
     g_landmark.noalias() += term.by_landmark.transpose() * term.residual;
-    const bool in_host = sighting.frame == landmark->host;
+    const bool in_host = sighting.frame == landmark.host;
+    const int pair_index = pairOf(landmark.host, sighting.frame);
     if (!in_host) {
-      addNode(landmark->host, term.by_host, term);
-      addNode(sighting.frame, term.by_target, term);
-      addProduct(landmark->host, term.by_host, sighting.frame, term.by_target);
+      Pair& pair = pairs_[static_cast<size_t>(pair_index)];
+      pair.is_seen = true;
+      pair.hessian.noalias() += term.by_host.transpose() * term.by_host;
+      pair.gradient.noalias() += term.by_host.transpose() * term.residual;
+      coupling.middleRows<6>(6 * sighting.frame).noalias() += term.by_host.transpose() * term.by_landmark;
     }
     if (!states_) continue;
     const auto addCalibration = [&](int node, const Mat26& by_node) {
-      addNode(node, by_node, term);
+      gradient_.segment<6>(6 * node).noalias() += by_node.transpose() * term.residual;
+      coupling.middleRows<6>(6 * node).noalias() += by_node.transpose() * term.by_landmark;
+      hessian_.block<6, 6>(6 * node, 6 * node).noalias() += by_node.transpose() * by_node;
       if (in_host) return;
-      addProduct(node, by_node, landmark->host, term.by_host);
-      addProduct(node, by_node, sighting.frame, term.by_target);
+      calibration_.block<6, 6>(6 * (node - frames_), 6 * pair_index).noalias() +=
+          by_node.transpose() * term.by_host;
     };
     if (sighting.camera > 0) addCalibration(furtherNode(sighting.camera), term.by_further);
     if (states_.intrinsics.empty()) continue;
-    addCalibration(lensNode(sighting.camera), term.by_lens);
+    const int lens = lensNode(sighting.camera);
+    addCalibration(lens, term.by_lens);
     if (sighting.camera > 0)
-      addProduct(lensNode(sighting.camera), term.by_lens, furtherNode(sighting.camera), term.by_further);
+      hessian_.block<6, 6>(6 * lens, 6 * furtherNode(sighting.camera)).noalias() +=
+          term.by_lens.transpose() * term.by_further;
   }
-  landmark->end_coupling = couplings_.size();
-  landmark->inverse_hessian = landmarkInverse(h_landmark);
-  landmark->gradient = g_landmark;
-  for (size_t i = landmark->first_coupling; i < landmark->end_coupling; ++i) {
-    const Coupling& row = couplings_[i];
-    const Mat63 weighted = row.by_landmark * landmark->inverse_hessian;
-    gradient_[static_cast<size_t>(row.node)].noalias() -= weighted * g_landmark;
-    for (size_t j = landmark->first_coupling; j < landmark->end_coupling; ++j) {
-      const Coupling& column = couplings_[j];
-      if (column.node <= row.node)
-        hessian(row.node, column.node).noalias() -= weighted * column.by_landmark.transpose();
+  auto of_host = coupling.middleRows<6>(6 * landmark.host);
+  for (int frame = 0; frame < frames_; ++frame) {
+    if (frame == landmark.host) continue;
+    auto of_target = coupling.middleRows<6>(6 * frame);
+    of_host += of_target;
+    of_target.bottomRows<3>() += so3::skew(baseline_W(landmark.host, frame)) * of_target.topRows<3>();
+    of_target = -of_target;
+  }
+  landmark.inverse_root = landmarkInverseRoot(h_landmark);
+  coupling *= landmark.inverse_root;
+  rooted_gradients_.segment<kLandmarkSize>(kLandmarkSize * static_cast<Eigen::Index>(index)) =
+      landmark.inverse_root.transpose() * g_landmark;
+}
+
+void VisualTerms::addPairs() {
+  const auto block = [&](int row, int column) { return hessian_.block<6, 6>(6 * row, 6 * column); };
+  for (int host = 0; host < frames_; ++host) {
+    for (int target = 0; target < frames_; ++target) {
+      const Pair& pair = pairs_[static_cast<size_t>(pairOf(host, target))];
+      if (!pair.is_seen) continue;
+      Mat6 host_from_target = -Mat6::Identity();
+      host_from_target.topRightCorner<3, 3>() = so3::skew(baseline_W(host, target));
+      const Mat6 crossed = pair.hessian * host_from_target;
+      block(host, host) += pair.hessian;
+      block(target, target).noalias() += host_from_target.transpose() * crossed;
+      if (host > target) {
+        block(host, target) += crossed;
+      } else {
+        block(target, host) += crossed.transpose();
+      }
+      gradient_.segment<6>(6 * host) += pair.gradient;
+      gradient_.segment<6>(6 * target).noalias() += host_from_target.transpose() * pair.gradient;
+      const auto calibration = calibration_.middleCols<6>(6 * pairOf(host, target));
+      hessian_.block(6 * frames_, 6 * host, calibration.rows(), 6) += calibration;
+      hessian_.block(6 * frames_, 6 * target, calibration.rows(), 6).noalias() +=
+          calibration * host_from_target;
     }
   }
 }
@@ -196,10 +202,18 @@ void VisualTerms::eliminate(Landmark* landmark) {
 void VisualTerms::addTo(NormalEquations* system) {
   values_.update();
   first_.update();
-  hessian_.assign(static_cast<size_t>(nodes_ * (nodes_ + 1) / 2), Mat6::Zero());
-  gradient_.assign(static_cast<size_t>(nodes_), Vec6::Zero());
-  couplings_.clear();
-  for (Landmark& landmark : landmarks_) eliminate(&landmark);
+  const int rows = 6 * nodes_;
+  const auto columns = kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size());
+  pairs_.assign(static_cast<size_t>(frames_ * frames_), Pair());
+  calibration_.setZero(6 * (nodes_ - frames_), 6 * frames_ * frames_);
+  hessian_.setZero(rows, rows);
+  gradient_.setZero(rows);
+  couplings_.setZero(rows, columns);
+  rooted_gradients_.resize(columns);
+  for (size_t i = 0; i < landmarks_.size(); ++i) eliminate(i);
+  addPairs();
+  hessian_.selfadjointView<Eigen::Lower>().rankUpdate(couplings_, -1.0);
+  gradient_.noalias() -= couplings_ * rooted_gradients_;
   addNodesTo(system);
 }
 
@@ -224,16 +238,7 @@ void VisualTerms::addNodesTo(NormalEquations* system) const {
   const std::vector<NormalEquations::Block> blocks = this->blocks();
   const int rows = 6 * nodes_;
   const int calibration = states_ ? kExtrinsicsSize + kTimeOffsetSize : 0;
-  Eigen::MatrixXd of_nodes(rows, rows);
-  Eigen::VectorXd gradient_of_nodes(rows);
-  for (int i = 0; i < nodes_; ++i) {
-    gradient_of_nodes.segment<6>(6 * i) = gradient_[static_cast<size_t>(i)];
-    for (int j = 0; j <= i; ++j) {
-      const Mat6& block = hessian_[static_cast<size_t>(i * (i + 1) / 2 + j)];
-      of_nodes.block<6, 6>(6 * i, 6 * j) = block;
-      of_nodes.block<6, 6>(6 * j, 6 * i) = block.transpose();
-    }
-  }
+  const Eigen::MatrixXd of_nodes = hessian_.selfadjointView<Eigen::Lower>();
   Eigen::MatrixXd half(rows, rows + calibration);  // H_nodes T
   Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(rows, calibration);
   half.leftCols(rows) = of_nodes;
@@ -245,14 +250,14 @@ void VisualTerms::addNodesTo(NormalEquations* system) const {
   Eigen::MatrixXd h(rows + calibration, rows + calibration);
   Eigen::VectorXd g(rows + calibration);
   h.topRows(rows) = half;
-  g.head(rows) = gradient_of_nodes;
+  g.head(rows) = gradient_;
   for (int i = 0; i < frames_; ++i) {
     const Mat6& by_body = first_.placement(i).by_body;
     h.middleRows<6>(6 * i).noalias() = by_body.transpose() * half.middleRows<6>(6 * i);
-    g.segment<6>(6 * i).noalias() = by_body.transpose() * gradient_of_nodes.segment<6>(6 * i);
+    g.segment<6>(6 * i).noalias() = by_body.transpose() * gradient_.segment<6>(6 * i);
   }
   h.bottomRows(calibration).noalias() = by_calibration.transpose() * half;
-  g.tail(calibration).noalias() = by_calibration.transpose() * gradient_of_nodes;
+  g.tail(calibration).noalias() = by_calibration.transpose() * gradient_;
   system->add(blocks, h, g);
 }
 
@@ -260,29 +265,27 @@ void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::Vect
   const auto stepOf = [&](const double* value) -> Vec6 {
     return step.segment<6>(system.find(value)->offset);
   };
-  std::vector<Vec6> steps(static_cast<size_t>(nodes_), Vec6::Zero());
+  Eigen::VectorXd steps(6 * nodes_);
   Eigen::Matrix<double, 7, 1> calibration = Eigen::Matrix<double, 7, 1>::Zero();
   if (states_) {
     calibration.head<kExtrinsicsSize>() =
         step.segment<kExtrinsicsSize>(system.find(states_.camera0->value.data())->offset);
     calibration[kExtrinsicsSize] = step[system.find(states_.time_offset->value.data())->offset];
-    for (size_t i = 0; i < states_.further.size(); ++i)
-      steps[static_cast<size_t>(frames_) + i] = stepOf(states_.further[i]->value.data());
-    for (size_t i = 0; i < states_.intrinsics.size(); ++i)
-      steps[static_cast<size_t>(lensNode(static_cast<int>(i)))] = stepOf(states_.intrinsics[i]->value.data());
   }
   for (int i = 0; i < frames_; ++i) {
     const CameraViews::Placement& placement = first_.placement(i);
     const double* pose = window_.frames()[static_cast<size_t>(i)]->pose.data();
-    steps[static_cast<size_t>(i)] = placement.by_body * stepOf(pose) + placement.by_calibration * calibration;
+    steps.segment<6>(6 * i) = placement.by_body * stepOf(pose) + placement.by_calibration * calibration;
   }
-  for (const Landmark& landmark : landmarks_) {
-    Vec3 gradient = landmark.gradient;
-    for (size_t i = landmark.first_coupling; i < landmark.end_coupling; ++i) {
-      gradient.noalias() +=
-          couplings_[i].by_landmark.transpose() * steps[static_cast<size_t>(couplings_[i].node)];
-    }
-    Eigen::Map<Vec3>(landmark.value) -= landmark.inverse_hessian * gradient;
+  int node = frames_;
+  for (const auto* states : {&states_.further, &states_.intrinsics}) {
+    for (const GlobalState* state : *states) steps.segment<6>(6 * node++) = stepOf(state->value.data());
+  }
+  const Eigen::VectorXd rooted = rooted_gradients_ + couplings_.transpose() * steps;
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    Eigen::Map<Vec3>(landmarks_[i].value) -=
+        landmarks_[i].inverse_root *
+        rooted.segment<kLandmarkSize>(kLandmarkSize * static_cast<Eigen::Index>(i));
   }
 }
 

@@ -31,37 +31,37 @@ class VisualTerms {
   void stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step);
 
  private:
-  using Mat63 = Eigen::Matrix<double, 6, 3>;
   using Vec6 = Eigen::Matrix<double, 6, 1>;
   struct Sighting {
     int frame, camera;
     const DirectionMeasurement* measurement;
     double scale_squared;  ///< of the robust loss
   };
-  /// Nodes are what landmarks are eliminated against: the camera poses of the frames in the window's order,
-  /// then the extrinsics of further cameras, then the lenses where they are estimated.
-  struct Coupling {
-    int node;
-    Mat63 by_landmark;
-  };
   struct Landmark {
     double* value;
     int host;
     LandmarkBase base;
     size_t first_sighting, end_sighting;
-    // Of the last linearisation:
-    size_t first_coupling, end_coupling;
-    Mat3 inverse_hessian;
-    Vec3 gradient;
+    Mat3 inverse_root;  ///< of the last linearisation: W with W W^T the inverse of its Hessian
+  };
+  /// What the sightings in a target frame of landmarks of a host frame add up to, by the pose of the host's
+  /// camera 0. The target's pose moves a sighting like the host's, backwards and from another centre, the
+  /// same for all of them, so it is worked out for the sum (addPairs()).
+  struct Pair {
+    bool is_seen = false;
+    Mat6 hessian = Mat6::Zero();
+    Vec6 gradient = Vec6::Zero();
   };
   struct Linearised;
 
   Linearised linearise(const Landmark& landmark, const Sighting& sighting) const;
-  void eliminate(Landmark* landmark);
-  Coupling& couplingOf(const Landmark& landmark, int node);
-  Mat6& hessian(int row, int column);
-  void addProduct(int a, const Eigen::Matrix<double, 2, 6>& by_a, int b,
-                  const Eigen::Matrix<double, 2, 6>& by_b);
+  void eliminate(size_t landmark);
+  void addPairs();
+  int pairOf(int host, int target) const { return host * frames_ + target; }
+  /// From a target's camera 0 to a host's.
+  Vec3 baseline_W(int host, int target) const {
+    return first_.placement(host).position_W - first_.placement(target).position_W;
+  }
   int furtherNode(int camera) const { return frames_ + camera - 1; }
   int lensNode(int camera) const { return frames_ + static_cast<int>(states_.further.size()) + camera; }
   Vec2 residual(const Landmark& landmark, const Sighting& sighting) const;
@@ -76,9 +76,14 @@ class VisualTerms {
   int nodes_;
   std::vector<Landmark> landmarks_;
   std::vector<Sighting> sightings_;
-  std::vector<Coupling> couplings_;
-  std::vector<Mat6> hessian_;  ///< lower triangle of blocks, node by node
-  std::vector<Vec6> gradient_;
+  // Nodes are what landmarks are eliminated against, six coordinates each: the camera poses of the frames in
+  // the window's order, then the extrinsics of further cameras, then the lenses where they are estimated.
+  std::vector<Pair> pairs_;      ///< by pairOf()
+  Eigen::MatrixXd calibration_;  ///< as Pair::hessian, of all other nodes (rows) and the pairs' hosts
+  Eigen::MatrixXd hessian_;      ///< of the nodes; lower triangle
+  Eigen::VectorXd gradient_;
+  Eigen::MatrixXd couplings_;         ///< of nodes (rows) and landmarks, times the latter's inverse roots
+  Eigen::VectorXd rooted_gradients_;  ///< of landmarks, by the transposed inverse roots
 };
 
 }  // namespace lodeline
