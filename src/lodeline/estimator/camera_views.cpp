@@ -32,9 +32,7 @@ CameraViews::CameraViews(const Window& window, const CameraStates& states, const
       hosts_(hostsOf(window)),
       placements_(window.frames().size()),
       further_(static_cast<size_t>(cameras_) - 1),
-      relative_(static_cast<size_t>(frames_ * frames_ * cameras_)) {
-  update();
-}
+      relative_(static_cast<size_t>(frames_ * frames_ * cameras_)) {}
 
 void CameraViews::update() {
   for (int i = 0; i < frames_; ++i)

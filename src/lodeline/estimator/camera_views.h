@@ -35,7 +35,7 @@ class CameraViews {
     Vec3 translation;
   };
 
-  /// All three must outlive the views.
+  /// All three must outlive the views. Nothing is placed before the first update().
   CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at);
 
   /// Places all cameras anew, after a block has moved.
@@ -44,7 +44,9 @@ class CameraViews {
   /// Frames count from the oldest of the window.
   const Placement& placement(int frame) const { return placements_[static_cast<size_t>(frame)]; }
   const Further& further(int camera) const { return further_[static_cast<size_t>(camera) - 1]; }
-  /// For hosts that a landmark of the window has.
+  /// The frames that are a landmark's host.
+  const std::vector<int>& hosts() const { return hosts_; }
+  /// For those hosts.
   const Relative& relative(int host, int target, int camera) const {
     return relative_[static_cast<size_t>((host * frames_ + target) * cameras_ + camera)];
   }

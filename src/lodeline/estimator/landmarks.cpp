@@ -148,18 +148,13 @@ int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOpt
 
 ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame) {
   ReprojectionStatistics statistics;
-  double squared = 0.0;
-  const std::vector<double> errors = VisualTerms(window, factors).errors();
-  auto error = errors.begin();
   for (const auto& [id, track] : window.tracks()) {
-    if (!track.landmark) continue;
-    statistics.landmarks += track.seenIn(frame);
-    for (const Sighting& sighting : track.sightings) {
-      const double sigmas = *error++;
-      if (sighting.frame != frame) continue;
-      squared += sigmas * sigmas;
-      ++statistics.sightings;
-    }
+    if (track.landmark) statistics.landmarks += track.seenIn(frame);
+  }
+  double squared = 0.0;
+  for (const double sigmas : VisualTerms(window, factors, frame).errors()) {
+    squared += sigmas * sigmas;
+    ++statistics.sightings;
   }
   if (statistics.sightings > 0) statistics.rms_sigmas = std::sqrt(squared / (2.0 * statistics.sightings));
   return statistics;

@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-using Mat26 = Eigen::Matrix<double, 2, 6>;
+using Columns = SightingColumns;
 
 /// v^T [a]x for both rows v^T of a 2x3 matrix.
 Mat23 timesSkew(const Mat23& rows, const Vec3& a) {
@@ -19,25 +19,37 @@ Mat23 timesSkew(const Mat23& rows, const Vec3& a) {
   return product;
 }
 
+/// From derivatives by the pose of a host's camera (columns) to those by that of a target's, to which the
+/// host has the baseline given: moving the one is moving the other backwards.
+Mat6 byTarget(const Mat6& by_host, const Vec3& baseline_W) {
+  const Eigen::Matrix<double, 6, 3> by_position = by_host.leftCols<3>();
+  Mat6 by_target;
+  by_target << -by_position, by_position * so3::skew(baseline_W) - by_host.rightCols<3>();
+  return by_target;
+}
+
 }  // namespace
 
 /// One sighting's residual and derivatives, scaled by the loss.
 struct VisualTerms::Linearised {
-  Vec2 residual;
+  SightingRows by_nodes = SightingRows::Zero();
   Mat23 by_landmark;
-  Mat26 by_host;     ///< the pose of the host's camera 0; of no meaning in the host frame
-  Mat26 by_further;  ///< of no meaning for camera 0
-  Mat26 by_lens;     ///< of no meaning where lenses are not estimated
+
+  auto residual() const { return by_nodes.col(Columns::kResidual); }
+  auto by(int column) const { return by_nodes.middleCols<6>(column); }
+  auto by(int column) { return by_nodes.middleCols<6>(column); }
 };
 
-VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
+VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only)
     : window_(window),
       states_(cameraStates(window)),
       values_(window, states_, factors, CameraViews::At::kValues),
       first_(window, states_, factors, CameraViews::At::kFirstEstimates),
       frames_(static_cast<int>(window.frames().size())),
-      nodes_(frames_ + factors.cameraCount() - 1 + static_cast<int>(states_.intrinsics.size())) {
-  const auto indexOf = [&](FrameId id) {
+      cameras_(factors.cameraCount()),
+      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())) {
+  values_.update();
+  const auto place = [&](FrameId id) {
     const auto& frames = window.frames();
     const auto found = std::lower_bound(frames.begin(), frames.end(), id,
                                         [](const auto& frame, FrameId wanted) { return frame->id < wanted; });
@@ -47,11 +59,12 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors)
     if (!track.landmark) continue;
     Landmark landmark{};
     landmark.value = track.landmark->parameters.data();
-    landmark.host = indexOf(track.landmark->host);
+    landmark.host = place(track.landmark->host);
     landmark.base = track.landmark->base;
     landmark.first_sighting = sightings_.size();
     for (const lodeline::Sighting& sighting : track.sightings) {
-      const int frame = indexOf(sighting.frame);
+      if (only && sighting.frame != *only) continue;
+      const int frame = place(sighting.frame);
       const double scale = factors.robustScale(*window.frames()[static_cast<size_t>(frame)]);
       sightings_.push_back({frame, sighting.camera, &sighting.measurement, scale * scale});
     }
@@ -99,66 +112,56 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   const Vec3 direction = landmark.base.direction(landmark.value);
   const CameraViews::Relative& seen = first_.relative(landmark.host, sighting.frame, sighting.camera);
   Linearised term;
-  term.residual = residual(landmark, sighting);
+  const Vec2 residual = this->residual(landmark, sighting);
   Mat23 by_point;
   directionResidual(*sighting.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
-  const double weight = 1.0 / std::sqrt(1.0 + term.residual.squaredNorm() / sighting.scale_squared);
-  term.residual *= weight;
+  const double weight = 1.0 / std::sqrt(1.0 + residual.squaredNorm() / sighting.scale_squared);
+  term.by_nodes.col(Columns::kResidual) = weight * residual;
   by_point *= weight;
-  if (!states_.intrinsics.empty()) term.by_lens = weight * residualByIntrinsics(*sighting.measurement);
   const Mat23 by_direction = by_point * seen.rotation;
   term.by_landmark << by_direction * landmark.base.tangent_C, by_point * seen.translation;
 
+  if (!states_.intrinsics.empty())
+    term.by(Columns::kLens) = weight * residualByIntrinsics(*sighting.measurement);
   if (sighting.camera > 0) {
     const CameraViews::Further& further = first_.further(sighting.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, sighting.frame, 0);
     const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - further.position_C0);
     const Mat23 by_point_C0 = by_point * further.camera0_from_camera.transpose();
-    term.by_further << timesSkew(by_point_C0, offset_C0) * further.left_jacobian, -rho * by_point_C0;
+    term.by(Columns::kFurther) << timesSkew(by_point_C0, offset_C0) * further.left_jacobian,
+        -rho * by_point_C0;
   }
   if (sighting.frame == landmark.host) return term;
   const Mat3& world_from_host = first_.placement(landmark.host).world_from_camera;
   const Mat23 by_world = by_direction * world_from_host.transpose();
-  term.by_host << rho * by_world, -timesSkew(by_world, world_from_host * direction);
+  term.by(Columns::kHost) << rho * by_world, -timesSkew(by_world, world_from_host * direction);
   return term;
 }
 
 void VisualTerms::eliminate(size_t index) {
   Landmark& landmark = landmarks_[index];
-  auto coupling = couplings_.middleCols<kLandmarkSize>(kLandmarkSize * static_cast<Eigen::Index>(index));
+  const auto column = kLandmarkSize * static_cast<Eigen::Index>(index);
+  auto coupling = couplings_.middleCols<kLandmarkSize>(column);
   Mat3 h_landmark = Mat3::Zero();
   Vec3 g_landmark = Vec3::Zero();
   for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
     const Sighting& sighting = sightings_[i];
     const Linearised term = linearise(landmark, sighting);
     h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
-    g_landmark.noalias() += term.by_landmark.transpose() * term.residual;
-    const bool in_host = sighting.frame == landmark.host;
-    const int pair_index = pairOf(landmark.host, sighting.frame);
-    if (!in_host) {
-      Pair& pair = pairs_[static_cast<size_t>(pair_index)];
-      pair.is_seen = true;
-      pair.hessian.noalias() += term.by_host.transpose() * term.by_host;
-      pair.gradient.noalias() += term.by_host.transpose() * term.residual;
-      coupling.middleRows<6>(6 * sighting.frame).noalias() += term.by_host.transpose() * term.by_landmark;
+    g_landmark.noalias() += term.by_landmark.transpose() * term.residual();
+    const auto couple = [&](int node, int columns) {
+      coupling.middleRows<6>(6 * node).noalias() += term.by(columns).transpose() * term.by_landmark;
+    };
+    if (sighting.frame != landmark.host) {
+      addProducts(term.by_nodes, &by_host_[indexOf(landmark.host, sighting.frame, sighting.camera)]);
+      couple(sighting.frame, Columns::kHost);
     }
     if (!states_) continue;
-    const auto addCalibration = [&](int node, const Mat26& by_node) {
-      gradient_.segment<6>(6 * node).noalias() += by_node.transpose() * term.residual;
-      coupling.middleRows<6>(6 * node).noalias() += by_node.transpose() * term.by_landmark;
-      hessian_.block<6, 6>(6 * node, 6 * node).noalias() += by_node.transpose() * by_node;
-      if (in_host) return;
-      calibration_.block<6, 6>(6 * (node - frames_), 6 * pair_index).noalias() +=
-          by_node.transpose() * term.by_host;
-    };
-    if (sighting.camera > 0) addCalibration(furtherNode(sighting.camera), term.by_further);
-    if (states_.intrinsics.empty()) continue;
-    const int lens = lensNode(sighting.camera);
-    addCalibration(lens, term.by_lens);
-    if (sighting.camera > 0)
-      hessian_.block<6, 6>(6 * lens, 6 * furtherNode(sighting.camera)).noalias() +=
-          term.by_lens.transpose() * term.by_further;
+    addProducts(term.by_nodes, &by_calibration_[static_cast<size_t>(sighting.camera)]);
+    if (sighting.camera > 0) couple(furtherNode(sighting.camera), Columns::kFurther);
+    if (!states_.intrinsics.empty()) couple(lensNode(sighting.camera), Columns::kLens);
   }
+  // What the targets' poses do follows from what the host's would do with each target alone.
   auto of_host = coupling.middleRows<6>(6 * landmark.host);
   for (int frame = 0; frame < frames_; ++frame) {
     if (frame == landmark.host) continue;
@@ -169,34 +172,53 @@ void VisualTerms::eliminate(size_t index) {
   }
   landmark.inverse_root = landmarkInverseRoot(h_landmark);
   coupling *= landmark.inverse_root;
-  rooted_gradients_.segment<kLandmarkSize>(kLandmarkSize * static_cast<Eigen::Index>(index)) =
-      landmark.inverse_root.transpose() * g_landmark;
+  rooted_gradients_.segment<kLandmarkSize>(column) = landmark.inverse_root.transpose() * g_landmark;
 }
 
-void VisualTerms::addPairs() {
+void VisualTerms::addPair(int host, int target) {
   const auto block = [&](int row, int column) { return hessian_.block<6, 6>(6 * row, 6 * column); };
-  for (int host = 0; host < frames_; ++host) {
-    for (int target = 0; target < frames_; ++target) {
-      const Pair& pair = pairs_[static_cast<size_t>(pairOf(host, target))];
-      if (!pair.is_seen) continue;
-      Mat6 host_from_target = -Mat6::Identity();
-      host_from_target.topRightCorner<3, 3>() = so3::skew(baseline_W(host, target));
-      const Mat6 crossed = pair.hessian * host_from_target;
-      block(host, host) += pair.hessian;
-      block(target, target).noalias() += host_from_target.transpose() * crossed;
-      if (host > target) {
-        block(host, target) += crossed;
-      } else {
-        block(target, host) += crossed.transpose();
-      }
-      gradient_.segment<6>(6 * host) += pair.gradient;
-      gradient_.segment<6>(6 * target).noalias() += host_from_target.transpose() * pair.gradient;
-      const auto calibration = calibration_.middleCols<6>(6 * pairOf(host, target));
-      hessian_.block(6 * frames_, 6 * host, calibration.rows(), 6) += calibration;
-      hessian_.block(6 * frames_, 6 * target, calibration.rows(), 6).noalias() +=
-          calibration * host_from_target;
-    }
+  const Vec3 baseline_W = this->baseline_W(host, target);
+  HostProducts sum = HostProducts::Zero();
+  const auto addCalibration = [&](int node, const auto& by_host) {
+    block(node, host) += by_host;
+    block(node, target) += byTarget(by_host, baseline_W);
+  };
+  for (int camera = 0; camera < cameras_; ++camera) {
+    const HostProducts& of_camera = by_host_[indexOf(host, target, camera)];
+    sum += of_camera;
+    if (camera > 0 && states_)
+      addCalibration(furtherNode(camera), of_camera.middleCols<6>(Columns::kFurther).transpose());
+    if (!states_.intrinsics.empty())
+      addCalibration(lensNode(camera), of_camera.middleCols<6>(Columns::kLens).transpose());
   }
+  const Mat6 by_host = sum.middleCols<6>(Columns::kHost);
+  const Mat6 by_both = byTarget(by_host, baseline_W);
+  block(host, host) += by_host;
+  block(target, target) += byTarget(by_both.transpose(), baseline_W);
+  if (host > target) {
+    block(host, target) += by_both;
+  } else {
+    block(target, host) += by_both.transpose();
+  }
+  const Vec6 gradient = sum.col(Columns::kResidual);
+  gradient_.segment<6>(6 * host) += gradient;
+  gradient_.segment<3>(6 * target) -= gradient.head<3>();
+  gradient_.segment<3>(6 * target + 3) -= gradient.tail<3>() + baseline_W.cross(gradient.head<3>());
+}
+
+void VisualTerms::addCalibration(int camera) {
+  const CalibrationProducts& sum = by_calibration_[static_cast<size_t>(camera)];
+  const auto add = [&](int row, int row_columns, int column, int columns) {
+    hessian_.block<6, 6>(6 * row, 6 * column) += sum.block<6, 6>(row_columns, columns);
+  };
+  const auto addNode = [&](int node, int columns) {
+    add(node, columns, node, columns);
+    gradient_.segment<6>(6 * node) += sum.col(Columns::kResidual).segment<6>(columns);
+  };
+  if (camera > 0) addNode(furtherNode(camera), Columns::kFurther);
+  if (states_.intrinsics.empty()) return;
+  addNode(lensNode(camera), Columns::kLens);
+  if (camera > 0) add(lensNode(camera), Columns::kLens, furtherNode(camera), Columns::kFurther);
 }
 
 void VisualTerms::addTo(NormalEquations* system) {
@@ -204,14 +226,19 @@ void VisualTerms::addTo(NormalEquations* system) {
   first_.update();
   const int rows = 6 * nodes_;
   const auto columns = kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size());
-  pairs_.assign(static_cast<size_t>(frames_ * frames_), Pair());
-  calibration_.setZero(6 * (nodes_ - frames_), 6 * frames_ * frames_);
+  by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
+  by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
   hessian_.setZero(rows, rows);
   gradient_.setZero(rows);
   couplings_.setZero(rows, columns);
   rooted_gradients_.resize(columns);
   for (size_t i = 0; i < landmarks_.size(); ++i) eliminate(i);
-  addPairs();
+  for (const int host : first_.hosts()) {
+    for (int target = 0; target < frames_; ++target) {
+      if (target != host) addPair(host, target);
+    }
+  }
+  for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
   hessian_.selfadjointView<Eigen::Lower>().rankUpdate(couplings_, -1.0);
   gradient_.noalias() -= couplings_ * rooted_gradients_;
   addNodesTo(system);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "lodeline/estimator/camera_views.h"
 #include "lodeline/estimator/normal_equations.h"
+#include "lodeline/estimator/sighting_products.h"
 
 namespace lodeline {
 
@@ -14,8 +16,9 @@ namespace lodeline {
 /// the bodies and for the calibration is worked out once for the sum, not for every sighting.
 class VisualTerms {
  public:
-  /// Window and factors must outlive the terms, and tracks must stay as they are.
-  VisualTerms(Window& window, const FactorMaker& factors);
+  /// Window and factors must outlive the terms, and tracks must stay as they are. With `only`, of the
+  /// sightings in that frame alone.
+  VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only = {});
 
   /// At the blocks' present values.
   double cost();
@@ -44,20 +47,15 @@ class VisualTerms {
     size_t first_sighting, end_sighting;
     Mat3 inverse_root;  ///< of the last linearisation: W with W W^T the inverse of its Hessian
   };
-  /// What the sightings in a target frame of landmarks of a host frame add up to, by the pose of the host's
-  /// camera 0. The target's pose moves a sighting like the host's, backwards and from another centre, the
-  /// same for all of them, so it is worked out for the sum (addPairs()).
-  struct Pair {
-    bool is_seen = false;
-    Mat6 hessian = Mat6::Zero();
-    Vec6 gradient = Vec6::Zero();
-  };
   struct Linearised;
 
   Linearised linearise(const Landmark& landmark, const Sighting& sighting) const;
   void eliminate(size_t landmark);
-  void addPairs();
-  int pairOf(int host, int target) const { return host * frames_ + target; }
+  void addPair(int host, int target);
+  void addCalibration(int camera);
+  size_t indexOf(int host, int target, int camera) const {
+    return static_cast<size_t>((host * frames_ + target) * cameras_ + camera);
+  }
   /// From a target's camera 0 to a host's.
   Vec3 baseline_W(int host, int target) const {
     return first_.placement(host).position_W - first_.placement(target).position_W;
@@ -73,14 +71,15 @@ class VisualTerms {
   CameraViews values_;
   CameraViews first_;
   int frames_;
+  int cameras_;
   int nodes_;
   std::vector<Landmark> landmarks_;
   std::vector<Sighting> sightings_;
   // Nodes are what landmarks are eliminated against, six coordinates each: the camera poses of the frames in
   // the window's order, then the extrinsics of further cameras, then the lenses where they are estimated.
-  std::vector<Pair> pairs_;      ///< by pairOf()
-  Eigen::MatrixXd calibration_;  ///< as Pair::hessian, of all other nodes (rows) and the pairs' hosts
-  Eigen::MatrixXd hessian_;      ///< of the nodes; lower triangle
+  std::vector<HostProducts> by_host_;                ///< by indexOf()
+  std::vector<CalibrationProducts> by_calibration_;  ///< by camera
+  Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle
   Eigen::VectorXd gradient_;
   Eigen::MatrixXd couplings_;         ///< of nodes (rows) and landmarks, times the latter's inverse roots
   Eigen::VectorXd rooted_gradients_;  ///< of landmarks, by the transposed inverse roots
