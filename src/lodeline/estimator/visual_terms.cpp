@@ -239,7 +239,8 @@ void VisualTerms::addTo(NormalEquations* system) {
     }
   }
   for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
-  hessian_.selfadjointView<Eigen::Lower>().rankUpdate(couplings_, -1.0);
+  // Eigen divides by the number of columns.
+  if (columns > 0) hessian_.selfadjointView<Eigen::Lower>().rankUpdate(couplings_, -1.0);
   gradient_.noalias() -= couplings_ * rooted_gradients_;
   addNodesTo(system);
 }

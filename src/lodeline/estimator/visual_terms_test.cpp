@@ -142,6 +142,20 @@ INSTANTIATE_TEST_SUITE_P(Rigs, VisualTermsTest,
                                                           Calibrated::PlacementAndLens)),
                          nameOf);
 
+// As after darkness, when every landmark has gone.
+TEST(VisualTerms, OfAWindowWithoutLandmarksAreNothing) {
+  TestWindow test(2);
+  test.add(Rigid3());
+  test.add(Rigid3(Quat::Identity(), Vec3(0.0, 0.3, 0.0)));
+  VisualTerms terms(test.window, test.factors);
+  NormalEquations system;
+  terms.addTo(&system);
+  EXPECT_EQ(terms.cost(), 0.0);
+  EXPECT_EQ(system.gradient().norm(), 0.0);
+  EXPECT_EQ(system.hessian().norm(), 0.0);
+  terms.stepLandmarks(system, Eigen::VectorXd::Zero(system.size()));
+}
+
 // A point that moved behind a camera holds its constant error there and pulls at nothing.
 TEST(VisualTerms, BearAPointBehindACamera) {
   TestWindow test(1);
