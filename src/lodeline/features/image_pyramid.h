@@ -5,9 +5,9 @@
 
 namespace lodeline {
 
-/// An image and its successive halvings. Grey values carry 6 fractional bits in 16-bit pixels: a dim picture
-/// whose texture spans only a few grey levels would lose most of it to rounding when it is smoothed in 8
-/// bits. Pixel (x, y) of level l is (x, y) * 2^l of the image.
+/// An image and its successive halvings, in floating point: a dim picture whose texture spans only a few grey
+/// levels would lose most of it to rounding when it is smoothed in 8 bits. Pixel (x, y) of level l is
+/// (x, y) * 2^l of the image.
 class ImagePyramid {
  public:
   ImagePyramid() = default;
