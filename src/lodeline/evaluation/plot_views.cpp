@@ -95,18 +95,16 @@ std::pair<Range, Range> boxAround(const Curves& curves) {
 }
 
 std::string plotCommand(const Curves& curves) {
-  std::string command = "plot ";
-  if (!curves.missed.points.empty()) {
-    command += "$missed with lines lc '#b0b0b0' lw 1.5 title 'not covered', ";
-  }
   const Curve::Point& start = curves.estimate.points.front();
   const Curve::Point& end = curves.estimate.points.back();
-  command += "$reference with lines lc '#000000' lw 1.8 title 'reference', ";
-  command += "$estimate with lines lc '#0072b2' lw 1.4 title 'estimate', ";
-  command += fmt::format("'-' with points pt 6 ps 2 lw 2 lc '#d55e00' title 'start', ");
-  command += fmt::format("'-' with points pt 4 ps 2 lw 2 lc '#d55e00' title 'end'\n");
-  command += fmt::format("{} {}\ne\n{} {}\ne\n", start.x, start.y, end.x, end.y);
-  return command;
+  const char* missed =
+      curves.missed.points.empty() ? "" : "$missed with lines lc '#b0b0b0' lw 1.5 title 'not covered', ";
+  return fmt::format(
+      "plot {}$reference with lines lc '#000000' lw 1.8 title 'reference', "
+      "$estimate with lines lc '#0072b2' lw 1.4 title 'estimate', "
+      "'-' with points pt 6 ps 2 lw 2 lc '#d55e00' title 'start', "
+      "'-' with points pt 4 ps 2 lw 2 lc '#d55e00' title 'end'\n{} {}\ne\n{} {}\ne\n",
+      missed, start.x, start.y, end.x, end.y);
 }
 
 gnuplot::Figure viewFigure(const Evaluation& e, const char* name, const char* title, const char* axis_names,
