@@ -1,8 +1,13 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build dependencies demo experiments test test-sanitized bench install package format check-format clean
+.PHONY: build everything dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
 
+# The program and the library; `everything` has the tests, benchmarks and studies as well.
 build: dependencies
+	cmake --preset release
+	cmake --build --preset release --target lodeline_product
+
+everything: dependencies
 	cmake --preset release
 	cmake --build --preset release
 
@@ -20,7 +25,7 @@ experiments: build
 	./scripts/experiments.sh
 
 # All tests; those that need recordings say SKIPPED where these are missing.
-test: build check-format
+test: everything check-format
 	ctest --test-dir build/release --output-on-failure -j2
 
 # The fast tests of these layers under address and undefined-behaviour sanitizers: those that read what others
@@ -32,7 +37,7 @@ test-sanitized: dependencies
 	cmake --build --preset asan --target $(SANITIZED:%=%_test)
 	ctest --test-dir build/asan --output-on-failure -j2 -L fast
 
-bench: build
+bench: everything
 	./scripts/benchmark.sh
 
 # To PREFIX (default /usr/local); DESTDIR is put before it.

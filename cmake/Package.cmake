@@ -1,5 +1,6 @@
 # `make package`: a Debian package with the program, the libraries, the headers and the CMake package.
 set(CPACK_GENERATOR DEB)
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # `lodeline_product` is enough
 set(CPACK_PACKAGE_NAME lodeline)
 set(CPACK_PACKAGE_VENDOR "Lodeline")
 set(CPACK_PACKAGE_CONTACT "The Lodeline authors <lodeline@localhost>")

@@ -1,0 +1,34 @@
+# Outside headers that most files include, parsed once for all files instead of once for each: a third of the time to
+# build everything. Files include what they use all the same; built without this (as with sanitizers), they prove it.
+option(LODELINE_PRECOMPILED_HEADERS "Parse the headers that most files include once for all" ON)
+
+set(precompiled_headers
+    <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <sstream>
+    <string> <vector> <Eigen/Cholesky> <Eigen/Geometry> <fmt/format.h> <opencv2/core.hpp>)
+
+# lodeline_precompile(NAME HEADER... LINKS library...): target lodeline_precompiled_NAME, which holds the parsed headers
+# and those named here.
+function(lodeline_precompile name)
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/precompiled_${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_library(lodeline_precompiled_${name} OBJECT ${source})
+  target_link_libraries(lodeline_precompiled_${name} PRIVATE lodeline_options fmt::fmt Eigen3::Eigen opencv_core
+                                                             ${ARG_LINKS})
+  target_precompile_headers(lodeline_precompiled_${name} PRIVATE ${precompiled_headers} ${ARG_UNPARSED_ARGUMENTS})
+endfunction()
+
+if(LODELINE_PRECOMPILED_HEADERS)
+  lodeline_precompile(library)
+  lodeline_precompile(commands <CLI/CLI.hpp> LINKS CLI11::CLI11)
+  if(LODELINE_BUILD_TESTS)
+    lodeline_precompile(tests <gmock/gmock.h> <gtest/gtest.h> LINKS GTest::gtest)
+  endif()
+endif()
+
+# Compiles a target with the headers of one of the sets above.
+function(lodeline_use_precompiled target name)
+  if(LODELINE_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM lodeline_precompiled_${name})
+  endif()
+endfunction()
