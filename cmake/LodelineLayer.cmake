@@ -71,8 +71,8 @@ endfunction()
 
 function(lodeline_test target label layer)
   add_executable(${target} ${ARGN})
-  target_link_libraries(${target} PRIVATE lodeline_${layer} GTest::gtest GTest::gmock GTest::gtest_main)
-  target_compile_definitions(${target} PRIVATE LODELINE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_link_libraries(${target} PRIVATE lodeline_${layer} lodeline_test_data GTest::gtest GTest::gmock
+                                          GTest::gtest_main)
   lodeline_use_precompiled(${target} tests)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS ${label} TIMEOUT 600)

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/base/test_data.h"
+
 /// Bags made and read by ROS's own rosbag (Debian's python3-rosbag, hence Debian's Python).
 namespace lodeline::test {
 
@@ -24,7 +26,7 @@ inline bool hasRosbag() {
 
 /// Runs test_bag.py with arguments in the shell's spelling; returns what it prints.
 inline std::string runRosbag(const std::string& arguments) {
-  const std::string command = "/usr/bin/python3 '" + std::string(LODELINE_SOURCE_DIR) +
+  const std::string command = "/usr/bin/python3 '" + testSourceDir().string() +
                               "/src/lodeline/bags/test_bag.py' " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("no shell");

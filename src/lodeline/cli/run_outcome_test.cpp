@@ -122,9 +122,10 @@ void prolong(const RoomRecording& recording) {
 /// Starts the program, waits until it has written `poses` poses, and sends it the signal.
 int signalAfterPoses(const RoomRecording& recording, const std::filesystem::path& output, int poses,
                      int signal) {
+  const std::filesystem::path program = programPath();
   const pid_t child = fork();
   if (child == 0) {
-    execl(LODELINE_PROGRAM, LODELINE_PROGRAM, "run", recording.data.c_str(), "-o", output.c_str(), "-q",
+    execl(program.c_str(), program.c_str(), "run", recording.data.c_str(), "-o", output.c_str(), "-q",
           nullptr);
     _exit(127);
   }

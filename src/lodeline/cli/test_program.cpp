@@ -11,9 +11,11 @@
 
 namespace lodeline::test {
 
+std::filesystem::path programPath() { return LODELINE_PROGRAM; }
+
 Execution runProgram(const std::string& arguments) {
   Execution result;
-  FILE* pipe = popen(fmt::format("'{}' {} 2>&1", LODELINE_PROGRAM, arguments).c_str(), "r");
+  FILE* pipe = popen(fmt::format("{} {} 2>&1", quoted(programPath()), arguments).c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("no shell");
   std::array<char, 4096> buffer;
   while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr) {

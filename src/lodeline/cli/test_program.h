@@ -12,6 +12,9 @@ struct Execution {
   std::string output;  ///< standard output and error
 };
 
+/// `lodeline`, as it was built.
+std::filesystem::path programPath();
+
 /// Runs `lodeline` with arguments in the shell's spelling.
 Execution runProgram(const std::string& arguments);
 

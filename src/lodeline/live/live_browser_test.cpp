@@ -1,22 +1,15 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <thread>
 
 #include "lodeline/live/live_view.h"
-#include "lodeline/page/page_template.h"
+#include "lodeline/page/test_browser.h"
 
 // The page in headless Chromium while a run goes on; web/test/live.mjs says what it should show.
 
 namespace lodeline {
 namespace {
-
-bool succeeds(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
 
 /// Swims east at 1 m/s, half a metre below the start, by inertial readings at the end.
 FrameEstimate estimateAt(int second) {
@@ -30,8 +23,7 @@ FrameEstimate estimateAt(int second) {
 }
 
 TEST(LiveBrowser, ShowsWhatIsTold) {
-  if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
-  if (!succeeds("command -v chromium >/dev/null 2>&1")) GTEST_SKIP() << "chromium is not installed";
+  if (const std::string missing = test::browserMissing(); !missing.empty()) GTEST_SKIP() << missing;
   bool passed = false;
   std::thread browser;
   {
@@ -44,9 +36,7 @@ TEST(LiveBrowser, ShowsWhatIsTold) {
       server.sendAndKeep("state", liveState(estimate, summary, second, {{1.0F, 2.0F, -0.5F}}));
     }
     server.sendAndKeep("picture", R"({"t_s":12,"jpeg":"AAAA"})");
-    browser = std::thread([&passed, url = server.url()] {
-      passed = succeeds("cd '" LODELINE_SOURCE_DIR "/web/test' && '" LODELINE_NODE "' live.mjs " + url);
-    });
+    browser = std::thread([&passed, url = server.url()] { passed = test::passesInBrowser("live.mjs", url); });
     for (int i = 0; i < 6000 && !server.isWatched(); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

@@ -1,36 +1,21 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <cstdlib>
 
 #include "lodeline/base/output_file.h"
 #include "lodeline/evaluation/test_trajectories.h"
-#include "lodeline/page/page_template.h"
 #include "lodeline/page/report_page.h"
+#include "lodeline/page/test_browser.h"
 #include "lodeline/page/test_run.h"
-
-// The page in headless Chromium; web/test holds what is tried there.
 
 namespace lodeline {
 namespace {
 
+using test::passesInBrowser;
 using test::TemporaryFolder;
-
-bool succeeds(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
 
 class Browser : public testing::Test {
  protected:
   void SetUp() override {
-    if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
-    if (!succeeds("command -v chromium >/dev/null 2>&1")) GTEST_SKIP() << "chromium is not installed";
-  }
-  /// Runs one script of web/test on a page.
-  bool passes(const std::string& script, const std::filesystem::path& page) const {
-    return succeeds("cd '" LODELINE_SOURCE_DIR "/web/test' && '" LODELINE_NODE "' " + script + " '" +
-                    page.string() + "'");
+    if (const std::string missing = test::browserMissing(); !missing.empty()) GTEST_SKIP() << missing;
   }
   std::filesystem::path pageOf(const std::vector<std::filesystem::path>& runs,
                                const std::optional<ReportReference>& reference) const {
@@ -48,7 +33,7 @@ TEST_F(Browser, ShowsARunAndAnswersClicks) {
   test::writeTestRun(folder_.path() / "dive", run);
   test::writeTestReference(folder_.path() / "truth.tum", run);
   const ReportReference reference = {folder_.path() / "truth.tum", AlignmentType::None};
-  EXPECT_TRUE(passes("one_run.mjs", pageOf({folder_.path() / "dive"}, reference)));
+  EXPECT_TRUE(passesInBrowser("one_run.mjs", pageOf({folder_.path() / "dive"}, reference)));
 }
 
 TEST_F(Browser, ComparesTwoRuns) {
@@ -56,8 +41,8 @@ TEST_F(Browser, ComparesTwoRuns) {
   test::TestRun shorter;
   shorter.frames = 120;
   test::writeTestRun(folder_.path() / "second", shorter);
-  EXPECT_TRUE(
-      passes("two_runs.mjs", pageOf({folder_.path() / "first", folder_.path() / "second"}, std::nullopt)));
+  EXPECT_TRUE(passesInBrowser("two_runs.mjs",
+                              pageOf({folder_.path() / "first", folder_.path() / "second"}, std::nullopt)));
 }
 
 TEST_F(Browser, OpensFiftyMinutesFrom15Megabytes) {
@@ -71,7 +56,7 @@ TEST_F(Browser, OpensFiftyMinutesFrom15Megabytes) {
   const auto size = std::filesystem::file_size(page);
   printf("%.1f MB\n", 1e-6 * static_cast<double>(size));
   EXPECT_LE(size, 15'000'000u);
-  EXPECT_TRUE(passes("opening_time.mjs", page));
+  EXPECT_TRUE(passesInBrowser("opening_time.mjs", page));
 }
 
 }  // namespace
