@@ -1,4 +1,4 @@
-# Outside headers that most files include, parsed once for all files instead of once for each: a third of the time to
+# Outside headers that most files include, parsed once for all files instead of once for each: a quarter of the time to
 # build everything. Files include what they use all the same; built without this (as with sanitizers), they prove it.
 option(LODELINE_PRECOMPILED_HEADERS "Parse the headers that most files include once for all" ON)
 
