@@ -7,7 +7,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
-#include "lodeline/magnetism/field_unit.h"
+#include "lodeline/inertial/field_unit.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lodeline/geometry/types.h"
-#include "lodeline/magnetism/field_unit.h"
+#include "lodeline/inertial/field_unit.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "lodeline/data/measurement_source.h"
+#include "lodeline/inertial/field_unit.h"
 #include "lodeline/inspection/stream_survey.h"
-#include "lodeline/magnetism/field_unit.h"
 
 namespace lodeline {
 

@@ -1,12 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lodeline/magnetism/field_unit.h"
 #include "lodeline/magnetism/reading_screen.h"
 #include "lodeline/magnetism/sphere_coverage.h"
 #include "lodeline/magnetism/test_cloud.h"
 
-// What is done to readings before a calibration: unit, screening, coverage.
+// What is done to readings before a calibration: screening, coverage.
 
 namespace lodeline {
 namespace {
@@ -17,31 +16,6 @@ std::vector<MagnetometerSample> samplesOf(const std::vector<Vec3>& fields) {
     samples.push_back({Time::fromNanoseconds(static_cast<int64_t>(i) * 20'000'000), fields[i]});
   }
   return samples;
-}
-
-TEST(FieldUnit, IsToldByTheFieldsSizeDespiteHardIron) {
-  for (const FieldUnit unit : {FieldUnit::Tesla, FieldUnit::Microtesla, FieldUnit::Nanotesla,
-                               FieldUnit::Gauss, FieldUnit::Milligauss}) {
-    for (const double field_T : {25e-6, 65e-6}) {
-      test::CloudTruth truth;
-      truth.hard_iron = Vec3(2.0, -3.0, 1.0);
-      std::vector<Vec3> readings = test::cloud(truth, 300);
-      for (Vec3& reading : readings) reading *= field_T / teslaPer(unit);
-      EXPECT_EQ(unitBySize(fieldSize(readings)), unit) << toString(unit);
-      // One direction alone, without hard iron.
-      const std::vector<Vec3> still(20, Vec3(0.0, field_T, 0.0) / teslaPer(unit));
-      EXPECT_EQ(unitBySize(fieldSize(still)), unit) << toString(unit);
-    }
-  }
-  EXPECT_EQ(unitBySize(3500.0), FieldUnit::Raw);
-  EXPECT_EQ(unitBySize(0.0), FieldUnit::Raw);
-}
-
-TEST(FieldUnit, HasNames) {
-  EXPECT_EQ(fieldUnitFromString("uT"), FieldUnit::Microtesla);
-  EXPECT_EQ(fieldUnitFromString("\u00b5T"), FieldUnit::Microtesla);
-  EXPECT_EQ(fieldUnitFromString("mg"), FieldUnit::Milligauss);
-  EXPECT_EQ(fieldUnitFromString("tesla"), std::nullopt);
 }
 
 TEST(ReadingScreen, DropsRepetitionsNansAndDisorder) {

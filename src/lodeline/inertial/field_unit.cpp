@@ -1,4 +1,4 @@
-#include "lodeline/magnetism/field_unit.h"
+#include "lodeline/inertial/field_unit.h"
 
 #include <algorithm>
 #include <array>
