@@ -153,6 +153,10 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
                  "of a disturbance that has come to stay");
   settings->bind("magnetometer.disturbance_walk_T_per_sqrt_s", &options->disturbance_walk_T_per_sqrt_s,
                  "random walk of such a disturbance");
+  settings->bind("magnetometer.step.enabled", &options->step.enabled,
+                 "correct readings by the field of currents on board that are switched");
+  settings->bind("magnetometer.step.min_step_T", &options->step.min_step_T,
+                 "smallest change that is taken for one");
 }
 
 void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {

@@ -24,6 +24,9 @@ struct GlobalState {
   double walk_per_sqrt_s = 0.0;
   /// Whether JointCovariance shall hold it, at the price of as many more columns to solve for.
   bool is_correlation_wanted = false;
+  /// Of a change that has happened all at once, each coordinate, [unit of the block]^2: joins the walk when
+  /// the next frame is marginalised.
+  double sudden_variance = 0.0;
 
   bool isPose() const { return value.size() == kPoseSize; }
   int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(value.size()); }

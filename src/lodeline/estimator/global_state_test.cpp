@@ -117,6 +117,18 @@ TEST_F(GlobalStateTest, WalksWhileFramesAreMarginalised) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(vector_->value[i], value[i], 1e-9);
 }
 
+TEST_F(GlobalStateTest, IsLessKnownOnceAfterASuddenChange) {
+  vector_->sudden_variance = 3e-12;
+  const Mat3 before = covariance(coupledPrior(), {vector_->value.data()});
+  Marginalizer marginalizer(test_.factors);
+  marginalizer.start(coupledPrior());
+  marginalizer.shorten(test_.window, 2, 1);
+  EXPECT_LT(relativeDifference(covariance(marginalizer.prior(), {vector_->value.data()}),
+                               before + 3e-12 * Mat3::Identity()),
+            1e-4);
+  EXPECT_EQ(vector_->sudden_variance, 0.0);
+}
+
 TEST_F(GlobalStateTest, ForgottenLeavesBehindWhatItSaidOfOthers) {
   const std::vector<const double*> others = {first().pose.data(), first().motion.data(), pose_->value.data()};
   const Eigen::MatrixXd before = covariance(coupledPrior(), others);

@@ -96,7 +96,12 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"gx5-25", "gv7", "consumer"}));
   app.add_option("--honest-imu", options.honest_imu, "take the IMU's noise for what it is")
       ->capture_default_str();
+  app.add_option("--steps", magnetometer.step.enabled, "correct the field by its steps")
+      ->capture_default_str();
   app.add_option("--floor", magnetometer.floor_T, "T")->capture_default_str();
+  app.add_option("--floor-correlation", magnetometer.floor_correlation_s, "s")->capture_default_str();
+  app.add_option("--floor-samples", magnetometer.floor_prior_samples, "that the first floor counts for")
+      ->capture_default_str();
   app.add_option("--offset-sigma", magnetometer.offset_sigma_T, "T")->capture_default_str();
   app.add_option("--offset-walk", magnetometer.offset_walk_T_per_sqrt_s, "T/sqrt(s)")->capture_default_str();
   app.add_option("--each", each_s, "list every dive every so many seconds");

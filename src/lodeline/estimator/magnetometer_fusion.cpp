@@ -61,7 +61,8 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
                          rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz),
       readings_(calibration_, diagnostics),
       gate_(options.magnetometer.gate),
-      floor_(options.magnetometer) {
+      floor_(options.magnetometer),
+      step_(options.magnetometer.step) {
   if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
     return;
   if (use_ == MagnetometerUse::Off) {
@@ -199,7 +200,31 @@ void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer)
     return;
   }
   if (MagnetometerStates(window).field == nullptr) startLate(mean, window, marginalizer);
-  judge(mean, window, marginalizer);
+  judge(withoutSteps(mean, window), window, marginalizer);
+}
+
+MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, Window& window) {
+  if (!options_.magnetometer.step.enabled) return mean;
+  const MagnetometerStates states(window);
+  const Quat body_from_world = window.newest().worldFromBody().rotation.conjugate();
+  FieldStep::Reading reading;
+  reading.time = mean.time;
+  reading.difference_B = mean.field_B - body_from_world * states.field_W() - mean.carried * states.offset_B();
+  reading.heading_B = body_from_world * Vec3::UnitZ().cross(states.field_W()).normalized();
+  reading.white_variance_T2 = whiteVariance(mean);
+  reading.is_believed =
+      status_before_ == MagnetometerStatus::Used || status_before_ == MagnetometerStatus::Off;
+  if (const auto change = step_.add(reading)) {
+    states.offset->sudden_variance += change->sigma_T * change->sigma_T;
+    diagnostics_->report(
+        Severity::Notice, "magnetometer_step",
+        fmt::format("magnetometer: at {:.1f} s the field on board changed at once by {:.2f} uT (a lamp or a "
+                    "motor was switched); readings are corrected by it",
+                    mean.time.seconds(), 1e6 * change->by_B.norm()));
+  }
+  MagnetometerMean corrected = mean;
+  corrected.field_B -= mean.carried * step_.step_B();
+  return corrected;
 }
 
 void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {

@@ -7,6 +7,7 @@
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/field_floor.h"
+#include "lodeline/estimator/field_step.h"
 #include "lodeline/estimator/heading_alignment.h"
 #include "lodeline/estimator/magnetometer_gate.h"
 #include "lodeline/estimator/magnetometer_states.h"
@@ -62,6 +63,8 @@ class MagnetometerFusion {
   void startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   void addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const;
   FieldMeasurement measurementOf(const MagnetometerMean& mean, double variance_scale, bool disturbed);
+  /// The mean without what currents on board have added since the start.
+  MagnetometerMean withoutSteps(const MagnetometerMean& mean, Window& window);
   void judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   /// The newest frame's field against the expected one, and the covariance of their difference, T^2.
   FieldCheck check(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
@@ -84,6 +87,7 @@ class MagnetometerFusion {
   MagnetometerReadings readings_;
   MagnetometerGate gate_;
   FieldFloor floor_;
+  FieldStep step_;
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;
   JointCovariance covariance_;

@@ -145,6 +145,18 @@ TEST(MagnetometerFusion, LearnsAnOffsetThatCalibrationLeft) {
   EXPECT_LT(trial.rms(70.0), 0.3 * kDegree);
 }
 
+TEST(MagnetometerFusion, IsNotTurnedByALampThatIsSwitched) {
+  HeadingTrialOptions options = trialOptions(240.0);
+  const HeadingTrial quiet = runHeadingTrial(options);
+  options.trouble = FieldTrouble::Lamp;
+  const HeadingTrial corrected = runHeadingTrial(options);
+  EXPECT_LT(corrected.alignedRms(40.0), quiet.alignedRms(40.0) + 0.02 * kDegree);
+  EXPECT_GT(corrected.share(MagnetometerStatus::Used), 0.95);
+  options.estimator.magnetometer.step.enabled = false;
+  EXPECT_GT(runHeadingTrial(options).alignedRms(40.0), 2.0 * corrected.alignedRms(40.0))
+      << "this lamp disturbs nobody";
+}
+
 TEST(MagnetometerFusion, OffChangesNotABit) {
   TestSceneOptions scene_options = sceneOptions(4.0, 10.0);
   std::vector<FrameEstimate> last;

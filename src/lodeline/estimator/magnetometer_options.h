@@ -48,6 +48,26 @@ struct MagnetometerGateOptions {
   double distrust_s = 1800.0;
 };
 
+/// When a change of the field is taken for a current on board that was switched (FieldStep).
+struct FieldStepOptions {
+  bool enabled = true;
+  double segment_s = 0.6;  ///< four of them in a row are compared
+  double min_step_T = 0.1e-6;
+  double max_step_T = 5e-6;
+  double min_white_sigmas = 8.0;  ///< of the difference of two means of two segments
+  double min_usual_sizes = 4.0;   ///< of the usual difference (root mean square over `memory_s`)
+  double memory_s = 120.0;
+  /// Before and after a step the field changes by no more than this share of it from segment to segment.
+  double max_slope = 0.25;
+  /// Least share of a step that is not along the direction in which an error of heading shows.
+  double min_besides_heading = 0.3;
+  double settling_s = 30.0;     ///< at the start, while tilt and heading become known
+  double relative_sigma = 0.1;  ///< of a step's size, as it is measured
+  /// The first level is back when less than this share of the step is left of it for `return_s`.
+  double returned_share = 0.3;
+  double return_s = 5.0;
+};
+
 struct MagnetometerOptions {
   MagnetometerUse use = MagnetometerUse::Automatic;
   HeadingReference heading_reference = HeadingReference::Automatic;
@@ -81,6 +101,7 @@ struct MagnetometerOptions {
       0.006;  ///< of the field model and the rock, for a heading against true north
 
   MagnetometerGateOptions gate;
+  FieldStepOptions step;
 };
 
 }  // namespace lodeline

@@ -70,15 +70,17 @@ Eigen::VectorXd firstEstimate(Window& window, const double* value) {
   return {};
 }
 
-/// The random walk of the global states among the prior's blocks over `elapsed_s`.
+/// The random walk of the global states among the prior's blocks over `elapsed_s`, and what came over them
+/// suddenly.
 void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, Eigen::MatrixXd* h,
                     Eigen::VectorXd* g) {
   int row = 0;
   for (const Prior::Block& block : prior.blocks) {
     for (const auto& state : window.globals()) {
-      const double variance = state->walk_per_sqrt_s * state->walk_per_sqrt_s * elapsed_s;
-      if (state->value.data() == block.value && variance > 0.0)
-        addNoise(row, block.tangentSize(), variance, h, g);
+      if (state->value.data() != block.value) continue;
+      const double variance = state->walk_per_sqrt_s * state->walk_per_sqrt_s * elapsed_s +
+                              std::exchange(state->sudden_variance, 0.0);
+      if (variance > 0.0) addNoise(row, block.tangentSize(), variance, h, g);
     }
     row += block.tangentSize();
   }
