@@ -43,11 +43,12 @@ std::optional<FieldStep::Candidate> FieldStep::candidate() const {
   result.besides_heading_T = (result.step_B - heading_B * heading_B.dot(result.step_B)).norm();
   result.variance_T2 = 0.25 * (a.variance_T2() + b.variance_T2() + c.variance_T2() + d.variance_T2());
   const Vec3 along_B = result.step_B.normalized();
-  const auto isFlat = [&](const Segment& first, const Segment& second) {
-    return std::abs(along_B.dot(second.mean_B() - first.mean_B())) <=
-           options_.max_slope * result.step_B.norm();
-  };
-  result.is_sharp = a.is_believed && b.is_believed && isFlat(a, b) && isFlat(c, d);
+  const double before_T = along_B.dot(b.mean_B() - a.mean_B()),
+               after_T = along_B.dot(d.mean_B() - c.mean_B());
+  const double most_T = options_.max_slope * result.step_B.norm();
+  // Noise may hide the slope of what grows steadily on one side, hardly on both.
+  result.is_sharp = a.is_believed && b.is_believed && std::abs(before_T) <= most_T &&
+                    std::abs(after_T) <= most_T && before_T + after_T <= 0.5 * most_T;
   return result;
 }
 

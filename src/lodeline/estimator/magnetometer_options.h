@@ -54,8 +54,8 @@ struct FieldStepOptions {
   double segment_s = 0.6;  ///< four of them in a row are compared
   double min_step_T = 0.1e-6;
   double max_step_T = 5e-6;
-  double min_white_sigmas = 8.0;  ///< of the difference of two means of two segments
-  double min_usual_sizes = 4.0;   ///< of the usual difference (root mean square over `memory_s`)
+  double min_white_sigmas = 7.0;  ///< of the difference of two means of two segments
+  double min_usual_sizes = 3.0;   ///< of the usual difference (root mean square over `memory_s`)
   double memory_s = 120.0;
   /// Before and after a step the field changes by no more than this share of it from segment to segment.
   double max_slope = 0.25;
