@@ -48,7 +48,7 @@ std::optional<FieldStep::Candidate> FieldStep::candidate() const {
   const double most_T = options_.max_slope * result.step_B.norm();
   // Noise may hide the slope of what grows steadily on one side, hardly on both.
   result.is_sharp = a.is_believed && b.is_believed && std::abs(before_T) <= most_T &&
-                    std::abs(after_T) <= most_T && before_T + after_T <= 0.5 * most_T;
+                    std::abs(after_T) <= most_T && before_T + after_T <= most_T;
   return result;
 }
 

@@ -78,7 +78,7 @@ TEST_F(FieldStepTest, FindsNothingInNoise) {
 
 TEST_F(FieldStepTest, FindsNothingInWhatComesAndGoesOverSeconds) {
   run(60.0, Vec3::Zero());
-  follow(120.0, [](double t_s) { return Vec3(4.0 * kLamp_B * std::sin((t_s - 60.0) / 3.0)); });
+  follow(120.0, [](double t_s) { return Vec3(10.0 * kLamp_B * std::sin((t_s - 60.0) / 3.0)); });
   EXPECT_EQ(changes_, 0);
 }
 

@@ -57,8 +57,9 @@ struct FieldStepOptions {
   double min_white_sigmas = 7.0;  ///< of the difference of two means of two segments
   double min_usual_sizes = 3.0;   ///< of the usual difference (root mean square over `memory_s`)
   double memory_s = 120.0;
-  /// Before and after a step the field changes by no more than this share of it from segment to segment.
-  double max_slope = 0.25;
+  /// Before and after a step the field changes by no more than this share of it from segment to segment,
+  /// in sum too.
+  double max_slope = 0.4;
   /// Least share of a step that is not along the direction in which an error of heading shows.
   double min_besides_heading = 0.3;
   double settling_s = 30.0;     ///< at the start, while tilt and heading become known
