@@ -20,6 +20,9 @@ struct Segment {
   double variance_T2() const { return variance_sum_T2 / (readings * readings); }
 };
 
+/// What of a vector is not along a unit vector.
+Vec3 besides(const Vec3& direction, const Vec3& vector) { return vector - direction * direction.dot(vector); }
+
 }  // namespace
 
 std::optional<FieldStep::Candidate> FieldStep::candidate() const {
@@ -39,8 +42,7 @@ std::optional<FieldStep::Candidate> FieldStep::candidate() const {
   const auto& [a, b, c, d] = segments;
   Candidate result;
   result.step_B = 0.5 * (c.mean_B() + d.mean_B() - a.mean_B() - b.mean_B());
-  const Vec3& heading_B = readings_.back().heading_B;
-  result.besides_heading_T = (result.step_B - heading_B * heading_B.dot(result.step_B)).norm();
+  result.besides_heading_T = besides(readings_.back().heading_B, result.step_B).norm();
   result.variance_T2 = 0.25 * (a.variance_T2() + b.variance_T2() + c.variance_T2() + d.variance_T2());
   const Vec3 along_B = result.step_B.normalized();
   const double before_T = along_B.dot(b.mean_B() - a.mean_B()),
@@ -113,11 +115,10 @@ std::optional<FieldStep::Change> FieldStep::dropIfReturned(Time time) {
   // Where the beginning of a current went unnoticed, heading has followed it, and its end looks like a step
   // away from that heading. Size and dip know better.
   const Vec3& heading_B = readings_.back().heading_B;
-  const auto besidesHeading = [&](const Vec3& v) { return Vec3(v - heading_B * heading_B.dot(v)); };
   Vec3 sum_B = Vec3::Zero();
   for (const Reading& reading : readings_) sum_B += reading.difference_B;
-  const Vec3 difference_B = besidesHeading(sum_B / static_cast<double>(readings_.size()));
-  const Vec3 step_B = besidesHeading(step_B_);
+  const Vec3 difference_B = besides(heading_B, sum_B / static_cast<double>(readings_.size()));
+  const Vec3 step_B = besides(heading_B, step_B_);
   const double left = step_B.dot(difference_B) / std::max(step_B.squaredNorm(), 1e-30);
   if (left > options_.returned_share) {
     returned_since_.reset();

@@ -218,9 +218,9 @@ MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, 
     states.offset->sudden_variance += change->sigma_T * change->sigma_T;
     diagnostics_->report(
         Severity::Notice, "magnetometer_step",
-        fmt::format("magnetometer: at {:.1f} s the field on board changed at once by {:.2f} uT (a lamp or a "
+        fmt::format("magnetometer: at {} ns the field on board changed at once by {:.2f} uT (a lamp or a "
                     "motor was switched); readings are corrected by it",
-                    mean.time.seconds(), 1e6 * change->by_B.norm()));
+                    mean.time.nanoseconds(), 1e6 * change->by_B.norm()));
   }
   MagnetometerMean corrected = mean;
   corrected.field_B -= mean.carried * step_.step_B();
