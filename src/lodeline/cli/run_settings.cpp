@@ -39,6 +39,8 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
   settings->bind("front_end.seed", &options->consensus.seed,
                  "of the random choices in that judgement; another one makes another, equally good run");
   settings->bind("front_end.max_gap_s", &options->max_gap_s, "images missing for longer end all tracks");
+  settings->bind("front_end.fixed_structure", &options->fixed_structure.enabled,
+                 "leave out what stays at its place in the images, such as parts of the rig");
   settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation");
 }
 

@@ -1,15 +1,22 @@
 #include "lodeline/estimator/odometry.h"
 
+#include <fmt/format.h>
+
 #include "lodeline/base/thread_clock.h"
 
 namespace lodeline {
 
 Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics)
-    : imu_(rig.imu), front_end_(rig, options.front_end), estimator_(rig, options.estimator, diagnostics) {}
+    : imu_(rig.imu),
+      front_end_(rig, options.front_end),
+      estimator_(rig, options.estimator, diagnostics),
+      fixed_structure_reported_(rig.cameras.size(), false),
+      diagnostics_(diagnostics) {}
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
   tracks_ = front_end_.process(packet.time, packet.images, previousFromCurrent(packet));
+  reportFixedStructure(packet.time);
   const double tracked_s = threadSeconds();
   const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
   times_.front_end_s += tracked_s - start_s;
@@ -17,6 +24,21 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   if (estimate.status != Status::Waiting) gyroscope_bias_B_ = estimate.state.gyroscope_bias_B;
   first_ = false;
   return estimate;
+}
+
+void Odometry::reportFixedStructure(Time time) {
+  for (size_t i = 0; i < fixed_structure_reported_.size(); ++i) {
+    const double share = front_end_.fixedStructures()[i].share();
+    if (share == 0.0 || fixed_structure_reported_[i]) continue;
+    fixed_structure_reported_[i] = true;
+    diagnostics_->report(
+        Severity::Notice, "fixed_structure",
+        fmt::format(
+            "camera '{}': {:.1f} % of the image stays the same at {} ns while the rig turns and moves: "
+            "parts of the rig, a hood, dirt on the port or characters in the picture; left out from "
+            "there on. A mask in the calibration would leave it out from the start",
+            front_end_.cameras()[i]->calibration().name, 100.0 * share, time.nanoseconds()));
+  }
 }
 
 Quat Odometry::previousFromCurrent(const FramePacket& packet) const {

@@ -36,6 +36,8 @@ class Odometry {
  private:
   /// The gyroscope's rotation over the packet; none for the first one.
   Quat previousFromCurrent(const FramePacket& packet) const;
+  /// Of each camera once.
+  void reportFixedStructure(Time time);
 
   ImuCalibration imu_;
   FrontEnd front_end_;
@@ -43,6 +45,8 @@ class Odometry {
   Estimator estimator_;
   Vec3 gyroscope_bias_B_ = Vec3::Zero();
   bool first_ = true;
+  std::vector<bool> fixed_structure_reported_;
+  Diagnostics* diagnostics_;
   StageTimes times_;
 };
 

@@ -57,6 +57,8 @@ cv::Mat drawTracks(const FrontEnd& front_end, const std::vector<cv::Mat>& images
     if (images[i].empty()) continue;
     cv::Mat part = picture(cv::Rect(cv::Point(lefts[i], 0), images[i].size()));
     cv::cvtColor(images[i], part, cv::COLOR_GRAY2BGR);
+    const cv::Mat& moving = front_end.fixedStructures()[i].mask();
+    if (!moving.empty()) cv::Mat(part / 3).copyTo(part, moving == 0);
   }
   for (const Track& track : front_end.tracks()) {
     const cv::Scalar colour = colourOfAge(track.sightings, old_sightings);

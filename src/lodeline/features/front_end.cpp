@@ -29,7 +29,8 @@ FrontEnd::FrontEnd(const Rig& rig, const FrontEndOptions& options)
       cameras_(makeCameras(rig)),
       body_from_camera_(rig.cameras.front().body_from_camera.rotation),
       tracker_(cameras_.front(), options.tracker),
-      detector_(options.detector) {
+      detector_(options.detector),
+      fixed_structures_(cameras_.size(), FixedStructure(options.fixed_structure)) {
   for (const CameraCalibration& calibration : rig.cameras) masks_.push_back(loadMask(calibration));
   for (size_t i = 1; i < cameras_.size(); ++i) {
     matchers_.emplace_back(cameras_.front(), cameras_[i], options.stereo);
@@ -72,6 +73,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   const bool was_faint = faint_;
   updateQuality(current);
   if (faint_ != was_faint) current = pyramid(images.front());
+  fixed_structures_.front().add(time, current);
   if ((time - previous_time_).seconds() > options_.max_gap_s) {
     statistics_.lost = static_cast<int>(tracks_.size());
     tracks_.clear();
@@ -80,7 +82,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
       body_from_camera_.conjugate() * previous_from_current_B_.conjugate() * body_from_camera_;
   follow(current, current_from_previous_C.toRotationMatrix());
   detect(current);
-  matchOthers(current, images);
+  matchOthers(time, current, images);
 
   previous_ = std::move(current);
   previous_time_ = time;
@@ -107,7 +109,7 @@ void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_prev
   for (Track& track : tracks_) {
     const auto bearing = cameras_.front()->unproject(track.warp.position.cast<double>());
     if (!bearing || !tracker_.follow(previous_, current, current_from_previous_C, track) ||
-        isMasked(masks_.front(), track.warp.position)) {
+        isHidden(0, track.warp.position)) {
       ++statistics_.lost;
       continue;
     }
@@ -153,10 +155,21 @@ void FrontEnd::rejectCrowded() {
   statistics_.rejected += static_cast<int>(removed);
 }
 
+bool FrontEnd::isHidden(size_t camera, const Eigen::Vector2f& pixel) const {
+  return isMasked(masks_[camera], pixel) || isMasked(fixed_structures_[camera].mask(), pixel);
+}
+
 void FrontEnd::detect(const ImagePyramid& current) {
   std::vector<Eigen::Vector2f> occupied;
   for (const Track& track : tracks_) occupied.push_back(track.warp.position);
-  for (const Eigen::Vector2f& pixel : detector_.detect(current, masks_.front(), occupied)) {
+  cv::Mat visible = masks_.front();
+  const cv::Mat& moving = fixed_structures_.front().mask();
+  if (visible.empty()) {
+    visible = moving;
+  } else if (!moving.empty()) {
+    visible = visible & moving;
+  }
+  for (const Eigen::Vector2f& pixel : detector_.detect(current, visible, occupied)) {
     if (static_cast<int>(tracks_.size()) >= options_.detector.max_tracks) break;
     Track track;
     track.warp.position = pixel;
@@ -172,7 +185,7 @@ void FrontEnd::detect(const ImagePyramid& current) {
   }
 }
 
-void FrontEnd::matchOthers(const ImagePyramid& current, const std::vector<cv::Mat>& images) {
+void FrontEnd::matchOthers(Time time, const ImagePyramid& current, const std::vector<cv::Mat>& images) {
   for (size_t m = 0; m < matchers_.size(); ++m) {
     const cv::Mat& image = images[m + 1];
     if (image.empty()) {
@@ -180,9 +193,10 @@ void FrontEnd::matchOthers(const ImagePyramid& current, const std::vector<cv::Ma
       continue;
     }
     const ImagePyramid other = pyramid(image);
+    fixed_structures_[m + 1].add(time, other);
     for (Track& track : tracks_) {
       track.matches[m] = matchers_[m].match(current, other, track.matches[m], track);
-      if (track.matches[m] && isMasked(masks_[m + 1], track.matches[m]->position)) track.matches[m].reset();
+      if (track.matches[m] && isHidden(m + 1, track.matches[m]->position)) track.matches[m].reset();
     }
   }
   for (const Track& track : tracks_) {

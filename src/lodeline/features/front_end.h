@@ -7,6 +7,7 @@
 #include "lodeline/cameras/camera.h"
 #include "lodeline/features/corner_detector.h"
 #include "lodeline/features/epipolar_consensus.h"
+#include "lodeline/features/fixed_structure.h"
 #include "lodeline/features/image_quality.h"
 #include "lodeline/features/stereo_matcher.h"
 #include "lodeline/features/temporal_tracker.h"
@@ -20,6 +21,7 @@ struct FrontEndOptions {
   TemporalTrackerOptions tracker;
   StereoMatcherOptions stereo;
   EpipolarConsensusOptions consensus;
+  FixedStructureOptions fixed_structure;
   /// Images whose texture (ImageQuality::texture_grey) is below this are smoothed more before tracking, for
   /// noise weighs more in them.
   double faint_texture_grey = 1.5;
@@ -60,6 +62,8 @@ class FrontEnd {
   const FrontEndStatistics& statistics() const { return statistics_; }
   const std::vector<Track>& tracks() const { return tracks_; }
   const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
+  /// What stays at its place in the images of each camera and is not looked at.
+  const std::vector<FixedStructure>& fixedStructures() const { return fixed_structures_; }
 
  private:
   void check(Time time, const std::vector<cv::Mat>& images) const;
@@ -68,8 +72,9 @@ class FrontEnd {
   void follow(const ImagePyramid& current, const Mat3& current_from_previous_C);
   void rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C);
   void rejectCrowded();
+  bool isHidden(size_t camera, const Eigen::Vector2f& pixel) const;
   void detect(const ImagePyramid& current);
-  void matchOthers(const ImagePyramid& current, const std::vector<cv::Mat>& images);
+  void matchOthers(Time time, const ImagePyramid& current, const std::vector<cv::Mat>& images);
   FrameTracks observations(Time time) const;
 
   FrontEndOptions options_;
@@ -79,6 +84,7 @@ class FrontEnd {
   TemporalTracker tracker_;
   std::vector<StereoMatcher> matchers_;  ///< camera 0 with camera 1, 2, ...
   CornerDetector detector_;
+  std::vector<FixedStructure> fixed_structures_;  ///< of each camera
 
   std::vector<Track> tracks_;  ///< by rising id
   ImagePyramid previous_;
