@@ -117,10 +117,41 @@ class CellSearch {
   std::vector<cv::Point> specks_;
 };
 
+/// Mean absolute second difference, over steps of two pixels, of the smoothest tenth of a picture's blocks,
+/// grey levels: what the sensor's noise makes, where some of the picture is plain. Blocks that are black or
+/// saturated say nothing of it. Steps of two make it depend as little on the smoothing as the strength of
+/// corners does.
+double noiseGrey(const cv::Mat& picture) {
+  constexpr int kBlock_px = 16;
+  constexpr float kBlack_grey = 4.0F, kSaturated_grey = 250.0F;
+  std::vector<double> blocks;
+  for (int top = 0; top + kBlock_px <= picture.rows; top += kBlock_px) {
+    for (int left = 0; left + kBlock_px <= picture.cols; left += kBlock_px) {
+      float sum = 0.0F, darkest = kSaturated_grey, brightest = 0.0F;
+      int count = 0;
+      for (int y = top; y < top + kBlock_px; y += 2) {
+        const auto* row = picture.ptr<float>(y);
+        for (int x = left + 2; x + 2 < left + kBlock_px; x += 2, ++count) {
+          sum += std::abs(row[x - 2] - 2.0F * row[x] + row[x + 2]);
+          darkest = std::min(darkest, row[x]);
+          brightest = std::max(brightest, row[x]);
+        }
+      }
+      if (darkest > kBlack_grey && brightest < kSaturated_grey)
+        blocks.push_back(static_cast<double>(sum) / count);
+    }
+  }
+  if (blocks.empty()) return 0.0;
+  const auto tenth = blocks.begin() + static_cast<ptrdiff_t>(blocks.size() / 10);
+  std::nth_element(blocks.begin(), tenth, blocks.end());
+  return *tenth;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2f> CornerDetector::detect(const ImagePyramid& image, const cv::Mat& mask,
-                                                    const std::vector<Eigen::Vector2f>& occupied) const {
+                                                    const std::vector<Eigen::Vector2f>& occupied,
+                                                    bool noisy) const {
   const int level = std::min(1, image.levels() - 1);
   const int scale = 1 << level;
   const cv::Mat& picture = image.level(level);
@@ -135,13 +166,15 @@ std::vector<Eigen::Vector2f> CornerDetector::detect(const ImagePyramid& image, c
   const int border = std::max({static_cast<int>(std::ceil(options_.border_px / scale)),
                                StructureTensor::kWindowRadius + 2, kSpeckReachPx});
   const cv::Rect usable(border, border, picture.cols - 2 * border, picture.rows - 2 * border);
+  const double noise_grey = noisy ? noiseGrey(picture) : 0.0;
+  const auto least_gradient = static_cast<float>(
+      std::max(options_.min_gradient_grey_per_px, options_.min_gradient_of_noise * noise_grey));
   std::vector<Corner> corners;
   for (int i = 0; i < grid.count(); ++i) {
     if (filled[static_cast<size_t>(i)]) continue;
     const cv::Rect cell = grid.cell(i) & usable;
     if (cell.empty()) continue;
-    const Corner best = CellSearch(picture, cell, scale, occupancy)
-                            .strongestOnRock(static_cast<float>(options_.min_gradient_grey_per_px));
+    const Corner best = CellSearch(picture, cell, scale, occupancy).strongestOnRock(least_gradient);
     if (best.strength <= 0.0F) continue;
     occupancy.occupy(best.pixel);
     corners.push_back(best);

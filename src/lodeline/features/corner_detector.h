@@ -14,6 +14,10 @@ struct CornerDetectorOptions {
   /// Root-mean-square gradient across the weaker direction of the texture, on the half-size image: twice what
   /// the noise of a good sensor makes.
   double min_gradient_grey_per_px = 0.5;
+  /// The same in noisy images: times the mean absolute second difference, over steps of two pixels, of the
+  /// smoothest tenth of the half-size image. Noise alone makes corners of up to 0.7 of it. In clear images
+  /// without a plain place that would be texture.
+  double min_gradient_of_noise = 0.75;
   double border_px = 12.0;
 };
 
@@ -26,9 +30,10 @@ class CornerDetector {
   explicit CornerDetector(const CornerDetectorOptions& options) : options_(options) {}
 
   /// New corners, strongest first, px. `occupied`: where points are followed already. `mask`: 8-bit of the
-  /// image's size, zero where nothing may be detected; may be empty.
+  /// image's size, zero where nothing may be detected; may be empty. `noisy`: noise may be as strong as
+  /// texture.
   std::vector<Eigen::Vector2f> detect(const ImagePyramid& image, const cv::Mat& mask,
-                                      const std::vector<Eigen::Vector2f>& occupied) const;
+                                      const std::vector<Eigen::Vector2f>& occupied, bool noisy = false) const;
 
  private:
   CornerDetectorOptions options_;

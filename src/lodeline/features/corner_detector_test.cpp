@@ -13,8 +13,8 @@ const ImagePyramid& rock() {
 }
 
 std::vector<Eigen::Vector2f> detect(const ImagePyramid& image, const cv::Mat& mask = {},
-                                    const std::vector<Eigen::Vector2f>& occupied = {}) {
-  return CornerDetector({}).detect(image, mask, occupied);
+                                    const std::vector<Eigen::Vector2f>& occupied = {}, bool noisy = false) {
+  return CornerDetector({}).detect(image, mask, occupied, noisy);
 }
 
 TEST(CornerDetector, SpreadsCornersOverTheImage) {
@@ -54,6 +54,31 @@ TEST(CornerDetector, FillsOnlyWhatIsEmptyAndNotMasked) {
 TEST(CornerDetector, FindsNothingOnABareWallOrInATinyImage) {
   EXPECT_TRUE(detect(ImagePyramid(cv::Mat(480, 752, CV_8U, cv::Scalar(80)), 2)).empty());
   EXPECT_TRUE(detect(ImagePyramid(cv::Mat(10, 12, CV_8U, cv::Scalar(80)), 2)).empty());
+}
+
+/// A plain picture with a slope of light, as in silted water.
+cv::Mat siltedWater(double noise_grey) {
+  cv::Mat light(480, 752, CV_32F), noise(480, 752, CV_32F), picture;
+  for (int y = 0; y < light.rows; ++y) light.row(y).setTo(70.0 + 0.1 * y);
+  cv::RNG random(5);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, noise_grey);
+  cv::Mat(light + noise).convertTo(picture, CV_8U);
+  return picture;
+}
+
+TEST(CornerDetector, TakesNoNoiseForCorners) {
+  for (const double noise_grey : {2.0, 4.0, 8.0}) {
+    for (const int smoothing_px : {3, 7}) {
+      EXPECT_LE(detect(ImagePyramid(siltedWater(noise_grey), 2, smoothing_px), {}, {}, true).size(), 2u)
+          << noise_grey << smoothing_px;
+    }
+  }
+}
+
+TEST(CornerDetector, FindsRockInNoise) {
+  TestLight light = TestLight::daylight();
+  light.noise_grey = 8.0;
+  EXPECT_GE(detect(ImagePyramid(TestSequence(light).images(0).front(), 2, 7), {}, {}, true).size(), 200u);
 }
 
 }  // namespace

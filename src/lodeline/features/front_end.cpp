@@ -96,10 +96,14 @@ ImagePyramid FrontEnd::pyramid(const cv::Mat& image) const {
 }
 
 void FrontEnd::updateQuality(const ImagePyramid& current) {
-  // Leaving the faint state later than entering it keeps patches of two images comparable.
-  constexpr double kHysteresis = 1.3;
+  // Leaving the state later than entering it keeps patches of two images comparable.
+  constexpr double kHysteresis = 1.3, kNoiseHysteresis = 0.93;
   statistics_.image = assess(current);
-  faint_ = statistics_.image.texture_grey < options_.faint_texture_grey * (faint_ ? kHysteresis : 1.0);
+  const bool faint =
+      statistics_.image.texture_grey < options_.faint_texture_grey * (faint_ ? kHysteresis : 1.0);
+  const bool noisy =
+      statistics_.image.sharpness > options_.noisy_sharpness * (faint_ ? kNoiseHysteresis : 1.0);
+  faint_ = faint || noisy;
 }
 
 void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_previous_C) {
@@ -169,7 +173,7 @@ void FrontEnd::detect(const ImagePyramid& current) {
   } else if (!moving.empty()) {
     visible = visible & moving;
   }
-  for (const Eigen::Vector2f& pixel : detector_.detect(current, visible, occupied)) {
+  for (const Eigen::Vector2f& pixel : detector_.detect(current, visible, occupied, faint_)) {
     if (static_cast<int>(tracks_.size()) >= options_.detector.max_tracks) break;
     Track track;
     track.warp.position = pixel;

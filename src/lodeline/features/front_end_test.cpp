@@ -73,6 +73,24 @@ TEST(FrontEnd, IsNotDraggedAlongByTheLampInADimPicture) {
   EXPECT_LT(accuracy.rms_px, 0.45);
 }
 
+TEST(FrontEnd, SmoothsMoreWhereNoiseIsStrong) {
+  TestLight light = TestLight::daylight();
+  light.texture_contrast = 0.12;
+  light.noise_grey = 6.0;
+  const Recording recording(light, 0.3);
+  const auto accuracy = [&](const FrontEndOptions& options) {
+    FrontEnd front_end(recording.sequence.rig(), options);
+    return accuracyOverTenFrames(recording.sequence, track(recording, front_end));
+  };
+  const TrackAccuracy usual = accuracy({});
+  FrontEndOptions options;
+  options.noisy_sharpness = 1.0;
+  const TrackAccuracy rough = accuracy(options);
+  EXPECT_GT(usual.survived, 3.0 * rough.survived);
+  EXPECT_LT(usual.bias_px.norm(), 0.15);
+  EXPECT_LT(usual.rms_px, 0.7);
+}
+
 TEST(FrontEnd, IsNotDraggedAlongByTheLampInMilkyWater) {
   const TrackAccuracy accuracy = accuracyIn(TestLight::hazyLamp(), 0.3);
   EXPECT_GE(accuracy.survived, 130);
