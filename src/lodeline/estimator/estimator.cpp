@@ -28,6 +28,29 @@ const char* toString(Status status) {
   return "unknown";
 }
 
+namespace {
+
+/// A bias that no accelerometer has: a start of one camera that was a false minimum, or readings that are not
+/// what the calibration says. What follows is wrong, however small the reprojection errors.
+void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions& options,
+                           Diagnostics* diagnostics) {
+  const double limit_m_per_s2 =
+      options.mono_initialization.max_bias_sigmas * options.initial_state.accelerometer_bias_sigma_m_per_s2;
+  const double bias_m_per_s2 = estimate.state.accelerometer_bias_B.norm();
+  if (bias_m_per_s2 <= limit_m_per_s2) return;
+  diagnostics->report(
+      Severity::Serious, "accelerometer_bias",
+      fmt::format(
+          "at {} ns the accelerometer's bias is estimated at {:.2f} m/s^2, more than {:.2f}: a false start, "
+          "or an "
+          "accelerometer whose unit, range or axes are not as the calibration says; positions are not to "
+          "be trusted where this is found. Start with more motion and clearer images, or check the "
+          "calibration",
+          estimate.time.nanoseconds(), bias_m_per_s2, limit_m_per_s2));
+}
+
+}  // namespace
+
 Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
     : rig_(rig),
       options_(options),
@@ -63,6 +86,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
     return estimate;
   }
   report(tracks, &estimate);
+  reportImplausibleBias(estimate, options_, diagnostics_);
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);

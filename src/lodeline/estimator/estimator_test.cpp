@@ -76,6 +76,19 @@ TEST_F(EstimatorSceneTest, StereoStartsMovingAndStaysOnTrack) {
   EXPECT_NEAR(comparisons.back().estimate.reprojection_rms_sigmas, 1.0, 0.25);
 }
 
+TEST_F(EstimatorSceneTest, SaysWhenTheAccelerometersBiasIsImplausible) {
+  const TestSceneOptions options = smallScene(2, 6.0);
+  for (const double bias_m_per_s2 : {0.0, 3.0}) {
+    TestScene scene(options);
+    ComparedEstimator estimator(scene, {});
+    while (auto frame = scene.next()) {
+      for (ImuSample& sample : frame->imu) sample.specific_force_B.x() += bias_m_per_s2;
+      estimator.add(*frame);
+    }
+    EXPECT_EQ(estimator.diagnostics().count("accelerometer_bias") > 0, bias_m_per_s2 > 0.0) << bias_m_per_s2;
+  }
+}
+
 TEST_F(EstimatorSceneTest, StereoStartsAtRest) {
   TestSceneOptions options = smallScene(2, 10.0);
   options.still = {{-10.0, 16.0}};
