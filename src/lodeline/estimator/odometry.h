@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "lodeline/data/frame_packet.h"
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/features/front_end.h"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
+
 #include "lodeline/features/test_sequence.h"
 
 namespace lodeline {
