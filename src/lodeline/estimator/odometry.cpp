@@ -27,9 +27,10 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
 }
 
 void Odometry::reportFixedStructure(Time time) {
+  constexpr double kWorthSaying = 0.005;  // less is a speck, left out all the same
   for (size_t i = 0; i < fixed_structure_reported_.size(); ++i) {
     const double share = front_end_.fixedStructures()[i].share();
-    if (share == 0.0 || fixed_structure_reported_[i]) continue;
+    if (share < kWorthSaying || fixed_structure_reported_[i]) continue;
     fixed_structure_reported_[i] = true;
     diagnostics_->report(
         Severity::Notice, "fixed_structure",
