@@ -44,7 +44,12 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
   settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation");
 }
 
-void bindInertial(Settings* settings, PreintegrationOptions* options) {
+void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOptions* calibration) {
+  settings->bind("inertial.gyroscope_axes_sigma", &calibration->gyroscope_sigma,
+                 "relative scale errors and misalignment of a calibrated gyroscope's axes; 0: not estimated");
+  settings->bind("inertial.calibrated_below_rad_per_s_sqrtHz",
+                 &calibration->calibrated_below_rad_per_s_sqrtHz,
+                 "white noise of a gyroscope below which its axes are believed");
   settings->bind("inertial.noise_inflation", &options->noise_inflation,
                  "factor on all noise densities of the IMU's calibration");
   settings->bind("inertial.unresolved_share", &options->motion_noise.unresolved_share,
@@ -215,7 +220,7 @@ void bindDepth(Settings* settings, DepthOptions* options) {
 void bindRunSettings(Settings* settings, RunSettings* options) {
   bindSource(settings, &options->source, &options->synchronizer);
   bindFrontEnd(settings, &options->odometry.front_end);
-  bindInertial(settings, &options->odometry.estimator.preintegration);
+  bindInertial(settings, &options->odometry.estimator.preintegration, &options->odometry.estimator.imu_axes);
   bindStart(settings, &options->odometry.estimator.initial_state,
             &options->odometry.estimator.mono_initialization);
   bindEstimator(settings, &options->odometry.estimator);

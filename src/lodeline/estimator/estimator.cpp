@@ -8,6 +8,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/robust_scale.h"
@@ -200,12 +201,17 @@ bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sighti
   return false;
 }
 
+void Estimator::addCalibration(Prior* prior) {
+  addCameraStates(window_, *prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  addInertialStates(window_, rig_.imu.noise, options_.imu_axes);
+}
+
 bool Estimator::startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu) {
   std::erase_if(sightings, [](const auto& entry) { return entry.second.camera > 0; });
   if (!mono_initializer_.add(time, sightings, imu, next_frame_id_++)) return false;
   window_ = mono_initializer_.takeWindow();
   Prior prior = mono_initializer_.takePrior();
-  addCameraStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  addCalibration(&prior);
   marginalizer_.start(std::move(prior));
   frames_since_start_ = static_cast<int>(window_.frames().size());
   return true;
@@ -234,7 +240,7 @@ bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstim
   Frame& first = window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
   Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_rad, up.still);
-  addCameraStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  addCalibration(&prior);
   marginalizer_.start(std::move(prior));
   return true;
 }
@@ -290,6 +296,7 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   const ReprojectionStatistics statistics = reprojectionStatistics(window_, factors_, newest.id);
   estimate->state = newest.state();
   estimate->camera_corrections = cameraCorrections(window_);
+  estimate->gyroscope_axes = gyroscopeAxes(window_);
   estimate->magnetometer = magnetometer_.estimate(window_);
   estimate->depth = depth_.estimate(window_);
   estimate->scale = scale_.add(window_);

@@ -42,6 +42,7 @@ struct FrameEstimate {
   int solver_iterations = 0;
   /// Nothing where the calibration is taken as the files give it.
   std::optional<CameraCorrections> camera_corrections;
+  std::optional<GyroscopeAxes> gyroscope_axes;  ///< the same
   MagnetometerEstimate magnetometer;
   DepthEstimate depth;
   ScaleInformation scale;  ///< what carries it at present
@@ -78,6 +79,8 @@ class Estimator {
                   FrameEstimate* estimate);
   bool startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu);
   bool startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate);
+  /// The states of the calibration, for a window that starts.
+  void addCalibration(Prior* prior);
   void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
   /// After darkness one camera is at a start again: the scale of what it now sees hangs on the speed that

@@ -1,6 +1,9 @@
 #include "lodeline/estimator/factor_list.h"
 
+#include <ceres/normal_prior.h>
+
 #include "lodeline/estimator/depth_states.h"
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
@@ -20,7 +23,9 @@ double costOf(const Factor& factor, std::vector<double>& residual) {
 }
 
 FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
-    : gravity_W_(options.gravity_W), robust_scale_(options.solver.robust_scale_sigmas) {
+    : gravity_W_(options.gravity_W),
+      gyroscope_axes_sigma_(options.imu_axes.gyroscope_sigma),
+      robust_scale_(options.solver.robust_scale_sigmas) {
   if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);
@@ -28,12 +33,30 @@ FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
   }
 }
 
-Factor FactorMaker::inertial(Frame& before, Frame& frame) const {
+Factor FactorMaker::inertial(const Window& window, Frame& before, Frame& frame) const {
   Factor factor;
+  GlobalState* axes = gyroscopeAxesState(window);
   const InertialFirstEstimates first_estimates{before.firstPose(), before.firstMotion(), frame.firstPose(),
-                                               frame.firstMotion()};
-  factor.function = std::make_unique<InertialFactor>(frame.from_previous.get(), gravity_W_, first_estimates);
+                                               frame.firstMotion(), axes ? axes->firstEstimate() : nullptr};
+  factor.function =
+      std::make_unique<InertialFactor>(frame.from_previous.get(), gravity_W_, first_estimates,
+                                       axes ? AxesOfGyroscope::Estimated : AxesOfGyroscope::Calibrated);
   factor.blocks = {before.pose.data(), before.motion.data(), frame.pose.data(), frame.motion.data()};
+  if (axes) factor.blocks.push_back(axes->value.data());
+  return factor;
+}
+
+std::optional<Factor> FactorMaker::gyroscopeAxes(const Window& window) const {
+  constexpr double kUsualNorm = 3.0;  // of nine sigmas
+  GlobalState* axes = gyroscopeAxesState(window);
+  if (!axes) return std::nullopt;
+  const ceres::Vector calibrated = ceres::Vector::Zero(kGyroscopeAxesSize);
+  const ceres::Matrix whitening =
+      ceres::Matrix::Identity(kGyroscopeAxesSize, kGyroscopeAxesSize) / gyroscope_axes_sigma_;
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(whitening, calibrated);
+  factor.loss = std::make_shared<ceres::CauchyLoss>(kUsualNorm);
+  factor.blocks = {axes->value.data()};
   return factor;
 }
 

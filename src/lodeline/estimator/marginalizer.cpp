@@ -194,7 +194,7 @@ void Marginalizer::retireOldestRecent(Window& window) {
   const double elapsed_s = (next.time - oldest.time).seconds();
   NormalEquations system;
   PriorTerms(prior_).addTo(&system);
-  system.add(factors_.inertial(oldest, next));
+  system.add(factors_.inertial(window, oldest, next));
   addSensors(window, oldest, next, &system);
   next.from_previous.reset();
   if (oldest.is_keyframe) {

@@ -40,7 +40,7 @@ class NormalEquationsTest : public testing::Test {
     system->add(test_.factors.prior(prior_));
     const auto& frames = test_.window.frames();
     for (size_t k = 1; k < frames.size(); ++k)
-      system->add(test_.factors.inertial(*frames[k - 1], *frames[k]));
+      system->add(test_.factors.inertial(test_.window, *frames[k - 1], *frames[k]));
   }
 
   TestWindow test_;

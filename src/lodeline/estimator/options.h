@@ -98,6 +98,17 @@ struct CameraCalibrationOptions {
   double radial_sigma = 0.005;
 };
 
+/// How far the calibration of the IMU may be off, one sigma.
+struct ImuAxesOptions {
+  /// Scale errors and misalignment of the axes of a gyroscope that its maker has calibrated, relative
+  /// (GyroscopeAxes); 0 holds them. Some are, to less than a thousandth, and some never were and are off by
+  /// one or two per cent: no Gaussian describes both, see FactorMaker::gyroscopeAxes().
+  double gyroscope_sigma = 0.001;
+  /// Makers calibrate the axes of their better sensors, to less than vision's own error in turns: those of a
+  /// gyroscope with less white noise than this are believed.
+  double calibrated_below_rad_per_s_sqrtHz = 1.2e-4;
+};
+
 struct EstimatorOptions {
   Vec3 gravity_W = standardGravity_W();  ///< m/s^2
   InitialStateOptions initial_state;
@@ -107,6 +118,7 @@ struct EstimatorOptions {
   LandmarkOptions landmark;
   SolverOptions solver;
   CameraCalibrationOptions camera_calibration;
+  ImuAxesOptions imu_axes;
   PreintegrationOptions preintegration;
   MagnetometerOptions magnetometer;
   DepthOptions depth;

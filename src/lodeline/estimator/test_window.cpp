@@ -164,7 +164,7 @@ DenseSystem denseSystem(Window& window, const Prior& prior, const FactorMaker& f
   if (!prior.empty()) addDense(factors.prior(prior), &system);
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
-    if (before && frame->from_previous) addDense(factors.inertial(*before, *frame), &system);
+    if (before && frame->from_previous) addDense(factors.inertial(window, *before, *frame), &system);
     before = frame.get();
   }
   for (auto& [id, track] : window.tracks()) {

@@ -13,12 +13,13 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 
 std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
   std::vector<Factor> terms;
+  if (auto axes = factors.gyroscopeAxes(window)) terms.push_back(std::move(*axes));
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
     frame->updateImageMotion();
     if (before && frame->from_previous) {
       repropagateIfNeeded(*before, *frame->from_previous);
-      terms.push_back(factors.inertial(*before, *frame));
+      terms.push_back(factors.inertial(window, *before, *frame));
     }
     before = frame.get();
   }

@@ -16,13 +16,17 @@ constexpr int kAccelerometerBiasAt = 6;
 struct States {
   Rigid3 pose_k, pose_k1;
   Eigen::Matrix<double, kMotionSize, 1> motion_k, motion_k1;
+  GyroscopeAxes axes = GyroscopeAxes::Zero();
 
+  /// `axes_in` may be null.
   States(const double* pose_k_in, const double* motion_k_in, const double* pose_k1_in,
-         const double* motion_k1_in)
+         const double* motion_k1_in, const double* axes_in)
       : pose_k(poseFromBlock(pose_k_in)),
         pose_k1(poseFromBlock(pose_k1_in)),
         motion_k(motion_k_in),
-        motion_k1(motion_k1_in) {}
+        motion_k1(motion_k1_in) {
+    if (axes_in != nullptr) axes = GyroscopeAxes(axes_in);
+  }
 
   Vec3 velocity_k() const { return motion_k.segment<3>(kVelocityAt); }
   Vec3 gyroscopeBias_k() const { return motion_k.segment<3>(kGyroscopeBiasAt); }
@@ -39,7 +43,8 @@ struct InertialError {
   InertialError(const States& s, const Preintegration& preintegration, const Vec3& gravity_W) {
     const double dt = preintegration.dt_s();
     const Quat body_k_from_world = s.pose_k.rotation.conjugate();
-    const RelativeMotion motion = preintegration.correctedFor(s.gyroscopeBias_k(), s.accelerometerBias_k());
+    const RelativeMotion motion =
+        preintegration.correctedFor(s.gyroscopeBias_k(), s.accelerometerBias_k(), s.axes);
     displacement_W =
         s.pose_k1.translation - s.pose_k.translation - dt * s.velocity_k() - 0.5 * dt * dt * gravity_W;
     velocity_change_W = s.velocity_k1() - s.velocity_k() - dt * gravity_W;
@@ -56,6 +61,7 @@ struct InertialJacobians {
   Eigen::Matrix<double, kSize, 9> motion_k = Eigen::Matrix<double, kSize, 9>::Zero();
   Eigen::Matrix<double, kSize, 6> pose_k1 = Eigen::Matrix<double, kSize, 6>::Zero();
   Eigen::Matrix<double, kSize, 9> motion_k1 = Eigen::Matrix<double, kSize, 9>::Zero();
+  Eigen::Matrix<double, kSize, 9> axes = Eigen::Matrix<double, kSize, 9>::Zero();
 
   InertialJacobians(const States& s, const Preintegration& preintegration, const Vec3& gravity_W) {
     const double dt = preintegration.dt_s();
@@ -74,24 +80,29 @@ struct InertialJacobians {
     motion_k.block<3, 3>(kAlpha, kVelocityAt) = -dt * body_k_from_world;
     motion_k.block<3, 3>(kBeta, kVelocityAt) = -body_k_from_world;
     motion_k.block<6, 6>(kAlpha, kGyroscopeBiasAt) = -preintegration.biasJacobian().topRows<6>();
-    motion_k.block<3, 3>(kTheta, kGyroscopeBiasAt) = thetaByGyroscopeBias(s, preintegration, theta);
+    const Mat3 theta_by_correction = thetaByCorrection(s, preintegration, theta);
+    motion_k.block<3, 3>(kTheta, kGyroscopeBiasAt) =
+        theta_by_correction * preintegration.biasJacobian().block<3, 3>(kTheta, 0);
+    axes.topRows<6>() = -preintegration.axesJacobian().topRows<6>();
+    axes.middleRows<3>(kTheta) = theta_by_correction * preintegration.axesJacobian().middleRows<3>(kTheta);
     motion_k.block<6, 6>(kGyroscopeBias, kGyroscopeBiasAt).diagonal().setConstant(-1.0);
     motion_k1.block<3, 3>(kBeta, kVelocityAt) = body_k_from_world;
     motion_k1.block<6, 6>(kGyroscopeBias, kGyroscopeBiasAt).setIdentity();
   }
 
  private:
-  // gamma is corrected by exp(J db), so a further change d of the bias turns it by J_l(J db) J d in body k,
-  // and that stands on the right of the error's rotation.
-  static Mat3 thetaByGyroscopeBias(const States& s, const Preintegration& preintegration, const Vec3& theta) {
-    const Mat3 theta_by_bias = preintegration.biasJacobian().block<3, 3>(kTheta, 0);
-    const Vec3 correction = theta_by_bias * (s.gyroscopeBias_k() - preintegration.gyroscopeBias());
-    return -so3::rightJacobianInverse(theta) * so3::leftJacobian(correction) * theta_by_bias;
+  // gamma is corrected by exp(c), so a further change d of c turns it by J_l(c) d in body k, and that stands
+  // on the right of the error's rotation.
+  static Mat3 thetaByCorrection(const States& s, const Preintegration& preintegration, const Vec3& theta) {
+    const Vec3 correction = preintegration.biasJacobian().block<3, 3>(kTheta, 0) *
+                                (s.gyroscopeBias_k() - preintegration.gyroscopeBias()) +
+                            preintegration.axesJacobian().middleRows<3>(kTheta) * s.axes;
+    return -so3::rightJacobianInverse(theta) * so3::leftJacobian(correction);
   }
 };
 
 using PoseJacobian = Eigen::Matrix<double, kSize, kPoseSize, Eigen::RowMajor>;
-using MotionJacobian = Eigen::Matrix<double, kSize, kMotionSize, Eigen::RowMajor>;
+using NineColumns = Eigen::Matrix<double, kSize, 9, Eigen::RowMajor>;  // of a motion, of the axes
 
 void writePose(const Preintegration::Mat15& whitening, const Eigen::Matrix<double, kSize, 6>& jacobian,
                double* out) {
@@ -101,20 +112,26 @@ void writePose(const Preintegration::Mat15& whitening, const Eigen::Matrix<doubl
   block.rightCols<1>().setZero();
 }
 
-void writeMotion(const Preintegration::Mat15& whitening, const Eigen::Matrix<double, kSize, 9>& jacobian,
-                 double* out) {
+void writeNine(const Preintegration::Mat15& whitening, const Eigen::Matrix<double, kSize, 9>& jacobian,
+               double* out) {
   if (out == nullptr) return;
-  Eigen::Map<MotionJacobian>(out).noalias() = whitening * jacobian;
+  Eigen::Map<NineColumns>(out).noalias() = whitening * jacobian;
 }
 
 }  // namespace
 
 InertialFactor::InertialFactor(const Preintegration* preintegration, const Vec3& gravity_W,
-                               const InertialFirstEstimates& first_estimates)
-    : preintegration_(preintegration), gravity_W_(gravity_W), first_estimates_(first_estimates) {}
+                               const InertialFirstEstimates& first_estimates, AxesOfGyroscope axes)
+    : preintegration_(preintegration), gravity_W_(gravity_W), first_estimates_(first_estimates), axes_(axes) {
+  set_num_residuals(kSize);
+  *mutable_parameter_block_sizes() = {kPoseSize, kMotionSize, kPoseSize, kMotionSize};
+  if (axes == AxesOfGyroscope::Estimated) mutable_parameter_block_sizes()->push_back(kGyroscopeAxesSize);
+}
 
 bool InertialFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const States current(parameters[0], parameters[1], parameters[2], parameters[3]);
+  const bool has_axes = axes_ == AxesOfGyroscope::Estimated;
+  const double* axes = has_axes ? parameters[4] : nullptr;
+  const States current(parameters[0], parameters[1], parameters[2], parameters[3], axes);
   const Preintegration::Mat15& whitening = preintegration_->whitening();
   Eigen::Map<Vec15>(residuals).noalias() = whitening * InertialError(current, *preintegration_, gravity_W_).e;
   if (jacobians == nullptr) return true;
@@ -122,12 +139,14 @@ bool InertialFactor::Evaluate(double const* const* parameters, double* residuals
   const auto firstOr = [](const double* first, const double* now) { return first != nullptr ? first : now; };
   const States linearised(
       firstOr(first_estimates_.pose_k, parameters[0]), firstOr(first_estimates_.motion_k, parameters[1]),
-      firstOr(first_estimates_.pose_k1, parameters[2]), firstOr(first_estimates_.motion_k1, parameters[3]));
+      firstOr(first_estimates_.pose_k1, parameters[2]), firstOr(first_estimates_.motion_k1, parameters[3]),
+      firstOr(first_estimates_.axes, axes));
   const InertialJacobians by(linearised, *preintegration_, gravity_W_);
   writePose(whitening, by.pose_k, jacobians[0]);
-  writeMotion(whitening, by.motion_k, jacobians[1]);
+  writeNine(whitening, by.motion_k, jacobians[1]);
   writePose(whitening, by.pose_k1, jacobians[2]);
-  writeMotion(whitening, by.motion_k1, jacobians[3]);
+  writeNine(whitening, by.motion_k1, jacobians[3]);
+  if (has_axes) writeNine(whitening, by.axes, jacobians[4]);
   return true;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
-#include <ceres/sized_cost_function.h>
+#include <ceres/cost_function.h>
 
 #include "lodeline/factors/parameters.h"
 #include "lodeline/inertial/preintegration.h"
 
 namespace lodeline {
+
+constexpr int kGyroscopeAxesSize = 9;
 
 /// Where the inertial factor takes its Jacobian. Null: linearise that block at its current value.
 struct InertialFirstEstimates {
@@ -13,25 +15,31 @@ struct InertialFirstEstimates {
   const double* motion_k = nullptr;
   const double* pose_k1 = nullptr;
   const double* motion_k1 = nullptr;
+  const double* axes = nullptr;
 };
 
+/// Whether the gyroscope's axes are a block of the inertial factor, or as calibrated.
+enum class AxesOfGyroscope { Calibrated, Estimated };
+
 /// The IMU between two states, 15 residuals on the blocks pose k, motion k, pose k+1, motion k+1 (layout,
-/// axes of the perturbation and first estimates as in factors/parameters.h).
+/// axes of the perturbation and first estimates as in factors/parameters.h), and the gyroscope's axes d (see
+/// GyroscopeAxes) where these are estimated.
 ///
-///   e = [ R_B_W^k (p^{k+1} - p^k - v^k dt - g dt^2 / 2) - alpha(b^k)   ]   m
-///       [ R_B_W^k (v^{k+1} - v^k - g dt) - beta(b^k)                   ]   m/s
-///       [ log( R_B_W^k R_W_B^{k+1} gamma(b^k)^-1 )                     ]   rad
+///   e = [ R_B_W^k (p^{k+1} - p^k - v^k dt - g dt^2 / 2) - alpha(b^k, d)]   m
+///       [ R_B_W^k (v^{k+1} - v^k - g dt) - beta(b^k, d)                ]   m/s
+///       [ log( R_B_W^k R_W_B^{k+1} gamma(b^k, d)^-1 )                  ]   rad
 ///       [ b_g^{k+1} - b_g^k                                            ]   rad/s
 ///       [ b_a^{k+1} - b_a^k                                            ]   m/s^2
 ///
 /// all in axes of body k, whitened by the preintegration's covariance; alpha, beta and gamma to first order
-/// at the biases of k. The paper's section III-C with gravity pointing down. Derivation: docs/inertial.md.
-class InertialFactor final
-    : public ceres::SizedCostFunction<15, kPoseSize, kMotionSize, kPoseSize, kMotionSize> {
+/// at the biases of k and the axes. The paper's section III-C with gravity pointing down. Derivation:
+/// docs/inertial.md.
+class InertialFactor final : public ceres::CostFunction {
  public:
   /// `preintegration` must outlive the factor and may be repropagated between evaluations, not during one.
   InertialFactor(const Preintegration* preintegration, const Vec3& gravity_W,
-                 const InertialFirstEstimates& first_estimates = {});
+                 const InertialFirstEstimates& first_estimates = {},
+                 AxesOfGyroscope axes = AxesOfGyroscope::Calibrated);
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
@@ -39,6 +47,7 @@ class InertialFactor final
   const Preintegration* preintegration_;
   Vec3 gravity_W_;
   InertialFirstEstimates first_estimates_;
+  AxesOfGyroscope axes_;
 };
 
 }  // namespace lodeline

@@ -14,7 +14,7 @@ namespace {
 
 using Vec15 = Eigen::Matrix<double, 15, 1>;
 using Mat15 = Preintegration::Mat15;
-using Blocks = std::vector<Eigen::VectorXd>;  // pose k, motion k, pose k+1, motion k+1
+using Blocks = std::vector<Eigen::VectorXd>;  // pose k, motion k, pose k+1, motion k+1, maybe axes
 
 const TestMotion kMotion;
 const Vec3 kGyroscopeBias(0.01, -0.02, 0.015);
@@ -77,8 +77,9 @@ Evaluation evaluate(const InertialFactor& factor, const Blocks& blocks) {
 // The factor without its whitening, so that no row hides behind another's weight.
 class Unwhitened final : public ceres::CostFunction {
  public:
-  Unwhitened(const Preintegration& preintegration, const Vec3& gravity_W)
-      : factor_(&preintegration, gravity_W), unwhiten_(preintegration.whitening().inverse()) {
+  Unwhitened(const Preintegration& preintegration, const Vec3& gravity_W,
+             AxesOfGyroscope axes = AxesOfGyroscope::Calibrated)
+      : factor_(&preintegration, gravity_W, {}, axes), unwhiten_(preintegration.whitening().inverse()) {
     set_num_residuals(15);
     *mutable_parameter_block_sizes() = factor_.parameter_block_sizes();
   }
@@ -86,7 +87,7 @@ class Unwhitened final : public ceres::CostFunction {
     if (!factor_.Evaluate(parameters, residuals, jacobians)) return false;
     Eigen::Map<Vec15> e(residuals);
     e = (unwhiten_ * e).eval();
-    for (int b = 0; jacobians != nullptr && b < 4; ++b) {
+    for (int b = 0; jacobians != nullptr && b < static_cast<int>(parameter_block_sizes().size()); ++b) {
       Eigen::Map<Eigen::Matrix<double, 15, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
           jacobians[b], 15, parameter_block_sizes()[b]);
       jacobian = (unwhiten_ * jacobian).eval();
@@ -130,6 +131,38 @@ TEST(InertialFactor, JacobiansAgreeWithNumericDifferentiation) {
       expectJacobiansMatch(Unwhitened(p, standardGravity_W()), blocks, 1e-6);
     }
   }
+}
+
+/// Blocks with axes that are off by some per cent.
+Blocks withAxes(Blocks blocks, double sigma, Gaussian& gaussian) {
+  GyroscopeAxes axes;
+  axes << gaussian(sigma), gaussian(sigma), gaussian(sigma);
+  blocks.push_back(axes);
+  return blocks;
+}
+
+TEST(InertialFactor, JacobiansByTheGyroscopesAxesAgreeWithNumericDifferentiation) {
+  Gaussian gaussian;
+  const Preintegration p = preintegrate(0.2);
+  for (const double sigma : {1e-3, 0.1}) {
+    const Blocks blocks = withAxes(moved(trueBlocks(p), sigma, gaussian), 0.02, gaussian);
+    const AxesOfGyroscope axes = AxesOfGyroscope::Estimated;
+    expectJacobiansMatch(InertialFactor(&p, standardGravity_W(), {}, axes), blocks, 1e-6);
+    expectJacobiansMatch(Unwhitened(p, standardGravity_W(), axes), blocks, 1e-6);
+  }
+}
+
+TEST(InertialFactor, WithAxesAsCalibratedIsTheOneWithout) {
+  Gaussian gaussian;
+  const Preintegration p = preintegrate(0.2);
+  Blocks blocks = moved(trueBlocks(p), 0.01, gaussian);
+  const Evaluation without = evaluate(InertialFactor(&p, standardGravity_W()), blocks);
+  blocks.push_back(GyroscopeAxes::Zero());
+  const Evaluation with =
+      evaluate(InertialFactor(&p, standardGravity_W(), {}, AxesOfGyroscope::Estimated), blocks);
+  EXPECT_EQ(with.residual, without.residual);
+  for (size_t b = 0; b < 4; ++b) EXPECT_EQ(with.jacobians[b], without.jacobians[b]) << b;
+  EXPECT_GT(with.jacobians[4].norm(), 1.0);
 }
 
 TEST(InertialFactor, WritesOnlyTheJacobiansAskedFor) {
@@ -213,6 +246,15 @@ TEST(InertialFactor, TakesJacobiansAtFirstEstimatesAndTheResidualAtTheValue) {
   EXPECT_EQ(evaluate(anchored, now).residual, evaluate(plain, now).residual);
   EXPECT_EQ(evaluate(anchored, now).jacobians, evaluate(plain, first).jacobians);
   EXPECT_NE(evaluate(anchored, now).jacobians, evaluate(plain, now).jacobians);
+
+  // The axes have theirs like the other blocks.
+  const Blocks first_axes = withAxes(first, 0.01, gaussian), now_axes = withAxes(first, 0.01, gaussian);
+  const InertialFactor anchored_axes(&p, standardGravity_W(),
+                                     {nullptr, nullptr, nullptr, nullptr, first_axes[4].data()},
+                                     AxesOfGyroscope::Estimated);
+  const InertialFactor plain_axes(&p, standardGravity_W(), {}, AxesOfGyroscope::Estimated);
+  EXPECT_EQ(evaluate(anchored_axes, now_axes).residual, evaluate(plain_axes, now_axes).residual);
+  EXPECT_EQ(evaluate(anchored_axes, now_axes).jacobians, evaluate(plain_axes, first_axes).jacobians);
 
   // Only pose k has a first estimate.
   const InertialFactor partly(&p, standardGravity_W(), {first[0].data(), nullptr, nullptr, nullptr});

@@ -108,11 +108,11 @@ bool Preintegration::needsRepropagation(const Vec3& gyroscope_bias_B,
              options_.max_velocity_correction_m_per_s;
 }
 
-RelativeMotion Preintegration::correctedFor(const Vec3& gyroscope_bias_B,
-                                            const Vec3& accelerometer_bias_B) const {
+RelativeMotion Preintegration::correctedFor(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B,
+                                            const GyroscopeAxes& axes) const {
   Eigen::Matrix<double, 6, 1> change;
   change << gyroscope_bias_B - gyroscope_bias_, accelerometer_bias_B - accelerometer_bias_;
-  const Eigen::Matrix<double, 9, 1> correction = bias_jacobian_ * change;
+  const Eigen::Matrix<double, 9, 1> correction = bias_jacobian_ * change + axes_jacobian_ * axes;
   RelativeMotion corrected;
   corrected.alpha = motion_.alpha + correction.segment<3>(kAlpha);
   corrected.beta = motion_.beta + correction.segment<3>(kBeta);
@@ -123,6 +123,7 @@ RelativeMotion Preintegration::correctedFor(const Vec3& gyroscope_bias_B,
 void Preintegration::integrate() {
   motion_ = {};
   bias_jacobian_.setZero();
+  axes_jacobian_.setZero();
   covariance_.setZero();
   rotations_.assign(1, IntermediateRotation());
   for (size_t i = 0; i + 1 < samples_.size(); ++i) advance(i);
@@ -160,6 +161,10 @@ void Preintegration::advance(size_t i) {
   const Mat15 transition = errorTransition(step);
   bias_jacobian_ =
       (transition.topLeftCorner<9, 9>() * bias_jacobian_ + transition.topRightCorner<9, 6>()).eval();
+  const Eigen::Matrix<double, 9, 3> motion_by_rate = -transition.block<9, 3>(kAlpha, kGyroscopeBias);
+  axes_jacobian_ = (transition.topLeftCorner<9, 9>() * axes_jacobian_).eval();
+  for (int column = 0; column < 3; ++column)
+    axes_jacobian_.middleCols<3>(3 * column) += increment.mean_rate_rad_per_s[column] * motion_by_rate;
   covariance_ = (transition * covariance_ * transition.transpose() +
                  processNoise(from, to, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
                     .eval();

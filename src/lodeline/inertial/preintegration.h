@@ -61,6 +61,11 @@ struct IntermediateRotation {
   Quat correctedFor(const Vec3& gyroscope_bias_change) const;
 };
 
+/// How a gyroscope's axes are longer and point elsewhere than its calibration says: the true rate is
+/// (I + D) (reading - b_g). D column by column; 0 for a sensor as calibrated. (D_w in Yang et al., "Online
+/// IMU intrinsic calibration: is it necessary?", RSS 2020.)
+using GyroscopeAxes = Eigen::Matrix<double, 9, 1>;
+
 /// IMU readings between two moments, integrated once so that the optimiser need not.
 ///
 /// Model: measured rate = true rate + b_g + noise, measured force = R_B_W (a_W - g_W) + b_a + noise; white
@@ -79,6 +84,7 @@ class Preintegration {
  public:
   using Mat15 = Eigen::Matrix<double, 15, 15>;
   using Mat96 = Eigen::Matrix<double, 9, 6>;
+  using Mat99 = Eigen::Matrix<double, 9, 9>;
 
   /// `samples`: from moment k to moment k+1, the first and last reading exactly on the borders, times
   /// strictly increasing. Throws InputError for fewer than two samples, times that do not increase, readings
@@ -95,12 +101,15 @@ class Preintegration {
   const Vec3& gyroscopeBias() const { return gyroscope_bias_; }
   const Vec3& accelerometerBias() const { return accelerometer_bias_; }
 
-  /// At the biases integrated with.
+  /// At the biases integrated with, axes as calibrated.
   const RelativeMotion& motion() const { return motion_; }
-  /// To first order at other biases.
-  RelativeMotion correctedFor(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B) const;
+  /// To first order at other biases and axes.
+  RelativeMotion correctedFor(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B,
+                              const GyroscopeAxes& axes = GyroscopeAxes::Zero()) const;
   /// d[alpha, beta, theta] / d[b_g, b_a], theta as in IntermediateRotation.
   const Mat96& biasJacobian() const { return bias_jacobian_; }
+  /// The same by the gyroscope's axes.
+  const Mat99& axesJacobian() const { return axes_jacobian_; }
 
   /// Covariance of the error, SI units.
   const Mat15& covariance() const { return covariance_; }
@@ -132,6 +141,7 @@ class Preintegration {
 
   RelativeMotion motion_;
   Mat96 bias_jacobian_;
+  Mat99 axes_jacobian_;
   Mat15 covariance_;
   Mat15 whitening_;
   std::vector<IntermediateRotation> rotations_;  // at each sample

@@ -18,6 +18,7 @@ struct TurningRate {
 struct RotationIncrement {
   Vec3 rotation_vector;  ///< rad
   Mat3 by_bias;          ///< derivative by a bias taken off both rates, s
+  Vec3 mean_rate_rad_per_s;
 
   /// Linear between the rates, rad/s.
   RotationIncrement(const Vec3& from, const Vec3& to, double stretch_s)
@@ -29,7 +30,9 @@ struct RotationIncrement {
             stretch_s * stretch_s / 12.0 *
                 (from.slope_rad_per_s2 - to.slope_rad_per_s2 + from.rate_rad_per_s.cross(to.rate_rad_per_s))),
         by_bias(-stretch_s * Mat3::Identity() +
-                stretch_s * stretch_s / 12.0 * so3::skew(to.rate_rad_per_s - from.rate_rad_per_s)) {}
+                stretch_s * stretch_s / 12.0 * so3::skew(to.rate_rad_per_s - from.rate_rad_per_s)),
+        mean_rate_rad_per_s(0.5 * (from.rate_rad_per_s + to.rate_rad_per_s) +
+                            stretch_s / 12.0 * (from.slope_rad_per_s2 - to.slope_rad_per_s2)) {}
 };
 
 }  // namespace lodeline

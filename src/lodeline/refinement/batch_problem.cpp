@@ -21,6 +21,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addGlobals(record);
   addStartPrior(record.startPrior(), record.globals());
   addLenses(record.globals());
+  addGyroscopeAxes(rig.imu.noise, record.globals());
   orderBlocks();
   relinearise();
   renewLandmarks();
@@ -47,9 +48,10 @@ double* BatchProblem::nodeOf(const Chain& chain, size_t state) {
 std::vector<Factor> BatchProblem::motionFactors() {
   std::vector<Factor> terms;
   for (const Prior& prior : priors_) terms.push_back(factors_.prior(prior));
+  if (auto axes = factors_.gyroscopeAxes(window_)) terms.push_back(std::move(*axes));
   for (size_t k = 0; k < states(); ++k) {
     Frame& frame = *window_.frames()[k];
-    if (k > 0) terms.push_back(factors_.inertial(*window_.frames()[k - 1], frame));
+    if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));
     if (!field_offsets_.empty()) {
       if (auto field = factors_.magnetometer(window_, nullptr, frame)) {
         field->blocks[2] = nodeOf(field_offsets_, k);

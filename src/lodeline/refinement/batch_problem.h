@@ -67,6 +67,7 @@ class BatchProblem {
   void addStartPrior(const ForwardRecord::StartPrior& start, const GlobalValues& globals);
   /// At a start the run held them; `globals` has what it found later.
   void addLenses(const GlobalValues& globals);
+  void addGyroscopeAxes(const ImuNoise& noise, const GlobalValues& globals);
   GlobalState* addGlobal(const ForwardRecord& record, const std::string& name, const std::string& as);
   void addKnowledge(GlobalState* state, double sigma);
   void orderBlocks();

@@ -4,6 +4,7 @@
 
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/depth_states.h"
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/refinement/batch_problem.h"
 
@@ -175,6 +176,14 @@ void BatchProblem::addLenses(const GlobalValues& globals) {
     if (end != globals.end()) lens->value = end->second;
   }
   priors_.push_back(std::move(prior));
+}
+
+void BatchProblem::addGyroscopeAxes(const ImuNoise& noise, const GlobalValues& globals) {
+  addInertialStates(window_, noise, options_.imu_axes);
+  GlobalState* axes = gyroscopeAxesState(window_);
+  if (!axes) return;
+  const auto end = globals.find(axes->name);
+  if (end != globals.end()) axes->value = end->second;
 }
 
 void BatchProblem::appendBlock(double* value, int tangent_size, int first) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "lodeline/estimator/depth_states.h"
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/estimator/unmodelled_errors.h"
 
@@ -33,6 +34,7 @@ class FrameMaker {
     refined.state = is_state ? begin.state() : between(begin, forward.time, share);
     refined.covariance = covarianceAt(share);
     refined.camera_corrections = cameraCorrections(problem_.window());
+    refined.gyroscope_axes = gyroscopeAxes(problem_.window());
     describeMagnetometer(forward, &refined);
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);

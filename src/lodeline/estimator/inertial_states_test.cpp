@@ -1,0 +1,83 @@
+#include "lodeline/estimator/inertial_states.h"
+
+#include <gtest/gtest.h>
+
+#include "lodeline/estimator/test_scene.h"
+
+namespace lodeline {
+namespace {
+
+TestSceneOptions sceneOptions() {
+  TestSceneOptions options;
+  options.duration_s = 60.0;
+  options.points.frame_rate_hz = 10.0;
+  options.points.tracks = 30;
+  return options;
+}
+
+struct Outcome {
+  FrameEstimate last;
+  /// What the rotation's error has changed by since the middle of the scene, root mean square.
+  double drift_rad = 0.0;
+};
+
+/// A scene seen with a gyroscope whose true rates are (I + D) times what it reads, D column by column.
+Outcome runWith(const GyroscopeAxes& axes, double sigma) {
+  const Mat3 reading_from_true = (Mat3::Identity() + axes.reshaped(3, 3)).inverse();
+  TestScene scene(sceneOptions());
+  EstimatorOptions options = honestOptions(sceneOptions());
+  options.imu_axes = {sigma, 0.0};
+  ComparedEstimator estimator(scene, options);
+  Outcome outcome;
+  std::optional<Vec3> error_before;
+  double squares = 0.0;
+  int frames = 0;
+  while (auto frame = scene.next()) {
+    for (ImuSample& reading : frame->imu)
+      reading.angular_velocity_B = reading_from_true * reading.angular_velocity_B;
+    const Comparison compared = estimator.add(*frame);
+    outcome.last = compared.estimate;
+    if (compared.time_s < 0.5 * sceneOptions().duration_s) continue;
+    const Vec3 error = compared.error.tail<3>();
+    error_before = error_before.value_or(error);
+    squares += (error - *error_before).squaredNorm();
+    ++frames;
+  }
+  outcome.drift_rad = std::sqrt(squares / frames);
+  return outcome;
+}
+
+TEST(InertialStates, FindTheAxesOfAGyroscopeThatWasNeverCalibrated) {
+  GyroscopeAxes axes;
+  axes << 0.012, -0.006, 0.009, 0.004, -0.015, -0.007, 0.003, 0.011, 0.02;
+  const Outcome held = runWith(axes, 0.0);
+  const Outcome found = runWith(axes, 0.001);
+  EXPECT_FALSE(held.last.gyroscope_axes);
+  ASSERT_TRUE(found.last.gyroscope_axes);
+  EXPECT_LT((*found.last.gyroscope_axes - axes).norm(), 0.25 * axes.norm())
+      << found.last.gyroscope_axes->transpose();
+  EXPECT_LT(found.drift_rad, 0.5 * held.drift_rad);
+}
+
+TEST(InertialStates, AreBelievedOfAQuietGyroscope) {
+  ImuNoise noise;
+  const ImuAxesOptions options;
+  noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * options.calibrated_below_rad_per_s_sqrtHz;
+  Window quiet, loud;
+  addInertialStates(quiet, noise, options);
+  EXPECT_FALSE(gyroscopeAxes(quiet));
+  noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * options.calibrated_below_rad_per_s_sqrtHz;
+  addInertialStates(loud, noise, options);
+  ASSERT_TRUE(gyroscopeAxes(loud));
+  EXPECT_TRUE(gyroscopeAxes(loud)->isZero());
+}
+
+TEST(InertialStates, StayNearRightAxes) {
+  const Outcome found = runWith(GyroscopeAxes::Zero(), 0.001);
+  ASSERT_TRUE(found.last.gyroscope_axes);
+  EXPECT_LT(found.last.gyroscope_axes->cwiseAbs().maxCoeff(), 2e-3) << found.last.gyroscope_axes->transpose();
+  EXPECT_LT(found.drift_rad, 1.1 * runWith(GyroscopeAxes::Zero(), 0.0).drift_rad);
+}
+
+}  // namespace
+}  // namespace lodeline
