@@ -139,7 +139,8 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
                                     const Estimator& estimator) {
   const Rigid3& truth = frame.truth.motion.world_from_body;
   Comparison result;
-  result.time_s = (frame.truth.time - PointSimulationOptions().start).seconds();
+  static const PointSimulationOptions usual;  // as TestScene leaves it
+  result.time_s = (frame.truth.time - usual.start).seconds();
   result.estimate = estimate;
   if (!estimate_from_truth_) true_poses_[frame.truth.time] = truth;
   if (!result.initialized()) return result;
