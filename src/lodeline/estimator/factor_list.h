@@ -40,9 +40,8 @@ class FactorMaker {
   /// Inertial term between `frame` and the frame before it.
   Factor inertial(const Window& window, Frame& before, Frame& frame) const;
   /// What is known beforehand of the gyroscope's axes, where they are estimated: as good as those of a
-  /// calibrated one, or else anything (a Cauchy loss on all nine together). Vision alone can hardly tell a
-  /// long axis from a long focal length; this leaves small differences to the lens, and large ones, which no
-  /// lens has, to the gyroscope. Stays outside of the marginalisation prior, which could not hold its shape.
+  /// calibrated one, or else anything (a Cauchy loss on all nine together). Stays outside of the
+  /// marginalisation prior, which could not hold its shape.
   std::optional<Factor> gyroscopeAxes(const Window& window) const;
   /// Term of the frame's magnetometer, if it has one; `before` is the frame before (null for the first).
   std::optional<Factor> magnetometer(const Window& window, Frame* before, Frame& frame) const;
