@@ -239,7 +239,8 @@ bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstim
   frame->gyroscope_B = imu_before_start_.back().angular_velocity_B;
   Frame& first = window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
-  Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_rad, up.still);
+  Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_given_bias_rad, up.still);
+  tieTiltToAccelerometerBias(first, options_.gravity_W.norm(), &prior);
   addCalibration(&prior);
   marginalizer_.start(std::move(prior));
   return true;
@@ -262,7 +263,8 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
 
 void Estimator::startMagnetometer() {
   Prior prior = marginalizer_.prior();
-  magnetometer_.start(&window_, &prior);
+  const Eigen::Matrix<double, 15, 15> known = newestCovariance(window_, prior, factors_);
+  magnetometer_.start(std::sqrt(0.5 * known.diagonal().segment<2>(3).sum()), &window_, &prior);
   marginalizer_.start(std::move(prior));
 }
 

@@ -75,6 +75,10 @@ void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prio
   prior->blocks[1].first_estimate.head<3>() =
       turned_from_world.rotation * Vec3(prior->blocks[1].first_estimate.head<3>());
   prior->sqrt_information(5, 5) = 1.0 / yaw_sigma_rad;
+  // What ties roll and pitch, in world axes, to the motion (tieTiltToAccelerometerBias) turns with them.
+  constexpr int kTilt = 3;
+  auto ties = prior->sqrt_information.block<2, kMotionSize>(kTilt, kPoseTangentSize);
+  ties = (Eigen::Rotation2Dd(yaw_rad).toRotationMatrix() * ties).eval();
 }
 
 }  // namespace lodeline

@@ -8,7 +8,6 @@
 
 #include "lodeline/estimator/lasting_error.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/inertial/field_gate.h"
 
 namespace lodeline {
 namespace {
@@ -60,6 +59,7 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
       gyroscope_density_(options.preintegration.noise_inflation *
                          rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz),
       readings_(calibration_, diagnostics),
+      comparison_(options.magnetometer),
       gate_(options.magnetometer.gate),
       floor_(options.magnetometer),
       step_(options.magnetometer.step) {
@@ -90,8 +90,9 @@ void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std:
   if (!samples.empty()) means_[time] = carryToFrame(samples, imu, gyroscope_bias_B, gyroscope_density_);
 }
 
-void MagnetometerFusion::start(Window* window, Prior* prior) {
+void MagnetometerFusion::start(double tilt_sigma_rad, Window* window, Prior* prior) {
   if (use_ == MagnetometerUse::Off) return;
+  tilt_variance_rad2_ = tilt_sigma_rad * tilt_sigma_rad;
   status_ = MagnetometerStatus::NoData;
   align(window, prior);
   for (const auto& frame : window->frames()) {
@@ -161,9 +162,21 @@ double MagnetometerFusion::whiteVariance(const MagnetometerMean& mean) const {
   return density * density * calibration_.rate_hz / mean.readings;
 }
 
-double MagnetometerFusion::tiltSigma() const {
-  if (covariance_.empty()) return options_.initial_state.tilt_sigma_min_rad;
-  return std::sqrt(0.5 * covariance_.newest().diagonal().segment<2>(3).sum());
+void MagnetometerFusion::remember(JointCovariance covariance) {
+  covariance_ = std::move(covariance);
+  tilt_variance_rad2_ = 0.5 * covariance_.newest().diagonal().segment<2>(3).sum();
+}
+
+double MagnetometerFusion::tiltSigma(double shared) {
+  // An error of the tilt lasts too, but what has been learned of it since is new: of all that the frames so
+  // far have said, the part that took the tilt as wrongly as then shall fade. The weighted mean of errors of
+  // an estimate whose information grows has twice the variance of its last one, hence the half.
+  const double information = 1.0 / tilt_variance_rad2_;
+  const bool is_first = least_tilt_variance_rad2_ == 0.0;
+  const double known = is_first ? information : 1.0 / least_tilt_variance_rad2_;
+  const double learned = 0.5 * std::max(0.0, information - known);
+  least_tilt_variance_rad2_ = 1.0 / std::max(information, known);
+  return 1.0 / std::sqrt(information / shared + learned);
 }
 
 FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean, double variance_scale,
@@ -181,7 +194,7 @@ FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean,
   const double variance_T2 = whiteVariance(mean) + shared * std::pow(floorSigma(mean.field_B), 2);
   measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
   measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
-  measurement.noise.tilt_sigma_rad = tiltSigma() * std::sqrt(variance_scale * shared);
+  measurement.noise.tilt_sigma_rad = tiltSigma(shared) * std::sqrt(variance_scale);
   last_seen_ = mean.time;
   return measurement;
 }
@@ -239,10 +252,10 @@ void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window,
 
 void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
   Frame& newest = window.newest();
-  const MagnetometerStates states(window);
-  const FieldCheck earth = check(mean, window, false);
+  comparison_.add(mean, whiteVariance(mean), window);
+  const FieldCheck earth = comparison_.check(window, covariance_, floor_.sigma_T(), false);
   std::optional<FieldCheck> with_disturbance;
-  if (disturbed_) with_disturbance = check(mean, window, true);
+  if (disturbed_) with_disturbance = comparison_.check(window, covariance_, floor_.sigma_T(), true);
   const GateDecision decision = gate_.decide(mean.time, earth, with_disturbance);
   reportDecision(decision, mean.time);
   status_ = decision.status;
@@ -261,60 +274,6 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
   newest.magnetometer = measurementOf(mean, decision.variance_scale, disturbed);
 }
 
-FieldCheck MagnetometerFusion::check(const MagnetometerMean& mean, const Window& window,
-                                     bool disturbed) const {
-  const MagnetometerStates states(window);
-  const Mat3 world_from_body = window.newest().worldFromBody().rotation.toRotationMatrix();
-  const Vec3 expected_W = states.field_W() + (disturbed ? states.disturbance_W() : Vec3::Zero());
-  const Vec3 measured_W = world_from_body * (mean.field_B - mean.carried * states.offset_B());
-  const Mat3 covariance = differenceCovariance(mean, window, disturbed);
-  const FieldShape expected = FieldShape::of(expected_W), measured = FieldShape::of(measured_W);
-  const double norm_T = expected.norm_T, horizontal_T = expected.horizontal_T();
-  const auto sigmaAlong = [&](const Vec3& direction) {
-    return std::sqrt(direction.dot(covariance * direction));
-  };
-  const Vec3 along = expected_W / norm_T;
-  const Vec3 across = Vec3::UnitZ().cross(expected_W) / horizontal_T;
-  FieldCheck result;
-  result.norm_error = measured.norm_T / norm_T - 1.0;
-  result.norm_sigma = sigmaAlong(along) / norm_T;
-  result.dip_error_rad = measured.dip_rad - expected.dip_rad;
-  result.dip_sigma_rad = sigmaAlong(along.cross(across)) / norm_T;
-  result.heading_error_rad =
-      std::atan2(across.dot(measured_W), measured_W.head<2>().dot(expected_W.head<2>()) / horizontal_T);
-  result.heading_sigma_rad = sigmaAlong(across) / horizontal_T;
-  result.lasting_sigma_rad = floor_.sigma_T() / horizontal_T;
-  return result;
-}
-
-Mat3 MagnetometerFusion::differenceCovariance(const MagnetometerMean& mean, const Window& window,
-                                              bool disturbed) const {
-  const MagnetometerOptions& wanted = options_.magnetometer;
-  const MagnetometerStates states(window);
-  const Mat3 world_from_body = window.newest().worldFromBody().rotation.toRotationMatrix();
-  FieldNoise noise;
-  noise.sigma_T = std::hypot(wanted.gate.field_sigma_T, std::sqrt(whiteVariance(mean)));
-  noise.rotation_sigma_rad = mean.rotation_sigma_rad;
-  Mat3 covariance = fieldCovariance_W(states.field_W(), noise);
-
-  // What was known a frame ago; the gyroscope's error since then is small beside it.
-  const double* pose = window.frames()[window.frames().size() - 2]->pose.data();
-  std::vector<std::pair<const double*, Mat3>> derivatives = {
-      {pose, -so3::skew(world_from_body * mean.field_B)},
-      {states.field->value.data(), -Mat3::Identity()},
-      {states.offset->value.data(), -world_from_body * mean.carried}};
-  if (disturbed) derivatives.emplace_back(states.disturbance->value.data(), -Mat3::Identity());
-  for (const auto& [row, by_row] : derivatives) {
-    for (const auto& [column, by_column] : derivatives) {
-      if (!covariance_.knows(row) || !covariance_.knows(column)) continue;
-      // The rotation is the last part of a pose.
-      covariance +=
-          by_row * covariance_.between(row, column).bottomRightCorner<3, 3>() * by_column.transpose();
-    }
-  }
-  return covariance;
-}
-
 void MagnetometerFusion::learnFloor(const MagnetometerMean& mean, const FieldCheck& earth,
                                     const Window& window) {
   const double norm_T = MagnetometerStates(window).field_W().norm();
@@ -322,7 +281,7 @@ void MagnetometerFusion::learnFloor(const MagnetometerMean& mean, const FieldChe
       0.5 * (earth.norm_sigma * earth.norm_sigma + earth.dip_sigma_rad * earth.dip_sigma_rad);
   const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
   const double state_variance_T2 =
-      norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - whiteVariance(mean);
+      norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
   floor_.add(mean.time, norm_T * earth.norm_error, norm_T * earth.dip_error_rad,
              std::max(0.0, state_variance_T2), whiteVariance(mean));
 }

@@ -6,6 +6,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/field_comparison.h"
 #include "lodeline/estimator/field_floor.h"
 #include "lodeline/estimator/field_step.h"
 #include "lodeline/estimator/heading_alignment.h"
@@ -42,14 +43,15 @@ class MagnetometerFusion {
             const Vec3& gyroscope_bias_B);
 
   /// The window has just started, with `prior` on its first frame: turns both to north where the field
-  /// allows, adds the global states to both and gives the frames their fields.
-  void start(Window* window, Prior* prior);
+  /// allows, adds the global states to both and gives the frames their fields. `tilt_sigma_rad`: of the roll
+  /// and pitch that the window knows.
+  void start(double tilt_sigma_rad, Window* window, Prior* prior);
 
   /// The newest frame has just been added.
   void addToNewest(Window& window, Marginalizer& marginalizer);
 
   /// Joint covariance after the window was solved; the next frame's field is judged by it.
-  void remember(JointCovariance covariance) { covariance_ = std::move(covariance); }
+  void remember(JointCovariance covariance);
 
   MagnetometerEstimate estimate(const Window& window) const;
 
@@ -66,13 +68,11 @@ class MagnetometerFusion {
   /// The mean without what currents on board have added since the start.
   MagnetometerMean withoutSteps(const MagnetometerMean& mean, Window& window);
   void judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
-  /// The newest frame's field against the expected one, and the covariance of their difference, T^2.
-  FieldCheck check(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
-  Mat3 differenceCovariance(const MagnetometerMean& mean, const Window& window, bool disturbed) const;
   /// Of a mean's white noise, T^2 per axis.
   double whiteVariance(const MagnetometerMean& mean) const;
-  /// Of the roll and pitch that the window knows, one sigma per axis, rad.
-  double tiltSigma() const;
+  /// What a frame that is used shall be told of the tilt it takes as given, rad per axis; `shared` as for
+  /// lasting errors.
+  double tiltSigma(double shared);
   void learnFloor(const MagnetometerMean& mean, const FieldCheck& earth, const Window& window);
   void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   void endDisturbance(Window& window, Marginalizer& marginalizer);
@@ -85,14 +85,17 @@ class MagnetometerFusion {
   MagnetometerCalibration calibration_;
   double gyroscope_density_ = 0.0;  ///< rad/s/sqrt(Hz), inflated
   MagnetometerReadings readings_;
+  FieldComparison comparison_;
   MagnetometerGate gate_;
   FieldFloor floor_;
   FieldStep step_;
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;
   JointCovariance covariance_;
-  bool disturbed_ = false;         ///< the disturbance is among the window's states
-  std::optional<Time> last_seen_;  ///< frame with a field, used or not
+  double tilt_variance_rad2_ = 0.0;        ///< of roll and pitch, per axis, as the window knows them
+  double least_tilt_variance_rad2_ = 0.0;  ///< of those with which a field was used; 0: none was
+  bool disturbed_ = false;                 ///< the disturbance is among the window's states
+  std::optional<Time> last_seen_;          ///< frame with a field, used or not
   bool rejecting_ = false;
   MagnetometerStatus status_before_ = MagnetometerStatus::Off;  ///< of the last decision
 };

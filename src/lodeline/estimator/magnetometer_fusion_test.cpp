@@ -10,7 +10,9 @@
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/estimator/window_solver.h"
+#include "lodeline/factors/magnetometer_field_factor.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/simulation/random.h"
 
 namespace lodeline {
 namespace {
@@ -136,6 +138,50 @@ TEST(MagnetometerFusion, StaysOutOfAHeadingThatItCannotImprove) {
   const HeadingTrial misaligned = runHeadingTrial(options);
   EXPECT_LT(misaligned.alignedRms(20.0), 1.1 * off.alignedRms(20.0) + 0.02 * kDegree);
   EXPECT_GT(misaligned.share(MagnetometerStatus::Inconsistent), 0.2);
+}
+
+// Error of the heading over its claimed sigma at the end of a scene that begins with 8 s of rest, seen by an
+// accelerometer whose bias nobody knows.
+double headingErrorAfterRest_sigmas(uint64_t seed, int* used) {
+  TestSceneOptions scene_options = sceneOptions(16.0, 5.0);
+  scene_options.seed = seed;
+  scene_options.accelerometer_bias_sigma_m_per_s2 = 0.2;
+  scene_options.still = {{-10.0, 18.0}};
+  TestScene scene(scene_options);
+  Rig rig = scene.rig();
+  rig.magnetometer = MagnetometerCalibration();
+  rig.magnetometer->is_calibrated = true;
+  rig.magnetometer->hard_iron_sigma_T = 0.01e-6;
+  Diagnostics diagnostics;
+  Estimator estimator(rig, honestOptions(scene_options), &diagnostics);
+  Random random(seed, "noise of the field");
+  const Vec3 hard_iron_B = MagnetometerOptions().offset_sigma_T * random.normal3();
+  const double north = std::atan2(kField_W.x(), kField_W.y());  // from y towards x
+  double sigmas = 0.0;
+  while (const auto frame = scene.next()) {
+    const Quat& rotation = frame->truth.motion.world_from_body.rotation;
+    const MagnetometerSample reading{
+        frame->truth.time, rotation.conjugate() * kField_W + hard_iron_B + 0.02e-6 * random.normal3()};
+    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, std::span(&reading, 1));
+    *used += estimate.magnetometer.status == MagnetometerStatus::Used;
+    const Quat magnetic_from_true = so3::exp(north * Vec3::UnitZ());
+    sigmas = headingBetween(magnetic_from_true * rotation, estimate.state.world_from_body.rotation) /
+             estimate.magnetometer.heading_sigma_rad;
+  }
+  return sigmas;
+}
+
+// An accelerometer off by 0.2 m/s^2 tilts a start at rest by more than a degree, and the north that is found
+// then by two.
+TEST(MagnetometerFusion, RightsANorthThatWasTakenAslant) {
+  constexpr int kScenes = 12;
+  double squares = 0.0;
+  int used = 0;
+  for (uint64_t seed = 1; seed <= kScenes; ++seed)
+    squares += std::pow(headingErrorAfterRest_sigmas(seed, &used), 2);
+  EXPECT_LT(squares / kScenes, 2.0) << "errors are larger than claimed";
+  EXPECT_GT(squares / kScenes, 0.2);
+  EXPECT_GT(used, 0.95 * kScenes * 16.0 * 5.0);
 }
 
 TEST(MagnetometerFusion, LearnsAnOffsetThatCalibrationLeft) {

@@ -65,10 +65,11 @@ double horizontalVarianceOfMean(const std::vector<Vec3>& forces, const Vec3& up,
   return white / count + slow / (1.0 + duration_s / correlation_s);
 }
 
+// Given the bias.
 double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double duration_s, bool still,
                  const GravityAlignmentOptions& options) {
   const double force = mean_force.norm();
-  double variance = squared(options.accelerometer_bias_sigma_m_per_s2);
+  double variance = 0.0;
   if (forces.size() > 1) {
     variance += horizontalVarianceOfMean(forces, mean_force / force, duration_s, options.correlation_s);
   }
@@ -127,7 +128,10 @@ GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3
   }
   result.world_from_body = levelWithZeroYaw(result.mean_specific_force_B / force);
   const double duration_s = (samples.back().time - samples.front().time).seconds();
-  result.tilt_sigma_rad = tiltSigma(forces, result.mean_specific_force_B, duration_s, result.still, options);
+  result.tilt_sigma_given_bias_rad =
+      tiltSigma(forces, result.mean_specific_force_B, duration_s, result.still, options);
+  result.tilt_sigma_rad =
+      std::hypot(result.tilt_sigma_given_bias_rad, options.accelerometer_bias_sigma_m_per_s2 / force);
   return result;
 }
 

@@ -34,6 +34,8 @@ struct GravityAlignment {
   /// One sigma of roll and of pitch, rad: scatter over the time averaged, unknown accelerometer bias and,
   /// unless still, the unknown mean acceleration.
   double tilt_sigma_rad = 0.0;
+  /// The same given the bias, for whoever estimates that along with the tilt.
+  double tilt_sigma_given_bias_rad = 0.0;
 
   bool still = false;
   /// The mean gyroscope reading where the rig was still, else the given bias, rad/s.
