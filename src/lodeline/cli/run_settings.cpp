@@ -126,8 +126,9 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
   settings->bind("solver.function_tolerance", &options->solver.function_tolerance,
                  "relative gain below which a frame's iterations end");
-  settings->bind("solver.robust_scale_medians", &options->solver.robust_scale_medians,
-                 "width of the Cauchy loss, in medians of a frame's reprojection errors");
+  settings->bind(
+      "solver.robust_scale_medians", &options->solver.robust_scale_medians,
+      "width of the Cauchy loss, in medians of a frame's reprojection errors; heavy tails narrow it");
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "the same, at most");
   settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,
                  "with fewer a frame counts as carried by inertial readings alone");

@@ -17,7 +17,26 @@ std::vector<double> rayleigh(double sigma, int count, Random* noise) {
   return errors;
 }
 
-TEST(RobustScale, FollowsTheErrorsAndNotTheirOutliers) {
+/// Errors of which P(r < R) = 1 - (1 + R^2 / width^2)^(-nu / 2).
+std::vector<double> heavyTailed(double nu, double width, int count, Random* random) {
+  std::vector<double> errors;
+  for (int i = 0; i < count; ++i)
+    errors.push_back(width * std::sqrt(std::pow(1.0 - random->uniform(), -2.0 / nu) - 1.0));
+  return errors;
+}
+
+TEST(RobustScale, IsThatOfTheDistributionTheErrorsHave) {
+  Random random(1, "robust scale");
+  for (const double nu : {4.0, 6.0, 8.0}) {
+    const double width = robustScale(heavyTailed(nu, 0.2, 20000, &random), SolverOptions()).value();
+    EXPECT_NEAR(width, 0.2, 0.02) << nu;
+  }
+  // However heavy the tail, not narrower than what four degrees of freedom ask for.
+  std::vector<double> errors = heavyTailed(1.0, 0.2, 20000, &random);
+  EXPECT_NEAR(robustScale(errors, SolverOptions()).value(), 1.55 * 0.2 * std::sqrt(3.0), 0.02);
+}
+
+TEST(RobustScale, OfNormalErrorsIsAsWideAsAllowed) {
   const SolverOptions options;
   Random noise(1, "robust scale");
   std::vector<double> errors = rayleigh(0.1, 3000, &noise);
@@ -25,7 +44,9 @@ TEST(RobustScale, FollowsTheErrorsAndNotTheirOutliers) {
   // Median of a Rayleigh distribution: sigma sqrt(2 ln 2).
   EXPECT_NEAR(clean, options.robust_scale_medians * 0.1 * std::sqrt(2.0 * std::log(2.0)), 0.01);
   for (size_t i = 0; i < 600; ++i) errors[i] = 50.0;
-  EXPECT_LT(robustScale(errors, options).value(), 1.3 * clean);
+  const double spoilt = robustScale(errors, options).value();
+  EXPECT_LT(spoilt, 0.8 * clean);
+  EXPECT_GT(spoilt, 0.5 * clean);
 }
 
 TEST(RobustScale, IsThatOfTheStatedNoiseAtMost) {
