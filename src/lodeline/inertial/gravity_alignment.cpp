@@ -128,10 +128,7 @@ GravityAlignment alignWithGravity(std::span<const ImuSample> samples, const Vec3
   }
   result.world_from_body = levelWithZeroYaw(result.mean_specific_force_B / force);
   const double duration_s = (samples.back().time - samples.front().time).seconds();
-  result.tilt_sigma_given_bias_rad =
-      tiltSigma(forces, result.mean_specific_force_B, duration_s, result.still, options);
-  result.tilt_sigma_rad =
-      std::hypot(result.tilt_sigma_given_bias_rad, options.accelerometer_bias_sigma_m_per_s2 / force);
+  result.tilt_sigma_rad = tiltSigma(forces, result.mean_specific_force_B, duration_s, result.still, options);
   return result;
 }
 

@@ -22,8 +22,6 @@ struct GravityAlignmentOptions {
   /// V1_03): tilt errors of 6.8, 4.7 and 2.3 degrees for spans of 0.25, 1 and 2 s.
   double speed_sigma_m_per_s = 0.6;
   double acceleration_sigma_m_per_s2 = 1.2;
-  /// Accelerometer bias that nobody has estimated yet, one sigma per axis.
-  double accelerometer_bias_sigma_m_per_s2 = 0.1;
 };
 
 /// Which way is up, from the accelerometer.
@@ -31,11 +29,9 @@ struct GravityAlignment {
   /// At the last reading, with zero yaw: the horizontal projection of the body's x axis points along the
   /// world's x axis; where x is steeper than 60 degrees, the z axis (then flatter than 30) takes its place.
   Quat world_from_body = Quat::Identity();
-  /// One sigma of roll and of pitch, rad: scatter over the time averaged, unknown accelerometer bias and,
-  /// unless still, the unknown mean acceleration.
+  /// One sigma of roll and of pitch given the accelerometer's bias (which tilts by bias / g), rad: scatter
+  /// over the time averaged and, unless still, the unknown mean acceleration.
   double tilt_sigma_rad = 0.0;
-  /// The same given the bias, for whoever estimates that along with the tilt.
-  double tilt_sigma_given_bias_rad = 0.0;
 
   bool still = false;
   /// The mean gyroscope reading where the rig was still, else the given bias, rad/s.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/base/test_data.h"
@@ -125,11 +126,14 @@ TEST_F(RealFlight, TiltOfAMovingStartIsWithinItsSigma) {
     int count = 0;
     for (size_t k = 0; k + steps < recording_.truth.size(); k += 100, ++count) {
       const NavigationState& end = recording_.truth[k + steps];
-      const auto samples = recording_.readingsBetween(recording_.truth[k].time, end.time);
+      auto samples = recording_.readingsBetween(recording_.truth[k].time, end.time);
+      for (ImuSample& sample : samples) sample.specific_force_B -= end.accelerometer_bias_B;
       const GravityAlignment alignment = alignWithGravity(samples, end.gyroscope_bias_B);
       const Vec3 up = alignment.world_from_body.conjugate() * Vec3::UnitZ();
       const Vec3 true_up = end.world_from_body.rotation.conjugate() * Vec3::UnitZ();
-      sum += (up.cross(true_up) / alignment.tilt_sigma_rad).squaredNorm() / 2.0;
+      // As an estimator takes it: the reference itself is not better.
+      const double sigma = std::max(alignment.tilt_sigma_rad, 0.01);
+      sum += (up.cross(true_up) / sigma).squaredNorm() / 2.0;
     }
     EXPECT_LT(sum / count, 1.5) << duration_s;
     EXPECT_GT(sum / count, 0.2) << duration_s;
