@@ -130,6 +130,8 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
       "solver.robust_scale_medians", &options->solver.robust_scale_medians,
       "width of the Cauchy loss, in medians of a frame's reprojection errors; heavy tails narrow it");
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "the same, at most");
+  settings->bind("solver.track_weights", &options->solver.track_weights,
+                 "weigh each track's sightings by what its own errors say of it");
   settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,
                  "with fewer a frame counts as carried by inertial readings alone");
 }

@@ -11,7 +11,7 @@
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmarks.h"
-#include "lodeline/estimator/robust_scale.h"
+#include "lodeline/estimator/robust_loss.h"
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/window_update.h"
 
@@ -131,7 +131,7 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
   // The first estimates are those of dead reckoning, which images now move by more than the rig does.
   marginalizer_.relinearise(window_);
   if (scale_is_given_) return;
-  for (const auto& frame : window_.frames()) frame->robust_scale_sigmas.reset();
+  resetRobustLosses(window_);
   is_settled_ = false;
   starting_up_ = lost_scale_ = true;
   frames_since_start_ = 0;
@@ -287,10 +287,10 @@ void Estimator::optimize(FrameEstimate* estimate) {
                     "prediction",
                     estimate->time.nanoseconds()));
   }
-  FrameErrors errors_sigmas;
-  removeOutliers(window_, factors_, options_.landmark, &errors_sigmas);
+  std::vector<SightingError> errors;
+  removeOutliers(window_, factors_, options_.landmark, &errors);
   // As long as the scale is unknown, small errors do not mean that the poses are right.
-  if (is_settled_) adaptRobustScales(window_, std::move(errors_sigmas), options_.solver);
+  if (is_settled_) adaptRobustLosses(window_, errors, options_.solver);
 }
 
 void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {

@@ -12,6 +12,15 @@
 
 namespace lodeline {
 
+namespace {
+
+std::shared_ptr<const ceres::LossFunction> lossOf(const TrackHistory& track, double scale_sigmas) {
+  return std::make_shared<ceres::ScaledLoss>(new ceres::CauchyLoss(scale_sigmas), track.weight,
+                                             ceres::TAKE_OWNERSHIP);
+}
+
+}  // namespace
+
 double costOf(const Factor& factor, std::vector<double>& residual) {
   residual.resize(factor.function->num_residuals());
   factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
@@ -130,7 +139,7 @@ LandmarkFactors FactorMaker::calibratedLandmark(Window& window, TrackHistory& tr
   for (const Sighting& sighting : track.sightings) {
     Factor& factor = result.factors.emplace_back();
     Frame& target = *window.find(sighting.frame);
-    factor.loss = std::make_shared<ceres::CauchyLoss>(robustScale(target));
+    factor.loss = lossOf(track, robustScale(target));
     const bool in_host = sighting.frame == landmark.host;
     GlobalState* further = sighting.camera > 0 ? states.further[sighting.camera - 1] : nullptr;
     if (in_host && !further) {
@@ -171,7 +180,7 @@ LandmarkFactors FactorMaker::plainLandmark(Window& window, TrackHistory& track) 
   for (const Sighting& sighting : track.sightings) {
     Factor& factor = result.factors.emplace_back();
     Frame& target = *window.find(sighting.frame);
-    factor.loss = std::make_shared<ceres::CauchyLoss>(robustScale(target));
+    factor.loss = lossOf(track, robustScale(target));
     const Rigid3& body_from_target_camera = body_from_camera_[sighting.camera];
     if (sighting.frame == landmark.host) {
       factor.function = std::make_unique<HostReprojectionFactor>(

@@ -115,19 +115,19 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
 }
 
 int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                   FrameErrors* errors_sigmas) {
+                   std::vector<SightingError>* errors) {
   int removed = 0;
-  const std::vector<double> errors = VisualTerms(window, factors).errors();
-  auto error = errors.begin();
+  const std::vector<double> all_sigmas = VisualTerms(window, factors).errors();
+  auto next = all_sigmas.begin();
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark) continue;
     std::vector<Sighting> kept;
     bool host_kept = false;
     bool other_kept = false;
     for (const Sighting& sighting : track.sightings) {
-      const double sigmas = *error++;
+      const double sigmas = *next++;
       const bool is_host = sighting.frame == track.landmark->host && sighting.camera == 0;
-      if (errors_sigmas && !is_host) (*errors_sigmas)[sighting.frame].push_back(sigmas);
+      if (errors && !is_host) errors->push_back({id, sighting.frame, sigmas});
       if (sigmas > options.max_error_sigmas) continue;
       (is_host ? host_kept : other_kept) = true;
       kept.push_back(sighting);

@@ -4,7 +4,7 @@
 
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
-#include "lodeline/estimator/robust_scale.h"
+#include "lodeline/estimator/robust_loss.h"
 #include "lodeline/estimator/window.h"
 
 namespace lodeline {
@@ -15,10 +15,10 @@ namespace lodeline {
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
 
 /// Removes sightings that contradict the window by more than `max_error_sigmas`, and the landmarks that are
-/// then seen too little or lie behind their host. Returns the number of sightings removed. `errors_sigmas`,
-/// where given, receives the errors of all.
+/// then seen too little or lie behind their host. Returns the number of sightings removed. `errors`, where
+/// given, receives those of all.
 int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                   FrameErrors* errors_sigmas = nullptr);
+                   std::vector<SightingError>* errors = nullptr);
 
 /// Root mean square of the whitened reprojection errors of one frame.
 struct ReprojectionStatistics {

@@ -75,7 +75,8 @@ struct SolverOptions {
   int max_iterations = 4;
   double function_tolerance = 2e-3;   ///< relative change of the cost that ends a frame's iterations
   double robust_scale_sigmas = 2.0;   ///< width of the Cauchy loss on reprojection errors, at most...
-  double robust_scale_medians = 2.5;  ///< ...and in medians of those of a frame (robust_scale.h)
+  double robust_scale_medians = 2.5;  ///< ...and in medians of those of a frame (robust_loss.h)
+  bool track_weights = true;          ///< weigh each track by what its own errors say of it (robust_loss.h)
 };
 
 /// How far the camera calibration of the files may be off, one sigma; a sigma of 0 holds it. Without

@@ -61,6 +61,7 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::option
     landmark.value = track.landmark->parameters.data();
     landmark.host = place(track.landmark->host);
     landmark.base = track.landmark->base;
+    landmark.weight = track.weight;
     landmark.first_sighting = sightings_.size();
     for (const lodeline::Sighting& sighting : track.sightings) {
       if (only && sighting.frame != *only) continue;
@@ -89,10 +90,12 @@ double VisualTerms::cost() {
   values_.update();
   double sum = 0.0;
   for (const Landmark& landmark : landmarks_) {
+    double of_landmark = 0.0;
     for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
       const double squared = residual(landmark, sightings_[i]).squaredNorm();
-      sum += sightings_[i].scale_squared * std::log1p(squared / sightings_[i].scale_squared);
+      of_landmark += sightings_[i].scale_squared * std::log1p(squared / sightings_[i].scale_squared);
     }
+    sum += landmark.weight * of_landmark;
   }
   return 0.5 * sum;
 }
@@ -115,7 +118,7 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   const Vec2 residual = this->residual(landmark, sighting);
   Mat23 by_point;
   directionResidual(*sighting.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
-  const double weight = 1.0 / std::sqrt(1.0 + residual.squaredNorm() / sighting.scale_squared);
+  const double weight = std::sqrt(landmark.weight / (1.0 + residual.squaredNorm() / sighting.scale_squared));
   term.by_nodes.col(Columns::kResidual) = weight * residual;
   by_point *= weight;
   const Mat23 by_direction = by_point * seen.rotation;

@@ -44,6 +44,7 @@ class VisualTerms {
     double* value;
     int host;
     LandmarkBase base;
+    double weight;  ///< of its errors, squared
     size_t first_sighting, end_sighting;
     Mat3 inverse_root;  ///< of the last linearisation: W with W W^T the inverse of its Hessian
   };

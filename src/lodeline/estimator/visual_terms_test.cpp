@@ -21,6 +21,8 @@ class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated
     second.first_pose = second.pose;
     (*second.first_pose)[0] += 0.02;
     second.robust_scale_sigmas = 0.3;
+    double weight = 0.1;
+    for (auto& [id, track] : test_.window.tracks()) track.weight = weight = std::fmod(weight + 0.3, 2.0);
     if (std::get<1>(GetParam()) != Calibrated::No) disturbCalibration();
   }
 

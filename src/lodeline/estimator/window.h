@@ -103,6 +103,7 @@ struct MapPoint {
 struct TrackHistory {
   std::vector<Sighting> sightings;  ///< in order of time, then camera
   std::optional<Landmark> landmark;
+  double weight = 1.0;  ///< of its reprojection errors, squared (robust_loss.h)
 
   const Sighting* find(FrameId frame, int camera) const;
   bool seenIn(FrameId frame) const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/estimator/robust_scale.h"
+#include "lodeline/estimator/robust_loss.h"
 #include "lodeline/refinement/batch_structure.h"
 
 namespace lodeline {
@@ -181,14 +181,14 @@ void BatchProblem::relinearise() {
 double BatchProblem::renewLandmarks() {
   window_.tracks() = all_tracks_;
   double placed = 0.0, removed = 0.0;
-  FrameErrors errors_sigmas;
+  std::vector<SightingError> errors;
   for (auto& [id, track] : window_.tracks()) {
     placeLandmark(window_, factors_, options_.landmark, &track);
     if (!track.landmark) continue;
     placed += static_cast<double>(track.sightings.size());
-    removed += removeContradictions(window_, factors_, options_.landmark, &track, &errors_sigmas);
+    removed += removeContradictions(window_, factors_, options_.landmark, id, &track, &errors);
   }
-  adaptRobustScales(window_, std::move(errors_sigmas), options_.solver);
+  adaptRobustLosses(window_, errors, options_.solver);
   return placed > 0.0 ? removed / placed : 0.0;
 }
 

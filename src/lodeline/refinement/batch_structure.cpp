@@ -51,7 +51,7 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
 }
 
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                         TrackHistory* track, FrameErrors* errors_sigmas) {
+                         TrackId id, TrackHistory* track, std::vector<SightingError>* errors) {
   const LandmarkFactors terms = factors.landmark(window, *track);
   std::vector<Sighting> kept;
   for (size_t i = 0; i < track->sightings.size(); ++i) {
@@ -60,7 +60,7 @@ int removeContradictions(Window& window, const FactorMaker& factors, const Landm
     factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
     const Sighting& sighting = track->sightings[i];
     const bool is_host = sighting.frame == track->landmark->host && sighting.camera == 0;
-    if (!is_host) (*errors_sigmas)[sighting.frame].push_back(residual.norm());
+    if (!is_host) errors->push_back({id, sighting.frame, residual.norm()});
     if (residual.norm() <= options.max_error_sigmas) kept.push_back(sighting);
   }
   const int removed = static_cast<int>(track->sightings.size() - kept.size());

@@ -2,7 +2,7 @@
 
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
-#include "lodeline/estimator/robust_scale.h"
+#include "lodeline/estimator/robust_loss.h"
 
 namespace lodeline {
 
@@ -13,8 +13,8 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
 
 /// Removes sightings that contradict the landmark by more than `max_error_sigmas`, and the landmark itself
 /// where too little is left of it or it lies behind its host. Returns the number of sightings removed, and
-/// adds the errors of all to `errors_sigmas`.
+/// adds those of all to `errors`.
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                         TrackHistory* track, FrameErrors* errors_sigmas);
+                         TrackId id, TrackHistory* track, std::vector<SightingError>* errors);
 
 }  // namespace lodeline
