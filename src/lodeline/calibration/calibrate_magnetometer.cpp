@@ -6,8 +6,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/magnetism/heading_error.h"
 #include "lodeline/magnetism/reading_screen.h"
@@ -16,7 +16,6 @@
 namespace lodeline {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kAssumedDip_rad = 60.0 * kDegree;
 /// Below it the motion has not told how the magnetometer sits on the IMU.
 constexpr double kLeastDistinctness = 4.0;

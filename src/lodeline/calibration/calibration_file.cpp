@@ -11,8 +11,6 @@
 namespace lodeline {
 namespace {
 
-using fit_parameter::kSize;
-
 template <typename Matrix>
 std::string rows(const Matrix& matrix) {
   std::string text;
@@ -100,6 +98,7 @@ void readRotation(CalibrationMap* map, MagnetometerFit* fit) {
 void readCovariance(CalibrationMap* map, MagnetometerFit* fit) {
   if (!map->has("covariance")) return;
   const std::vector<double> values = map->numbers("covariance");
+  constexpr int kSize = fit_parameter::kSize;
   if (values.size() != kSize * kSize) {
     throw InputError(fmt::format("{} has {} numbers where a {}x{} matrix needs {}", map->atLine("covariance"),
                                  values.size(), kSize, kSize, kSize * kSize));

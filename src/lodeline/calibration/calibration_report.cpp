@@ -4,14 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 using Sigmas = Eigen::Matrix<double, fit_parameter::kSize, 1>;
 

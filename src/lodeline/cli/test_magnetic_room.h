@@ -2,16 +2,14 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <vector>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/cli/test_room.h"
 #include "lodeline/evaluation/read_trajectory.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline::test {
-
-inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Of the magnetic room, T: y of the truth's world is magnetic north.
 inline const Vec3 kField_W(0.0, 24e-6, -38e-6);

@@ -6,16 +6,14 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
 #include "lodeline/inertial/gravity.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 enum class Quantity { Time, Rate, Force, Field };
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 #include <span>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/estimator/dive_consistency.h"
 
 namespace {
@@ -58,7 +58,6 @@ std::string verdict(double mean, const NeesBounds& bounds) {
 }
 
 void printRow(const ConsistencyRow& row, std::span<const Column> columns, double quantile) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const int count = static_cast<int>(row.samples.size());
   if (count == 0) return;
   fmt::print("{:7.1f} {:6}", row.time_s, count);
@@ -67,8 +66,8 @@ void printRow(const ConsistencyRow& row, std::span<const Column> columns, double
   fmt::print("   {:8.2f} ({:.2f})   {:13.3f} ({:.3f})\n",
              100.0 * row.rootMeanSquare(&NeesSample::position_error_m),
              100.0 * row.rootMeanSquare(&NeesSample::position_sigma_m),
-             kDegrees * row.rootMeanSquare(&NeesSample::yaw_error_rad),
-             kDegrees * row.rootMeanSquare(&NeesSample::yaw_sigma_rad));
+             kDegreesPerRadian * row.rootMeanSquare(&NeesSample::yaw_error_rad),
+             kDegreesPerRadian * row.rootMeanSquare(&NeesSample::yaw_sigma_rad));
 }
 
 void printBand(std::span<const Column> columns, int seeds) {

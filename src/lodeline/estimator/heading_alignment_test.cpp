@@ -1,4 +1,5 @@
 #include "lodeline/estimator/heading_alignment.h"
+#include "lodeline/base/angles.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +12,6 @@
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 // Devil's Eye, Florida (docs of the world magnetic model): declination -6.38, dip 57.97 degrees, 45.56 uT.
 const Vec3 kSiteField_W =

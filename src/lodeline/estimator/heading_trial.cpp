@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/thread_clock.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/simulation/point_dive.h"
@@ -10,7 +11,6 @@
 namespace lodeline {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 const Vec3 kField_W(0.0, 24.2e-6, -38.6e-6);  // to magnetic north, as in Florida
 
 MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Motion& motion) {

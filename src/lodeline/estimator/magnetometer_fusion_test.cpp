@@ -1,4 +1,5 @@
 #include "lodeline/estimator/magnetometer_fusion.h"
+#include "lodeline/base/angles.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,6 @@
 namespace lodeline {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 const Vec3 kField_W(4e-6, 24e-6, -38e-6);
 
 TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {

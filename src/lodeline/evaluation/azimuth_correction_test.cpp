@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/evaluation/pose_error.h"
 #include "lodeline/evaluation/test_trajectories.h"
@@ -11,7 +10,6 @@
 namespace lodeline {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 const double kDeclination = -6.4 * kDegree;
 const Vec3 kField_W(24e-6 * std::sin(kDeclination), 24e-6 * std::cos(kDeclination), -38e-6);
 

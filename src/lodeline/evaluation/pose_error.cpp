@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-
-double angleDeg(const Quat& rotation) { return so3::log(rotation).norm() * kDegrees; }
+double angleDeg(const Quat& rotation) { return so3::log(rotation).norm() * kDegreesPerRadian; }
 
 double yawDeg(const Quat& rotation) {
   const Mat3 matrix = rotation.toRotationMatrix();
-  return std::atan2(matrix(1, 0), matrix(0, 0)) * kDegrees;
+  return std::atan2(matrix(1, 0), matrix(0, 0)) * kDegreesPerRadian;
 }
 
 }  // namespace

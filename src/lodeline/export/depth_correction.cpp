@@ -85,7 +85,7 @@ double correctDepths(const DepthProfile& profile, const DepthAlignment& alignmen
     pose.world_from_body.translation.z() += shifts.back();
   }
   const NearestPoints nearest(way);
-  for (Landmark& landmark : run->landmarks) {
+  for (MapLandmark& landmark : run->landmarks) {
     landmark.position.z() += shifts[nearest.find(landmark.position, 1).front()];
   }
   const double sigma_m = std::max(scatterAbout(smooth, pairs), profile.resolution_m / std::sqrt(12.0));

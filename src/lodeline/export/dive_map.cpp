@@ -46,7 +46,7 @@ void turn(const RunFolder& run, DiveMap* map) {
   const Mat3 matrix = turn.toRotationMatrix();
   for (PositionUncertainty& u : map->uncertainties) u.covariance = matrix * u.covariance * matrix.transpose();
   map->landmarks = run.landmarks;
-  for (Landmark& landmark : map->landmarks) landmark.position = turn * landmark.position;
+  for (MapLandmark& landmark : map->landmarks) landmark.position = turn * landmark.position;
 }
 
 std::optional<Georeference> placeOf(const std::optional<GeodeticPosition>& entrance,
@@ -90,7 +90,7 @@ void survey(const DiveMapOptions& options, const std::vector<Vec3>& extra_walls_
   map->survey.is_closed = options.is_closed;
   map->survey.leg_sigma_ENU = legSigma(endSigma(*map, options, diagnostics), map->survey.legs());
   std::vector<Vec3> walls = extra_walls_ENU;
-  for (const Landmark& landmark : map->landmarks) {
+  for (const MapLandmark& landmark : map->landmarks) {
     if (landmark.sightings >= options.min_sightings) walls.push_back(landmark.position);
   }
   measurePassage(walls, options.passage, &map->survey);

@@ -51,7 +51,7 @@ struct DiveMap {
 
   Trajectory trajectory;                           ///< body in ENU
   std::vector<PositionUncertainty> uncertainties;  ///< axes of ENU
-  std::vector<Landmark> landmarks;                 ///< ENU
+  std::vector<MapLandmark> landmarks;              ///< ENU
   Survey survey;
 
   /// Below the water's surface, m.

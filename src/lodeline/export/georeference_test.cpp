@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <GeographicLib/Geodesic.hpp>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(Georeference, PutsTheOriginWhereItWasGiven) {
   const GeodeticPosition place = {29.83, -82.60, 10.0};

@@ -52,11 +52,11 @@ size_t readHeader(std::ifstream& stream, const std::filesystem::path& file) {
 
 }  // namespace
 
-std::vector<Landmark> readLandmarkFile(const std::filesystem::path& file) {
+std::vector<MapLandmark> readLandmarkFile(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string() + ": cannot be opened");
   const size_t count = readHeader(stream, file);
-  std::vector<Landmark> landmarks;
+  std::vector<MapLandmark> landmarks;
   for (size_t i = 0; i < count; ++i) {
     std::array<char, sizeof(Vertex)> bytes;
     if (!stream.read(bytes.data(), bytes.size())) {

@@ -8,13 +8,13 @@
 namespace lodeline {
 
 /// A point of a map, in the world of the map's trajectory.
-struct Landmark {
+struct MapLandmark {
   Vec3 position = Vec3::Zero();  ///< m
   int sightings = 0;
 };
 
 /// Reads `landmarks.ply` as `lodeline run` writes it. Throws InputError where it has another layout or is cut
 /// off; points that are not finite are left out.
-std::vector<Landmark> readLandmarkFile(const std::filesystem::path& file);
+std::vector<MapLandmark> readLandmarkFile(const std::filesystem::path& file);
 
 }  // namespace lodeline

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/export/dive_map.h"
 #include "lodeline/export/loop_candidates.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// "29.8300000 N" or "82.6000000 W".
 std::string angleText(double angle_deg, const char* positive, const char* negative) {

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 North magneticNorth(const std::optional<GeodeticPosition>& place, const std::string& date) {
   North north;

@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
@@ -12,7 +11,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 const GeodeticPosition kPlace = {29.83, -82.60, 0.0};
 
 TEST(North, AppliesTheDeclinationToMagneticNorthOnly) {

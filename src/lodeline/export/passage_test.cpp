@@ -84,7 +84,7 @@ TEST(Passage, IsUnknownWhereNoWallWasSeen) {
 TEST(Splays, GoToPointsOfTheMapAllAround) {
   const RunFolder run = test::windingDive(40.0);
   std::vector<Vec3> walls;
-  for (const Landmark& landmark : run.landmarks) walls.push_back(landmark.position);
+  for (const MapLandmark& landmark : run.landmarks) walls.push_back(landmark.position);
   Survey survey;
   for (int i = 0; i <= 8; ++i) {
     survey.stations.emplace_back();

@@ -25,7 +25,7 @@ struct RunFolder {
   std::string trajectory_file;                     ///< name of the file that the poses are from
   Trajectory trajectory;                           ///< body in W
   std::vector<PositionUncertainty> uncertainties;  ///< in the order of time; empty where unknown
-  std::vector<Landmark> landmarks;                 ///< empty where there is no file of them
+  std::vector<MapLandmark> landmarks;              ///< empty where there is no file of them
   HeadingReference heading_reference = HeadingReference::Start;
   std::optional<double> heading_sigma_rad;  ///< at the end
   std::string program;                      ///< "lodeline 0.1.0"

@@ -24,11 +24,11 @@ constexpr const char* kStates =
 constexpr const char* kSummary =
     R"({"program": "lodeline 9", "data": "dive1", "heading": {"reference": "magnetic north", "sigma_rad": 0.01}})";
 
-std::string plyOf(const std::vector<Landmark>& landmarks) {
+std::string plyOf(const std::vector<MapLandmark>& landmarks) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment x\nelement vertex " + std::to_string(landmarks.size()) +
       "\nproperty float x\nproperty float y\nproperty float z\nproperty int sightings\nend_header\n";
-  for (const Landmark& landmark : landmarks) {
+  for (const MapLandmark& landmark : landmarks) {
     const Eigen::Vector3f position = landmark.position.cast<float>();
     const int32_t sightings = landmark.sightings;
     bytes.append(reinterpret_cast<const char*>(position.data()), 12);

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "lodeline/base/angles.h"
 
 namespace lodeline::survey_text {
 
@@ -23,7 +24,6 @@ std::string legs(const std::vector<Vec3>& positions, const std::string& indent) 
 }
 
 std::string splay(size_t station, const char* target, const Vec3& vector, const std::string& indent) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const double length_m = vector.norm();
   if (length_m < 1e-3) return "";
   const double clino_deg = std::asin(std::clamp(vector.z() / length_m, -1.0, 1.0)) / kDegree;

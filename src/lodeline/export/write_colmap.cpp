@@ -48,7 +48,7 @@ ColmapModel colmapModel(const DiveMap& map, const std::vector<CameraCalibration>
   }
   model.points3D = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] (none); metres east, north, up\n";
   id = 0;
-  for (const Landmark& landmark : map.landmarks) {
+  for (const MapLandmark& landmark : map.landmarks) {
     fmt::format_to(std::back_inserter(model.points3D), "{} {:.6f} {:.6f} {:.6f} 170 160 145 0\n", ++id,
                    landmark.position.x(), landmark.position.y(), landmark.position.z());
   }

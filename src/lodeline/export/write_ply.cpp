@@ -57,7 +57,7 @@ std::string header(const DiveMap& map, size_t vertices, size_t edges) {
 std::string plyBytes(const DiveMap& map) {
   std::vector<Vec3> way, walls;
   for (const StampedPose& pose : map.trajectory.poses) way.push_back(pose.world_from_body.translation);
-  for (const Landmark& landmark : map.landmarks) walls.push_back(landmark.position);
+  for (const MapLandmark& landmark : map.landmarks) walls.push_back(landmark.position);
   const auto [lowest, highest] =
       std::minmax_element(way.begin(), way.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
   const double range_m = std::max(highest->z() - lowest->z(), 1e-3);

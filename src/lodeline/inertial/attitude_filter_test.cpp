@@ -1,4 +1,5 @@
 #include "lodeline/inertial/attitude_filter.h"
+#include "lodeline/base/angles.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,6 @@
 namespace lodeline {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kRate_hz = 200.0;
 constexpr int kEvery = 4;  ///< IMU readings a magnetometer reading
 const Vec3 kNorthField_W(0.0, 24e-6, -38e-6);

@@ -16,9 +16,9 @@ namespace {
 constexpr double kImageGapPeriods = 1.5;
 constexpr int kPyramidLevels = 4;
 
-bool isWithin(Time time, const std::vector<TimeSpan>& spans) {
+bool isWithin(Time time, const std::vector<SurveySpan>& spans) {
   return std::any_of(spans.begin(), spans.end(),
-                     [&](const TimeSpan& span) { return time >= span.begin && time <= span.end; });
+                     [&](const SurveySpan& span) { return time >= span.begin && time <= span.end; });
 }
 
 /// An image with its corners, to be followed into the next.
@@ -112,13 +112,13 @@ class Survey {
 };
 
 /// How variedly the rig turned in each stretch; readings in order of time.
-std::vector<std::pair<double, TimeSpan>> rateSpans(const std::vector<ImuSample>& samples,
-                                                   const StreamSummary& images, double span_s) {
-  std::vector<std::pair<double, TimeSpan>> spans;
+std::vector<std::pair<double, SurveySpan>> rateSpans(const std::vector<ImuSample>& samples,
+                                                     const StreamSummary& images, double span_s) {
+  std::vector<std::pair<double, SurveySpan>> spans;
   const Duration length = Duration::fromSeconds(span_s);
   auto sample = samples.begin();
   for (Time begin = *images.first; begin < *images.last; begin = begin + length) {
-    const TimeSpan span{begin, begin + length};
+    const SurveySpan span{begin, begin + length};
     Vec3 sum = Vec3::Zero(), squares = Vec3::Zero();
     double count = 0.0;
     while (sample != samples.end() && sample->time < begin) ++sample;
@@ -141,7 +141,7 @@ StreamSummary surveyStamps(MeasurementSource* source, size_t camera) {
 }
 
 CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const StreamSummary& stream,
-                          const std::vector<TimeSpan>& spans, const CameraSurveyOptions& options) {
+                          const std::vector<SurveySpan>& spans, const CameraSurveyOptions& options) {
   const CameraCalibration& calibration = source->rig().cameras[camera];
   CameraSurvey result;
   result.name = calibration.name;
@@ -161,18 +161,18 @@ CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const Stream
   return result;
 }
 
-std::vector<TimeSpan> liveliestSpans(const std::vector<ImuSample>& samples, const StreamSummary& images,
-                                     double span_s, double total_s) {
-  std::vector<TimeSpan> chosen;
+std::vector<SurveySpan> liveliestSpans(const std::vector<ImuSample>& samples, const StreamSummary& images,
+                                       double span_s, double total_s) {
+  std::vector<SurveySpan> chosen;
   if (!images.first || samples.empty()) return chosen;
-  std::vector<std::pair<double, TimeSpan>> spans = rateSpans(samples, images, span_s);
+  std::vector<std::pair<double, SurveySpan>> spans = rateSpans(samples, images, span_s);
   std::stable_sort(spans.begin(), spans.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   for (size_t i = 0; i < spans.size() && static_cast<double>(i) * span_s < total_s; ++i) {
     chosen.push_back(spans[i].second);
   }
   std::sort(chosen.begin(), chosen.end(),
-            [](const TimeSpan& a, const TimeSpan& b) { return a.begin < b.begin; });
+            [](const SurveySpan& a, const SurveySpan& b) { return a.begin < b.begin; });
   return chosen;
 }
 

@@ -10,8 +10,8 @@
 
 namespace lodeline {
 
-/// A stretch of time.
-struct TimeSpan {
+/// A stretch of a recording.
+struct SurveySpan {
   Time begin, end;
 };
 
@@ -49,11 +49,11 @@ StreamSummary surveyStamps(MeasurementSource* source, size_t camera);
 /// Looks at the images within the spans closely, and at some of the others. `stream`: of the same camera,
 /// from surveyStamps(); the source must be a fresh one.
 CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const StreamSummary& stream,
-                          const std::vector<TimeSpan>& spans, const CameraSurveyOptions& options);
+                          const std::vector<SurveySpan>& spans, const CameraSurveyOptions& options);
 
 /// The stretches of `span_s` in which the rig turned most variedly, at most `total_s` together, within the
 /// images of a camera. In order of time.
-std::vector<TimeSpan> liveliestSpans(const std::vector<ImuSample>& samples, const StreamSummary& images,
-                                     double span_s, double total_s);
+std::vector<SurveySpan> liveliestSpans(const std::vector<ImuSample>& samples, const StreamSummary& images,
+                                       double span_s, double total_s);
 
 }  // namespace lodeline

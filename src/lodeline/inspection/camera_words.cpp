@@ -5,19 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/cameras/camera.h"
 
 namespace lodeline {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-
 /// "+x", with the angle in between where it is not small.
 std::string nearestAxis(const Vec3& direction) {
   int axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);
-  const double angle_deg = kDegrees * std::acos(std::min(1.0, std::abs(direction[axis])));
+  const double angle_deg = kDegreesPerRadian * std::acos(std::min(1.0, std::abs(direction[axis])));
   const std::string name = fmt::format("{}{}", direction[axis] < 0.0 ? '-' : '+', "xyz"[axis]);
   return angle_deg < 5.0 ? name : fmt::format("{} ({:.0f} deg off)", name, angle_deg);
 }
@@ -29,7 +28,7 @@ std::optional<double> widthAngle_deg(const CameraCalibration& calibration) {
   const auto left = camera->unproject(Vec2(0.0, row));
   const auto right = camera->unproject(Vec2(calibration.width_px - 1.0, row));
   if (!left || !right) return std::nullopt;
-  return kDegrees * std::acos(std::clamp(left->dot(*right), -1.0, 1.0));
+  return kDegreesPerRadian * std::acos(std::clamp(left->dot(*right), -1.0, 1.0));
 }
 
 }  // namespace
@@ -45,12 +44,12 @@ std::string describeAxes(const CameraCalibration& camera) {
 
 std::string describeGravity(const CameraCalibration& camera, const Vec3& up_B) {
   const Vec3 down_C = camera.body_from_camera.rotation.conjugate() * -up_B;
-  const double pitch_deg = kDegrees * std::asin(std::clamp(down_C.z(), -1.0, 1.0));
+  const double pitch_deg = kDegreesPerRadian * std::asin(std::clamp(down_C.z(), -1.0, 1.0));
   if (std::abs(pitch_deg) > 60.0) {
     return fmt::format("looks {}, {:.0f} deg off the vertical", pitch_deg > 0.0 ? "down" : "up",
                        90.0 - std::abs(pitch_deg));
   }
-  const double roll_deg = kDegrees * std::atan2(down_C.x(), down_C.y());
+  const double roll_deg = kDegreesPerRadian * std::atan2(down_C.x(), down_C.y());
   const char* word = std::abs(roll_deg) < 45.0    ? "upright"
                      : std::abs(roll_deg) > 135.0 ? "upside down"
                                                   : "on its side";

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/signed_axes.h"
 
@@ -9,7 +10,6 @@ namespace lodeline::findings {
 namespace {
 
 constexpr double kGravity_m_per_s2 = 9.80665;
-constexpr double kDegrees = 180.0 / M_PI;
 
 void add(Inspection* inspection, Severity severity, double harm, const std::string& kind,
          const std::string& message) {
@@ -69,7 +69,7 @@ void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
   constexpr double kLargeBias_rad_per_s = 0.12;
   if (imu.rest_rate_B.norm() * inspection->rate_to_SI > kLargeBias_rad_per_s) {
     add(inspection, Severity::Warning, 44.0, "gyroscope_bias",
-        fmt::format("at rest the gyroscope reads {:.2f} deg/s", kDegrees * imu.rest_rate_B.norm()));
+        fmt::format("at rest the gyroscope reads {:.2f} deg/s", kDegreesPerRadian * imu.rest_rate_B.norm()));
   }
 }
 
@@ -95,8 +95,8 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
 void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
   if (inspection->rate_to_SI != 1.0 || !imu.turning || imu.turning->correlation < 0.4) return;
   const double scale = imu.turning->scale;
-  if (scale > 2.5 / kDegrees || scale < 0.4 / kDegrees) return;
-  inspection->rate_to_SI = 1.0 / kDegrees;
+  if (scale > 2.5 / kDegreesPerRadian || scale < 0.4 / kDegreesPerRadian) return;
+  inspection->rate_to_SI = 1.0 / kDegreesPerRadian;
   add(inspection, Severity::Serious, 99.0, "gyroscope_unit",
       fmt::format(
           "the gyroscope is in deg/s, not rad/s: gravity turns {:.3g} times as fast as it says; multiply its "

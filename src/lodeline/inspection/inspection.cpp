@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/findings.h"
 
@@ -10,7 +11,6 @@ namespace lodeline {
 namespace {
 
 constexpr double kSlowGapPeriods = 4.0;
-constexpr double kDegree = M_PI / 180.0;
 
 template <typename Next, typename Value>
 void surveyPlain(const std::string& sensor, const Next& next, const Value& value, Inspection* inspection) {
@@ -79,7 +79,7 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
   const double total_s = options.images.most_turns *
                          std::max(options.images.least_step_s,
                                   images.front().rate_hz > 0.0 ? 1.0 / images.front().rate_hz : 0.05);
-  const std::vector<TimeSpan> spans =
+  const std::vector<SurveySpan> spans =
       liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
   for (size_t i = 0; i < images.size(); ++i) {
     inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, options.images), {}});

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/inspection/median.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegrees = 180.0 / M_PI;
 
 std::string findingsLines(const Inspection& inspection) {
   std::string text;
@@ -47,14 +46,14 @@ std::string imuText(const Inspection& inspection) {
   std::string text = streamLine(inspection, "imu0", imu.stream);
   text += fmt::format("          specific force {:.3f} m/s^2 (median)", imu.median_force * imu.force_to_SI);
   if (imu.rest_s > 0.0) {
-    const Vec3 bias_deg = kDegrees * inspection.rate_to_SI * imu.rest_rate_B;
+    const Vec3 bias_deg = kDegreesPerRadian * inspection.rate_to_SI * imu.rest_rate_B;
     text +=
         fmt::format("; at rest for {:.1f} s: gravity {:.3f} m/s^2, gyroscope bias {:.2f} {:.2f} {:.2f} deg/s",
                     imu.rest_s, imu.rest_force_m_per_s2, bias_deg.x(), bias_deg.y(), bias_deg.z());
   } else {
     text += "; never at rest, so that biases cannot be read off";
   }
-  const Vec3 spread_deg = kDegrees * inspection.rate_to_SI * imu.gyroscope.spread;
+  const Vec3 spread_deg = kDegreesPerRadian * inspection.rate_to_SI * imu.gyroscope.spread;
   return text +
          fmt::format("\n          turns by {:.1f} {:.1f} {:.1f} deg/s (standard deviation about x y z)\n",
                      spread_deg.x(), spread_deg.y(), spread_deg.z());
@@ -88,7 +87,7 @@ std::string turningText(const CameraInspection& camera) {
       "rotation {:.1f} deg off{}, focal "
       "length {:.3f} of the calibrated\n",
       turning.turns, turning.correlation, 1e3 * turning.time_offset_s, 1e3 * turning.time_offset_sigma_s,
-      kDegrees * turning.misalignment_rad,
+      kDegreesPerRadian * turning.misalignment_rad,
       turning.hidden_axes > 0 ? fmt::format(" ({} axes not shown by the motion)", turning.hidden_axes) : "",
       turning.focal_ratio);
 }
@@ -123,7 +122,7 @@ std::string magnetometerText(const Inspection& inspection) {
   text += fmt::format("          field {:.2f} uT (spread {:.1f} %)", 1e6 * survey.field_T,
                       100.0 * survey.field_spread);
   if (survey.inclination_rad) {
-    text += fmt::format(", {:.1f} deg below the horizon", kDegrees * *survey.inclination_rad);
+    text += fmt::format(", {:.1f} deg below the horizon", kDegreesPerRadian * *survey.inclination_rad);
   }
   if (survey.turning) {
     text +=

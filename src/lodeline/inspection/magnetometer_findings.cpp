@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/signed_axes.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 
 namespace lodeline::findings {
 namespace {
-
-constexpr double kDegrees = 180.0 / M_PI;
 
 void add(Inspection* inspection, Severity severity, double harm, const std::string& kind,
          const std::string& message) {
@@ -43,13 +42,14 @@ void judgeSite(const MagnetometerSurvey& survey, Inspection* inspection) {
                     1e6 * survey.field_T, 1e6 * expected.total_T));
   }
   if (!survey.inclination_rad) return;
-  const double dip_error_deg = kDegrees * (*survey.inclination_rad - expected.inclination_rad);
+  const double dip_error_deg = kDegreesPerRadian * (*survey.inclination_rad - expected.inclination_rad);
   if (std::abs(dip_error_deg) > 10.0) {
     add(inspection, Severity::Warning, 41.0, "field_dip",
         fmt::format("the field points {:.0f} deg below the horizon, but {:.0f} deg at this place: calibrate "
                     "the magnetometer, "
                     "and check its axes",
-                    kDegrees * *survey.inclination_rad, kDegrees * expected.inclination_rad));
+                    kDegreesPerRadian * *survey.inclination_rad,
+                    kDegreesPerRadian * expected.inclination_rad));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/signed_axes.h"
@@ -9,13 +10,12 @@
 namespace lodeline::findings {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 /// Least correlation at which the turns of camera and gyroscope are taken for the same.
 constexpr double kSame = 0.6;
 /// Least correlation at which their differences are taken for errors of the rig, not of the images.
 constexpr double kJudgeable = 0.93;
 constexpr double kHarmfulOffset_s = 0.008;
-constexpr double kHarmfulMisalignment_rad = 5.0 / kDegrees;
+constexpr double kHarmfulMisalignment_rad = 5.0 / kDegreesPerRadian;
 constexpr double kHarmfulFocalError = 0.1;
 constexpr double kSignificant_sigmas = 4.0;
 
@@ -93,7 +93,7 @@ class TurningJudge {
       return true;
     }
     if (turning_.misalignment_rad < kHarmfulMisalignment_rad) return false;
-    const double angle_deg = kDegrees * turning_.misalignment_rad;
+    const double angle_deg = kDegreesPerRadian * turning_.misalignment_rad;
     const Vec3 axis_C =
         calibration_.body_from_camera.rotation.conjugate() * turning_.misalignment_B.normalized();
     const Mat3 nearest = nearestSignedAxes(turning_.axes);

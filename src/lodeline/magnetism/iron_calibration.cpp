@@ -6,8 +6,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/magnetism/ellipsoid_fit.h"
 #include "lodeline/magnetism/heading_error.h"
@@ -16,7 +16,6 @@ namespace lodeline {
 namespace {
 
 constexpr double kNominalField_T = 50e-6;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The algebraic fit refitted a few times to the three quarters of readings that it fits best, so that
 /// outliers do not decide where the refinement starts.

@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct ReferencePoint {
   double year, height_km, latitude, longitude, north_nT, east_nT, down_nT;

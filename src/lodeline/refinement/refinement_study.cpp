@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/estimator/dive_consistency.h"
 #include "lodeline/refinement/refine.h"
 
@@ -82,7 +82,6 @@ Trial runTrial(const HeadingTrialOptions& options, const RefinementOptions& want
 double ratio(double window, double batch) { return batch > 0.0 ? window / batch : 0.0; }
 
 void print(uint64_t seed, const Trial& trial) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   fmt::print(
       "{:>5} {:>8.2f} {:>8.2f} {:>6.2f} {:>9.2f} {:>8.2f} {:>6.2f} {:>7.2f} {:>8.2f} {:>8.3f} {:>8.3f} "
       "{:>7.1f} {:>7} {:>5} "
@@ -90,9 +89,10 @@ void print(uint64_t seed, const Trial& trial) {
       seed, 100.0 * trial.window.aligned_m, 100.0 * trial.batch.aligned_m,
       ratio(trial.window.aligned_m, trial.batch.aligned_m), 100.0 * trial.window.anchored_m,
       100.0 * trial.batch.anchored_m, ratio(trial.window.anchored_m, trial.batch.anchored_m),
-      100.0 * trial.window.end_m, 100.0 * trial.batch.end_m, kDegrees * trial.window.yaw_rad,
-      kDegrees * trial.batch.yaw_rad, trial.batch_nees, trial.summary.states, trial.summary.iterations,
-      trial.summary.processor_s, trial.summary.usable() ? "" : trial.summary.refusal);
+      100.0 * trial.window.end_m, 100.0 * trial.batch.end_m, kDegreesPerRadian * trial.window.yaw_rad,
+      kDegreesPerRadian * trial.batch.yaw_rad, trial.batch_nees, trial.summary.states,
+      trial.summary.iterations, trial.summary.processor_s,
+      trial.summary.usable() ? "" : trial.summary.refusal);
   std::fflush(stdout);
 }
 

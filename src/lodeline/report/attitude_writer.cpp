@@ -4,20 +4,16 @@
 #include <fmt/ostream.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/output_file.h"
 
 namespace lodeline {
-namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 double azimuth_deg(const Quat& world_from_body) {
   const Vec3 ahead_W = world_from_body * Vec3::UnitX();
-  const double azimuth = kDegrees * std::atan2(ahead_W.x(), ahead_W.y());
+  const double azimuth = kDegreesPerRadian * std::atan2(ahead_W.x(), ahead_W.y());
   return azimuth < 0.0 ? azimuth + 360.0 : azimuth;
 }
 
@@ -34,7 +30,7 @@ void AttitudeWriter::write(const AttitudeEstimate& estimate) {
   const int64_t ns = estimate.time.nanoseconds();
   fmt::print(csv_, "{},{},{:.9f},{:.9f},{:.9f},{:.9f},{:.4f},{:.4f},{:.9g},{:.9g},{:.9g},{}\n", ns,
              toString(estimate.status), q.w(), q.x(), q.y(), q.z(), azimuth_deg(q),
-             kDegrees * estimate.heading_sigma_rad, b.x(), b.y(), b.z(), estimate.at_rest ? 1 : 0);
+             kDegreesPerRadian * estimate.heading_sigma_rad, b.x(), b.y(), b.z(), estimate.at_rest ? 1 : 0);
   fmt::print(tum_, "{}.{:09} 0 0 0 {:.9f} {:.9f} {:.9f} {:.9f}\n", ns / 1000000000, ns % 1000000000, q.x(),
              q.y(), q.z(), q.w());
   if (!first_) first_ = estimate.time;
@@ -56,12 +52,12 @@ std::string AttitudeWriter::text(const std::string& north) const {
   for (const auto& [status, count] : statuses_) {
     text += fmt::format("{} {:.1f} %  ", toString(status), 100.0 * count / count_);
   }
-  const Vec3 bias = kDegrees * last_.gyroscope_bias_B;
+  const Vec3 bias = kDegreesPerRadian * last_.gyroscope_bias_B;
   text += fmt::format(
       "\nat rest       {:.1f} %\nend           heading {:.1f} deg, sigma {:.1f} deg\n"
       "gyroscope     bias {:.3f} {:.3f} {:.3f} deg/s\n",
-      100.0 * at_rest_ / count_, azimuth_deg(last_.world_from_body), kDegrees * last_.heading_sigma_rad,
-      bias.x(), bias.y(), bias.z());
+      100.0 * at_rest_ / count_, azimuth_deg(last_.world_from_body),
+      kDegreesPerRadian * last_.heading_sigma_rad, bias.x(), bias.y(), bias.z());
   return text;
 }
 
@@ -74,7 +70,7 @@ nlohmann::ordered_json AttitudeWriter::json(const std::string& north) const {
     json["status_share"][toString(status)] = static_cast<double>(count) / count_;
   }
   json["end"] = {{"heading_deg", azimuth_deg(last_.world_from_body)},
-                 {"heading_sigma_deg", kDegrees * last_.heading_sigma_rad}};
+                 {"heading_sigma_deg", kDegreesPerRadian * last_.heading_sigma_rad}};
   const Vec3& bias = last_.gyroscope_bias_B;
   json["gyroscope_bias_rad_per_s"] = {bias.x(), bias.y(), bias.z()};
   return json;

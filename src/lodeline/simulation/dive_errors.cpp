@@ -2,12 +2,11 @@
 
 #include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Quat drawTurn(double least_rad, double most_rad, Random& random) {
   const double angle = random.uniform(least_rad, most_rad);

@@ -7,14 +7,13 @@
 #include <set>
 #include <tuple>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/simulation/dive_world.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Scenario scenario(const char* name, const char* realism, std::vector<std::string> effects = {},
                   uint64_t seed = 1) {

@@ -4,13 +4,12 @@
 #include <numbers>
 #include <vector>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/simulation/random.h"
 #include "lodeline/simulation/waves.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr double kEnvelopeKnot_s = 0.25;
 

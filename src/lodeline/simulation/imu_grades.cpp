@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/simulation/imu_model.h"
 
 namespace lodeline {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDegreePerHour = kDegree / 3600.0;
 constexpr double kMilliG = 9.80665e-3;
 

@@ -1,9 +1,9 @@
 #include "lodeline/simulation/magnetometer_model.h"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -41,7 +41,6 @@ Vec3 MagnetometerModel::measure(double time_s) {
 MagnetometerErrors drawMagnetometerErrors(std::string_view imu_grade, const MagnetometerSpecimenOptions& o,
                                           uint64_t seed) {
   Random random(seed, "magnetometer/specimen");
-  constexpr double kDegree = std::numbers::pi / 180.0;
   Mat3 distortion = Mat3::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column <= row; ++column) {

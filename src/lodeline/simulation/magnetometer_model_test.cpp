@@ -1,17 +1,15 @@
 #include "lodeline/simulation/magnetometer_model.h"
+#include "lodeline/base/angles.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/simulation/point_dive.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 class MagnetometerModelTest : public testing::Test {
  protected:

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/simulation/hand_motion.h"
 #include "lodeline/simulation/random.h"
 #include "lodeline/simulation/swim_plan.h"
@@ -15,7 +16,6 @@ namespace lodeline {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Time that stands still until `rest_s` and has picked up full pace 3 s later.
 double wakingTime(double t, double rest_s) {

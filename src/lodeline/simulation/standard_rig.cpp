@@ -4,12 +4,11 @@
 
 #include <numbers>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Columns: the camera's x (right), y (down) and z (ahead) in D.
 Quat diverFromCamera() {
