@@ -29,13 +29,16 @@ if(LODELINE_SANITIZERS)
 endif()
 lodeline_export(options)
 
-# lodeline_layer(NAME [SOURCES ...] [DEPENDS layer-or-library ...] [TESTS ...] [REAL_TESTS ...])
+# lodeline_layer(NAME [SOURCES ...] [DEPENDS layer-or-library ...] [TESTS ...] [REAL_TESTS ...] [ALONE ...])
 #
 # One layer of the library: target lodeline_NAME from SOURCES (an interface library when there are none), linked
 # against lower layers (by layer name) and outside libraries (by target name). TESTS are fast, need no data and
-# run under the sanitizers too; REAL_TESTS read recordings and skip themselves where these are missing.
+# run under the sanitizers too; REAL_TESTS read recordings and skip themselves where these are missing. ALONE are those
+# of all of these that a build of several files at a time leaves to themselves, since local names of theirs are those of
+# their neighbours, or since they take as long as a dozen others.
 function(lodeline_layer name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;REAL_TESTS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;REAL_TESTS;ALONE" ${ARGN})
+  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set(links)
   foreach(dependency IN LISTS ARG_DEPENDS)
     if(TARGET lodeline_${dependency})

@@ -11,7 +11,7 @@ namespace lodeline {
 namespace {
 
 /// Holds the whole of every message but images.
-constexpr size_t kFirstRead = 1024;
+constexpr size_t kMessageAtOnce = 1024;
 
 std::vector<BagTopic> collectTopics(BagContents contents) {
   std::vector<BagTopic> topics;
@@ -43,7 +43,7 @@ BagFile::BagFile(const std::filesystem::path& file, Diagnostics* diagnostics)
 }
 
 std::optional<wire::Bytes> BagFile::read(const BagEntry& entry) {
-  wire::Bytes bytes = chunks_.read(entry.chunk, entry.offset, kFirstRead);
+  wire::Bytes bytes = chunks_.read(entry.chunk, entry.offset, kMessageAtOnce);
   const std::optional<RecordView> record = recordAt(bytes);
   if (record && record->kind == RecordKind::Message) {
     const size_t end = record->data_offset + record->data_size;

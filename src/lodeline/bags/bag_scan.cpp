@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
 /// Enough for the fields of every record but unusual connections', which are read again.
-constexpr size_t kFirstRead = 512;
+constexpr size_t kFieldsAtOnce = 512;
 constexpr size_t kLongestFields = 1 << 20;
 /// A chunk that promises more than this is believed only where its packed size makes that likely.
 constexpr uint64_t kLargeChunk = uint64_t{1} << 30;
@@ -25,7 +25,7 @@ constexpr uint64_t kGreatestRatio = 256;
 constexpr std::array<uint8_t, 8> kChunkMark = {4, 0, 0, 0, 'o', 'p', '=', 5};
 
 std::optional<RecordView> recordIn(const RandomAccessFile& file, uint64_t position) {
-  wire::Bytes bytes = file.read(position, kFirstRead);
+  wire::Bytes bytes = file.read(position, kFieldsAtOnce);
   if (bytes.size() < 8) return std::nullopt;
   const size_t fields_size = wire::Reader(bytes).take<uint32_t>();
   if (fields_size > kLongestFields) return std::nullopt;

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kWidestLensRad = 115.0 * std::numbers::pi / 180.0;
 constexpr double kConvergedStepRad = 1e-13;
-constexpr int kMaxIterations = 60;
 /// Below this tangent of the angle to the axis the series is exact to machine precision and the closed form
 /// divides zero by zero.
 constexpr double kNearAxis = 1e-4;
@@ -90,6 +89,7 @@ std::optional<Vec3> EquidistantCamera::unproject(const Vec2& pixel) const {
   if (!(target <= max_distorted_)) return std::nullopt;
   if (target == 0.0) return Vec3::UnitZ();
 
+  constexpr int kMaxIterations = 60;
   double low = 0.0, high = max_angle_rad_;
   double theta = std::min(target, high);
   for (int i = 0; i < kMaxIterations; ++i) {

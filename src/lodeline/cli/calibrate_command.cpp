@@ -20,7 +20,7 @@
 namespace lodeline {
 namespace {
 
-const char* const kFooter =
+const char* const kCalibrateFooter =
     R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
 ROS 1 bag (--rig may be missing; the noise of a usual IMU is assumed then),
 a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
@@ -173,7 +173,7 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
                       "calibration to compare with, e.g. that from before the dive");
   command->add_option("--json", arguments->json, "write all figures to this file");
   command->add_option("--plots", arguments->plots, "folder for pictures of the readings and of the coverage");
-  command->footer(kFooter);
+  command->footer(kCalibrateFooter);
   command->callback([arguments] { calibrate(*arguments); });
 }
 

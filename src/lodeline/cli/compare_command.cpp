@@ -19,7 +19,7 @@
 namespace lodeline {
 namespace {
 
-const char* const kFooter =
+const char* const kCompareFooter =
     R"(Methods: off (images and inertial readings alone), paper and absolute (docs/magnetometer.md), azimuth (the finished
 trajectory of off, its heading corrected by the 20 s running median of the field's azimuth).
 Runs of a scenario differ by the noise of its sensors, with the same images; runs of a folder by the front end's seed.
@@ -185,7 +185,7 @@ void addCompareCommand(CLI::App& program) {
       "render no images: where a simulated recording is unfinished, compare on the part there is");
   command->add_option("--threads", request->threads, "for rendering (all cores)");
   addScenarioOptions(command, &request->changes);
-  command->footer(kFooter);
+  command->footer(kCompareFooter);
   command->callback([request] { compare(*request); });
 }
 

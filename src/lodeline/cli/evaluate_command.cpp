@@ -19,7 +19,7 @@
 namespace lodeline {
 namespace {
 
-const char* const kFooter = R"(Examples:
+const char* const kEvaluateFooter = R"(Examples:
   lodeline evaluate OUT mav0/state_groundtruth_estimate0/data.csv --images mav0/cam0
       a run of `lodeline run` against EuRoC truth, SE(3) alignment, completion by left images
   lodeline evaluate OUT truth.tum --align yaw --plots plots --json figures.json
@@ -157,7 +157,7 @@ void addEvaluateCommand(CLI::App& program) {
   command->add_option("--json", arguments->json, "Write all figures to this file");
   command->add_option("--plots", arguments->plots,
                       "Write plots as SVG and PNG to this folder (needs gnuplot)");
-  command->footer(kFooter);
+  command->footer(kEvaluateFooter);
   command->callback([arguments] { evaluateCommand(*arguments); });
 }
 

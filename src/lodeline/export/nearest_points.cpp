@@ -3,25 +3,22 @@
 #include <nanoflann.hpp>
 
 namespace lodeline {
-namespace {
-
-/// Points as nanoflann wants to see them.
-struct Cloud {
-  const std::vector<Vec3>& points;
-
-  size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(size_t i, size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, size_t>;
-
-}  // namespace
 
 struct NearestPoints::Index {
+  /// Points as nanoflann wants to see them.
+  struct Cloud {
+    const std::vector<Vec3>& points;
+
+    size_t kdtree_get_point_count() const { return points.size(); }
+    double kdtree_get_pt(size_t i, size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
+    template <typename Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree =
+      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, size_t>;
+
   explicit Index(const std::vector<Vec3>& points) : cloud{points}, tree(3, cloud) {}
 
   Cloud cloud;

@@ -8,7 +8,7 @@ namespace {
 
 using namespace survey_text;
 
-std::string fixText(const DiveMap& map) {
+std::string survexFix(const DiveMap& map) {
   if (!map.place) {
     return fmt::format("*fix 0 0 0 {:.4f}\n", -map.start_depth_m + 0.0);
   }
@@ -24,7 +24,7 @@ Vec3 onGrid(const DiveMap& map, const Vec3& point_ENU) {
   return map.place ? map.place->grid(point_ENU) : point_ENU;
 }
 
-std::string splayText(const DiveMap& map) {
+std::string survexSplays(const DiveMap& map) {
   std::string text;
   for (size_t i = 0; i < map.survey.stations.size(); ++i) {
     const SurveyStation& station = map.survey.stations[i];
@@ -66,7 +66,7 @@ std::string survexText(const DiveMap& map) {
   text += fmt::format("\n*begin {}\n*title {}\n", map.name, quoted(map.title));
   if (!map.date.empty()) text += fmt::format("*date {}\n", dotted(map.date));
   for (const std::string& name : map.team) text += fmt::format("*team {}\n", quoted(name));
-  text += fixText(map) + "*entrance 0\n";
+  text += survexFix(map) + "*entrance 0\n";
   const Vec3& sigma = survey.leg_sigma_ENU;
   text += fmt::format(
       "\n; Differences are grid differences.\n*data cartesian from to dx dy dz\n"
@@ -74,7 +74,7 @@ std::string survexText(const DiveMap& map) {
       sigma.x(), sigma.y(), sigma.z());
   text += legs(positions, "");
   if (survey.is_closed) text += fmt::format("*equate 0 {}\n", survey.legs());
-  text += splayText(map) + passageText(survey);
+  text += survexSplays(map) + passageText(survey);
   return text + fmt::format("*end {}\n", map.name);
 }
 

@@ -17,7 +17,7 @@ Vec3 fromFirst(const DiveMap& map, const Vec3& point_ENU) {
                          map.place->convergence_rad());
 }
 
-std::string fixText(const DiveMap& map) {
+std::string therionFix(const DiveMap& map) {
   if (!map.place) return fmt::format("    fix 0 0 0 {:.4f}\n", -map.start_depth_m + 0.0);
   const UtmZone& zone = map.place->zone();
   const Vec3 first = rounded(map.place->grid(map.survey.stations.front().position_ENU));
@@ -34,7 +34,7 @@ std::string dateText(const DiveMap& map) {
   return fmt::format("    # date {}  (Therion 6.1 warns of dates after 2024)\n", dotted(map.date));
 }
 
-std::string splayText(const DiveMap& map) {
+std::string therionSplays(const DiveMap& map) {
   std::string text;
   for (size_t i = 0; i < map.survey.stations.size(); ++i) {
     const SurveyStation& station = map.survey.stations[i];
@@ -73,7 +73,7 @@ std::string therionText(const DiveMap& map) {
   std::string text = fmt::format("encoding utf-8\n# {}\n", map.title) + comments(map, "#");
   text += fmt::format("\nsurvey {} -title {}\n  centreline\n", map.name, quoted(map.title)) + dateText(map);
   for (const std::string& name : map.team) text += fmt::format("    team {}\n", quoted(name));
-  text += fixText(map) + "    station 0 \"entrance\" entrance\n";
+  text += therionFix(map) + "    station 0 \"entrance\" entrance\n";
   const Vec3& sigma = survey.leg_sigma_ENU;
   text += fmt::format(
       "\n    # Differences against the north named above; Therion turns them by the convergence of the "
@@ -83,7 +83,7 @@ std::string therionText(const DiveMap& map) {
       sigma.x(), sigma.y(), sigma.z());
   text += legs(positions, "    ");
   if (survey.is_closed) text += fmt::format("    equate 0 {}\n", survey.legs());
-  text += splayText(map) + dimensionsText(survey);
+  text += therionSplays(map) + dimensionsText(survey);
   return text + "  endcentreline\nendsurvey\n";
 }
 
