@@ -132,6 +132,10 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "the same, at most");
   settings->bind("solver.track_weights", &options->solver.track_weights,
                  "weigh each track's sightings by what its own errors say of it");
+  settings->bind("rest.enabled", &options->rest.enabled,
+                 "count the velocity as none where readings and images rest");
+  settings->bind("rest.velocity_sigma_m_per_s", &options->rest.velocity_sigma_m_per_s,
+                 "what may be left of motion then");
   settings->bind("min_landmarks_for_vision", &options->min_landmarks_for_vision,
                  "with fewer a frame counts as carried by inertial readings alone");
 }

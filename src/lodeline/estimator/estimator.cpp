@@ -62,6 +62,7 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       magnetometer_(rig_, options_, diagnostics),
       depth_(rig_, options_, diagnostics),
       scale_(rig_, options_),
+      rest_(rig_, options_.rest),
       unmodelled_(options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
@@ -76,7 +77,9 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   const bool carries_on = initialized();
   magnetometer_.take(magnetometer, imu, carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero());
   depth_.take(depth);
+  const bool rests = rest_.add(tracks, imu);
   if (carries_on) insertFrame(tracks.time, sightings, imu);
+  if (carries_on && rests) window_.newest().rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
   last_time_ = tracks.time;
   if (carries_on) {
     optimize(&estimate);

@@ -12,6 +12,7 @@
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/estimator/mono_initializer.h"
 #include "lodeline/estimator/options.h"
+#include "lodeline/estimator/rest_watch.h"
 #include "lodeline/estimator/scale_budget.h"
 #include "lodeline/estimator/unmodelled_errors.h"
 #include "lodeline/estimator/window.h"
@@ -109,6 +110,7 @@ class Estimator {
   MagnetometerFusion magnetometer_;
   DepthFusion depth_;
   ScaleBudget scale_;
+  RestWatch rest_;
   UnmodelledErrors unmodelled_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;

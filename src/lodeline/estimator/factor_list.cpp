@@ -106,6 +106,15 @@ std::optional<Factor> FactorMaker::depth(const Window& window, Frame& frame) con
   return factor;
 }
 
+std::optional<Factor> FactorMaker::rest(Frame& frame) const {
+  if (!frame.rest_sigma_m_per_s) return std::nullopt;
+  const ceres::Matrix whitening = ceres::Matrix::Identity(3, kMotionSize) / *frame.rest_sigma_m_per_s;
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Zero(kMotionSize));
+  factor.blocks = {frame.motion.data()};
+  return factor;
+}
+
 Factor FactorMaker::prior(const Prior& prior) const {
   Factor factor;
   factor.function = std::make_unique<PriorFactor>(prior);

@@ -220,6 +220,8 @@ void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
   }
   if (const auto factor = factors_.depth(window, oldest)) system->add(*factor);
   oldest.depth.reset();
+  if (const auto factor = factors_.rest(oldest)) system->add(*factor);
+  oldest.rest_sigma_m_per_s.reset();
 }
 
 void Marginalizer::removeOldestKeyframe(Window& window) {

@@ -110,6 +110,17 @@ struct ImuAxesOptions {
   double calibrated_below_rad_per_s_sqrtHz = 1.2e-4;
 };
 
+/// When a rig counts as resting, see RestWatch.
+struct RestOptions {
+  bool enabled = true;
+  double span_s = 1.0;     ///< readings and images rest for so long
+  int min_tracks = 20;     ///< that are seen throughout
+  double shift_px = 0.15;  ///< median of the tracks' shifts over the span; more where tracks are noisier
+  double rate_deviation_rad_per_s = 0.02;  ///< of readings from their means, on top of their noise
+  double force_deviation_m_per_s2 = 0.1;
+  double velocity_sigma_m_per_s = 0.03;  ///< what may be left of motion
+};
+
 struct EstimatorOptions {
   Vec3 gravity_W = standardGravity_W();  ///< m/s^2
   InitialStateOptions initial_state;
@@ -120,6 +131,7 @@ struct EstimatorOptions {
   SolverOptions solver;
   CameraCalibrationOptions camera_calibration;
   ImuAxesOptions imu_axes;
+  RestOptions rest;
   PreintegrationOptions preintegration;
   MagnetometerOptions magnetometer;
   DepthOptions depth;

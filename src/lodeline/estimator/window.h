@@ -60,6 +60,7 @@ struct Frame {
   /// Until it has become part of the prior.
   std::optional<FieldMeasurement> magnetometer;
   std::optional<DepthMeasurement> depth;
+  std::optional<double> rest_sigma_m_per_s;  ///< where the rig rests: the velocity is zero, known so well
   /// Width of the robust loss on its reprojection errors, standard deviations; as the options say until these
   /// have shown what it should be.
   std::optional<double> robust_scale_sigmas;

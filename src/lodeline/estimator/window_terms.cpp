@@ -27,6 +27,7 @@ std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factor
   for (const auto& frame : window.frames()) {
     if (auto factor = factors.magnetometer(window, before, *frame)) terms.push_back(std::move(*factor));
     if (auto factor = factors.depth(window, *frame)) terms.push_back(std::move(*factor));
+    if (auto factor = factors.rest(*frame)) terms.push_back(std::move(*factor));
     before = frame.get();
   }
   return terms;

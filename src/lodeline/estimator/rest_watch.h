@@ -1,0 +1,48 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lodeline/estimator/options.h"
+#include "lodeline/features/tracks.h"
+#include "lodeline/inertial/rest_detector.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// Tells when a rig rests: its inertial readings stay close to their means, and its images stay as they are.
+/// That tells more than sightings do. Points that do not move in the image are as well infinitely far from a
+/// rig that glides, which is what one camera makes of them whose speed dead reckoning has got wrong; no cave
+/// is as far as that.
+class RestWatch {
+ public:
+  RestWatch(const Rig& rig, const RestOptions& options);
+
+  /// Frames in order, with the readings since the frame before. True where a frame's velocity is to be
+  /// counted as none: once in `RestOptions::span_s` at most, since what is left of motion lasts.
+  bool add(const FrameTracks& tracks, std::span<const ImuSample> imu);
+
+ private:
+  struct Point {
+    TrackId track;
+    Vec3 bearing_C;
+  };
+  struct Picture {
+    Time time;
+    std::vector<Point> points;  ///< of the first camera, by track
+  };
+
+  bool readingsRest(std::span<const ImuSample> imu);
+  bool imagesRest() const;
+
+  RestOptions options_;
+  double focal_length_px_;
+  RestDetector readings_;
+  std::optional<Time> last_reading_;
+  std::deque<Picture> pictures_;  ///< over `span_s`
+  std::optional<Time> last_rest_;
+};
+
+}  // namespace lodeline
