@@ -62,15 +62,41 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::option
     landmark.host = place(track.landmark->host);
     landmark.base = track.landmark->base;
     landmark.weight = track.weight;
+    landmark.first_frame = landmark.host;
+    landmark.end_frame = landmark.host + 1;
     landmark.first_sighting = sightings_.size();
     for (const lodeline::Sighting& sighting : track.sightings) {
       if (only && sighting.frame != *only) continue;
       const int frame = place(sighting.frame);
+      landmark.first_frame = std::min(landmark.first_frame, frame);
+      landmark.end_frame = std::max(landmark.end_frame, frame + 1);
       const double scale = factors.robustScale(*window.frames()[static_cast<size_t>(frame)]);
       sightings_.push_back({frame, sighting.camera, &sighting.measurement, scale * scale});
     }
     landmark.end_sighting = sightings_.size();
     landmarks_.push_back(landmark);
+  }
+  arrangeColumns();
+}
+
+/// Most landmarks are seen by some frames of the window only. With columns in the order of the time that
+/// landmarks were seen, a stretch of them touches few frames more than each does.
+void VisualTerms::arrangeColumns() {
+  constexpr size_t kStretch = 16;
+  std::vector<Landmark*> by_time;
+  for (Landmark& landmark : landmarks_) by_time.push_back(&landmark);
+  std::stable_sort(by_time.begin(), by_time.end(), [](const Landmark* a, const Landmark* b) {
+    return std::pair(a->end_frame, a->first_frame) < std::pair(b->end_frame, b->first_frame);
+  });
+  for (size_t i = 0; i < by_time.size(); ++i) {
+    Landmark& landmark = *by_time[i];
+    landmark.column = kLandmarkSize * static_cast<Eigen::Index>(i);
+    if (i % kStretch == 0)
+      stretches_.push_back({landmark.column, 0, landmark.first_frame, landmark.end_frame});
+    Stretch& stretch = stretches_.back();
+    stretch.columns += kLandmarkSize;
+    stretch.first_frame = std::min(stretch.first_frame, landmark.first_frame);
+    stretch.end_frame = std::max(stretch.end_frame, landmark.end_frame);
   }
 }
 
@@ -141,10 +167,9 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   return term;
 }
 
-void VisualTerms::eliminate(size_t index) {
-  Landmark& landmark = landmarks_[index];
-  const auto column = kLandmarkSize * static_cast<Eigen::Index>(index);
-  auto coupling = couplings_.middleCols<kLandmarkSize>(column);
+void VisualTerms::eliminate(Landmark* of) {
+  Landmark& landmark = *of;
+  auto coupling = couplings_.middleCols<kLandmarkSize>(landmark.column);
   Mat3 h_landmark = Mat3::Zero();
   Vec3 g_landmark = Vec3::Zero();
   for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
@@ -166,7 +191,7 @@ void VisualTerms::eliminate(size_t index) {
   }
   // What the targets' poses do follows from what the host's would do with each target alone.
   auto of_host = coupling.middleRows<6>(6 * landmark.host);
-  for (int frame = 0; frame < frames_; ++frame) {
+  for (int frame = landmark.first_frame; frame < landmark.end_frame; ++frame) {
     if (frame == landmark.host) continue;
     auto of_target = coupling.middleRows<6>(6 * frame);
     of_host += of_target;
@@ -174,8 +199,10 @@ void VisualTerms::eliminate(size_t index) {
     of_target = -of_target;
   }
   landmark.inverse_root = landmarkInverseRoot(h_landmark);
-  coupling *= landmark.inverse_root;
-  rooted_gradients_.segment<kLandmarkSize>(column) = landmark.inverse_root.transpose() * g_landmark;
+  const auto root = [&](auto rows) { rows *= landmark.inverse_root; };
+  root(coupling.middleRows(6 * landmark.first_frame, 6 * (landmark.end_frame - landmark.first_frame)));
+  root(coupling.bottomRows(6 * (nodes_ - frames_)));
+  rooted_gradients_.segment<kLandmarkSize>(landmark.column) = landmark.inverse_root.transpose() * g_landmark;
 }
 
 void VisualTerms::addPair(int host, int target) {
@@ -235,17 +262,30 @@ void VisualTerms::addTo(NormalEquations* system) {
   gradient_.setZero(rows);
   couplings_.setZero(rows, columns);
   rooted_gradients_.resize(columns);
-  for (size_t i = 0; i < landmarks_.size(); ++i) eliminate(i);
+  for (Landmark& landmark : landmarks_) eliminate(&landmark);
   for (const int host : first_.hosts()) {
     for (int target = 0; target < frames_; ++target) {
       if (target != host) addPair(host, target);
     }
   }
   for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
-  // Eigen divides by the number of columns.
-  if (columns > 0) hessian_.selfadjointView<Eigen::Lower>().rankUpdate(couplings_, -1.0);
-  gradient_.noalias() -= couplings_ * rooted_gradients_;
+  subtractEliminated();
   addNodesTo(system);
+}
+
+void VisualTerms::subtractEliminated() {
+  const int calibration = 6 * (nodes_ - frames_);
+  for (const Stretch& stretch : stretches_) {
+    const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
+    const auto by_frames = couplings_.block(first, stretch.column, rows, stretch.columns);
+    const auto by_calibration = couplings_.block(6 * frames_, stretch.column, calibration, stretch.columns);
+    hessian_.block(first, first, rows, rows).selfadjointView<Eigen::Lower>().rankUpdate(by_frames, -1.0);
+    hessian_.block(6 * frames_, first, calibration, rows).noalias() -= by_calibration * by_frames.transpose();
+    hessian_.bottomRightCorner(calibration, calibration)
+        .selfadjointView<Eigen::Lower>()
+        .rankUpdate(by_calibration, -1.0);
+  }
+  gradient_.noalias() -= couplings_ * rooted_gradients_;
 }
 
 std::vector<NormalEquations::Block> VisualTerms::blocks() const {
@@ -315,8 +355,7 @@ void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::Vect
   const Eigen::VectorXd rooted = rooted_gradients_ + couplings_.transpose() * steps;
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     Eigen::Map<Vec3>(landmarks_[i].value) -=
-        landmarks_[i].inverse_root *
-        rooted.segment<kLandmarkSize>(kLandmarkSize * static_cast<Eigen::Index>(i));
+        landmarks_[i].inverse_root * rooted.segment<kLandmarkSize>(landmarks_[i].column);
   }
 }
 

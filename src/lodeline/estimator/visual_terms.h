@@ -46,12 +46,21 @@ class VisualTerms {
     LandmarkBase base;
     double weight;  ///< of its errors, squared
     size_t first_sighting, end_sighting;
-    Mat3 inverse_root;  ///< of the last linearisation: W with W W^T the inverse of its Hessian
+    int first_frame, end_frame;  ///< of those that see it and its host
+    Eigen::Index column;         ///< of its couplings
+    Mat3 inverse_root;           ///< of the last linearisation: W with W W^T the inverse of its Hessian
+  };
+  /// Landmarks whose couplings are side by side, and the frames that any of them touches.
+  struct Stretch {
+    Eigen::Index column, columns;
+    int first_frame, end_frame;
   };
   struct Linearised;
 
   Linearised linearise(const Landmark& landmark, const Sighting& sighting) const;
-  void eliminate(size_t landmark);
+  void arrangeColumns();
+  void eliminate(Landmark* landmark);
+  void subtractEliminated();
   void addPair(int host, int target);
   void addCalibration(int camera);
   size_t indexOf(int host, int target, int camera) const {
@@ -75,6 +84,7 @@ class VisualTerms {
   int cameras_;
   int nodes_;
   std::vector<Landmark> landmarks_;
+  std::vector<Stretch> stretches_;
   std::vector<Sighting> sightings_;
   // Nodes are what landmarks are eliminated against, six coordinates each: the camera poses of the frames in
   // the window's order, then the extrinsics of further cameras, then the lenses where they are estimated.
