@@ -94,6 +94,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "of the last keyframe's landmarks; fewer ask for a keyframe");
   settings->bind("keyframe.min_parallax_rad", &options->keyframe.min_parallax_rad,
                  "more asks for a keyframe");
+  settings->bind("keyframe.min_interval_s", &options->keyframe.min_interval_s, "but no sooner");
   settings->bind("keyframe.min_landmarks", &options->keyframe.min_landmarks, "fewer ask for a keyframe");
   settings->bind("landmark.max_count", &options->landmark.max_landmarks, "in the window");
   settings->bind("landmark.least_in_view", &options->landmark.least_in_view,

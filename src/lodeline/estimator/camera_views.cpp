@@ -1,35 +1,19 @@
 #include "lodeline/estimator/camera_views.h"
 
-#include <set>
+#include <utility>
 
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
-namespace {
-
-/// The frames that a landmark has for its host, counted from the oldest.
-std::vector<int> hostsOf(const Window& window) {
-  std::set<FrameId> ids;
-  for (const auto& [id, track] : window.tracks()) {
-    if (track.landmark) ids.insert(track.landmark->host);
-  }
-  std::vector<int> hosts;
-  for (size_t i = 0; i < window.frames().size(); ++i) {
-    if (ids.count(window.frames()[i]->id) > 0) hosts.push_back(static_cast<int>(i));
-  }
-  return hosts;
-}
-
-}  // namespace
-
-CameraViews::CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at)
+CameraViews::CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at,
+                         std::vector<int> hosts)
     : window_(window),
       states_(states),
       factors_(factors),
       at_(at),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
-      hosts_(hostsOf(window)),
+      hosts_(std::move(hosts)),
       placements_(window.frames().size()),
       further_(static_cast<size_t>(cameras_) - 1),
       relative_(static_cast<size_t>(frames_ * frames_ * cameras_)) {}

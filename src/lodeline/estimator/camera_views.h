@@ -35,8 +35,10 @@ class CameraViews {
     Vec3 translation;
   };
 
-  /// All three must outlive the views. Nothing is placed before the first update().
-  CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at);
+  /// All three must outlive the views. `hosts`: the frames that a landmark has for its host. Nothing is
+  /// placed before the first update().
+  CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at,
+              std::vector<int> hosts);
 
   /// Places all cameras anew, after a block has moved.
   void update();
@@ -44,7 +46,6 @@ class CameraViews {
   /// Frames count from the oldest of the window.
   const Placement& placement(int frame) const { return placements_[static_cast<size_t>(frame)]; }
   const Further& further(int camera) const { return further_[static_cast<size_t>(camera) - 1]; }
-  /// The frames that are a landmark's host.
   const std::vector<int>& hosts() const { return hosts_; }
   /// For those hosts.
   const Relative& relative(int host, int target, int camera) const {

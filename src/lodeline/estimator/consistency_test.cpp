@@ -21,6 +21,9 @@ void expectConsistent(int cameras) {
   options.scene.points.tracks = 50;
   options.scene.points.frame_rate_hz = 10.0;
   options.estimator = honestOptions(options.scene);
+  // The scene's cameras are what their files say; an estimator that doubts them claims errors of lenses which
+  // do not happen here (unmodelled_errors.h).
+  options.estimator.camera_calibration.enabled = false;
   options.seeds = 12;
   options.times_s = {8.0};
   const Consistency consistency = measureConsistency(options);

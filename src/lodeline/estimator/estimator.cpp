@@ -77,9 +77,9 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   const bool carries_on = initialized();
   magnetometer_.take(magnetometer, imu, carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero());
   depth_.take(depth);
-  const bool rests = rest_.add(tracks, imu);
+  rests_ = rest_.add(tracks, imu);
   if (carries_on) insertFrame(tracks.time, sightings, imu);
-  if (carries_on && rests) window_.newest().rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
+  if (carries_on && rests_) window_.newest().rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
   last_time_ = tracks.time;
   if (carries_on) {
     optimize(&estimate);
@@ -211,7 +211,8 @@ void Estimator::addCalibration(Prior* prior) {
 
 bool Estimator::startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu) {
   std::erase_if(sightings, [](const auto& entry) { return entry.second.camera > 0; });
-  if (!mono_initializer_.add(time, sightings, imu, next_frame_id_++)) return false;
+  if (!mono_initializer_.add(time, sightings, imu, next_frame_id_++, {rests_, rest_.gyroscope()}))
+    return false;
   window_ = mono_initializer_.takeWindow();
   Prior prior = mono_initializer_.takePrior();
   addCalibration(&prior);

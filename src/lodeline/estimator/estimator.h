@@ -111,6 +111,7 @@ class Estimator {
   DepthFusion depth_;
   ScaleBudget scale_;
   RestWatch rest_;
+  bool rests_ = false;  ///< at the newest frame
   UnmodelledErrors unmodelled_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;

@@ -54,11 +54,26 @@ TEST_F(KeyframePolicyTest, TurningAloneMakesNone) {
 
 TEST_F(KeyframePolicyTest, MovingFarEnoughMakesOne) {
   // The points ahead shift by about step / 4 m.
-  see(test_.add(Rigid3(Quat::Identity(), Vec3(0.0, 0.8 * 4.0 * options_.min_parallax_rad, 0.0)), false), 0,
-      60);
+  const auto seeFrom = [&](double share_of_parallax) {
+    const double step_m = share_of_parallax * 4.0 * options_.min_parallax_rad;
+    Frame& next = test_.add(Rigid3(Quat::Identity(), Vec3(0.0, step_m, 0.0)), false);
+    next.time =
+        first_.time + Duration::fromSeconds(static_cast<double>(next.id) * options_.min_interval_s + 0.01);
+    see(next, 0, 60);
+  };
+  seeFrom(0.8);
   EXPECT_FALSE(wanted());
-  see(test_.add(Rigid3(Quat::Identity(), Vec3(0.0, 1.2 * 4.0 * options_.min_parallax_rad, 0.0)), false), 0,
-      60);
+  seeFrom(1.2);
+  EXPECT_TRUE(wanted());
+}
+
+TEST_F(KeyframePolicyTest, MovingFastMakesNoneSooner) {
+  const Rigid3 far(Quat::Identity(), Vec3(0.0, 1.2 * 4.0 * options_.min_parallax_rad, 0.0));
+  Frame& next = test_.add(far, false);
+  see(next, 0, 60);
+  next.time = first_.time + Duration::fromSeconds(0.9 * options_.min_interval_s);
+  EXPECT_FALSE(wanted());
+  next.time = first_.time + Duration::fromSeconds(1.1 * options_.min_interval_s);
   EXPECT_TRUE(wanted());
 }
 

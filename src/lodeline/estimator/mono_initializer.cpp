@@ -16,9 +16,11 @@
 namespace lodeline {
 
 bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<const ImuSample> imu,
-                          FrameId id) {
+                          FrameId id, const Rest& rest) {
   pending_imu_.insert(pending_imu_.end(), imu.begin() + (pending_imu_.empty() || imu.empty() ? 0 : 1),
                       imu.end());
+  pending_rest_ = pending_rest_ || rest.now;
+  gyroscope_ = rest.gyroscope;
   const MonoInitializationOptions& wanted = options_.mono_initialization;
   if (!window_.empty() && (time - window_.newest().time).seconds() < wanted.min_frame_distance_s)
     return false;
@@ -53,6 +55,8 @@ void MonoInitializer::insert(Time time, const SightingList& sightings, FrameId i
   }
   if (!pending_imu_.empty()) frame->gyroscope_B = pending_imu_.back().angular_velocity_B;
   pending_imu_.clear();
+  if (pending_rest_) frame->rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
+  pending_rest_ = false;
   window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
 }
@@ -86,6 +90,13 @@ bool MonoInitializer::solveVisualStructure() {
   return true;
 }
 
+Vec3 MonoInitializer::gyroscopeBias(const std::vector<Quat>& rotations) {
+  if (!gyroscope_) return alignGyroscopeBias(rotations, intervals());
+  for (Preintegration* interval : intervals())
+    interval->repropagate(gyroscope_->bias_B, interval->accelerometerBias());
+  return gyroscope_->bias_B;
+}
+
 bool MonoInitializer::alignWithInertial() {
   const Rigid3& body_from_camera = factors_.bodyFromCamera(0);
   std::vector<Quat> rotations;
@@ -94,7 +105,7 @@ bool MonoInitializer::alignWithInertial() {
     rotations.push_back(frame->worldFromBody().rotation);
     camera_positions.push_back(frame->worldFromBody() * body_from_camera.translation);
   }
-  const Vec3 gyroscope_bias = alignGyroscopeBias(rotations, intervals());
+  const Vec3 gyroscope_bias = this->gyroscopeBias(rotations);
   const double gravity = options_.gravity_W.norm();
   const std::optional<VisualInertialAlignment> alignment =
       alignVisualInertial(rotations, camera_positions, body_from_camera.translation, intervals(), gravity);
@@ -125,8 +136,10 @@ bool MonoInitializer::alignWithInertial() {
 }
 
 bool MonoInitializer::refine() {
-  prior_ = startPrior(*window_.frames().front(), options_.initial_state,
-                      options_.mono_initialization.start_tilt_sigma_rad, false);
+  InitialStateOptions known = options_.initial_state;
+  if (gyroscope_) known.gyroscope_bias_sigma_rad_per_s = gyroscope_->sigma_rad_per_s;
+  prior_ =
+      startPrior(*window_.frames().front(), known, options_.mono_initialization.start_tilt_sigma_rad, false);
   for (const auto& frame : window_.frames()) {
     const auto interval = intervals_.find(frame->id);
     if (interval != intervals_.end()) frame->from_previous = std::move(interval->second);

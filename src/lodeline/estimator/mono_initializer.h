@@ -1,11 +1,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
+#include "lodeline/estimator/rest_watch.h"
 #include "lodeline/estimator/window.h"
 
 namespace lodeline {
@@ -21,10 +24,17 @@ class MonoInitializer {
   MonoInitializer(const Rig& rig, const EstimatorOptions& options, const FactorMaker& factors)
       : rig_(rig), options_(options), factors_(factors) {}
 
+  /// What RestWatch has found, as of a frame.
+  struct Rest {
+    bool now = false;  ///< its velocity is to be counted as none
+    std::optional<GyroscopeAtRest> gyroscope;
+  };
+
   /// Adds a frame: its sightings and the inertial readings since the frame before (as Estimator::add). True
   /// when the window is complete: states of all its frames in a world with gravity down, zero yaw and origin
   /// at the first frame, landmarks in metres.
-  bool add(Time time, const SightingList& sightings, std::span<const ImuSample> imu, FrameId id);
+  bool add(Time time, const SightingList& sightings, std::span<const ImuSample> imu, FrameId id,
+           const Rest& rest);
 
   /// What is missing, in words; set whenever add() returned false.
   const std::string& waitingFor() const { return waiting_for_; }
@@ -38,6 +48,8 @@ class MonoInitializer {
   void dropOldestFrame();
   std::vector<Preintegration*> intervals() const;
   bool solveVisualStructure();
+  /// What rests say, else what goes with these rotations of all frames; the intervals are integrated at it.
+  Vec3 gyroscopeBias(const std::vector<Quat>& rotations);
   bool alignWithInertial();
   bool refine();
 
@@ -47,6 +59,8 @@ class MonoInitializer {
   Window window_;
   Prior prior_;
   std::vector<ImuSample> pending_imu_;  ///< since the newest frame of the window
+  bool pending_rest_ = false;           ///< of a frame that was left out
+  std::optional<GyroscopeAtRest> gyroscope_;
   /// Inertial readings that led to a frame; kept apart from the window while its structure is purely visual.
   std::map<FrameId, std::unique_ptr<Preintegration>> intervals_;
   std::string waiting_for_;

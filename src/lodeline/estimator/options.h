@@ -39,7 +39,7 @@ struct MonoInitializationOptions {
 
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
-  int keyframes = 7;      ///< older keyframes, kept as poses
+  int keyframes = 12;     ///< older keyframes, kept as poses
   /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen. One
   /// camera, whose scale settles slowly, waits longer, and until the scale is known to `startup_scale_sigma`
   /// (relative). After `startup_max_frames` frames go all the same, but no linearisation is kept until it is.
@@ -50,9 +50,11 @@ struct WindowOptions {
 };
 
 struct KeyframeOptions {
-  double min_tracked_share = 0.7;   ///< of the last keyframe's landmarks still seen
-  double min_parallax_rad = 0.035;  ///< median rotation-free shift of the common tracks
-  int min_landmarks = 30;           ///< fewer seen landmarks ask for a keyframe
+  double min_tracked_share = 0.7;  ///< of the last keyframe's landmarks still seen
+  double min_parallax_rad = 0.02;  ///< median rotation-free shift of the common tracks
+  /// Parallax asks for one no sooner: the window of a fast rig must span some time, or landmarks outlive it.
+  double min_interval_s = 0.24;
+  int min_landmarks = 30;  ///< fewer seen landmarks ask for a keyframe
   /// A frame that sees little becomes a keyframe only when this share of its tracks is new since the last
   /// one.
   double min_fresh_share = 0.2;

@@ -12,6 +12,12 @@
 
 namespace lodeline {
 
+/// What rests say of a gyroscope: where nothing turns, it reads its bias.
+struct GyroscopeAtRest {
+  Vec3 bias_B;  ///< rad/s
+  double sigma_rad_per_s;
+};
+
 /// Tells when a rig rests: its inertial readings stay close to their means, and its images stay as they are.
 /// That tells more than sightings do. Points that do not move in the image are as well infinitely far from a
 /// rig that glides, which is what one camera makes of them whose speed dead reckoning has got wrong; no cave
@@ -24,6 +30,9 @@ class RestWatch {
   /// counted as none: once in `RestOptions::span_s` at most, since what is left of motion lasts.
   bool add(const FrameTracks& tracks, std::span<const ImuSample> imu);
 
+  /// From all rests up to the newest frame, as of that frame; nothing before the first.
+  std::optional<GyroscopeAtRest> gyroscope() const;
+
  private:
   struct Point {
     TrackId track;
@@ -32,17 +41,24 @@ class RestWatch {
   struct Picture {
     Time time;
     std::vector<Point> points;  ///< of the first camera, by track
+    Vec3 sum_of_rates_B = Vec3::Zero();
+    int readings = 0;  ///< since the picture before
   };
 
-  bool readingsRest(std::span<const ImuSample> imu);
-  bool imagesRest() const;
+  bool readingsRest(std::span<const ImuSample> imu, Picture* picture);
+  /// How far the images may have shifted over `span_s`, rad; nothing where that is more than noise.
+  std::optional<double> shiftAtRest() const;
+  void learnBias(double shift_rad);
 
   RestOptions options_;
+  ImuNoise noise_;
   double focal_length_px_;
   RestDetector readings_;
   std::optional<Time> last_reading_;
   std::deque<Picture> pictures_;  ///< over `span_s`
   std::optional<Time> last_rest_;
+  Vec3 bias_B_ = Vec3::Zero();
+  double bias_variance_ = 0.0;  ///< at the last rest
 };
 
 }  // namespace lodeline

@@ -76,6 +76,40 @@ TEST(RestWatch, BeginsAnewWhereTheImagesWereGone) {
   for (const double time_s : times_s) EXPECT_TRUE(time_s < 3.0 || time_s > 5.99) << time_s;
 }
 
+TEST(RestWatch, LearnsTheGyroscopesBiasFromAllRests) {
+  double squares = 0.0;
+  constexpr int kSeeds = 20;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    TestSceneOptions options = ofOneCamera();
+    options.seed = seed;
+    TestScene scene(options);
+    RestWatch watch(scene.rig(), {});
+    double sigma_after_one = 0.0;
+    Vec3 bias_B = Vec3::Zero();
+    while (auto frame = scene.next()) {
+      const bool rests = watch.add(frame->tracks, frame->imu);
+      EXPECT_EQ(watch.gyroscope().has_value(), rests || sigma_after_one > 0.0);
+      if (rests && sigma_after_one == 0.0) sigma_after_one = watch.gyroscope()->sigma_rad_per_s;
+      bias_B = frame->truth.gyroscope_bias_B;
+    }
+    const GyroscopeAtRest found = *watch.gyroscope();
+    EXPECT_LT(found.sigma_rad_per_s, 0.6 * sigma_after_one);
+    squares += ((found.bias_B - bias_B) / found.sigma_rad_per_s).squaredNorm();
+  }
+  // The Earth's turn and what images may have missed are allowed for and do not happen here.
+  EXPECT_LT(squares / (3 * kSeeds), 1.5);
+  EXPECT_GT(squares / (3 * kSeeds), 0.05);
+}
+
+TEST(RestWatch, LearnsNothingWhereNothingRests) {
+  TestSceneOptions options = ofOneCamera();
+  options.liveliness = 0.3;
+  TestScene scene(options);
+  RestWatch watch(scene.rig(), {});
+  while (auto frame = scene.next()) watch.add(frame->tracks, frame->imu);
+  EXPECT_FALSE(watch.gyroscope());
+}
+
 TEST(RestFactor, HoldsTheVelocityAndNothingElse) {
   TestWindow test;
   Frame& frame = test.add(Rigid3(), false);

@@ -36,24 +36,25 @@ double tailOf(double ratio) {
 }
 
 /// `sigmas` of those frames where they are known.
-void weighTracks(Window& window, const std::vector<SightingError>& errors,
-                 const std::map<FrameId, double>& sigmas) {
-  struct OfTrack {
-    double sum_of_squares = 0.0;
-    int count = 0;
-  };
-  std::map<TrackId, OfTrack> by_track;
+std::map<TrackId, TrackErrors> errorsByTrack(const std::vector<SightingError>& errors,
+                                             const std::map<FrameId, double>& sigmas) {
+  std::map<TrackId, TrackErrors> by_track;
   for (const SightingError& error : errors) {
     const auto sigma = sigmas.find(error.frame);
     if (sigma == sigmas.end()) continue;
-    OfTrack& of_track = by_track[error.track];
+    TrackErrors& of_track = by_track[error.track];
     of_track.sum_of_squares += (error.sigmas / sigma->second) * (error.sigmas / sigma->second);
     ++of_track.count;
   }
-  for (auto& [id, track] : window.tracks()) {
-    const OfTrack& of_track = by_track[id];
-    track.weight = trackWeight(of_track.sum_of_squares, of_track.count);
-  }
+  return by_track;
+}
+
+/// How far a track's mean square is from 1, in sigmas of chance (E. B. Wilson, M. M. Hilferty, "The
+/// distribution of chi-square", PNAS 17, 1931).
+double deviation(const TrackErrors& of_track) {
+  const double degrees = of_track.degreesOfFreedom();
+  const double variance = 2.0 / (9.0 * degrees);
+  return (std::cbrt(of_track.sum_of_squares / degrees) - (1.0 - variance)) / std::sqrt(variance);
 }
 
 }  // namespace
@@ -71,10 +72,22 @@ std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const 
       sigma, std::min(narrowing * options.robust_scale_medians * median, options.robust_scale_sigmas)};
 }
 
-double trackWeight(double sum_of_squares, int count) {
+double differenceOfTracks(const std::map<TrackId, TrackErrors>& by_track) {
+  constexpr size_t kEnough = 20;
+  constexpr double kNormalQuantile = 1.2816;  // 90 %
+  if (by_track.size() < kEnough) return 0.0;
+  std::vector<double> deviations;
+  for (const auto& [id, of_track] : by_track) deviations.push_back(deviation(of_track));
+  const double median = quantile(0.5, &deviations);
+  const double spread = (quantile(0.9, &deviations) - median) / kNormalQuantile;
+  return spread > 1.0 ? 1.0 - 1.0 / (spread * spread) : 0.0;
+}
+
+double trackWeight(const TrackErrors& errors, double difference) {
   constexpr double kBeforehand = 1.0, kMost = 2.0;
-  const double inverse_variance = (kBeforehand + 2.0 * count) / (kBeforehand + sum_of_squares);
-  return std::min(inverse_variance * inverse_variance, kMost);
+  const double inverse_variance =
+      (kBeforehand + errors.degreesOfFreedom()) / (kBeforehand + errors.sum_of_squares);
+  return std::min(std::pow(inverse_variance, 2.0 * difference), kMost);
 }
 
 void adaptRobustLosses(Window& window, const std::vector<SightingError>& errors,
@@ -88,7 +101,13 @@ void adaptRobustLosses(Window& window, const std::vector<SightingError>& errors,
     window.find(id)->robust_scale_sigmas = found->width;
     sigmas[id] = found->sigma;
   }
-  if (options.track_weights) weighTracks(window, errors, sigmas);
+  if (!options.track_weights) return;
+  const std::map<TrackId, TrackErrors> by_track = errorsByTrack(errors, sigmas);
+  const double difference = differenceOfTracks(by_track);
+  for (auto& [id, track] : window.tracks()) {
+    const auto found = by_track.find(id);
+    track.weight = found == by_track.end() ? 1.0 : trackWeight(found->second, difference);
+  }
 }
 
 void resetRobustLosses(Window& window) {

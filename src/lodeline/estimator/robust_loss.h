@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -33,14 +34,29 @@ struct FrameErrors {
 /// t distribution", JASA 84, 1989.)
 std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const SolverOptions& options);
 
-/// Weight of the sightings of a track, of which `count` had errors with that sum of squares in terms of
-/// FrameErrors::sigma. A point that slides does so in all of its sightings: each of them alone looks like one
-/// that is off by chance, together they tell. So every track has a variance of its own. Its sightings count
-/// with the square of that variance's inverse, since what slides is off by more than the window can see, a
-/// landmark that fits its errors; the weight of a redescending loss (S. Geman, D. E. McClure, "Statistical
-/// methods for tomographic image reconstruction", Bull. ISI 52, 1987), here of all errors of a track
-/// together. Twice the usual weight at most: that errors are small does not mean that the lens is right.
-double trackWeight(double sum_of_squares, int count);
+/// Squared errors of a track's sightings, in terms of what is usual in their frames (FrameErrors::sigma).
+struct TrackErrors {
+  double sum_of_squares = 0.0;
+  int count = 0;  ///< of sightings, two numbers each
+
+  /// The errors themselves give the landmark's distance.
+  int degreesOfFreedom() const { return count > 0 ? 2 * count - 1 : 0; }
+};
+
+/// How much tracks differ in how well they are found, 0 where by no more than chance and 1 where by far more:
+/// the share of the spread of their mean squares that chance does not explain, by the median and the 90 %
+/// quantile of these, made normal (Wilson and Hilferty's cube root). 0 where tracks are too few to tell.
+double differenceOfTracks(const std::map<TrackId, TrackErrors>& by_track);
+
+/// Weight of the sightings of a track. A point that slides does so in all of its sightings: each of them
+/// alone looks like one that is off by chance, together they tell. So every track has a variance of its own.
+/// Its sightings count with the square of that variance's inverse, since what slides is off by more than the
+/// window can see, a landmark that fits its errors; the weight of a redescending loss (S. Geman, D. E.
+/// McClure, "Statistical methods for tomographic image reconstruction", Bull. ISI 52, 1987), here of all
+/// errors of a track together. The logarithm of the weight is shrunk by `difference`, so that tracks which
+/// are all alike weigh alike (as in C. N. Morris, "Parametric empirical Bayes inference", JASA 78, 1983).
+/// Twice the usual weight at most: that errors are small does not mean that the lens is right.
+double trackWeight(const TrackErrors& errors, double difference);
 
 /// Gives the frames the losses and the tracks the weights that their errors after a solution ask for. A frame
 /// that has not been part of one keeps the widest loss: its prediction may be off by more than its points

@@ -133,43 +133,71 @@ TEST(RobustLoss, BelongsToAFrame) {
 }
 
 TEST(TrackWeight, IsOneWhereATrackIsLikeTheOthersOrNothingIsKnown) {
-  EXPECT_DOUBLE_EQ(trackWeight(0.0, 0), 1.0);
-  for (const int count : {1, 5, 30}) EXPECT_DOUBLE_EQ(trackWeight(2.0 * count, count), 1.0);
+  EXPECT_DOUBLE_EQ(trackWeight({0.0, 0}, 1.0), 1.0);
+  for (const int count : {1, 5, 30}) {
+    EXPECT_DOUBLE_EQ(trackWeight({2.0 * count - 1.0, count}, 1.0), 1.0);
+    EXPECT_DOUBLE_EQ(trackWeight({9.0 * count, count}, 0.0), 1.0);
+  }
 }
 
 TEST(TrackWeight, GoesWithTheSquareOfTheInverseVarianceOfWhatIsOftenSeen) {
-  EXPECT_NEAR(trackWeight(9.0 * 2000.0, 1000), 1.0 / 81.0, 1e-4);
-  EXPECT_NEAR(trackWeight(0.8 * 2000.0, 1000), 1.0 / 0.64, 1e-2);
+  EXPECT_NEAR(trackWeight({9.0 * 2000.0, 1000}, 1.0), 1.0 / 81.0, 1e-4);
+  EXPECT_NEAR(trackWeight({0.8 * 2000.0, 1000}, 1.0), 1.0 / 0.64, 1e-2);
+  EXPECT_NEAR(trackWeight({9.0 * 2000.0, 1000}, 0.5), 1.0 / 9.0, 1e-3);
   // One sighting tells little, and nothing counts for ever so much.
-  EXPECT_GT(trackWeight(9.0 * 2.0, 1), 2.0 / 81.0);
-  EXPECT_DOUBLE_EQ(trackWeight(0.0, 1000), 2.0);
+  EXPECT_GT(trackWeight({9.0, 1}, 1.0), 2.0 / 81.0);
+  EXPECT_DOUBLE_EQ(trackWeight({0.0, 1000}, 1.0), 2.0);
 }
 
-TEST(TrackWeight, TellsATrackThatSlidesByErrorsWhichAloneAreUsual) {
+// Tracks of one to 16 sightings; the variance of one in `every` is nine times that of the others.
+double differenceWhereOneIn(int every, uint64_t seed) {
+  Random noise(seed, "difference of tracks");
+  std::map<TrackId, TrackErrors> by_track;
+  for (TrackId track = 0; track < 400; ++track) {
+    TrackErrors& errors = by_track[track];
+    errors.count = 1 + static_cast<int>(track % 16);
+    const double sigma = track % every == 0 ? 3.0 : 1.0;
+    for (int i = 0; i < 2 * errors.count; ++i) errors.sum_of_squares += std::pow(sigma * noise.normal(), 2);
+  }
+  return differenceOfTracks(by_track);
+}
+
+TEST(TrackWeight, TracksThatAreAllAlikeAreNoDifferenceAndOthersAre) {
+  double alike = 0.0;
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    alike += 0.1 * differenceWhereOneIn(1000, seed);
+    EXPECT_GT(differenceWhereOneIn(4, seed), 0.8) << seed;
+  }
+  EXPECT_LT(alike, 0.15);
+  EXPECT_DOUBLE_EQ(differenceOfTracks({}), 0.0);
+  EXPECT_DOUBLE_EQ(differenceOfTracks({{1, {100.0, 3}}, {2, {1.0, 3}}}), 0.0);
+}
+
+TEST(TrackWeight, TellsTracksThatSlideByErrorsWhichAloneAreUsual) {
   TestWindow test;
-  const FrameId frames[] = {test.add(Rigid3(), true).id, test.add(Rigid3(), true).id,
-                            test.add(Rigid3(), false).id, test.add(Rigid3(), false).id};
-  constexpr TrackId kSliding = 7, kUnseen = 50;
+  constexpr TrackId kTracks = 80, kUnseen = 100;
+  const auto slides = [](TrackId track) { return track % 5 == 0; };
   Random noise(3, "track weights");
   std::vector<SightingError> errors;
-  for (const FrameId frame : frames) {
-    for (TrackId track = 0; track < 40; ++track) {
+  for (int i = 0; i < 8; ++i) {
+    const FrameId frame = test.add(Rigid3(), true).id;
+    for (TrackId track = 0; track < kTracks; ++track) {
       test.window.addSighting(track, {frame, 0, {}});
       const double usual = 0.1 * std::hypot(noise.normal(), noise.normal());
-      // Twice the sigma of one axis: one in seven errors is as large.
-      errors.push_back({track, frame, track == kSliding ? 0.2 : usual});
+      // Twice the sigma of one axis: one in seven of the usual errors is as large.
+      errors.push_back({track, frame, slides(track) ? 0.2 : usual});
     }
   }
-  test.window.addSighting(kUnseen, {frames[0], 0, {}});
+  test.window.addSighting(kUnseen, {0, 0, {}});
   test.window.tracks().at(kUnseen).weight = 0.3;
   adaptRobustLosses(test.window, errors, SolverOptions());
-  double sum = 0.0;
-  for (const auto& [id, track] : test.window.tracks()) sum += id == kUnseen ? 0.0 : track.weight;
-  EXPECT_NEAR(test.window.tracks().at(kSliding).weight, 0.28, 0.06);
-  EXPECT_GT(sum / 40.0, 0.9);
+  double sliding = 0.0, usual = 0.0;
+  for (TrackId track = 0; track < kTracks; ++track)
+    (slides(track) ? sliding : usual) += test.window.tracks().at(track).weight;
+  EXPECT_LT(sliding / 16.0, 0.5 * usual / 64.0);
   EXPECT_DOUBLE_EQ(test.window.tracks().at(kUnseen).weight, 1.0);
   resetRobustLosses(test.window);
-  EXPECT_DOUBLE_EQ(test.window.tracks().at(kSliding).weight, 1.0);
+  EXPECT_DOUBLE_EQ(test.window.tracks().at(0).weight, 1.0);
 }
 
 TEST(TrackWeight, StaysOneWhereAFrameHasTooFewErrorsToTellTheUsualOnes) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/geometry/so3.h"
@@ -17,6 +19,19 @@ Mat23 timesSkew(const Mat23& rows, const Vec3& a) {
   product.row(0) = rows.row(0).cross(a);
   product.row(1) = rows.row(1).cross(a);
   return product;
+}
+
+/// The frames that a landmark has for its host, counted from the oldest.
+std::vector<int> hostsOf(const Window& window) {
+  std::set<FrameId> ids;
+  for (const auto& [id, track] : window.tracks()) {
+    if (track.landmark) ids.insert(track.landmark->host);
+  }
+  std::vector<int> hosts;
+  for (size_t i = 0; i < window.frames().size(); ++i) {
+    if (ids.count(window.frames()[i]->id) > 0) hosts.push_back(static_cast<int>(i));
+  }
+  return hosts;
 }
 
 /// From derivatives by the pose of a host's camera (columns) to those by that of a target's, to which the
@@ -43,8 +58,8 @@ struct VisualTerms::Linearised {
 VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only)
     : window_(window),
       states_(cameraStates(window)),
-      values_(window, states_, factors, CameraViews::At::kValues),
-      first_(window, states_, factors, CameraViews::At::kFirstEstimates),
+      values_(window, states_, factors, CameraViews::At::kValues, hostsOf(window)),
+      first_(window, states_, factors, CameraViews::At::kFirstEstimates, values_.hosts()),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
       nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())) {
