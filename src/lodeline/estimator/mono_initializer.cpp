@@ -91,7 +91,11 @@ bool MonoInitializer::solveVisualStructure() {
 }
 
 Vec3 MonoInitializer::gyroscopeBias(const std::vector<Quat>& rotations) {
-  if (!gyroscope_) return alignGyroscopeBias(rotations, intervals());
+  constexpr double kContradiction_rad_per_s = 0.01;
+  const Vec3 aligned = alignGyroscopeBias(rotations, intervals());
+  // A rig may have rested on something that turned, with nothing else in view.
+  if (gyroscope_ && (gyroscope_->bias_B - aligned).norm() > kContradiction_rad_per_s) gyroscope_.reset();
+  if (!gyroscope_) return aligned;
   for (Preintegration* interval : intervals())
     interval->repropagate(gyroscope_->bias_B, interval->accelerometerBias());
   return gyroscope_->bias_B;

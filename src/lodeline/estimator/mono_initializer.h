@@ -48,7 +48,8 @@ class MonoInitializer {
   void dropOldestFrame();
   std::vector<Preintegration*> intervals() const;
   bool solveVisualStructure();
-  /// What rests say, else what goes with these rotations of all frames; the intervals are integrated at it.
+  /// What goes with these rotations of all frames, or more precisely what rests say where that does not
+  /// contradict it; the intervals are integrated at it.
   Vec3 gyroscopeBias(const std::vector<Quat>& rotations);
   bool alignWithInertial();
   bool refine();
