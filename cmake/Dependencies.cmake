@@ -1,5 +1,6 @@
 # Every dependency is a Debian package; scripts/install-dependencies.sh installs them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Boost 1.74 CONFIG REQUIRED)
 find_package(Ceres 2.1 REQUIRED)  # brings glog::glog along
 find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs calib3d video)
 find_package(yaml-cpp REQUIRED)

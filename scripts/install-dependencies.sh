@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache git
   clang-format-14  # other versions lay code out differently
-  libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
+  libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   libgeographiclib-dev libnanoflann-dev libembree-dev libtbb-dev

@@ -292,7 +292,7 @@ void Estimator::optimize(FrameEstimate* estimate) {
                     estimate->time.nanoseconds()));
   }
   std::vector<SightingError> errors;
-  removeOutliers(window_, factors_, options_.landmark, &errors);
+  removeOutliers(window_, update.errors_sigmas, options_.landmark, &errors);
   // As long as the scale is unknown, small errors do not mean that the poses are right.
   if (is_settled_) adaptRobustLosses(window_, errors, options_.solver);
 }

@@ -114,36 +114,39 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
   return created;
 }
 
-int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, const LandmarkOptions& options,
                    std::vector<SightingError>* errors) {
   int removed = 0;
-  const std::vector<double> all_sigmas = VisualTerms(window, factors).errors();
-  auto next = all_sigmas.begin();
+  auto next = errors_sigmas.begin();
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark) continue;
-    std::vector<Sighting> kept;
     bool host_kept = false;
     bool other_kept = false;
+    auto kept = track.sightings.begin();
     for (const Sighting& sighting : track.sightings) {
       const double sigmas = *next++;
       const bool is_host = sighting.frame == track.landmark->host && sighting.camera == 0;
       if (errors && !is_host) errors->push_back({id, sighting.frame, sigmas});
       if (sigmas > options.max_error_sigmas) continue;
       (is_host ? host_kept : other_kept) = true;
-      kept.push_back(sighting);
+      if (&*kept != &sighting) *kept = sighting;
+      ++kept;
     }
-    removed += static_cast<int>(track.sightings.size() - kept.size());
+    removed += static_cast<int>(track.sightings.end() - kept);
+    track.sightings.erase(kept, track.sightings.end());
     const double rho = track.landmark->inverseDistance();
     const bool sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
-    if (!host_kept || !other_kept || !sane) {
-      // What remains is inconsistent with itself or with the poses: start over with later sightings.
-      track.landmark.reset();
-      kept.clear();
-    }
-    track.sightings = std::move(kept);
+    if (host_kept && other_kept && sane) continue;
+    // What remains is inconsistent with itself or with the poses: start over with later sightings.
+    track.landmark.reset();
+    track.sightings.clear();
   }
   window.removeEmptyTracks();
   return removed;
+}
+
+int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
+  return removeOutliers(window, VisualTerms(window, factors).errors(), options);
 }
 
 ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame) {

@@ -15,10 +15,12 @@ namespace lodeline {
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
 
 /// Removes sightings that contradict the window by more than `max_error_sigmas`, and the landmarks that are
-/// then seen too little or lie behind their host. Returns the number of sightings removed. `errors`, where
-/// given, receives those of all.
-int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+/// then seen too little or lie behind their host. Returns the number of sightings removed. `errors_sigmas` as
+/// from VisualTerms::errors(); `errors`, where given, receives them with what they belong to.
+int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, const LandmarkOptions& options,
                    std::vector<SightingError>* errors = nullptr);
+/// The same for a window whose errors are not at hand.
+int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
 
 /// Root mean square of the whitened reprojection errors of one frame.
 struct ReprojectionStatistics {

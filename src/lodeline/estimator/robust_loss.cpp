@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -36,9 +35,9 @@ double tailOf(double ratio) {
 }
 
 /// `sigmas` of those frames where they are known.
-std::map<TrackId, TrackErrors> errorsByTrack(const std::vector<SightingError>& errors,
-                                             const std::map<FrameId, double>& sigmas) {
-  std::map<TrackId, TrackErrors> by_track;
+ErrorsByTrack errorsByTrack(const std::vector<SightingError>& errors,
+                            const boost::container::flat_map<FrameId, double>& sigmas) {
+  ErrorsByTrack by_track;
   for (const SightingError& error : errors) {
     const auto sigma = sigmas.find(error.frame);
     if (sigma == sigmas.end()) continue;
@@ -72,7 +71,7 @@ std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const 
       sigma, std::min(narrowing * options.robust_scale_medians * median, options.robust_scale_sigmas)};
 }
 
-double differenceOfTracks(const std::map<TrackId, TrackErrors>& by_track) {
+double differenceOfTracks(const ErrorsByTrack& by_track) {
   constexpr size_t kEnough = 20;
   constexpr double kNormalQuantile = 1.2816;  // 90 %
   if (by_track.size() < kEnough) return 0.0;
@@ -92,9 +91,9 @@ double trackWeight(const TrackErrors& errors, double difference) {
 
 void adaptRobustLosses(Window& window, const std::vector<SightingError>& errors,
                        const SolverOptions& options) {
-  std::map<FrameId, std::vector<double>> by_frame;
+  boost::container::flat_map<FrameId, std::vector<double>> by_frame;
   for (const SightingError& error : errors) by_frame[error.frame].push_back(error.sigmas);
-  std::map<FrameId, double> sigmas;
+  boost::container::flat_map<FrameId, double> sigmas;
   for (auto& [id, of_frame] : by_frame) {
     const auto found = frameErrors(std::move(of_frame), options);
     if (!found) continue;
@@ -102,7 +101,7 @@ void adaptRobustLosses(Window& window, const std::vector<SightingError>& errors,
     sigmas[id] = found->sigma;
   }
   if (!options.track_weights) return;
-  const std::map<TrackId, TrackErrors> by_track = errorsByTrack(errors, sigmas);
+  const ErrorsByTrack by_track = errorsByTrack(errors, sigmas);
   const double difference = differenceOfTracks(by_track);
   for (auto& [id, track] : window.tracks()) {
     const auto found = by_track.find(id);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <map>
+#include <boost/container/flat_map.hpp>
 #include <optional>
 #include <vector>
 
@@ -43,10 +43,12 @@ struct TrackErrors {
   int degreesOfFreedom() const { return count > 0 ? 2 * count - 1 : 0; }
 };
 
+using ErrorsByTrack = boost::container::flat_map<TrackId, TrackErrors>;
+
 /// How much tracks differ in how well they are found, 0 where by no more than chance and 1 where by far more:
 /// the share of the spread of their mean squares that chance does not explain, by the median and the 90 %
 /// quantile of these, made normal (Wilson and Hilferty's cube root). 0 where tracks are too few to tell.
-double differenceOfTracks(const std::map<TrackId, TrackErrors>& by_track);
+double differenceOfTracks(const ErrorsByTrack& by_track);
 
 /// Weight of the sightings of a track. A point that slides does so in all of its sightings: each of them
 /// alone looks like one that is off by chance, together they tell. So every track has a variance of its own.

@@ -152,7 +152,7 @@ TEST(TrackWeight, GoesWithTheSquareOfTheInverseVarianceOfWhatIsOftenSeen) {
 // Tracks of one to 16 sightings; the variance of one in `every` is nine times that of the others.
 double differenceWhereOneIn(int every, uint64_t seed) {
   Random noise(seed, "difference of tracks");
-  std::map<TrackId, TrackErrors> by_track;
+  ErrorsByTrack by_track;
   for (TrackId track = 0; track < 400; ++track) {
     TrackErrors& errors = by_track[track];
     errors.count = 1 + static_cast<int>(track % 16);

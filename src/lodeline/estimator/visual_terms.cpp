@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <span>
 #include <utility>
 
 #include "lodeline/factors/intrinsics_factor.h"
@@ -21,17 +21,37 @@ Mat23 timesSkew(const Mat23& rows, const Vec3& a) {
   return product;
 }
 
+std::vector<FrameId> idsOf(const Window& window) {
+  std::vector<FrameId> ids;
+  for (const auto& frame : window.frames()) ids.push_back(frame->id);
+  return ids;
+}
+
+/// Of a frame, counted from the oldest.
+int placeOf(FrameId id, const std::vector<FrameId>& ids) {
+  return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+}
+
 /// The frames that a landmark has for its host, counted from the oldest.
 std::vector<int> hostsOf(const Window& window) {
-  std::set<FrameId> ids;
+  const std::vector<FrameId> ids = idsOf(window);
+  std::vector<bool> is_host(ids.size(), false);
   for (const auto& [id, track] : window.tracks()) {
-    if (track.landmark) ids.insert(track.landmark->host);
+    if (track.landmark) is_host[static_cast<size_t>(placeOf(track.landmark->host, ids))] = true;
   }
   std::vector<int> hosts;
-  for (size_t i = 0; i < window.frames().size(); ++i) {
-    if (ids.count(window.frames()[i]->id) > 0) hosts.push_back(static_cast<int>(i));
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (is_host[i]) hosts.push_back(static_cast<int>(i));
   }
   return hosts;
+}
+
+/// Sightings in one frame, or all.
+std::span<const Sighting> sightingsOf(const TrackHistory& track, std::optional<FrameId> only) {
+  if (!only) return track.sightings;
+  const auto before = [](const Sighting& sighting, FrameId id) { return sighting.frame < id; };
+  const auto begin = std::lower_bound(track.sightings.begin(), track.sightings.end(), *only, before);
+  return {begin, std::lower_bound(begin, track.sightings.end(), *only + 1, before)};
 }
 
 /// From derivatives by the pose of a host's camera (columns) to those by that of a target's, to which the
@@ -63,29 +83,24 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::option
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
       nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())) {
-  values_.update();
-  const auto place = [&](FrameId id) {
-    const auto& frames = window.frames();
-    const auto found = std::lower_bound(frames.begin(), frames.end(), id,
-                                        [](const auto& frame, FrameId wanted) { return frame->id < wanted; });
-    return static_cast<int>(found - frames.begin());
-  };
+  const std::vector<FrameId> ids = idsOf(window);
+  std::vector<double> scales;
+  for (const auto& frame : window.frames()) scales.push_back(factors.robustScale(*frame));
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark) continue;
     Landmark landmark{};
     landmark.value = track.landmark->parameters.data();
-    landmark.host = place(track.landmark->host);
+    landmark.host = placeOf(track.landmark->host, ids);
     landmark.base = track.landmark->base;
     landmark.weight = track.weight;
     landmark.first_frame = landmark.host;
     landmark.end_frame = landmark.host + 1;
     landmark.first_sighting = sightings_.size();
-    for (const lodeline::Sighting& sighting : track.sightings) {
-      if (only && sighting.frame != *only) continue;
-      const int frame = place(sighting.frame);
+    for (const lodeline::Sighting& sighting : lodeline::sightingsOf(track, only)) {
+      const int frame = placeOf(sighting.frame, ids);
       landmark.first_frame = std::min(landmark.first_frame, frame);
       landmark.end_frame = std::max(landmark.end_frame, frame + 1);
-      const double scale = factors.robustScale(*window.frames()[static_cast<size_t>(frame)]);
+      const double scale = scales[static_cast<size_t>(frame)];
       sightings_.push_back({frame, sighting.camera, &sighting.measurement, scale * scale});
     }
     landmark.end_sighting = sightings_.size();
@@ -141,7 +156,8 @@ double VisualTerms::cost() {
   return 0.5 * sum;
 }
 
-std::vector<double> VisualTerms::errors() const {
+std::vector<double> VisualTerms::errors() {
+  values_.update();
   std::vector<double> errors;
   errors.reserve(sightings_.size());
   for (const Landmark& landmark : landmarks_) {
@@ -149,6 +165,13 @@ std::vector<double> VisualTerms::errors() const {
       errors.push_back(residual(landmark, sightings_[i]).norm());
   }
   return errors;
+}
+
+std::vector<double*> VisualTerms::landmarks() const {
+  std::vector<double*> landmarks;
+  landmarks.reserve(landmarks_.size());
+  for (const Landmark& landmark : landmarks_) landmarks.push_back(landmark.value);
+  return landmarks;
 }
 
 VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const Sighting& sighting) const {

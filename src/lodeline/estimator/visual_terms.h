@@ -23,9 +23,12 @@ class VisualTerms {
   /// At the blocks' present values.
   double cost();
 
-  /// Length of the whitened error of every sighting at the values of the last cost() or addTo() (or of
-  /// the construction), landmarks in the order of their tracks.
-  std::vector<double> errors() const;
+  /// Length of the whitened error of every sighting at the blocks' present values, landmarks in the order of
+  /// their tracks.
+  std::vector<double> errors();
+
+  /// The blocks of the landmarks in that order.
+  std::vector<double*> landmarks() const;
 
   /// Adds the terms, landmarks eliminated. Jacobians are taken at first estimates where blocks hold them.
   void addTo(NormalEquations* system);

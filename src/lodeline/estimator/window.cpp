@@ -36,6 +36,11 @@ bool TrackHistory::seenIn(FrameId frame) const {
   return std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& s) { return s.frame == frame; });
 }
 
+void removeShortTracks(Tracks& tracks, size_t least_sightings) {
+  const auto is_short = [&](const auto& entry) { return entry.second.sightings.size() < least_sightings; };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), is_short), tracks.end());
+}
+
 Frame& Window::add(std::unique_ptr<Frame> frame) {
   frames_.push_back(std::move(frame));
   return *frames_.back();
@@ -95,8 +100,6 @@ void Window::remove(FrameId id) {
   std::erase_if(frames_, [id](const auto& frame) { return frame->id == id; });
 }
 
-void Window::removeEmptyTracks() {
-  std::erase_if(tracks_, [](const auto& entry) { return entry.second.sightings.empty(); });
-}
+void Window::removeEmptyTracks() { removeShortTracks(tracks_, 1); }
 
 }  // namespace lodeline

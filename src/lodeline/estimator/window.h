@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <boost/container/flat_map.hpp>
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -110,6 +110,11 @@ struct TrackHistory {
   bool seenIn(FrameId frame) const;
 };
 
+/// By their numbers, side by side in memory: a frame walks through them many times over. New ones come last.
+using Tracks = boost::container::flat_map<TrackId, TrackHistory>;
+/// Tracks with fewer sightings are forgotten.
+void removeShortTracks(Tracks& tracks, size_t least_sightings);
+
 /// The sliding window: old keyframes (poses), then the most recent frames (poses and motions), the tracks
 /// they see, and what belongs to no frame.
 class Window {
@@ -129,8 +134,9 @@ class Window {
   Frame* oldestRecent() const;
   Frame* after(const Frame& frame) const;
 
-  std::map<TrackId, TrackHistory>& tracks() { return tracks_; }
-  const std::map<TrackId, TrackHistory>& tracks() const { return tracks_; }
+  /// References to a track stay valid until tracks come or go.
+  Tracks& tracks() { return tracks_; }
+  const Tracks& tracks() const { return tracks_; }
 
   /// Adds a state that belongs to no frame; the reference stays valid as long as the window's contents.
   GlobalState& add(GlobalState state);
@@ -146,7 +152,7 @@ class Window {
 
  private:
   std::deque<std::unique_ptr<Frame>> frames_;
-  std::map<TrackId, TrackHistory> tracks_;
+  Tracks tracks_;
   std::vector<std::unique_ptr<GlobalState>> globals_;
 };
 

@@ -15,16 +15,14 @@ namespace {
 /// The values of all blocks that a step moves, to go back to when it did not help.
 class Snapshot {
  public:
-  explicit Snapshot(Window& window) {
+  Snapshot(const Window& window, const std::vector<double*>& landmarks) {
     for (const auto& frame : window.frames()) {
       save(frame->pose.data(), kPoseSize);
       save(frame->motion.data(), kMotionSize);
     }
     for (const auto& state : window.globals())
       save(state->value.data(), static_cast<int>(state->value.size()));
-    for (auto& [id, track] : window.tracks()) {
-      if (track.landmark) save(track.landmark->parameters.data(), kLandmarkSize);
-    }
+    for (double* landmark : landmarks) save(landmark, kLandmarkSize);
   }
   void restore() const {
     const double* value = values_.data();
@@ -54,6 +52,10 @@ class QuickTerms {
     for (const Factor& factor : motion_) cost += costOf(factor, residual_);
     return cost;
   }
+
+  std::vector<double> errors() { return visual_.errors(); }
+
+  Snapshot snapshot(const Window& window) const { return {window, visual_.landmarks()}; }
 
   NormalEquations linearise() {
     NormalEquations system;
@@ -98,7 +100,7 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
     ++update.summary.iterations;
     system = terms.linearise();
     WindowCholesky cholesky(system, motionsButTheNewest(window), {});
-    const Snapshot before(window);
+    const Snapshot before = terms.snapshot(window);
     double gain = 0.0;
     while (!(gain > 0.0) && damping <= kMostDamping) {
       if (cholesky.factorise(damping)) {
@@ -115,6 +117,7 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
   update.summary.final_cost = cost;
   update.summary.usable = std::isfinite(cost);
   update.covariance = JointCovariance(system, window);
+  update.errors_sigmas = terms.errors();
   return update;
 }
 

@@ -10,6 +10,8 @@ struct WindowUpdate {
   SolveSummary summary;
   /// As from jointCovariance(), with the Jacobians that the last step was made from.
   JointCovariance covariance;
+  /// Of the window as it is now, see VisualTerms::errors().
+  std::vector<double> errors_sigmas;
 };
 
 /// The quick counterpart of solveWindow(): the same cost, but Levenberg-Marquardt steps on normal equations

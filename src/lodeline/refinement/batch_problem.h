@@ -94,7 +94,7 @@ class BatchProblem {
   FactorMaker factors_;
   std::shared_ptr<const ceres::LossFunction> loss_;  ///< on magnetometer and depth
   Window window_;
-  std::map<TrackId, TrackHistory> all_tracks_;  ///< with all their sightings, without landmarks
+  Tracks all_tracks_;  ///< with all their sightings, without landmarks
   std::vector<Prior> priors_;
   Chain field_offsets_, depth_offsets_;
   // Blocks in the order of the system:

@@ -69,7 +69,7 @@ void BatchProblem::addTracks(const ForwardRecord& record) {
       all_tracks_[entry->second.id].sightings.push_back(sighting);
     }
   }
-  std::erase_if(all_tracks_, [](const auto& track) { return track.second.sightings.size() < 2; });
+  removeShortTracks(all_tracks_, 2);
 }
 
 GlobalState* BatchProblem::addGlobal(const ForwardRecord& record, const std::string& name,
