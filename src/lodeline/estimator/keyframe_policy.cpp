@@ -42,9 +42,10 @@ bool wantsKeyframe(const Window& window, const FactorMaker& factors, const Keyfr
     landmarks_last += track.seenIn(last->id);
   }
   if (tracks_now == 0) return false;
-  const std::optional<double> parallax = medianParallax(window, *last, newest, factors);
-  const bool is_apart = (newest.time - last->time).seconds() > options.min_interval_s;
-  if (is_apart && parallax && *parallax > options.min_parallax_rad) return true;
+  if ((newest.time - last->time).seconds() > options.min_interval_s) {
+    const std::optional<double> parallax = medianParallax(window, *last, newest, factors);
+    if (parallax && *parallax > options.min_parallax_rad) return true;
+  }
   const bool sees_little =
       landmarks_now < options.min_landmarks || landmarks_now < options.min_tracked_share * landmarks_last;
   return sees_little && fresh_tracks > options.min_fresh_share * tracks_now;

@@ -34,6 +34,9 @@ class NormalEquations {
   /// the lower triangle is read.
   void add(const std::vector<Block>& blocks, const Eigen::MatrixXd& h, const Eigen::VectorXd& g);
 
+  /// Makes room for as many tangent coordinates at once.
+  void reserve(int size);
+
   /// Moves the eliminated landmarks along with a step d of the blocks.
   void stepLandmarks(const Eigen::VectorXd& step) const;
 
@@ -64,7 +67,6 @@ class NormalEquations {
   int offsetOf(double* value, int ambient_size);
   LandmarkTerm linearised(const Factor& factor, const double* landmark);
   void addProduct(int row, int row_size, int column, int column_size, const Mat6& product);
-  void reserve(int size);
 
   std::vector<Block> blocks_;
   std::vector<EliminatedLandmark> eliminated_;

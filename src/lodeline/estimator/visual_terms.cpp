@@ -46,14 +46,6 @@ std::vector<int> hostsOf(const Window& window) {
   return hosts;
 }
 
-/// Sightings in one frame, or all.
-std::span<const Sighting> sightingsOf(const TrackHistory& track, std::optional<FrameId> only) {
-  if (!only) return track.sightings;
-  const auto before = [](const Sighting& sighting, FrameId id) { return sighting.frame < id; };
-  const auto begin = std::lower_bound(track.sightings.begin(), track.sightings.end(), *only, before);
-  return {begin, std::lower_bound(begin, track.sightings.end(), *only + 1, before)};
-}
-
 /// From derivatives by the pose of a host's camera (columns) to those by that of a target's, to which the
 /// host has the baseline given: moving the one is moving the other backwards.
 Mat6 byTarget(const Mat6& by_host, const Vec3& baseline_W) {
@@ -96,7 +88,8 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::option
     landmark.first_frame = landmark.host;
     landmark.end_frame = landmark.host + 1;
     landmark.first_sighting = sightings_.size();
-    for (const lodeline::Sighting& sighting : lodeline::sightingsOf(track, only)) {
+    const std::span<const lodeline::Sighting> all(track.sightings);
+    for (const lodeline::Sighting& sighting : only ? track.in(*only) : all) {
       const int frame = placeOf(sighting.frame, ids);
       landmark.first_frame = std::min(landmark.first_frame, frame);
       landmark.end_frame = std::max(landmark.end_frame, frame + 1);

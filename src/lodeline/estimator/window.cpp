@@ -25,15 +25,17 @@ void Frame::updateImageMotion() {
   if (has_motion) image_motion = {velocity_W(), gyroscope_B - gyroscopeBias()};
 }
 
-const Sighting* TrackHistory::find(FrameId frame, int camera) const {
-  for (const Sighting& sighting : sightings) {
-    if (sighting.frame == frame && sighting.camera == camera) return &sighting;
-  }
-  return nullptr;
+std::span<const Sighting> TrackHistory::in(FrameId frame) const {
+  const auto before = [](const Sighting& sighting, FrameId id) { return sighting.frame < id; };
+  const auto begin = std::lower_bound(sightings.begin(), sightings.end(), frame, before);
+  return {begin, std::find_if(begin, sightings.end(), [&](const Sighting& s) { return s.frame != frame; })};
 }
 
-bool TrackHistory::seenIn(FrameId frame) const {
-  return std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& s) { return s.frame == frame; });
+const Sighting* TrackHistory::find(FrameId frame, int camera) const {
+  for (const Sighting& sighting : in(frame)) {
+    if (sighting.camera == camera) return &sighting;
+  }
+  return nullptr;
 }
 
 void removeShortTracks(Tracks& tracks, size_t least_sightings) {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -106,8 +107,9 @@ struct TrackHistory {
   std::optional<Landmark> landmark;
   double weight = 1.0;  ///< of its reprojection errors, squared (robust_loss.h)
 
-  const Sighting* find(FrameId frame, int camera) const;
-  bool seenIn(FrameId frame) const;
+  std::span<const Sighting> in(FrameId frame) const;
+  const Sighting* find(FrameId frame, int camera) const;  ///< null where there is none
+  bool seenIn(FrameId frame) const { return !in(frame).empty(); }
 };
 
 /// By their numbers, side by side in memory: a frame walks through them many times over. New ones come last.

@@ -41,11 +41,21 @@ class Snapshot {
   std::vector<double> values_;
 };
 
+int tangentSizeOf(const Window& window) {
+  int size = 0;
+  for (const auto& frame : window.frames()) size += 6 + (frame->has_motion ? kMotionSize : 0);
+  for (const auto& state : window.globals()) size += state->tangentSize();
+  return size;
+}
+
 /// All terms of a window, in a form that is quick to evaluate again and again.
 class QuickTerms {
  public:
   QuickTerms(Window& window, const Prior& prior, const FactorMaker& factors)
-      : prior_(prior), motion_(collectMotionTerms(window, factors)), visual_(window, factors) {}
+      : prior_(prior),
+        motion_(collectMotionTerms(window, factors)),
+        visual_(window, factors),
+        size_(tangentSizeOf(window)) {}
 
   double cost() {
     double cost = prior_.cost() + visual_.cost();
@@ -59,6 +69,7 @@ class QuickTerms {
 
   NormalEquations linearise() {
     NormalEquations system;
+    system.reserve(size_);
     prior_.addTo(&system);
     for (const Factor& factor : motion_) system.add(factor);
     visual_.addTo(&system);
@@ -81,6 +92,7 @@ class QuickTerms {
   PriorTerms prior_;
   std::vector<Factor> motion_;
   VisualTerms visual_;
+  int size_;
   std::vector<double> residual_;
 };
 
