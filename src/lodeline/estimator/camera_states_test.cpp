@@ -44,9 +44,10 @@ Rigid3 errorOfExtrinsics(const Rigid3& moved, uint64_t seed) {
       files.cameras[0].body_from_camera *
       (scene.rig().cameras[0].body_from_camera.inverse() * scene.rig().cameras[1].body_from_camera);
   const FrameEstimate last = lastEstimate(scene, files, honestOptions(sceneOptions(seed)));
-  EXPECT_LT(std::abs(last.camera_corrections->time_offset_s), 1e-3);
+  const CameraCorrections& corrections = last.camera_corrections.value();
+  EXPECT_LT(std::abs(corrections.time_offset_s), 1e-3);
   const Rigid3 found =
-      correctedExtrinsics(files.cameras[0].body_from_camera, last.camera_corrections->extrinsics[0].data());
+      correctedExtrinsics(files.cameras[0].body_from_camera, corrections.extrinsics[0].data());
   const Rigid3& truth = scene.rig().cameras[0].body_from_camera;
   return Rigid3(found.rotation * truth.rotation.conjugate(), found.translation - truth.translation);
 }

@@ -43,7 +43,7 @@ class Snapshot {
 
 int tangentSizeOf(const Window& window) {
   int size = 0;
-  for (const auto& frame : window.frames()) size += 6 + (frame->has_motion ? kMotionSize : 0);
+  for (const auto& frame : window.frames()) size += kPoseTangentSize + (frame->has_motion ? kMotionSize : 0);
   for (const auto& state : window.globals()) size += state->tangentSize();
   return size;
 }
