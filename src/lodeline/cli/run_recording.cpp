@@ -39,9 +39,15 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
 
 /// By default glibc gives every thread a heap of its own. Images are decoded by one short-lived thread each,
 /// and what is freed in one heap does not serve another: memory would depend on how threads happen to run.
-void shareOneHeap() {
+/// It also gives large blocks back at once, and every frame's images and matrices would be mapped anew, page
+/// by page: a tenth of the time of a start with one camera, for 4 MB less.
+void arrangeHeap() {
 #ifdef __GLIBC__
+  constexpr int kGreatestMappingBytes = 32 << 20;  // glibc takes no more
+  constexpr int kKeptBytes = 2 * kGreatestMappingBytes;
   mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, kGreatestMappingBytes);
+  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
 #endif
 }
 
@@ -68,7 +74,7 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   // One thread for image operations: the same bytes on every machine, and core-milliseconds that mean
   // something.
   cv::setNumThreads(1);
-  shareOneHeap();
+  arrangeHeap();
   RunSettings options;
   Settings settings;
   applyRequest(request, &settings, &options);

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "lodeline/estimator/wide_products.h"
 #include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/geometry/so3.h"
 
@@ -310,11 +311,9 @@ void VisualTerms::subtractEliminated() {
     const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
     const auto by_frames = couplings_.block(first, stretch.column, rows, stretch.columns);
     const auto by_calibration = couplings_.block(6 * frames_, stretch.column, calibration, stretch.columns);
-    hessian_.block(first, first, rows, rows).selfadjointView<Eigen::Lower>().rankUpdate(by_frames, -1.0);
-    hessian_.block(6 * frames_, first, calibration, rows).noalias() -= by_calibration * by_frames.transpose();
-    hessian_.bottomRightCorner(calibration, calibration)
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(by_calibration, -1.0);
+    subtractSquare(by_frames, hessian_.block(first, first, rows, rows));
+    subtractProduct(by_calibration, by_frames, hessian_.block(6 * frames_, first, calibration, rows));
+    subtractSquare(by_calibration, hessian_.bottomRightCorner(calibration, calibration));
   }
   gradient_.noalias() -= couplings_ * rooted_gradients_;
 }

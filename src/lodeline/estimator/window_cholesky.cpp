@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "lodeline/estimator/wide_products.h"
+
 namespace lodeline {
 
 WindowCholesky::WindowCholesky(const NormalEquations& system, const std::vector<const double*>& first,
@@ -76,12 +78,10 @@ bool WindowCholesky::eliminateFirst() {
       auto below = factor_.block(runs[i].row, column, runs[i].size, size);
       diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
       for (size_t j = 0; j < i; ++j) {
-        factor_.block(runs[i].row, runs[j].row, runs[i].size, runs[j].size).noalias() -=
-            below * factor_.block(runs[j].row, column, runs[j].size, size).transpose();
+        subtractProduct(below, factor_.block(runs[j].row, column, runs[j].size, size),
+                        factor_.block(runs[i].row, runs[j].row, runs[i].size, runs[j].size));
       }
-      factor_.block(runs[i].row, runs[i].row, runs[i].size, runs[i].size)
-          .selfadjointView<Eigen::Lower>()
-          .rankUpdate(below, -1.0);
+      subtractSquare(below, factor_.block(runs[i].row, runs[i].row, runs[i].size, runs[i].size));
     }
     column += size;
   }

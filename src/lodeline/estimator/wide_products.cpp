@@ -1,0 +1,94 @@
+#include "lodeline/estimator/wide_products.h"
+
+#include <algorithm>
+
+#include "lodeline/base/wide_vectors.h"
+
+namespace lodeline {
+namespace {
+
+/// Rows and columns of c that are summed in registers.
+constexpr Eigen::Index kTileRows = 4, kTileColumns = 6;
+
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+
+/// Columns of a matrix that lie `stride` apart.
+template <typename Scalar>
+struct Strided {
+  Scalar* data;
+  Eigen::Index stride;
+
+  Strided from(Eigen::Index row, Eigen::Index column = 0) const {
+    return {data + row + column * stride, stride};
+  }
+};
+using StridedInput = Strided<const double>;
+using StridedOutput = Strided<double>;
+
+/// The last rows of a tile whose first `skipped` rows belong to another one.
+template <int kColumns>
+inline __attribute__((always_inline)) void subtractTile(StridedInput a, StridedInput b, Eigen::Index depth,
+                                                        Eigen::Index skipped, StridedOutput c) {
+  Four sums[kColumns] = {};
+  for (Eigen::Index k = 0; k < depth; ++k) {
+    const Four rows = *reinterpret_cast<const Four*>(a.data + k * a.stride);
+    for (int j = 0; j < kColumns; ++j) sums[j] += rows * b.data[k * b.stride + j];
+  }
+  for (int j = 0; j < kColumns; ++j) {
+    for (Eigen::Index i = skipped; i < kTileRows; ++i) c.data[j * c.stride + i] -= sums[j][i];
+  }
+}
+
+/// For fewer rows than a tile has.
+inline __attribute__((always_inline)) void subtractFew(StridedInput a, StridedInput b, Eigen::Index rows,
+                                                       Eigen::Index columns, Eigen::Index depth,
+                                                       StridedOutput c) {
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < depth; ++k) sum += a.data[k * a.stride + i] * b.data[k * b.stride + j];
+      c.data[j * c.stride + i] -= sum;
+    }
+  }
+}
+
+template <int kColumns>
+inline __attribute__((always_inline)) void subtractColumns(StridedInput a, StridedInput b, Eigen::Index rows,
+                                                           Eigen::Index depth, StridedOutput c) {
+  Eigen::Index row = 0;
+  for (; row + kTileRows <= rows; row += kTileRows)
+    subtractTile<kColumns>(a.from(row), b, depth, 0, c.from(row));
+  if (row == rows) return;
+  const Eigen::Index last = rows - kTileRows;
+  subtractTile<kColumns>(a.from(last), b, depth, row - last, c.from(last));
+}
+
+LODELINE_WIDE_VECTORS
+void subtract(StridedInput a, StridedInput b, Eigen::Index rows, Eigen::Index columns, Eigen::Index depth,
+              StridedOutput c) {
+  if (rows < kTileRows) return subtractFew(a, b, rows, columns, depth, c);
+  Eigen::Index column = 0;
+  for (; column + kTileColumns <= columns; column += kTileColumns)
+    subtractColumns<kTileColumns>(a, b.from(column), rows, depth, c.from(0, column));
+  for (; column < columns; ++column) subtractColumns<1>(a, b.from(column), rows, depth, c.from(0, column));
+}
+
+}  // namespace
+
+void subtractProduct(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
+                     Eigen::Ref<Eigen::MatrixXd> c) {
+  subtract({a.data(), a.outerStride()}, {b.data(), b.outerStride()}, a.rows(), b.rows(), a.cols(),
+           {c.data(), c.outerStride()});
+}
+
+void subtractSquare(const Eigen::Ref<const Eigen::MatrixXd>& a, Eigen::Ref<Eigen::MatrixXd> c) {
+  const StridedInput all{a.data(), a.outerStride()};
+  const StridedOutput triangle{c.data(), c.outerStride()};
+  for (Eigen::Index column = 0; column < a.rows(); column += kTileColumns) {
+    const Eigen::Index columns = std::min(kTileColumns, a.rows() - column);
+    subtract(all.from(column), all.from(column), a.rows() - column, columns, a.cols(),
+             triangle.from(column, column));
+  }
+}
+
+}  // namespace lodeline
