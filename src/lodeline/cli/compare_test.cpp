@@ -81,9 +81,9 @@ TEST_F(Compare, SaysSoWhereARunFailsAndWhereImagesAreMissing) {
 }
 
 TEST_F(Compare, ScenarioRunsDifferByNoiseAlone) {
-  const Execution result = compare(
-      "demo",
-      "--realism field --seconds 14 --metres 1.2 --width 96 --camera-rate-hz 2 --runs 2 --methods off");
+  const std::string options =
+      "--realism field --seconds 14 --metres 1.2 --width 96 --camera-rate-hz 2 --runs 2 --methods off";
+  const Execution result = compare("demo", options);
   // Images as small as these may or may not give a trajectory; the comparison is made either way.
   ASSERT_THAT(result.exit_code, ::testing::AnyOf(0, 3)) << result.output;
   EXPECT_THAT(result.output, HasSubstr("simulated, field, seed 1: in full"));
@@ -96,6 +96,9 @@ TEST_F(Compare, ScenarioRunsDifferByNoiseAlone) {
   EXPECT_NE(readText(first / "mag0" / "data.csv"), readText(second / "mag0" / "data.csv"));
   EXPECT_EQ(recording()["methods"][0]["runs"].size(), 2u);
   EXPECT_TRUE(fs::exists(output_ / "demo_field" / "mag.yaml"));
+  const auto written = fs::last_write_time(second / "imu0" / "data.csv");
+  compare("demo", options);
+  EXPECT_EQ(fs::last_write_time(second / "imu0" / "data.csv"), written);
   const Execution other = compare("demo", "--no-rendering --runs 1");
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.output, HasSubstr("holds no recording of this scenario"));

@@ -75,6 +75,16 @@ bool render(const Scenario& scenario, const fs::path& folder, const ComparisonRe
   return true;
 }
 
+/// Recordings already there stay as they are: another comparison may be reading them.
+void recordNoiseAside(const Scenario& noisy, const fs::path& original, const fs::path& folder) {
+  if (holdsRecording(noisy, folder)) return;
+  const fs::path unfinished = folder.string() + "_unfinished";
+  fs::remove_all(unfinished);
+  recordOtherNoise(noisy, original, unfinished);
+  fs::remove_all(folder);
+  fs::rename(unfinished, folder);
+}
+
 bool prepareScenario(const std::string& name, const ComparisonRequest& request, ComparisonInput* prepared) {
   const Scenario scenario = makeScenario(name, request.changes);
   if (!scenario.images)
@@ -89,7 +99,7 @@ bool prepareScenario(const std::string& name, const ComparisonRequest& request, 
     ComparisonSeed seed{fmt::format("noise {}", *noisy.noise_seed), folder};
     if (run > 0) {
       seed.data = recordingsFolder(request) / fmt::format("{}_noise{}", prepared->name, *noisy.noise_seed);
-      recordOtherNoise(noisy, folder, seed.data);
+      recordNoiseAside(noisy, folder, seed.data);
     }
     prepared->seeds.push_back(seed);
   }
