@@ -123,9 +123,10 @@ gnuplot::Figure trajectoriesFigure(const ComparedRecording& recording) {
       "set title '{}: from equal starts, seen from above' noenhanced\nset xlabel 'east (m)'\nset ylabel "
       "'north "
       "(m)'\n"
-      "set size ratio -1\nset bmargin 6\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc '#dddddd' lt 1 "
+      "set size ratio -1\nset bmargin 8\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc '#dddddd' lt 1 "
       "lw 0.7\n"
-      "set border lw 0.8\nset tics nomirror out\nset key bmargin center horizontal samplen 2 noenhanced\n",
+      "set border lw 0.8\nset tics nomirror out\n"
+      "set key bmargin center horizontal Left reverse maxcols 2 samplen 2 noenhanced\n",
       recording.name, box.least[0], box.most[0], box.least[1], box.most[1]);
   figure.commands += plot + "\n";
   return figure;
