@@ -55,9 +55,18 @@ TEST_F(Compare, JudgesMethodsAndMakesNoRunTwice) {
   const Execution again = compareRoom(options);
   EXPECT_EQ(again.output, first.output);
   EXPECT_EQ(fs::last_write_time(states), written);
+  // A run that its user ended is not the whole one, whatever lies beside it.
+  const fs::path summary = runs() / "off_features_1" / "run.json";
+  nlohmann::json ended = readJson(summary);
+  ended["interrupted"] = true;
+  std::ofstream(summary) << ended;
+  EXPECT_EQ(compareRoom(options).exit_code, 0);
+  EXPECT_FALSE(readJson(summary)["interrupted"].get<bool>());
+  const auto rewritten = fs::last_write_time(states);
+  EXPECT_NE(rewritten, written);
   // Another setting makes another run.
   compareRoom("--methods off --runs 1 --set front_end.max_tracks=90");
-  EXPECT_NE(fs::last_write_time(states), written);
+  EXPECT_NE(fs::last_write_time(states), rewritten);
 }
 
 TEST_F(Compare, SaysSoWhereARunFailsAndWhereImagesAreMissing) {

@@ -52,12 +52,14 @@ std::string identity(const RunRequest& request) {
   return text.str();
 }
 
-bool isDone(const fs::path& folder, const std::string& made_from) {
-  return fs::exists(folder / kDoneFile) && readFileBytes(folder / kDoneFile) == made_from;
-}
-
 nlohmann::json readSummary(const fs::path& folder) {
   return nlohmann::json::parse(readFileBytes(folder / "run.json"));
+}
+
+/// Whether the folder holds the whole run; someone may have run into it since, and not to the end.
+bool isDone(const fs::path& folder, const std::string& made_from) {
+  return fs::exists(folder / kDoneFile) && readFileBytes(folder / kDoneFile) == made_from &&
+         fs::exists(folder / "run.json") && !readSummary(folder).value("interrupted", false);
 }
 
 /// False where the user stopped the run.

@@ -61,6 +61,7 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
       summary_(describe(request, options, source->rig())) {
   if (!folder_.empty()) {
     createOutputFolder(folder_);
+    lock_.emplace(folder_);
     removeRefinedFiles(folder_);
     if (request.refine_interval_s) record_.emplace(*request.refine_interval_s);
     writeSettings(folder_, settings);

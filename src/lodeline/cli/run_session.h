@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/base/folder_lock.h"
 #include "lodeline/base/settings.h"
 #include "lodeline/cli/run_request.h"
 #include "lodeline/cli/run_settings.h"
@@ -51,6 +52,7 @@ class RunSession {
   using Clock = std::chrono::steady_clock;
 
   std::string folder_;  ///< empty for none
+  std::optional<FolderLock> lock_;
   Diagnostics* diagnostics_;
   Synchronizer synchronizer_;
   Odometry odometry_;
