@@ -151,6 +151,83 @@ TEST_P(HardScene, SomethingMovesThroughTheView) {
   EXPECT_LT(largestErrorSince(kTrouble_s), 0.15);
 }
 
+// Where dead reckoning went wrong is known as soon as images tell the speed again: it is off by what it went
+// wrong by, and positions follow.
+TEST_P(HardScene, DeadReckoningIsMadeGoodWhenImagesReturn) {
+  constexpr double kLight_s = 26.0;
+  options_.duration_s = 30.0;
+  run([](double time_s, SimulatedFrame& frame) {
+    if (time_s > kTrouble_s && time_s < kLight_s) frame.tracks.observations.clear();
+  });
+  double in_the_dark_m = 0.0;
+  for (const Comparison& c : frames_) {
+    if (c.time_s < kLight_s) in_the_dark_m = c.positionError();
+  }
+  EXPECT_LT(frames_.back().positionError(), 0.3 * in_the_dark_m) << in_the_dark_m << " m in the dark";
+  expectWithinItsSigmas();
+}
+
+/// Silt full of particles, or darkness full of the blocks of a compressed video: no point is the same in two
+/// images, but a tracker finds it again all the same, where the turn of the rig takes it, and in the other
+/// camera's image at some distance.
+class ChanceMatches {
+ public:
+  explicit ChanceMatches(int cameras) : rig_(testRig(cameras)) {}
+
+  void replace(SimulatedFrame* frame) {
+    const Quat world_from_camera =
+        frame->truth.motion.world_from_body.rotation * rig_.cameras[0].body_from_camera.rotation;
+    frame->tracks.observations.clear();
+    for (const Match& match : last_) see(match, world_from_camera, frame);
+    last_.clear();
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 offset_C(random_.uniform(-0.3, 0.3), random_.uniform(-0.2, 0.2), 1.0);
+      last_.push_back({next_++, world_from_camera * (random_.uniform(0.5, 3.0) * offset_C)});
+      see(last_.back(), world_from_camera, frame);
+    }
+  }
+
+ private:
+  struct Match {
+    TrackId track;
+    Vec3 from_camera_W;  ///< m, from camera 0 wherever that goes
+  };
+
+  void see(const Match& match, const Quat& world_from_camera, SimulatedFrame* frame) {
+    for (int camera = 0; camera < static_cast<int>(rig_.cameras.size()); ++camera) {
+      const Rigid3 other_from_camera =
+          rig_.cameras[camera].body_from_camera.inverse() * rig_.cameras[0].body_from_camera;
+      Observation observation;
+      observation.track = match.track;
+      observation.camera = camera;
+      const Vec3 noise(random_.normal() / 458.0, random_.normal() / 458.0, 0.0);
+      const Vec3 point_C = other_from_camera * (world_from_camera.conjugate() * match.from_camera_W);
+      observation.bearing_C = (point_C.normalized() + noise).normalized();
+      frame->tracks.observations.push_back(observation);
+    }
+  }
+
+  Rig rig_;
+  Random random_{3, "chance matches"};
+  TrackId next_ = 2'000'000;
+  std::vector<Match> last_;
+};
+
+TEST_P(HardScene, MatchesByChanceTellNothing) {
+  options_.duration_s = 10.0;
+  ChanceMatches chance(GetParam());
+  run([&](double time_s, SimulatedFrame& frame) {
+    if (time_s > 6.0 && time_s < 8.0) chance.replace(&frame);
+  });
+  for (const Comparison& c : frames_) {
+    if (c.time_s > 6.3 && c.time_s < 8.0) {
+      EXPECT_EQ(c.estimate.status, Status::Inertial) << "at " << c.time_s << " s";
+    }
+  }
+  expectTracking(9.0);
+  expectWithinItsSigmas();
+}
+
 INSTANTIATE_TEST_SUITE_P(StereoAndMono, HardScene, testing::Values(2, 1),
                          [](const auto& info) { return info.param == 2 ? "Stereo" : "Mono"; });
 

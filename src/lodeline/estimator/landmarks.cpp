@@ -81,6 +81,7 @@ bool isUsable(const InverseDistance& rho, const LandmarkOptions& options) {
 }  // namespace
 
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
+  const int min_frames = std::min(options.min_frames, static_cast<int>(window.frames().size()));
   std::vector<TrackHistory*> candidates;
   int landmarks = 0;
   int in_view = 0;
@@ -88,7 +89,8 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
     if (track.landmark) {
       ++landmarks;
       in_view += track.seenIn(window.newest().id);
-    } else if (track.sightings.size() >= 2 && track.seenIn(window.newest().id)) {
+    } else if (track.sightings.size() >= 2 && track.seenIn(window.newest().id) &&
+               track.frameCount() >= min_frames) {
       candidates.push_back(&track);
     }
   }

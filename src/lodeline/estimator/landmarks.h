@@ -10,8 +10,9 @@
 namespace lodeline {
 
 /// Gives a place in space to tracks that have been seen from far enough apart, hosted at the newest keyframe
-/// that sees them. Tracks seen by more frames come first when there are more than `max_landmarks`, which
-/// holds unless fewer than `least_in_view` are in the newest frame. Returns how many were added.
+/// that sees them, once `min_frames` frames have. Tracks seen by more frames come first when there are more
+/// than `max_landmarks`, which holds unless fewer than `least_in_view` are in the newest frame. Returns how
+/// many were added.
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
 
 /// Removes sightings that contradict the window by more than `max_error_sigmas`, and the landmarks that are

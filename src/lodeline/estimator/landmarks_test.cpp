@@ -64,7 +64,30 @@ TEST_F(LandmarksTest, NeedTwoSightingsAKeyframeAndTheNewestFrame) {
   EXPECT_EQ(create(), 0);
 }
 
+// From two images any chance match has a place in space.
+TEST_F(LandmarksTest, NeedThreeFramesWhereTheWindowHasThem) {
+  const Vec3 point_W(3.0, -0.5, 0.0);
+  const auto& frames = test_.window.frames();
+  for (int i = 2; i < 4; ++i) {
+    test_.see(1, point_W, *frames[i], 0);
+    test_.see(1, point_W, *frames[i], 1);
+  }
+  EXPECT_EQ(create(), 0);
+  test_.see(2, point_W, *frames[1]);
+  test_.see(2, point_W, *frames[2]);
+  test_.see(2, point_W, *frames[3]);
+  EXPECT_EQ(create(), 1);
+  EXPECT_TRUE(track(2).landmark.has_value());
+
+  TestWindow start;
+  const Frame& first = start.add(Rigid3(), true);
+  start.see(1, point_W, first, 0);
+  start.see(1, point_W, first, 1);
+  EXPECT_EQ(createLandmarks(start.window, start.factors, options_), 1) << "two cameras start at once";
+}
+
 TEST_F(LandmarksTest, BehindTheCameraOrTooNearAreRefused) {
+  options_.min_frames = 2;
   // Rays that part instead of meeting: the point would lie behind.
   const auto& frames = test_.window.frames();
   test_.seeAlong(1, Vec3(-0.1, 0.0, 1.0), *frames[2], 0);
@@ -99,6 +122,7 @@ TEST_F(LandmarksTest, AreLimitedToThoseSeenLongest) {
   for (int i = 0; i < 10; ++i) seeInAll(i, Vec3(3.0, -1.0 + 0.1 * i, 0.0));
   const auto& frames = test_.window.frames();
   for (int i = 10; i < 20; ++i) {
+    test_.see(i, Vec3(3.0, -1.0 + 0.1 * (i - 10), 0.2), *frames[1]);
     test_.see(i, Vec3(3.0, -1.0 + 0.1 * (i - 10), 0.2), *frames[2]);
     test_.see(i, Vec3(3.0, -1.0 + 0.1 * (i - 10), 0.2), *frames[3]);
   }

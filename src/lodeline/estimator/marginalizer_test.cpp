@@ -122,6 +122,7 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates) {
   // A poor IMU: estimates then move far enough from their first values for the difference to show.
   options.preintegration.noise_inflation = 10.0;
   options.preintegration.motion_noise = MotionNoiseOptions::none();
+  options.landmark.min_frames = 1;  // and so do points that little is known of
   TestWindow test(2, options);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));

@@ -65,6 +65,11 @@ struct LandmarkOptions {
   /// As long as fewer are seen, new points become landmarks however many the window holds: after darkness it
   /// may be full of those that were seen before.
   int least_in_view = 50;
+  /// Seen by so many frames, as soon as the window has them. Where there is nothing to see (silt, darkness
+  /// full of the blocks of a compressed video, particles in the lamp's light), what is followed from one
+  /// image to the next is chance. Two views make a place in space of any such point, and hundreds hold the
+  /// rig back.
+  int min_frames = 3;
   double min_distance_m = 0.05;
   /// Largest sigma of the inverse distance, relative to it, at which a point becomes a landmark...
   double max_relative_sigma = 0.4;

@@ -38,6 +38,13 @@ const Sighting* TrackHistory::find(FrameId frame, int camera) const {
   return nullptr;
 }
 
+int TrackHistory::frameCount() const {
+  int count = 0;
+  for (size_t i = 0; i < sightings.size(); ++i)
+    count += i == 0 || sightings[i].frame != sightings[i - 1].frame;
+  return count;
+}
+
 void removeShortTracks(Tracks& tracks, size_t least_sightings) {
   const auto is_short = [&](const auto& entry) { return entry.second.sightings.size() < least_sightings; };
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), is_short), tracks.end());

@@ -110,6 +110,7 @@ struct TrackHistory {
   std::span<const Sighting> in(FrameId frame) const;
   const Sighting* find(FrameId frame, int camera) const;  ///< null where there is none
   bool seenIn(FrameId frame) const { return !in(frame).empty(); }
+  int frameCount() const;  ///< frames that see it, with whatever camera
 };
 
 /// By their numbers, side by side in memory: a frame walks through them many times over. New ones come last.

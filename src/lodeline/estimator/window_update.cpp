@@ -100,13 +100,16 @@ class QuickTerms {
 
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker& factors,
                           const SolveLimits& limits) {
+  // None at first. After darkness the window is known to metres as a whole and its frames among one another
+  // to micrometres: however little damping there is beside the latter, it holds the whole where dead
+  // reckoning left it.
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e-1;
   QuickTerms terms(window, prior, factors);
   WindowUpdate update;
   double cost = terms.cost();
   update.summary.initial_cost = cost;
-  double damping = kLeastDamping;
+  double damping = 0.0;
   NormalEquations system;
   while (update.summary.iterations < limits.max_iterations) {
     ++update.summary.iterations;
@@ -120,9 +123,9 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
         gain = cost - terms.cost();
         if (!(gain > 0.0)) before.restore();
       }
-      damping *= gain > 0.0 ? 0.01 : 100.0;
+      damping = gain > 0.0 ? 0.01 * damping : std::max(kLeastDamping, 100.0 * damping);
     }
-    damping = std::max(damping, kLeastDamping);
+    if (damping < kLeastDamping) damping = 0.0;
     if (!(gain > limits.function_tolerance * cost)) break;
     cost -= gain;
   }
