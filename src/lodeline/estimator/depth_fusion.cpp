@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kReliableSpeed_m_per_s = 0.03;  // sigma of a vertical speed that can judge a gauge
 
+// Speeds between frames are interpolated. Where images are missing for longer, that says little of the
+// motion.
+constexpr double kLongestCarry_s = 1.0;
+
 CarriedDepth meanOf(const std::vector<CarriedDepth>& depths) {
   CarriedDepth mean;
   const double share = 1.0 / static_cast<double>(depths.size());
@@ -87,6 +91,8 @@ void DepthFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
   status_ = DepthStatus::NoData;
   std::vector<CarriedDepth> used;
   double variance_scale = 1.0;
+  const Time earliest = newest.time - Duration::fromSeconds(kLongestCarry_s);
+  std::erase_if(waiting_, [&](const DepthSample& reading) { return reading.time < earliest; });
   for (const DepthSample& reading : waiting_) {
     const DepthStates states(window);
     const CarriedDepth depth = carry(reading, newest.time, states ? states.lag_s() : options_.lag_s);
@@ -105,7 +111,9 @@ void DepthFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
 DepthDecision DepthFusion::judge(const DepthSample& reading, const CarriedDepth& depth, Window& window,
                                  Marginalizer& marginalizer) {
   const Innovation innovation = innovate(depth, window);
-  const bool is_reliable = innovation.speed_sigma_m_per_s < kReliableSpeed_m_per_s;
+  const Frame& before = **std::prev(window.frames().end(), 2);
+  const bool is_reliable = innovation.speed_sigma_m_per_s < kReliableSpeed_m_per_s &&
+                           (window.newest().time - before.time).seconds() < kLongestCarry_s;
   const bool is_noise = is_reliable && innovation.lag_sigma_m < health_.readingSigma();
   const DepthStatus health = health_.check(reading, motion_, depth.lag_s, is_reliable);
   health_.learnScatter(is_noise ? std::optional(innovation.value_m) : std::nullopt);
@@ -137,12 +145,17 @@ DepthFusion::Innovation DepthFusion::innovate(const CarriedDepth& depth, const W
   std::vector<std::pair<const double*, Eigen::RowVectorXd>> derivatives = {
       {before.pose.data(), by_pose.head<kPoseTangentSize>()}};
   Eigen::RowVectorXd by_motion = Eigen::RowVectorXd::Zero(kMotionSize);
+  const Eigen::RowVector3d up_B = before.worldFromBody().rotation.toRotationMatrix().row(2);
   by_motion[2] = by_pose[2] * elapsed_s;
+  by_motion.tail<3>() = -0.5 * elapsed_s * elapsed_s * by_pose[2] * up_B;  // by the accelerometer's bias
   derivatives.emplace_back(before.motion.data(), by_motion);
   for (int i = 0; i < 3; ++i)
     derivatives.emplace_back(values[1 + i], Eigen::RowVectorXd(single(by_state[i])));
   const double reading_sigma_m = health_.readingSigma();
-  double variance_m2 = reading_sigma_m * reading_sigma_m + options_.floor_m * options_.floor_m;
+  const Mat3 way_covariance =
+      newest.from_previous->covariance().block<3, 3>(inertial_error::kAlpha, inertial_error::kAlpha);
+  double variance_m2 = reading_sigma_m * reading_sigma_m + options_.floor_m * options_.floor_m +
+                       by_pose[2] * by_pose[2] * (up_B * way_covariance * up_B.transpose()).value();
   for (const auto& [row, by_row] : derivatives) {
     for (const auto& [column, by_column] : derivatives) {
       if (!covariance_.knows(row) || !covariance_.knows(column)) continue;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "lodeline/estimator/test_scene.h"
 #include "lodeline/simulation/random.h"
@@ -48,7 +49,9 @@ TestSceneOptions sceneOptions(double duration_s) {
   return options;
 }
 
-Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, EstimatorOptions estimator) {
+/// `no_images`: frames of that time are missing, with all but the inertial readings and the gauge's.
+Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, EstimatorOptions estimator,
+          const TimeSpan& no_images = {}) {
   constexpr double kEarly_s = 0.03;
   const double period_s = 1.0 / options.points.frame_rate_hz;
   const int readings_apart = static_cast<int>(std::lround(0.5 / period_s));
@@ -60,8 +63,9 @@ Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, Es
   std::optional<double> shown_m;
   double height_before_m = 0.0;
   int count = 0;
-  while (const auto frame = scene.next()) {
-    std::vector<DepthSample> readings;
+  std::vector<DepthSample> readings;
+  std::vector<ImuSample> imu;
+  while (auto frame = scene.next()) {
     const MotionState& truth = frame->truth.motion;
     const double height_m = (truth.world_from_body * port_B).z() - kEarly_s * truth.velocity_W.z();
     if (gauge) {
@@ -75,7 +79,10 @@ Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, Es
                             gauge->fault(scene.secondsOf(frame->truth.time), depth_m)});
       }
     }
-    result.frames.push_back(compared.add(*frame, readings));
+    imu.insert(imu.end(), frame->imu.begin() + (imu.empty() ? 0 : 1), frame->imu.end());
+    if (no_images.contains(scene.secondsOf(frame->truth.time))) continue;
+    frame->imu = std::exchange(imu, {});
+    result.frames.push_back(compared.add(*frame, std::exchange(readings, {})));
     ++result.statuses[result.last().depth.status];
   }
   for (const Finding& finding : compared.diagnostics().ranked())
@@ -100,6 +107,16 @@ TEST(DepthFusion, HoldsTheHeightInTheDark) {
   }
   EXPECT_EQ(with.statuses.count(DepthStatus::Jump), 0u);
   EXPECT_TRUE(with.findings.empty());
+}
+
+// Forty readings then come with one frame, and the speeds at both ends say nothing of the way between.
+TEST(DepthFusion, CarriesOnWhereImagesAreMissing) {
+  const TestSceneOptions options = sceneOptions(40.0);
+  const Dive gap = dive(options, Gauge(), honestOptions(options), {10.0, 20.0});
+  EXPECT_LT(gap.largestHeightError(31.0, kNever), 0.06);
+  EXPECT_EQ(gap.statuses.count(DepthStatus::Jump), 0u);
+  EXPECT_EQ(gap.statuses.count(DepthStatus::Slope), 0u);
+  EXPECT_TRUE(gap.findings.empty());
 }
 
 TEST(DepthFusion, FindsLagAndDensity) {
