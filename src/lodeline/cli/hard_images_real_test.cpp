@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <vector>
@@ -134,6 +135,37 @@ TEST_P(HardImages, SiltComesAndGoes) {
   }));
   expectTracking(kEnd_s + 1.0, 20.0);
   expectDriftWithin(0.5);
+}
+
+// Silt too thick to see through, full of particles in the lamp's light, others in every image.
+TEST_P(HardImages, NothingButParticles) {
+  cv::RNG random(11);
+  run(toImages([&](double, cv::Mat& image) {
+    image.setTo(30.0);
+    for (int i = 0; i < 150; ++i) {
+      const cv::Point centre(random.uniform(0, image.cols), random.uniform(0, image.rows));
+      cv::circle(image, centre, random.uniform(2, 7), random.uniform(60.0, 200.0), cv::FILLED);
+    }
+    cv::GaussianBlur(image, image, {}, 1.5);
+  }));
+  expectTracking(kEnd_s + 1.0, 20.0);
+  expectDriftWithin(0.8);
+}
+
+// Silt in a compressed video: what is left to see are the edges of its blocks.
+TEST_P(HardImages, NothingButBlocksOfAVideo) {
+  cv::RNG random(13);
+  run(toImages([&](double, cv::Mat& image) {
+    cv::Mat noise(image.size(), CV_16SC1);
+    random.fill(noise, cv::RNG::NORMAL, 0.0, 2.0);
+    image.convertTo(image, CV_8U, 0.03, 100.0);
+    cv::add(image, noise, image, cv::noArray(), CV_8U);
+    std::vector<unsigned char> compressed;
+    cv::imencode(".jpg", image, compressed, {cv::IMWRITE_JPEG_QUALITY, 30});
+    image = cv::imdecode(compressed, cv::IMREAD_GRAYSCALE);
+  }));
+  expectTracking(kEnd_s + 1.0, 20.0);
+  expectDriftWithin(0.8);
 }
 
 TEST_P(HardImages, FortyOfAHundredFramesMissing) {
