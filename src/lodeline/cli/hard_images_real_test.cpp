@@ -24,6 +24,13 @@ namespace {
 constexpr double kBegin_s = 5.0;  // of the trouble, after the first image
 constexpr double kEnd_s = 10.0;
 
+/// Of a sensor, in grey levels.
+void addNoise(double sigma, cv::RNG* random, cv::Mat* image) {
+  cv::Mat noise(image->size(), CV_16SC1);
+  random->fill(noise, cv::RNG::NORMAL, 0.0, sigma);
+  cv::add(*image, noise, *image, cv::noArray(), CV_8U);
+}
+
 class HardImages : public testing::TestWithParam<int> {
  protected:
   using Tamper = std::function<void(double time_s, FramePacket& packet)>;
@@ -127,11 +134,9 @@ TEST_P(HardImages, SiltComesAndGoes) {
   cv::RNG random(7);
   run(toImages([&](double time_s, cv::Mat& image) {
     const double clear = std::abs(time_s - 0.5 * (kBegin_s + kEnd_s)) / (0.5 * (kEnd_s - kBegin_s));
-    cv::Mat noise(image.size(), CV_16SC1);
-    random.fill(noise, cv::RNG::NORMAL, 0.0, 3.0);
     const double contrast = clear * clear * clear;
     image.convertTo(image, CV_8U, contrast, 110.0 * (1.0 - contrast));
-    cv::add(image, noise, image, cv::noArray(), CV_8U);
+    addNoise(3.0, &random, &image);
   }));
   expectTracking(kEnd_s + 1.0, 20.0);
   expectDriftWithin(0.5);
@@ -156,10 +161,8 @@ TEST_P(HardImages, NothingButParticles) {
 TEST_P(HardImages, NothingButBlocksOfAVideo) {
   cv::RNG random(13);
   run(toImages([&](double, cv::Mat& image) {
-    cv::Mat noise(image.size(), CV_16SC1);
-    random.fill(noise, cv::RNG::NORMAL, 0.0, 2.0);
     image.convertTo(image, CV_8U, 0.03, 100.0);
-    cv::add(image, noise, image, cv::noArray(), CV_8U);
+    addNoise(2.0, &random, &image);
     std::vector<unsigned char> compressed;
     cv::imencode(".jpg", image, compressed, {cv::IMWRITE_JPEG_QUALITY, 30});
     image = cv::imdecode(compressed, cv::IMREAD_GRAYSCALE);
@@ -208,11 +211,9 @@ TEST_P(HardImages, AHandBeforeTheLens) {
 TEST_P(HardImages, MilkyWater) {
   cv::RNG random(5);
   run(toImages([&](double, cv::Mat& image) {
-    cv::Mat noise(image.size(), CV_16SC1);
-    random.fill(noise, cv::RNG::NORMAL, 0.0, 2.0);
     cv::GaussianBlur(image, image, {}, 1.5);
     image.convertTo(image, CV_8U, 0.25, 100.0);
-    cv::add(image, noise, image, cv::noArray(), CV_8U);
+    addNoise(2.0, &random, &image);
   }));
   expectTracking(kBegin_s, 20.0);
   expectDriftWithin(0.1);
