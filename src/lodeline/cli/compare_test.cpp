@@ -55,11 +55,15 @@ TEST_F(Compare, JudgesMethodsAndMakesNoRunTwice) {
   const Execution again = compareRoom(options);
   EXPECT_EQ(again.output, first.output);
   EXPECT_EQ(fs::last_write_time(states), written);
-  // A run that its user ended is not the whole one, whatever lies beside it.
+  // A run that its user ended is not the whole one, whatever lies beside it, nor is one whose summary was cut
+  // short.
   const fs::path summary = runs() / "off_features_1" / "run.json";
   nlohmann::json ended = readJson(summary);
   ended["interrupted"] = true;
   std::ofstream(summary) << ended;
+  EXPECT_EQ(compareRoom(options).exit_code, 0);
+  EXPECT_FALSE(readJson(summary)["interrupted"].get<bool>());
+  std::ofstream(summary) << "{\"frames\": 1";
   EXPECT_EQ(compareRoom(options).exit_code, 0);
   EXPECT_FALSE(readJson(summary)["interrupted"].get<bool>());
   const auto rewritten = fs::last_write_time(states);

@@ -58,8 +58,11 @@ nlohmann::json readSummary(const fs::path& folder) {
 
 /// Whether the folder holds the whole run; someone may have run into it since, and not to the end.
 bool isDone(const fs::path& folder, const std::string& made_from) {
-  return fs::exists(folder / kDoneFile) && readFileBytes(folder / kDoneFile) == made_from &&
-         fs::exists(folder / "run.json") && !readSummary(folder).value("interrupted", false);
+  if (!fs::exists(folder / kDoneFile) || readFileBytes(folder / kDoneFile) != made_from) return false;
+  if (!fs::exists(folder / "run.json")) return false;
+  constexpr bool kThrow = false;  // a file that was cut short is that of no whole run either
+  const auto summary = nlohmann::json::parse(readFileBytes(folder / "run.json"), nullptr, kThrow);
+  return summary.is_object() && !summary.value("interrupted", true);
 }
 
 /// False where the user stopped the run.

@@ -99,7 +99,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("landmark.max_count", &options->landmark.max_landmarks, "in the window");
   settings->bind("landmark.least_in_view", &options->landmark.least_in_view,
                  "new ones are made for as long as fewer are seen, however many the window holds");
-  settings->bind("landmark.min_frames", &options->landmark.min_frames, "that have seen a point");
+  settings->bind("landmark.min_frames", &options->landmark.min_frames, "that see a point before it counts");
   settings->bind("landmark.min_distance_m", &options->landmark.min_distance_m,
                  "nearer ones are taken for errors");
   settings->bind("landmark.max_error_sigmas", &options->landmark.max_error_sigmas,

@@ -111,9 +111,8 @@ void DepthFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
 DepthDecision DepthFusion::judge(const DepthSample& reading, const CarriedDepth& depth, Window& window,
                                  Marginalizer& marginalizer) {
   const Innovation innovation = innovate(depth, window);
-  const Frame& before = **std::prev(window.frames().end(), 2);
-  const bool is_reliable = innovation.speed_sigma_m_per_s < kReliableSpeed_m_per_s &&
-                           (window.newest().time - before.time).seconds() < kLongestCarry_s;
+  const bool is_reliable =
+      innovation.speed_sigma_m_per_s < kReliableSpeed_m_per_s && innovation.elapsed_s < kLongestCarry_s;
   const bool is_noise = is_reliable && innovation.lag_sigma_m < health_.readingSigma();
   const DepthStatus health = health_.check(reading, motion_, depth.lag_s, is_reliable);
   health_.learnScatter(is_noise ? std::optional(innovation.value_m) : std::nullopt);
@@ -141,7 +140,7 @@ DepthFusion::Innovation DepthFusion::innovate(const CarriedDepth& depth, const W
   factor.Evaluate(values, &innovation.value_m, jacobians);
 
   // What was known a frame ago, and how the unknown part of the speed has spread since.
-  const double elapsed_s = (newest.time - before.time).seconds();
+  const double elapsed_s = innovation.elapsed_s = (newest.time - before.time).seconds();
   std::vector<std::pair<const double*, Eigen::RowVectorXd>> derivatives = {
       {before.pose.data(), by_pose.head<kPoseTangentSize>()}};
   Eigen::RowVectorXd by_motion = Eigen::RowVectorXd::Zero(kMotionSize);

@@ -49,6 +49,7 @@ class DepthFusion {
   struct Innovation {
     double value_m = 0.0;
     double sigma_m = 0.0;
+    double elapsed_s = 0.0;            ///< since the frame before
     double speed_sigma_m_per_s = 0.0;  ///< of the vertical speed that led here
     double lag_sigma_m = 0.0;          ///< what the unknown part of the lag makes of that speed
   };

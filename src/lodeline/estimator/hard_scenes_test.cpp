@@ -200,7 +200,8 @@ class ChanceMatches {
       Observation observation;
       observation.track = match.track;
       observation.camera = camera;
-      const Vec3 noise(random_.normal() / 458.0, random_.normal() / 458.0, 0.0);
+      const double focal_px = rig_.cameras[camera].fx_px;
+      const Vec3 noise(random_.normal() / focal_px, random_.normal() / focal_px, 0.0);
       const Vec3 point_C = other_from_camera * (world_from_camera.conjugate() * match.from_camera_W);
       observation.bearing_C = (point_C.normalized() + noise).normalized();
       frame->tracks.observations.push_back(observation);
