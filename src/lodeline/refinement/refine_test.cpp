@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/test_scene.h"
+#include "lodeline/refinement/batch_problem.h"
 
 namespace lodeline {
 namespace {
@@ -21,9 +23,9 @@ struct ForwardRun {
   using Tamper = std::function<void(double time_s, SimulatedFrame& frame)>;
 
   explicit ForwardRun(const TestSceneOptions& wanted, double state_interval_s = 0.0,
-                      const Tamper& tamper = {})
+                      const Tamper& tamper = {}, bool calibrates_cameras = false)
       : scene(wanted),
-        options(optionsOf(wanted)),
+        options(optionsOf(wanted, calibrates_cameras)),
         estimator(scene.rig(), options, &diagnostics),
         record(state_interval_s) {
     TruthComparison truth;
@@ -37,9 +39,10 @@ struct ForwardRun {
     record.finish(estimator);
   }
 
-  static EstimatorOptions optionsOf(const TestSceneOptions& wanted) {
+  static EstimatorOptions optionsOf(const TestSceneOptions& wanted, bool calibrates_cameras) {
     EstimatorOptions options = honestOptions(wanted);
-    options.camera_calibration.enabled = false;
+    options.camera_calibration.enabled = calibrates_cameras;
+    options.camera_calibration.lens_held_s = 2.0;
     return options;
   }
 
@@ -121,6 +124,23 @@ TEST(Refine, CarriesOnThroughDarkness) {
   const Refinement refinement = run.refined();
   ASSERT_TRUE(refinement.summary.usable());
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
+}
+
+TEST(Refine, LeavesLensesAsTheRunFoundThem) {
+  const ForwardRun run(smallScene(2), 0.5, {}, true);
+  BatchProblem problem(run.scene.rig(), run.options, run.record);
+  SkylineMatrix hessian = problem.emptyMatrix();
+  Eigen::VectorXd gradient;
+  problem.linearise(&hessian, &gradient);
+  ASSERT_TRUE(hessian.factorise());
+  problem.step(hessian.solve(-gradient));
+  const std::vector<GlobalState*> lenses = cameraStates(problem.window()).intrinsics;
+  ASSERT_EQ(lenses.size(), 2u);
+  for (const GlobalState* lens : lenses) {
+    const std::vector<double>& found = run.record.globals().at(lens->name);
+    EXPECT_GT(std::abs(found[0]), 1e-5) << "the run has to find something";
+    for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(lens->value[i], found[i], 1e-6) << lens->name;
+  }
 }
 
 TEST(Refine, GivesTheSameBytesAgain) {
