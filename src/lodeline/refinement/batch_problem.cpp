@@ -20,7 +20,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addTracks(record);
   addGlobals(record);
   addStartPrior(record.startPrior(), record.globals());
-  addLenses(record.globals());
+  holdLenses(record.globals());
   addGyroscopeAxes(rig.imu.noise, record.globals());
   orderBlocks();
   relinearise();

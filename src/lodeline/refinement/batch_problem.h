@@ -65,8 +65,9 @@ class BatchProblem {
   void addTracks(const ForwardRecord& record);
   void addGlobals(const ForwardRecord& record);
   void addStartPrior(const ForwardRecord::StartPrior& start, const GlobalValues& globals);
-  /// At a start the run held them; `globals` has what it found later.
-  void addLenses(const GlobalValues& globals);
+  /// Lenses stay as the run found them (`globals`). Free, they follow what slides in the images along a mode
+  /// that is hardly known: a longer lens whose camera sits further back.
+  void holdLenses(const GlobalValues& globals);
   void addGyroscopeAxes(const ImuNoise& noise, const GlobalValues& globals);
   GlobalState* addGlobal(const ForwardRecord& record, const std::string& name, const std::string& as);
   void addKnowledge(GlobalState* state, double sigma);

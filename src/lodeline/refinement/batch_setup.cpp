@@ -167,13 +167,19 @@ void BatchProblem::addStartPrior(const ForwardRecord::StartPrior& start, const G
     addKnowledge(magnetometer.offset, options_.magnetometer.offset_sigma_T);
 }
 
-void BatchProblem::addLenses(const GlobalValues& globals) {
+void BatchProblem::holdLenses(const GlobalValues& globals) {
+  CameraCalibrationOptions held = options_.camera_calibration;
+  held.focal_length_sigma = held.principal_point_sigma_px = held.radial_sigma = 0.0;
   Prior prior;
-  addLensStates(window_, prior, static_cast<int>(cameras_.size()), options_.camera_calibration);
+  addLensStates(window_, prior, static_cast<int>(cameras_.size()), held);
   if (prior.empty()) return;
-  for (GlobalState* lens : cameraStates(window_).intrinsics) {
-    const auto end = globals.find(lens->name);
-    if (end != globals.end()) lens->value = end->second;
+  const std::vector<GlobalState*> lenses = cameraStates(window_).intrinsics;
+  for (size_t camera = 0; camera < lenses.size(); ++camera) {
+    const auto end = globals.find(lenses[camera]->name);
+    if (end == globals.end()) continue;
+    lenses[camera]->value = end->second;
+    prior.blocks[camera].first_estimate =
+        Eigen::Map<const Eigen::VectorXd>(end->second.data(), static_cast<Eigen::Index>(end->second.size()));
   }
   priors_.push_back(std::move(prior));
 }
