@@ -87,6 +87,10 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("window.recent_frames", &options->window.recent_frames,
                  "newest frames, with velocity and biases");
   settings->bind("window.keyframes", &options->window.keyframes, "older keyframes");
+  settings->bind("window.interpolated_spacing_s", &options->window.interpolated_spacing_s,
+                 "at least, of frames between keyframes whose sightings are kept");
+  settings->bind("window.interpolated_gap_s", &options->window.interpolated_gap_s,
+                 "at most, of the keyframes on both sides of them");
   settings->bind("window.startup_frames", &options->window.startup_frames, "nothing is marginalised before");
   settings->bind("window.startup_frames_mono", &options->window.startup_frames_mono,
                  "the same with one camera");

@@ -146,7 +146,7 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
   starting_up_ = starting_up_ && !is_settled_ && frames_since_start_ < options_.window.startup_max_frames;
   if (starting_up_) return;
   if (!was_settled) marginalizer_.relinearise(window_);
-  marginalizer_.shorten(window_, options_.window.recent_frames, options_.window.keyframes);
+  marginalizer_.shorten(window_, options_.window);
   if (!is_settled_) marginalizer_.relinearise(window_);
   if (is_settled_) freeLenses(estimate.time);
 }

@@ -19,6 +19,17 @@ std::shared_ptr<const ceres::LossFunction> lossOf(const TrackHistory& track, dou
                                              ceres::TAKE_OWNERSHIP);
 }
 
+/// The target of a reprojection factor, as the pose that two keyframes stand in for.
+void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor) {
+  constexpr size_t kTarget = 1;  // of the blocks of such factors
+  const auto& [before_id, after_id, between] = *target.interpolated;
+  Frame &before = *window.find(before_id), &after = *window.find(after_id);
+  factor->function = std::make_unique<InterpolatedPoseFactor>(std::move(factor->function), kTarget, between,
+                                                              before.firstPose(), after.firstPose());
+  factor->blocks[kTarget] = before.pose.data();
+  factor->blocks.push_back(after.pose.data());
+}
+
 }  // namespace
 
 double costOf(const Factor& factor, std::vector<double>& residual) {
@@ -171,6 +182,7 @@ LandmarkFactors FactorMaker::calibratedLandmark(Window& window, TrackHistory& tr
       factor.blocks = {host.pose.data(), target.pose.data(), result.landmark, states.camera0->value.data(),
                        states.time_offset->value.data()};
       if (further) factor.blocks.push_back(further->value.data());
+      if (target.interpolated) hangOnNeighbours(window, target, &factor);
     }
     if (states.intrinsics.empty()) continue;
     factor.function = std::make_unique<IntrinsicsFactor>(std::move(factor.function), sighting.measurement);
@@ -200,6 +212,7 @@ LandmarkFactors FactorMaker::plainLandmark(Window& window, TrackHistory& track) 
           std::make_unique<ReprojectionFactor>(sighting.measurement, landmark.base, body_from_host_camera,
                                                body_from_target_camera, host.firstPose(), target.firstPose());
       factor.blocks = {host.pose.data(), target.pose.data(), result.landmark};
+      if (target.interpolated) hangOnNeighbours(window, target, &factor);
     }
   }
   return result;

@@ -90,7 +90,7 @@ TEST_F(GlobalStateTest, KeepsItsCovarianceAndCorrelationThroughMarginalisation) 
       coupledPrior(), {test_.window.newest().pose.data(), vector_->value.data(), pose_->value.data()});
   Marginalizer marginalizer(test_.factors);
   marginalizer.start(coupledPrior());
-  marginalizer.shorten(test_.window, 2, 1);
+  marginalizer.shorten(test_.window, {.recent_frames = 2, .keyframes = 1});
   ASSERT_EQ(test_.window.frames().size(), 3u);
   EXPECT_TRUE(vector_->first && pose_->first) << "what the prior touches keeps a first estimate";
   const Eigen::MatrixXd after = covariance(
@@ -106,7 +106,7 @@ TEST_F(GlobalStateTest, WalksWhileFramesAreMarginalised) {
   const Mat3 before = covariance(coupledPrior(), {vector_->value.data()});
   Marginalizer marginalizer(test_.factors);
   marginalizer.start(coupledPrior());
-  marginalizer.shorten(test_.window, 2, 1);
+  marginalizer.shorten(test_.window, {.recent_frames = 2, .keyframes = 1});
   const double elapsed_s = (kFrames - 2) * kFrameDistance_s;
   const Mat3 expected = before + 4e-12 * elapsed_s * Mat3::Identity();
   EXPECT_LT(relativeDifference(covariance(marginalizer.prior(), {vector_->value.data()}), expected), 1e-4);
@@ -122,7 +122,7 @@ TEST_F(GlobalStateTest, IsLessKnownOnceAfterASuddenChange) {
   const Mat3 before = covariance(coupledPrior(), {vector_->value.data()});
   Marginalizer marginalizer(test_.factors);
   marginalizer.start(coupledPrior());
-  marginalizer.shorten(test_.window, 2, 1);
+  marginalizer.shorten(test_.window, {.recent_frames = 2, .keyframes = 1});
   EXPECT_LT(relativeDifference(covariance(marginalizer.prior(), {vector_->value.data()}),
                                before + 3e-12 * Mat3::Identity()),
             1e-4);

@@ -25,6 +25,32 @@ std::optional<double> medianParallax(const Window& window, const Frame& a, const
   return *middle;
 }
 
+std::optional<KeyframesAbout> keyframesAbout(const Window& window, const Frame& frame,
+                                             const WindowOptions& options) {
+  const Frame *before = nullptr, *after = nullptr, *last = nullptr;
+  for (const auto& other : window.frames()) {
+    if (other->id < frame.id) {
+      last = other.get();
+      if (other->is_keyframe) before = last;
+    } else if (other->id > frame.id && other->is_keyframe) {
+      after = other.get();
+      break;
+    }
+  }
+  if (!before || !after) return std::nullopt;
+  const auto seconds = [](const Frame& a, const Frame& b) { return (b.time - a.time).seconds(); };
+  if (seconds(*last, frame) < options.interpolated_spacing_s ||
+      seconds(frame, *after) < options.interpolated_spacing_s ||
+      seconds(*before, *after) > options.interpolated_gap_s) {
+    return std::nullopt;
+  }
+  const bool sees = std::any_of(window.tracks().begin(), window.tracks().end(), [&](const auto& entry) {
+    return entry.second.landmark && entry.second.seenIn(frame.id);
+  });
+  if (!sees) return std::nullopt;
+  return KeyframesAbout{before, after};
+}
+
 bool wantsKeyframe(const Window& window, const FactorMaker& factors, const KeyframeOptions& options) {
   const Frame* last = window.newestKeyframe();
   if (!last) return true;

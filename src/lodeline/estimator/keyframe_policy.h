@@ -11,6 +11,17 @@ namespace lodeline {
 /// so that its window keeps what it knows.
 bool wantsKeyframe(const Window& window, const FactorMaker& factors, const KeyframeOptions& options);
 
+/// The keyframes before and after a frame that is neither and leaves the window's recent ones, where it is
+/// worth being interpolated between them: when it saw landmarks, and far enough from other frames in time for
+/// what it saw to tell something that they do not (their errors are alike otherwise). Nothing where the next
+/// keyframe has not come yet, or is too far away for the way there to be known.
+struct KeyframesAbout {
+  const Frame* before;
+  const Frame* after;
+};
+std::optional<KeyframesAbout> keyframesAbout(const Window& window, const Frame& frame,
+                                             const WindowOptions& options);
+
 /// Median angle (rad) by which the tracks common to two frames have shifted in camera 0, rotation taken out;
 /// nothing without common tracks.
 std::optional<double> medianParallax(const Window& window, const Frame& a, const Frame& b,

@@ -102,5 +102,46 @@ TEST_F(KeyframePolicyTest, ParallaxIsTheAngleWithoutRotation) {
   EXPECT_FALSE(medianParallax(test_.window, first_, test_.add(Rigid3()), test_.factors).has_value());
 }
 
+class InterpolationPolicyTest : public KeyframePolicyTest {
+ protected:
+  // Keyframes at 0, 1 and 2 s; the frame in question sees the wall.
+  InterpolationPolicyTest() : between_(add(0.5, false)), after_(add(1.0, true)), last_(add(2.0, true)) {
+    see(between_, 0, 60);
+  }
+  Frame& add(double time_s, bool is_keyframe) {
+    Frame& frame = test_.add(Rigid3(), is_keyframe);
+    frame.time = first_.time + Duration::fromSeconds(time_s);
+    return frame;
+  }
+  std::optional<KeyframesAbout> about(double spacing_s, double gap_s) const {
+    return keyframesAbout(test_.window, between_,
+                          {.interpolated_gap_s = gap_s, .interpolated_spacing_s = spacing_s});
+  }
+
+  Frame &between_, &after_, &last_;
+};
+
+TEST_F(InterpolationPolicyTest, TakesTheNearestKeyframesOnBothSides) {
+  const auto found = about(0.4, 1.1);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->before, &first_);
+  EXPECT_EQ(found->after, &after_);
+}
+
+TEST_F(InterpolationPolicyTest, WantsFramesThatAreNeitherTooCloseNorTooFar) {
+  EXPECT_FALSE(about(0.6, 1.1).has_value()) << "close to a keyframe";
+  EXPECT_FALSE(about(0.4, 0.9).has_value()) << "keyframes far from each other";
+  after_.is_keyframe = false;
+  EXPECT_FALSE(about(0.4, 1.1).has_value()) << "no keyframe after it but one that is too far away";
+  EXPECT_TRUE(about(0.4, 2.1).has_value());
+  last_.is_keyframe = false;
+  EXPECT_FALSE(about(0.4, 2.1).has_value()) << "none at all";
+}
+
+TEST_F(InterpolationPolicyTest, WantsNoneThatSeesNoLandmark) {
+  for (auto& [id, track] : test_.window.tracks()) track.landmark.reset();
+  EXPECT_FALSE(about(0.4, 1.1).has_value());
+}
+
 }  // namespace
 }  // namespace lodeline

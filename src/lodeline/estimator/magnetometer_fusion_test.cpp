@@ -57,7 +57,7 @@ double yawInformationAfter(int frames, bool relative, bool keep_first_estimates)
     if (k < 3) continue;
     EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
     removeOutliers(test.window, test.factors, test.options.landmark);
-    marginalizer.shorten(test.window, 3, 3);
+    marginalizer.shorten(test.window, {.recent_frames = 3, .keyframes = 3});
     if (keep_first_estimates) continue;
     for (const auto& state : test.window.globals()) state->first.reset();
     for (const auto& other : test.window.frames()) {

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/estimator/prior_terms.h"
 
@@ -148,9 +149,9 @@ void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded, const 
   track.landmark.reset();
 }
 
-void Marginalizer::shorten(Window& window, int max_recent_frames, int max_keyframes) {
-  while (window.recentCount() > max_recent_frames) retireOldestRecent(window);
-  while (window.poseOnlyCount() > max_keyframes) removeOldestKeyframe(window);
+void Marginalizer::shorten(Window& window, const WindowOptions& wanted) {
+  while (window.recentCount() > wanted.recent_frames) retireOldestRecent(window, wanted);
+  while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window);
 }
 
 void Marginalizer::relinearise(Window& window) {
@@ -179,6 +180,7 @@ void Marginalizer::relinearise(Window& window) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> triangular(root);
   prior_.sqrt_information = triangular.matrixQR().triangularView<Eigen::Upper>();
   prior_.offset = triangular.householderQ().transpose() * (residual - root * difference());
+  window.placeInterpolated();
 }
 
 void Marginalizer::forget(Window& window, GlobalState& state) {
@@ -188,7 +190,7 @@ void Marginalizer::forget(Window& window, GlobalState& state) {
   state.first.reset();
 }
 
-void Marginalizer::retireOldestRecent(Window& window) {
+void Marginalizer::retireOldestRecent(Window& window, const WindowOptions& wanted) {
   Frame& oldest = *window.oldestRecent();
   Frame& next = *window.after(oldest);
   const double elapsed_s = (next.time - oldest.time).seconds();
@@ -202,7 +204,11 @@ void Marginalizer::retireOldestRecent(Window& window) {
     oldest.has_motion = false;
   } else {
     eliminate(window, system, {oldest.motion.data(), oldest.pose.data()}, elapsed_s);
-    window.remove(oldest.id);
+    if (const auto between = keyframesAbout(window, oldest, wanted)) {
+      window.interpolate(oldest, *between->before, *between->after);
+    } else {
+      window.remove(oldest.id);
+    }
   }
 }
 
@@ -271,6 +277,7 @@ void Marginalizer::eliminate(Window& window, const NormalEquations& system,
   schurComplement(system.hessian(), system.gradient(), gone, kept, &h_kept, &g_kept);
   // The system's gradient is taken at the current values; the prior wants it at the first estimates.
   g_kept -= h_kept * from_first.head(kept_size);
+  window.placeInterpolated();
   letGlobalsWalk(window, next, elapsed_s, &h_kept, &g_kept);
   factorise(h_kept, g_kept, &next);
   prior_ = std::move(next);

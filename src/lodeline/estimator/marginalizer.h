@@ -20,7 +20,7 @@ class Marginalizer {
   void start(Prior prior) { prior_ = std::move(prior); }
 
   /// Shortens the window to the wanted sizes.
-  void shorten(Window& window, int max_recent_frames, int max_keyframes);
+  void shorten(Window& window, const WindowOptions& wanted);
 
   const Prior& prior() const { return prior_; }
 
@@ -43,9 +43,10 @@ class Marginalizer {
   std::vector<MapPoint> takeMapPoints() { return std::exchange(map_points_, {}); }
 
  private:
-  /// Oldest frame with motion: a keyframe loses its motion; any other frame goes, its sightings being dropped
-  /// so that the prior stays sparse.
-  void retireOldestRecent(Window& window);
+  /// Oldest frame with motion: a keyframe loses its motion. Any other frame goes, for the prior to stay
+  /// small. Its sightings stay where its pose can be interpolated (keyframe_policy.h); otherwise they are
+  /// dropped.
+  void retireOldestRecent(Window& window, const WindowOptions& wanted);
   /// Magnetometer and depth terms that touch the oldest of two frames, which then have become part of the
   /// prior.
   void addSensors(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;

@@ -11,6 +11,7 @@
 #include "lodeline/estimator/start.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/estimator/window_solver.h"
+#include "lodeline/estimator/window_update.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -69,7 +70,7 @@ TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
   shortened_.disturb(1e-4, 11);
   Marginalizer marginalizer(shortened_.factors);
   marginalizer.start(shortened_.start);
-  marginalizer.shorten(shortened_.window, 3, 4);
+  marginalizer.shorten(shortened_.window, {.recent_frames = 3, .keyframes = 4});
   ASSERT_EQ(shortened_.window.frames().size(), 7u);
   ASSERT_FALSE(marginalizer.takeMapPoints().empty());
   ASSERT_TRUE(solveWindow(shortened_.window, marginalizer.prior(), shortened_.factors, kToTheEnd).usable);
@@ -114,10 +115,21 @@ Eigen::Vector4d unobservableInformation(const Prior& prior) {
   return (prior.sqrt_information * directions).colwise().squaredNorm();
 }
 
-// Runs a window without any prior on where it is, and returns what its marginalisations claim to know of
-// that.
+// Enough of where a rig is for its equations to have a solution, which Ceres does without.
+InitialStateOptions nearlyNothing() {
+  InitialStateOptions options;
+  options.position_sigma_m = 30.0;
+  options.yaw_sigma_rad = 0.3;
+  options.velocity_sigma_m_per_s = 30.0;
+  return options;
+}
+
+// Runs a window without any prior on where it is, or with as good as none, and returns what its
+// marginalisations claim to know of that.
 enum class FirstEstimates { Kept, Forgotten, Relinearised };
-Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates) {
+enum class OtherFrames { Dropped, Interpolated };
+Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
+                                 OtherFrames other_frames = OtherFrames::Dropped) {
   EstimatorOptions options;
   // A poor IMU: estimates then move far enough from their first values for the difference to show.
   options.preintegration.noise_inflation = 10.0;
@@ -126,14 +138,23 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates) {
   TestWindow test(2, options);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
+  WindowOptions wanted{.recent_frames = 3, .keyframes = 3};
+  const bool interpolates = other_frames == OtherFrames::Interpolated;
+  if (interpolates) wanted.interpolated_spacing_s = 0.05;
+  int interpolated = 0;
   for (int k = 0; k < frames; ++k) {
-    test.add(*scene.next(), k % 2 == 0);
+    Frame& added = test.add(*scene.next(), k % 2 == 0);
+    if (k == 0 && interpolates) marginalizer.start(startPrior(added, nearlyNothing(), 0.3, false));
     createLandmarks(test.window, test.factors, options.landmark);
     if (k < 3) continue;
-    EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
+    const SolveLimits limits{4, 1e-6};
+    EXPECT_TRUE(interpolates
+                    ? updateWindow(test.window, marginalizer.prior(), test.factors, limits).summary.usable
+                    : solveWindow(test.window, marginalizer.prior(), test.factors, limits).usable);
     removeOutliers(test.window, test.factors, options.landmark);
     if (first_estimates == FirstEstimates::Relinearised) marginalizer.relinearise(test.window);
-    marginalizer.shorten(test.window, 3, 3);
+    marginalizer.shorten(test.window, wanted);
+    for (const auto& frame : test.window.frames()) interpolated += frame->interpolated.has_value();
     if (first_estimates == FirstEstimates::Relinearised) marginalizer.relinearise(test.window);
     if (first_estimates != FirstEstimates::Forgotten) continue;
     for (const auto& frame : test.window.frames()) {
@@ -142,6 +163,7 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates) {
     }
   }
   EXPECT_EQ(test.window.poseOnlyCount(), 3);
+  EXPECT_EQ(interpolated > frames, interpolates);
   return unobservableInformation(marginalizer.prior());
 }
 
@@ -153,6 +175,12 @@ TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
     EXPECT_LT(information[1], 1e-2);
     EXPECT_LT(information[2], 1e-2);
     EXPECT_LT(information[3], 1e2);
+    // No more than was said at the start.
+    const Eigen::Vector4d interpolated = informationAfter(30, first_estimates, OtherFrames::Interpolated);
+    const InitialStateOptions known = nearlyNothing();
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(interpolated[i], std::pow(known.position_sigma_m, -2), 1e-4) << "100 m, from rounding";
+    EXPECT_NEAR(interpolated[3] * std::pow(known.yaw_sigma_rad, 2), 1.0, 0.01);
   }
 }
 
@@ -171,7 +199,7 @@ TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
     Frame& added = test.add(*scene.next(), k % 2 == 0);
     if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
     createLandmarks(test.window, test.factors, test.options.landmark);
-    marginalizer.shorten(test.window, 3, 3);
+    marginalizer.shorten(test.window, {.recent_frames = 3, .keyframes = 3});
   }
   test.disturb(0.02, 3);
   const auto gradient = [&] {
@@ -207,8 +235,12 @@ TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
   }
 }
 
-TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {
+class MarginalizersBooks : public testing::TestWithParam<double> {};
+
+TEST_P(MarginalizersBooks, AreInOrder) {
   TestWindow test(2);
+  const WindowOptions wanted{.recent_frames = 3, .keyframes = 4, .interpolated_spacing_s = GetParam()};
+  int interpolated = 0;
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(4.0, 10.0));
   std::map<TrackId, MapPoint> map;
@@ -216,7 +248,7 @@ TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {
     Frame& added = test.add(*scene.next(), k % 3 == 0);
     if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
     createLandmarks(test.window, test.factors, test.options.landmark);
-    marginalizer.shorten(test.window, 3, 4);
+    marginalizer.shorten(test.window, wanted);
     for (const MapPoint& point : marginalizer.takeMapPoints()) map[point.track] = point;
 
     const Window& window = test.window;
@@ -224,7 +256,13 @@ TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {
     ASSERT_LE(window.poseOnlyCount(), 4);
     const Frame* before = nullptr;
     for (const auto& frame : window.frames()) {
-      EXPECT_TRUE(frame->has_motion || frame->is_keyframe);
+      EXPECT_TRUE(frame->has_motion || frame->is_keyframe || frame->interpolated);
+      if (frame->interpolated) {
+        ++interpolated;
+        EXPECT_FALSE(frame->has_motion || frame->is_keyframe);
+        ASSERT_NE(window.find(frame->interpolated->before), nullptr);
+        ASSERT_NE(window.find(frame->interpolated->after), nullptr);
+      }
       const bool follows_motion = before && before->has_motion;
       EXPECT_EQ(frame->from_previous != nullptr, follows_motion) << "frame " << frame->id;
       before = frame.get();
@@ -241,10 +279,14 @@ TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {
         return block.value == frame->pose.data() ||
                (frame->has_motion && block.value == frame->motion.data());
       });
+      for (const auto& frame : window.frames()) {
+        ASSERT_FALSE(frame->interpolated && block.value == frame->pose.data());
+      }
       ASSERT_TRUE(lives) << "the prior speaks of a block that is gone";
     }
   }
   EXPECT_TRUE(marginalizer.takeMapPoints().empty());
+  EXPECT_EQ(interpolated > 0, GetParam() < 0.1);
   // Frames stand at the truth, so points are as good as their sightings: half a pixel over a short baseline.
   ASSERT_GT(map.size(), 10u);
   double squares = 0.0;
@@ -254,6 +296,31 @@ TEST(Marginalizer, KeepsTheWindowsBooksInOrder) {
     squares += (point.position_W - scene.landmark(id)).squaredNorm() / (range_m * range_m);
   }
   EXPECT_LT(std::sqrt(squares / static_cast<double>(map.size())), 0.1) << "of their distance";
+}
+
+INSTANTIATE_TEST_SUITE_P(SpacingOfInterpolatedFrames, MarginalizersBooks, testing::Values(0.05, 0.15));
+
+// What the sightings of an interpolated frame say of the keyframes beside it outlives them.
+TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
+  const auto yawSigma = [](double spacing_s) {
+    TestWindow test(2, quadraticOptions());
+    Marginalizer marginalizer(test.factors);
+    TestScene scene(sceneOptions(7.0, 10.0));
+    for (int k = 0; k < 60; ++k) {
+      Frame& added = test.add(*scene.next(), k % 3 == 0);
+      if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
+      createLandmarks(test.window, test.factors, test.options.landmark);
+      updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
+      marginalizer.shorten(test.window,
+                           {.recent_frames = 5, .keyframes = 4, .interpolated_spacing_s = spacing_s});
+    }
+    EXPECT_EQ(test.window.frames().size() > 9u, spacing_s < 0.1);
+    return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
+  };
+  const double dropped = yawSigma(1.0), kept = yawSigma(0.05);
+  // Three times the sightings: 0.58 if they were all there is.
+  EXPECT_LT(kept, 0.85 * dropped);
+  EXPECT_GT(kept, 0.5 * dropped);
 }
 
 class MoveToNewHostTest : public testing::Test {

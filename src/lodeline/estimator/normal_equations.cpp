@@ -124,7 +124,7 @@ void NormalEquations::add(const std::vector<Block>& blocks, const Eigen::MatrixX
 /// One factor of a landmark, linearised: the residual, its derivative by the landmark and by every other
 /// block, all scaled by the loss.
 struct NormalEquations::LandmarkTerm {
-  static constexpr int kMaxBlocks = 7;  // poses, landmark, extrinsics twice, time offset, lens
+  static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, lens
   struct Part {
     int offset, size;
     Eigen::Matrix<double, 2, 6> jacobian;  // columns beyond `size` are zero

@@ -40,6 +40,10 @@ struct MonoInitializationOptions {
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
   int keyframes = 12;     ///< older keyframes, kept as poses
+  /// Between keyframes of at most this distance in time the sightings of other frames are kept, so far apart
+  /// in time.
+  double interpolated_gap_s = 1.6;
+  double interpolated_spacing_s = 0.18;
   /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen. One
   /// camera, whose scale settles slowly, waits longer, and until the scale is known to `startup_scale_sigma`
   /// (relative). After `startup_max_frames` frames go all the same, but no linearisation is kept until it is.

@@ -325,7 +325,9 @@ std::vector<NormalEquations::Block> VisualTerms::blocks() const {
     blocks.push_back({value, size, offset});
     offset += blocks.back().tangentSize();
   };
-  for (const auto& frame : window_.frames()) append(frame->pose.data(), kPoseSize);
+  for (const auto& frame : window_.frames()) {
+    if (!frame->interpolated) append(frame->pose.data(), kPoseSize);
+  }
   if (!states_) return blocks;
   for (GlobalState* state : states_.further) append(state->value.data(), kExtrinsicsSize);
   for (GlobalState* state : states_.intrinsics) append(state->value.data(), kIntrinsicsSize);
@@ -334,29 +336,50 @@ std::vector<NormalEquations::Block> VisualTerms::blocks() const {
   return blocks;
 }
 
+std::vector<VisualTerms::Follows> VisualTerms::posesOf(int frame) const {
+  const Frame& target = *window_.frames()[static_cast<size_t>(frame)];
+  const Mat6& by_body = first_.placement(frame).by_body;
+  if (!target.interpolated) return {{&target, by_body}};
+  const auto& [before_id, after_id, between] = *target.interpolated;
+  const Frame &before = *window_.find(before_id), &after = *window_.find(after_id);
+  const auto [by_before, by_after] =
+      between.derivatives(before.firstWorldFromBody(), after.firstWorldFromBody());
+  return {{&before, by_body * by_before}, {&after, by_body * by_after}};
+}
+
 /// From nodes to the blocks that they come from: H = T^T H_nodes T, T made of the placements' derivatives.
 void VisualTerms::addNodesTo(NormalEquations* system) const {
   const std::vector<NormalEquations::Block> blocks = this->blocks();
+  const auto columnOf = [&](const Frame* frame) {
+    return std::find_if(blocks.begin(), blocks.end(),
+                        [&](const auto& block) { return block.value == frame->pose.data(); })
+        ->offset;
+  };
   const int rows = 6 * nodes_;
+  const int others = states_ ? 6 * (nodes_ - frames_) : 0;  // nodes that are blocks themselves
   const int calibration = states_ ? kExtrinsicsSize + kTimeOffsetSize : 0;
+  const int columns = blocks.empty() ? 0 : blocks.back().offset + blocks.back().tangentSize();
   const Eigen::MatrixXd of_nodes = hessian_.selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd half(rows, rows + calibration);  // H_nodes T
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(rows, columns);  // H_nodes T
   Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(rows, calibration);
-  half.leftCols(rows) = of_nodes;
   for (int i = 0; i < frames_; ++i) {
-    half.middleCols<6>(6 * i).noalias() = of_nodes.middleCols<6>(6 * i) * first_.placement(i).by_body;
+    for (const auto& [frame, by_pose] : posesOf(i))
+      half.middleCols<6>(columnOf(frame)).noalias() += of_nodes.middleCols<6>(6 * i) * by_pose;
     if (calibration > 0) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
   }
+  half.middleCols(columns - calibration - others, others) = of_nodes.middleCols(6 * frames_, others);
   half.rightCols(calibration).noalias() = of_nodes * by_calibration;
-  Eigen::MatrixXd h(rows + calibration, rows + calibration);
-  Eigen::VectorXd g(rows + calibration);
-  h.topRows(rows) = half;
-  g.head(rows) = gradient_;
+  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(columns, columns);
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
   for (int i = 0; i < frames_; ++i) {
-    const Mat6& by_body = first_.placement(i).by_body;
-    h.middleRows<6>(6 * i).noalias() = by_body.transpose() * half.middleRows<6>(6 * i);
-    g.segment<6>(6 * i).noalias() = by_body.transpose() * gradient_.segment<6>(6 * i);
+    for (const auto& [frame, by_pose] : posesOf(i)) {
+      const int row = columnOf(frame);
+      h.middleRows<6>(row).noalias() += by_pose.transpose() * half.middleRows<6>(6 * i);
+      g.segment<6>(row).noalias() += by_pose.transpose() * gradient_.segment<6>(6 * i);
+    }
   }
+  h.middleRows(columns - calibration - others, others) = half.middleRows(6 * frames_, others);
+  g.segment(columns - calibration - others, others) = gradient_.segment(6 * frames_, others);
   h.bottomRows(calibration).noalias() = by_calibration.transpose() * half;
   g.tail(calibration).noalias() = by_calibration.transpose() * gradient_;
   system->add(blocks, h, g);
@@ -374,9 +397,9 @@ void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::Vect
     calibration[kExtrinsicsSize] = step[system.find(states_.time_offset->value.data())->offset];
   }
   for (int i = 0; i < frames_; ++i) {
-    const CameraViews::Placement& placement = first_.placement(i);
-    const double* pose = window_.frames()[static_cast<size_t>(i)]->pose.data();
-    steps.segment<6>(6 * i) = placement.by_body * stepOf(pose) + placement.by_calibration * calibration;
+    auto of_frame = steps.segment<6>(6 * i);
+    of_frame = first_.placement(i).by_calibration * calibration;
+    for (const auto& [frame, by_pose] : posesOf(i)) of_frame += by_pose * stepOf(frame->pose.data());
   }
   int node = frames_;
   for (const auto* states : {&states_.further, &states_.intrinsics}) {

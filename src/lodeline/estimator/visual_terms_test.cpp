@@ -12,7 +12,7 @@ enum class Calibrated { No, Placement, PlacementAndLens };
 
 // A window of a moving rig in three versions of the calibration, each block off its first estimate, as after
 // marginalisation.
-class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated>> {
+class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated, bool>> {
  protected:
   VisualTermsTest() : test_(std::get<0>(GetParam())) {
     prior_ = test_.fill();
@@ -24,6 +24,21 @@ class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated
     double weight = 0.1;
     for (auto& [id, track] : test_.window.tracks()) track.weight = weight = std::fmod(weight + 0.3, 2.0);
     if (std::get<1>(GetParam()) != Calibrated::No) disturbCalibration();
+    if (std::get<2>(GetParam())) interpolate(4);
+  }
+
+  // The frame hangs between its neighbours, which have moved since.
+  void interpolate(size_t index) {
+    const auto& frames = test_.window.frames();
+    for (auto& [id, track] : test_.window.tracks()) {
+      if (track.landmark && track.landmark->host == frames[index]->id) track.landmark.reset();
+    }
+    test_.window.interpolate(*frames[index], *frames[index - 1], *frames[index + 1]);
+    frames[index - 1]->first_pose = frames[index - 1]->pose;
+    const Eigen::Matrix<double, 6, 1> moved = Eigen::Matrix<double, 6, 1>::Constant(0.01);
+    for (const size_t i : {index - 1, index + 1})
+      poseToBlock(perturbed(frames[i]->worldFromBody(), moved), frames[i]->pose.data());
+    test_.window.placeInterpolated();
   }
 
   void disturbCalibration() {
@@ -133,15 +148,17 @@ TEST_P(VisualTermsTest, StepLandmarksLikeTheFactors) {
     EXPECT_LT((stepped[i] - wanted[i]).norm(), 1e-8 * (wanted[i] - before[i]).norm()) << "landmark " << i;
 }
 
-std::string nameOf(const testing::TestParamInfo<std::tuple<int, Calibrated>>& info) {
+std::string nameOf(const testing::TestParamInfo<std::tuple<int, Calibrated, bool>>& info) {
   constexpr const char* kNames[] = {"CamerasAsTheFilesSay", "CamerasCalibrated", "CamerasWithLenses"};
-  return std::to_string(std::get<0>(info.param)) + kNames[static_cast<int>(std::get<1>(info.param))];
+  return std::to_string(std::get<0>(info.param)) + kNames[static_cast<int>(std::get<1>(info.param))] +
+         (std::get<2>(info.param) ? "OneFrameInterpolated" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, VisualTermsTest,
                          testing::Combine(testing::Values(1, 2),
                                           testing::Values(Calibrated::No, Calibrated::Placement,
-                                                          Calibrated::PlacementAndLens)),
+                                                          Calibrated::PlacementAndLens),
+                                          testing::Bool()),
                          nameOf);
 
 // As after darkness, when every landmark has gone.

@@ -77,7 +77,11 @@ int Window::recentCount() const {
       std::count_if(frames_.begin(), frames_.end(), [](const auto& frame) { return frame->has_motion; }));
 }
 
-int Window::poseOnlyCount() const { return static_cast<int>(frames_.size()) - recentCount(); }
+int Window::poseOnlyCount() const {
+  return static_cast<int>(std::count_if(frames_.begin(), frames_.end(), [](const auto& frame) {
+    return !frame->has_motion && !frame->interpolated;
+  }));
+}
 
 Frame* Window::oldestRecent() const {
   const auto found =
@@ -101,12 +105,39 @@ GlobalState* Window::findGlobal(std::string_view name) const {
   return found == globals_.end() ? nullptr : found->get();
 }
 
-void Window::remove(FrameId id) {
-  for (auto& [track_id, track] : tracks_) {
-    std::erase_if(track.sightings, [id](const Sighting& sighting) { return sighting.frame == id; });
+void Window::interpolate(Frame& frame, const Frame& before, const Frame& after) {
+  const double share = (frame.time - before.time).seconds() / (after.time - before.time).seconds();
+  frame.interpolated = {
+      before.id, after.id,
+      PoseInterpolation(before.worldFromBody(), frame.worldFromBody(), after.worldFromBody(), share)};
+  frame.has_motion = false;
+  frame.first_motion.reset();
+  placeInterpolated();
+}
+
+void Window::placeInterpolated() {
+  for (const auto& frame : frames_) {
+    if (!frame->interpolated) continue;
+    const auto& [before_id, after_id, between] = *frame->interpolated;
+    const Frame &before = *find(before_id), &after = *find(after_id);
+    poseToBlock(between.pose(before.worldFromBody(), after.worldFromBody()), frame->pose.data());
+    frame->first_pose.emplace();
+    poseToBlock(between.pose(before.firstWorldFromBody(), after.firstWorldFromBody()),
+                frame->first_pose->data());
   }
+}
+
+void Window::remove(FrameId id) {
+  std::vector<FrameId> gone(1, id);
+  for (const auto& frame : frames_) {
+    if (frame->interpolated && (frame->interpolated->before == id || frame->interpolated->after == id))
+      gone.push_back(frame->id);
+  }
+  const auto goes = [&](FrameId frame) { return std::find(gone.begin(), gone.end(), frame) != gone.end(); };
+  for (auto& [track_id, track] : tracks_)
+    std::erase_if(track.sightings, [&](const Sighting& sighting) { return goes(sighting.frame); });
   removeEmptyTracks();
-  std::erase_if(frames_, [id](const auto& frame) { return frame->id == id; });
+  std::erase_if(frames_, [&](const auto& frame) { return goes(frame->id); });
 }
 
 void Window::removeEmptyTracks() { removeShortTracks(tracks_, 1); }

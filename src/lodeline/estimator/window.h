@@ -13,6 +13,7 @@
 #include "lodeline/estimator/global_state.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/depth_factor.h"
+#include "lodeline/factors/interpolated_pose.h"
 #include "lodeline/factors/magnetometer_field_factor.h"
 #include "lodeline/factors/parameters.h"
 #include "lodeline/factors/reprojection_factor.h"
@@ -41,11 +42,18 @@ struct DepthMeasurement {
   double sigma_m = 0.0;
 };
 
-/// The state at one image time. Old keyframes keep their pose only.
+/// A frame without a state of its own: the keyframes that its pose hangs between.
+struct Interpolated {
+  FrameId before = 0, after = 0;
+  PoseInterpolation between;
+};
+
+/// The state at one image time. Old keyframes keep their pose only, frames between them not even that.
 struct Frame {
   FrameId id = 0;
   Time time;
   bool is_keyframe = false;
+  std::optional<Interpolated> interpolated;
   PoseBlock pose{};
   bool has_motion = true;
   MotionBlock motion{};
@@ -74,6 +82,8 @@ struct Frame {
   void setState(const NavigationState& state);
   /// Brings `image_motion` up to date, which old keyframes keep.
   void updateImageMotion();
+  /// Where Jacobians are taken: at the first estimate, or at the present value where there is none.
+  Rigid3 firstWorldFromBody() const { return poseFromBlock(first_pose ? first_pose->data() : pose.data()); }
   const double* firstPose() const { return first_pose ? first_pose->data() : nullptr; }
   const double* firstMotion() const { return first_motion ? first_motion->data() : nullptr; }
 };
@@ -118,8 +128,8 @@ using Tracks = boost::container::flat_map<TrackId, TrackHistory>;
 /// Tracks with fewer sightings are forgotten.
 void removeShortTracks(Tracks& tracks, size_t least_sightings);
 
-/// The sliding window: old keyframes (poses), then the most recent frames (poses and motions), the tracks
-/// they see, and what belongs to no frame.
+/// The sliding window: old keyframes (poses) and interpolated frames between them, then the most recent
+/// frames (poses and motions), the tracks they see, and what belongs to no frame.
 class Window {
  public:
   Frame& add(std::unique_ptr<Frame> frame);
@@ -148,7 +158,14 @@ class Window {
   /// Null where there is none of that name.
   GlobalState* findGlobal(std::string_view name) const;
 
-  /// Forgets a frame with all its sightings. No landmark may be hosted there any more.
+  /// Lets the pose of a frame, which loses its motion, follow from those of two keyframes from now on. Its
+  /// sightings stay.
+  void interpolate(Frame& frame, const Frame& before, const Frame& after);
+  /// Brings poses and first estimates of interpolated frames up to date, after keyframes have moved.
+  void placeInterpolated();
+
+  /// Forgets a frame, and those interpolated from it, with all their sightings. No landmark may be hosted
+  /// there any more.
   void remove(FrameId id);
   /// Tracks without sightings are forgotten.
   void removeEmptyTracks();

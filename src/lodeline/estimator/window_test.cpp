@@ -72,6 +72,31 @@ TEST_F(WindowTest, ForgetsAFrameWithItsSightings) {
   EXPECT_TRUE(track.seenIn(2));
 }
 
+TEST_F(WindowTest, TakesAnInterpolatedFrameAlongWithItsKeyframes) {
+  Frame &before = *window_.find(0), &frame = *window_.find(1), &after = *window_.find(2);
+  poseToBlock(Rigid3(Quat::Identity(), Vec3(0.0, 0.1, 0.0)), frame.pose.data());
+  window_.interpolate(frame, before, after);
+  EXPECT_EQ(window_.poseOnlyCount(), 1);
+  EXPECT_EQ(window_.recentCount(), 3);
+  EXPECT_LT((frame.worldFromBody().translation - Vec3(0.0, 0.1, 0.0)).norm(), 1e-15);
+  // Stamps are even, so it lies halfway.
+  before.first_pose = before.pose;
+  poseToBlock(Rigid3(Quat::Identity(), Vec3(1.0, 0.0, 0.0)), after.pose.data());
+  poseToBlock(Rigid3(Quat::Identity(), Vec3(0.0, 0.0, 0.4)), before.pose.data());
+  window_.placeInterpolated();
+  EXPECT_LT((frame.worldFromBody().translation - Vec3(0.5, 0.1, 0.2)).norm(), 1e-15);
+  ASSERT_TRUE(frame.first_pose.has_value());
+  EXPECT_LT((frame.firstWorldFromBody().translation - Vec3(0.5, 0.1, 0.0)).norm(), 1e-15);
+}
+
+TEST_F(WindowTest, ForgetsAKeyframeWithWhatHangsOnIt) {
+  window_.interpolate(*window_.find(1), *window_.find(0), *window_.find(2));
+  window_.remove(0);
+  EXPECT_EQ(window_.find(1), nullptr);
+  EXPECT_EQ(window_.frames().size(), 3u);
+  EXPECT_EQ(window_.tracks().at(10).sightings.size(), 3u);
+}
+
 TEST_F(WindowTest, FindsSightingsByFrameAndCamera) {
   const TrackHistory& track = window_.tracks().at(11);
   ASSERT_NE(track.find(1, 1), nullptr);

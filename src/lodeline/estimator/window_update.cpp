@@ -43,7 +43,9 @@ class Snapshot {
 
 int tangentSizeOf(const Window& window) {
   int size = 0;
-  for (const auto& frame : window.frames()) size += kPoseTangentSize + (frame->has_motion ? kMotionSize : 0);
+  for (const auto& frame : window.frames()) {
+    if (!frame->interpolated) size += kPoseTangentSize + (frame->has_motion ? kMotionSize : 0);
+  }
   for (const auto& state : window.globals()) size += state->tangentSize();
   return size;
 }
@@ -76,7 +78,7 @@ class QuickTerms {
     return system;
   }
 
-  void apply(const NormalEquations& system, const Eigen::VectorXd& step) {
+  void apply(Window& window, const NormalEquations& system, const Eigen::VectorXd& step) {
     for (const NormalEquations::Block& block : system.blocks()) {
       if (block.ambient_size == kPoseSize) {
         poseToBlock(perturbed(poseFromBlock(block.value), step.segment<6>(block.offset)), block.value);
@@ -86,6 +88,7 @@ class QuickTerms {
       }
     }
     visual_.stepLandmarks(system, step);
+    window.placeInterpolated();
   }
 
  private:
@@ -119,7 +122,7 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
     double gain = 0.0;
     while (!(gain > 0.0) && damping <= kMostDamping) {
       if (cholesky.factorise(damping)) {
-        terms.apply(system, -cholesky.solve(system.gradient()));
+        terms.apply(window, system, -cholesky.solve(system.gradient()));
         gain = cost - terms.cost();
         if (!(gain > 0.0)) before.restore();
       }
