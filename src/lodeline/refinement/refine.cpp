@@ -24,7 +24,7 @@ struct Round {
 
 /// A step that lowers the cost; nothing where no damping gives one. `damping` is adapted.
 std::optional<double> lowerCost(BatchProblem& problem, double cost, SkylineMatrix* hessian, double* damping) {
-  constexpr double kLeastDamping = 1e-9, kMostDamping = 1e1;
+  constexpr double kLeastDamping = 1e-12, kMostDamping = 1e1;
   const std::vector<double> before = problem.values();
   Eigen::VectorXd gradient;
   while (*damping <= kMostDamping) {
@@ -51,7 +51,7 @@ Round solve(BatchProblem& problem, const RefinementOptions& wanted, SkylineMatri
   while (round.iterations < wanted.max_iterations && !round.converged) {
     ++round.iterations;
     const std::optional<double> lowered = lowerCost(problem, cost, hessian, &damping);
-    round.converged = !lowered || cost - *lowered < wanted.function_tolerance * cost;
+    round.converged = !lowered || cost - *lowered < wanted.gain_tolerance;
     cost = lowered.value_or(cost);
   }
   round.final_cost = cost;

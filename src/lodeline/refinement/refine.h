@@ -11,8 +11,9 @@ struct RefinementOptions {
   double state_interval_s = ForwardRecord::kStateInterval_s;  ///< see ForwardRecord
   int max_iterations = 25;                                    ///< of each round
   int rounds = 3;  ///< landmarks and outliers are sorted out before each
-  /// Relative change of the cost that ends a round.
-  double function_tolerance = 1e-5;
+  /// A step that lowers the cost by less ends a round: one sigma off the solution, in any direction, costs
+  /// 0.5.
+  double gain_tolerance = 0.01;
   /// More sightings than this share that contradict the solution speak against it.
   double max_outlier_share = 0.2;
   /// Covariances are left out where the linear system takes more memory than this.

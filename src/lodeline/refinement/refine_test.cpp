@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/camera_states.h"
+#include "lodeline/estimator/dive_consistency.h"
 #include "lodeline/estimator/test_scene.h"
 #include "lodeline/refinement/batch_problem.h"
 
@@ -107,6 +108,37 @@ TEST_P(RefineTest, FramesBetweenStatesAreAsGoodAsStates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, RefineTest, testing::Values(1, 2));
+
+/// A dive of points through windows of so many keyframes, and its refinement.
+Refinement refinedDive(int keyframes, double duration_s) {
+  HeadingTrialOptions dive = exactDive(duration_s);
+  dive.estimator.window.keyframes = keyframes;
+  ForwardRecord record(0.5);
+  Rig rig;
+  EstimatorOptions options;
+  runTrialDive(dive,
+               [&](const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator& estimator) {
+                 record.add(frame.tracks, frame.imu, estimate, estimator);
+                 rig = estimator.rig();
+                 options = estimator.options();
+                 record.finish(estimator);
+               });
+  return refine(rig, options, record);
+}
+
+// Directions that only the whole dive holds together move by many small gains.
+TEST(Refine, EndsAtTheSameSolutionWhereverTheRunWas) {
+  const Refinement a = refinedDive(12, 240.0), b = refinedDive(4, 240.0);
+  ASSERT_TRUE(a.summary.usable() && b.summary.usable());
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  double squares = 0.0;
+  for (size_t i = 0; i < a.frames.size(); ++i)
+    squares += (a.frames[i].state.world_from_body.translation - b.frames[i].state.world_from_body.translation)
+                   .squaredNorm();
+  EXPECT_GT(b.summary.moved_rms_m, 0.2 * b.summary.sigma_m) << "the runs must have been elsewhere";
+  const double apart_m = std::sqrt(squares / static_cast<double>(a.frames.size()));
+  EXPECT_LT(apart_m, 0.02 * a.summary.sigma_m);
+}
 
 TEST(Refine, LeavesOutOutliers) {
   TestSceneOptions options = smallScene(2);
