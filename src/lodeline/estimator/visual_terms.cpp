@@ -69,13 +69,13 @@ struct VisualTerms::Linearised {
 };
 
 VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only)
-    : window_(window),
-      states_(cameraStates(window)),
+    : states_(cameraStates(window)),
       values_(window, states_, factors, CameraViews::At::kValues, hostsOf(window)),
       first_(window, states_, factors, CameraViews::At::kFirstEstimates, values_.hosts()),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
-      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())) {
+      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())),
+      blocks_(window, states_, first_, nodes_) {
   const std::vector<FrameId> ids = idsOf(window);
   std::vector<double> scales;
   for (const auto& frame : window.frames()) scales.push_back(factors.robustScale(*frame));
@@ -286,6 +286,7 @@ void VisualTerms::addCalibration(int camera) {
 void VisualTerms::addTo(NormalEquations* system) {
   values_.update();
   first_.update();
+  blocks_.update();
   const int rows = 6 * nodes_;
   const auto columns = kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size());
   by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
@@ -302,7 +303,10 @@ void VisualTerms::addTo(NormalEquations* system) {
   }
   for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
   subtractEliminated();
-  addNodesTo(system);
+  Eigen::MatrixXd h;
+  Eigen::VectorXd g;
+  blocks_.transform(hessian_, gradient_, &h, &g);
+  system->add(blocks_.blocks(), h, g);
 }
 
 void VisualTerms::subtractEliminated() {
@@ -318,94 +322,9 @@ void VisualTerms::subtractEliminated() {
   gradient_.noalias() -= couplings_ * rooted_gradients_;
 }
 
-std::vector<NormalEquations::Block> VisualTerms::blocks() const {
-  std::vector<NormalEquations::Block> blocks;
-  int offset = 0;
-  const auto append = [&](double* value, int size) {
-    blocks.push_back({value, size, offset});
-    offset += blocks.back().tangentSize();
-  };
-  for (const auto& frame : window_.frames()) {
-    if (!frame->interpolated) append(frame->pose.data(), kPoseSize);
-  }
-  if (!states_) return blocks;
-  for (GlobalState* state : states_.further) append(state->value.data(), kExtrinsicsSize);
-  for (GlobalState* state : states_.intrinsics) append(state->value.data(), kIntrinsicsSize);
-  append(states_.camera0->value.data(), kExtrinsicsSize);
-  append(states_.time_offset->value.data(), kTimeOffsetSize);
-  return blocks;
-}
-
-std::vector<VisualTerms::Follows> VisualTerms::posesOf(int frame) const {
-  const Frame& target = *window_.frames()[static_cast<size_t>(frame)];
-  const Mat6& by_body = first_.placement(frame).by_body;
-  if (!target.interpolated) return {{&target, by_body}};
-  const auto& [before_id, after_id, between] = *target.interpolated;
-  const Frame &before = *window_.find(before_id), &after = *window_.find(after_id);
-  const auto [by_before, by_after] =
-      between.derivatives(before.firstWorldFromBody(), after.firstWorldFromBody());
-  return {{&before, by_body * by_before}, {&after, by_body * by_after}};
-}
-
-/// From nodes to the blocks that they come from: H = T^T H_nodes T, T made of the placements' derivatives.
-void VisualTerms::addNodesTo(NormalEquations* system) const {
-  const std::vector<NormalEquations::Block> blocks = this->blocks();
-  const auto columnOf = [&](const Frame* frame) {
-    return std::find_if(blocks.begin(), blocks.end(),
-                        [&](const auto& block) { return block.value == frame->pose.data(); })
-        ->offset;
-  };
-  const int rows = 6 * nodes_;
-  const int others = states_ ? 6 * (nodes_ - frames_) : 0;  // nodes that are blocks themselves
-  const int calibration = states_ ? kExtrinsicsSize + kTimeOffsetSize : 0;
-  const int columns = blocks.empty() ? 0 : blocks.back().offset + blocks.back().tangentSize();
-  const Eigen::MatrixXd of_nodes = hessian_.selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(rows, columns);  // H_nodes T
-  Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(rows, calibration);
-  for (int i = 0; i < frames_; ++i) {
-    for (const auto& [frame, by_pose] : posesOf(i))
-      half.middleCols<6>(columnOf(frame)).noalias() += of_nodes.middleCols<6>(6 * i) * by_pose;
-    if (calibration > 0) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
-  }
-  half.middleCols(columns - calibration - others, others) = of_nodes.middleCols(6 * frames_, others);
-  half.rightCols(calibration).noalias() = of_nodes * by_calibration;
-  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(columns, columns);
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
-  for (int i = 0; i < frames_; ++i) {
-    for (const auto& [frame, by_pose] : posesOf(i)) {
-      const int row = columnOf(frame);
-      h.middleRows<6>(row).noalias() += by_pose.transpose() * half.middleRows<6>(6 * i);
-      g.segment<6>(row).noalias() += by_pose.transpose() * gradient_.segment<6>(6 * i);
-    }
-  }
-  h.middleRows(columns - calibration - others, others) = half.middleRows(6 * frames_, others);
-  g.segment(columns - calibration - others, others) = gradient_.segment(6 * frames_, others);
-  h.bottomRows(calibration).noalias() = by_calibration.transpose() * half;
-  g.tail(calibration).noalias() = by_calibration.transpose() * gradient_;
-  system->add(blocks, h, g);
-}
-
 void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step) {
-  const auto stepOf = [&](const double* value) -> Vec6 {
-    return step.segment<6>(system.find(value)->offset);
-  };
-  Eigen::VectorXd steps(6 * nodes_);
-  Eigen::Matrix<double, 7, 1> calibration = Eigen::Matrix<double, 7, 1>::Zero();
-  if (states_) {
-    calibration.head<kExtrinsicsSize>() =
-        step.segment<kExtrinsicsSize>(system.find(states_.camera0->value.data())->offset);
-    calibration[kExtrinsicsSize] = step[system.find(states_.time_offset->value.data())->offset];
-  }
-  for (int i = 0; i < frames_; ++i) {
-    auto of_frame = steps.segment<6>(6 * i);
-    of_frame = first_.placement(i).by_calibration * calibration;
-    for (const auto& [frame, by_pose] : posesOf(i)) of_frame += by_pose * stepOf(frame->pose.data());
-  }
-  int node = frames_;
-  for (const auto* states : {&states_.further, &states_.intrinsics}) {
-    for (const GlobalState* state : *states) steps.segment<6>(6 * node++) = stepOf(state->value.data());
-  }
-  const Eigen::VectorXd rooted = rooted_gradients_ + couplings_.transpose() * steps;
+  const Eigen::VectorXd rooted =
+      rooted_gradients_ + couplings_.transpose() * blocks_.stepOfNodes(system, step);
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     Eigen::Map<Vec3>(landmarks_[i].value) -=
         landmarks_[i].inverse_root * rooted.segment<kLandmarkSize>(landmarks_[i].column);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lodeline/estimator/camera_views.h"
+#include "lodeline/estimator/node_blocks.h"
 #include "lodeline/estimator/normal_equations.h"
 #include "lodeline/estimator/sighting_products.h"
 
@@ -76,23 +77,14 @@ class VisualTerms {
   int furtherNode(int camera) const { return frames_ + camera - 1; }
   int lensNode(int camera) const { return frames_ + static_cast<int>(states_.further.size()) + camera; }
   Vec2 residual(const Landmark& landmark, const Sighting& sighting) const;
-  /// A frame's pose, and how the node of another frame moves with it.
-  struct Follows {
-    const Frame* frame;
-    Mat6 by_pose;
-  };
-  /// What the node of a frame follows: the frame's own pose, or those that it is interpolated from.
-  std::vector<Follows> posesOf(int frame) const;
-  void addNodesTo(NormalEquations* system) const;
-  std::vector<NormalEquations::Block> blocks() const;
 
-  const Window& window_;
   CameraStates states_;
   CameraViews values_;
   CameraViews first_;
   int frames_;
   int cameras_;
   int nodes_;
+  NodeBlocks blocks_;
   std::vector<Landmark> landmarks_;
   std::vector<Stretch> stretches_;
   std::vector<Sighting> sightings_;
