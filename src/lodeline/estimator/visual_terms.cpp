@@ -124,16 +124,17 @@ void VisualTerms::arrangeColumns() {
   }
 }
 
-Vec2 VisualTerms::residual(const Landmark& landmark, const Sighting& sighting) const {
+Vec2 VisualTerms::residualByFile(const Landmark& landmark, const Sighting& sighting) const {
   const CameraViews::Relative& seen = values_.relative(landmark.host, sighting.frame, sighting.camera);
   const Vec3 point_C =
       seen.rotation * landmark.base.direction(landmark.value) + landmark.value[2] * seen.translation;
-  Vec2 residual = directionResidual(*sighting.measurement, point_C, nullptr);
-  if (!states_.intrinsics.empty()) {
-    const std::vector<double>& lens = states_.intrinsics[static_cast<size_t>(sighting.camera)]->value;
-    residual += residualByIntrinsics(*sighting.measurement) * Eigen::Map<const Vec6>(lens.data());
-  }
-  return residual;
+  return directionResidual(*sighting.measurement, point_C, nullptr);
+}
+
+Vec2 VisualTerms::residual(const Landmark& landmark, const Sighting& sighting) const {
+  const Vec2 by_file = residualByFile(landmark, sighting);
+  if (states_.intrinsics.empty()) return by_file;
+  return by_file + lensEffect(*sighting.measurement, by_file, lensOf(sighting.camera)).shift;
 }
 
 double VisualTerms::cost() {
@@ -173,17 +174,22 @@ VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const S
   const Vec3 direction = landmark.base.direction(landmark.value);
   const CameraViews::Relative& seen = first_.relative(landmark.host, sighting.frame, sighting.camera);
   Linearised term;
-  const Vec2 residual = this->residual(landmark, sighting);
+  Vec2 residual = residualByFile(landmark, sighting);
   Mat23 by_point;
   directionResidual(*sighting.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
+  if (!states_.intrinsics.empty()) {
+    const LensEffect lens = lensEffect(*sighting.measurement, residual, lensOf(sighting.camera));
+    residual += lens.shift;
+    by_point = (lens.by_residual * by_point).eval();
+    term.by(Columns::kLens) = lens.by_intrinsics;
+  }
   const double weight = std::sqrt(landmark.weight / (1.0 + residual.squaredNorm() / sighting.scale_squared));
   term.by_nodes.col(Columns::kResidual) = weight * residual;
   by_point *= weight;
   const Mat23 by_direction = by_point * seen.rotation;
   term.by_landmark << by_direction * landmark.base.tangent_C, by_point * seen.translation;
 
-  if (!states_.intrinsics.empty())
-    term.by(Columns::kLens) = weight * residualByIntrinsics(*sighting.measurement);
+  term.by(Columns::kLens) *= weight;
   if (sighting.camera > 0) {
     const CameraViews::Further& further = first_.further(sighting.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, sighting.frame, 0);

@@ -76,6 +76,11 @@ class VisualTerms {
   }
   int furtherNode(int camera) const { return frames_ + camera - 1; }
   int lensNode(int camera) const { return frames_ + static_cast<int>(states_.further.size()) + camera; }
+  const double* lensOf(int camera) const {
+    return states_.intrinsics[static_cast<size_t>(camera)]->value.data();
+  }
+  /// By the lens of the calibration file, and by the lens as it is estimated.
+  Vec2 residualByFile(const Landmark& landmark, const Sighting& sighting) const;
   Vec2 residual(const Landmark& landmark, const Sighting& sighting) const;
 
   CameraStates states_;

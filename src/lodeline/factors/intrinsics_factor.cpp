@@ -4,13 +4,26 @@
 
 namespace lodeline {
 
-Eigen::Matrix<double, 2, kIntrinsicsSize> residualByIntrinsics(const DirectionMeasurement& measurement) {
-  const Vec2& from_centre = measurement.from_centre_sigmas;
-  const double sine_squared = measurement.bearing_C.head<2>().squaredNorm();
-  Eigen::Matrix<double, 2, kIntrinsicsSize> derivative;
-  derivative << Mat2(from_centre.asDiagonal()), measurement.sigmas_per_px * Mat2::Identity(),
+LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& residual,
+                      const double* intrinsics) {
+  // Behind the camera there is no place that the point should be seen at.
+  constexpr double kFar_sigmas = 200.0;
+  const Vec2 moved = residual.norm() < kFar_sigmas ? residual : Vec2::Zero();
+  const Vec2 from_centre = measurement.from_centre_sigmas + moved;
+  const Vec2 off_axis = measurement.bearing_C.head<2>() + measurement.off_axis_by_sigmas * moved;
+  const double sine_squared = off_axis.squaredNorm();
+  const double k_1 = intrinsics[4], k_2 = intrinsics[5];
+  LensEffect effect;
+  effect.by_intrinsics << Mat2(from_centre.asDiagonal()), measurement.sigmas_per_px * Mat2::Identity(),
       sine_squared * from_centre, sine_squared * sine_squared * from_centre;
-  return derivative;
+  effect.shift =
+      effect.by_intrinsics * Eigen::Map<const Eigen::Matrix<double, kIntrinsicsSize, 1>>(intrinsics);
+  const Eigen::RowVector2d profile_by_residual =
+      2.0 * (k_1 + 2.0 * k_2 * sine_squared) * off_axis.transpose() * measurement.off_axis_by_sigmas;
+  effect.by_residual = from_centre * profile_by_residual;
+  effect.by_residual.diagonal() += Vec2(1.0 + intrinsics[0], 1.0 + intrinsics[1]) +
+                                   Vec2::Constant(k_1 * sine_squared + k_2 * sine_squared * sine_squared);
+  return effect;
 }
 
 CameraCalibration correctedLens(const CameraCalibration& file, const double* intrinsics) {
@@ -36,7 +49,7 @@ CameraCalibration correctedLens(const CameraCalibration& file, const double* int
 
 IntrinsicsFactor::IntrinsicsFactor(std::unique_ptr<ceres::CostFunction> factor,
                                    const DirectionMeasurement& measurement)
-    : factor_(std::move(factor)), by_intrinsics_(residualByIntrinsics(measurement)) {
+    : factor_(std::move(factor)), measurement_(measurement) {
   set_num_residuals(2);
   *mutable_parameter_block_sizes() = factor_->parameter_block_sizes();
   mutable_parameter_block_sizes()->push_back(kIntrinsicsSize);
@@ -44,13 +57,21 @@ IntrinsicsFactor::IntrinsicsFactor(std::unique_ptr<ceres::CostFunction> factor,
 
 bool IntrinsicsFactor::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
+  using RowMajor = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
   if (!factor_->Evaluate(parameters, residuals, jacobians)) return false;
-  const size_t last = parameter_block_sizes().size() - 1;
-  Eigen::Map<Vec2>(residuals, 2) +=
-      by_intrinsics_ * Eigen::Map<const Eigen::Matrix<double, kIntrinsicsSize, 1>>(parameters[last]);
-  if (jacobians && jacobians[last]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kIntrinsicsSize, Eigen::RowMajor>> by_intrinsics(jacobians[last]);
-    by_intrinsics = by_intrinsics_;
+  const std::vector<int>& sizes = parameter_block_sizes();
+  const size_t last = sizes.size() - 1;
+  Eigen::Map<Vec2> residual(residuals);
+  const LensEffect effect = lensEffect(measurement_, residual, parameters[last]);
+  residual += effect.shift;
+  for (size_t block = 0; jacobians && block < sizes.size(); ++block) {
+    if (!jacobians[block]) continue;
+    Eigen::Map<RowMajor> jacobian(jacobians[block], 2, sizes[block]);
+    if (block == last) {
+      jacobian = effect.by_intrinsics;
+    } else {
+      jacobian = effect.by_residual * jacobian.eval();
+    }
   }
   return true;
 }

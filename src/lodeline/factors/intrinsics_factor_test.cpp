@@ -65,7 +65,12 @@ TEST_P(IntrinsicsOfAModel, HaveTheJacobianOfTheirResidual) {
 TEST_P(IntrinsicsOfAModel, CountInSigmas) {
   const auto fine = seenThrough(file_, kWrongLens, scene_.point_host_C, 0.5);
   const auto coarse = seenThrough(file_, kWrongLens, scene_.point_host_C, 1.0);
-  EXPECT_LT((residualByIntrinsics(fine) - 2.0 * residualByIntrinsics(coarse)).norm(), 1e-9);
+  const Vec2 residual(0.3, -0.2);
+  const LensEffect of_fine = lensEffect(fine, 2.0 * residual, kWrongLens.data());
+  const LensEffect of_coarse = lensEffect(coarse, residual, kWrongLens.data());
+  EXPECT_LT((of_fine.by_intrinsics - 2.0 * of_coarse.by_intrinsics).norm(), 1e-9);
+  EXPECT_LT((of_fine.shift - 2.0 * of_coarse.shift).norm(), 1e-9);
+  EXPECT_LT((of_fine.by_residual - of_coarse.by_residual).norm(), 1e-9);
 }
 
 // A centre that is shifted by a pixel is a pixel everywhere, a longer focal length shows at the border only.
@@ -74,7 +79,23 @@ TEST_P(IntrinsicsOfAModel, OnTheAxisOnlyTheCentreShows) {
   Eigen::Matrix<double, 2, kIntrinsicsSize> expected;
   expected.setZero();
   expected.block<2, 2>(0, 2).setIdentity();
-  EXPECT_LT((residualByIntrinsics(measurement) - expected).norm(), 1e-9);
+  EXPECT_LT((lensEffect(measurement, Vec2::Zero(), kWrongLens.data()).by_intrinsics - expected).norm(), 1e-9);
+}
+
+// A sighting that is off by noise says of the lens what an exact one says.
+TEST_P(IntrinsicsOfAModel, TakeTheirDerivativeWhereThePointShouldBe) {
+  const auto camera = makeCamera(file_);
+  const auto seenAt = [&](const Vec2& error_px) {
+    return DirectionMeasurement::fromBearing(
+        *camera, *camera->unproject(*camera->project(scene_.point_host_C) + error_px), 0.5);
+  };
+  const DirectionMeasurement exact = seenAt(Vec2::Zero()), noisy = seenAt(Vec2(1.5, -1.0));
+  const Vec2 residual = directionResidual(noisy, scene_.point_host_C, nullptr);
+  ASSERT_NEAR(residual.norm(), Vec2(1.5, -1.0).norm() / 0.5, 0.05);
+  const auto expected = lensEffect(exact, Vec2::Zero(), kWrongLens.data()).by_intrinsics;
+  const auto found = lensEffect(noisy, residual, kWrongLens.data()).by_intrinsics;
+  const auto measured = lensEffect(noisy, Vec2::Zero(), kWrongLens.data()).by_intrinsics;
+  EXPECT_LT((found - expected).norm(), 0.02 * (measured - expected).norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, IntrinsicsOfAModel,

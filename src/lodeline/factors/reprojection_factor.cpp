@@ -1,5 +1,7 @@
 #include "lodeline/factors/reprojection_factor.h"
 
+#include <Eigen/LU>
+
 #include "lodeline/factors/parameters.h"
 #include "lodeline/geometry/so3.h"
 
@@ -24,6 +26,8 @@ DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, con
   Mat23 pixel_by_point;
   const auto pixel = camera.project(bearing_C, &pixel_by_point);
   measurement.sqrt_information = pixel_by_point * measurement.tangent_C / sigma_px;
+  measurement.off_axis_by_sigmas =
+      measurement.tangent_C.topRows<2>() * measurement.sqrt_information.inverse();
   measurement.sigmas_per_px = 1.0 / sigma_px;
   if (const auto centre = camera.project(Vec3::UnitZ()); pixel && centre)
     measurement.from_centre_sigmas = (*pixel - *centre) / sigma_px;

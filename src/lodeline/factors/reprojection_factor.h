@@ -19,6 +19,8 @@ struct DirectionMeasurement {
   Mat2 sqrt_information = Mat2::Identity();
   Vec2 from_centre_sigmas = Vec2::Zero();  ///< pixel minus principal point, over sigma_px
   double sigmas_per_px = 1.0;              ///< 1 / sigma_px
+  /// d(x, y of the ray) / d(pixel over sigma_px); their length is the sine of the angle off the axis.
+  Mat2 off_axis_by_sigmas = Mat2::Zero();
 
   /// From a pixel's ray. The camera must be able to project that ray.
   static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
