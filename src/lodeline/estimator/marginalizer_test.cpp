@@ -191,14 +191,20 @@ TEST(Marginalizer, WithoutFirstEstimatesWouldInventAHeading) {
   EXPECT_GT(without[3], 1e3 * with[3]);
 }
 
+// One frame more of a scene, each `keyframe_every`th a keyframe; the first one starts the marginalizer.
+void addNext(TestWindow& test, TestScene& scene, FrameId keyframe_every, Marginalizer* marginalizer) {
+  const FrameId count = test.window.empty() ? 0 : test.window.newest().id + 1;
+  Frame& added = test.add(*scene.next(), count % keyframe_every == 0);
+  if (count == 0) marginalizer->start(startPrior(added, test.options.initial_state, 0.05, false));
+  createLandmarks(test.window, test.factors, test.options.landmark);
+}
+
 TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
   TestWindow test(2);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(3.0, 10.0));
   for (int k = 0; k < 15; ++k) {
-    Frame& added = test.add(*scene.next(), k % 2 == 0);
-    if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
-    createLandmarks(test.window, test.factors, test.options.landmark);
+    addNext(test, scene, 2, &marginalizer);
     marginalizer.shorten(test.window, {.recent_frames = 3, .keyframes = 3});
   }
   test.disturb(0.02, 3);
@@ -245,9 +251,7 @@ TEST_P(MarginalizersBooks, AreInOrder) {
   TestScene scene(sceneOptions(4.0, 10.0));
   std::map<TrackId, MapPoint> map;
   for (int k = 0; k < 30; ++k) {
-    Frame& added = test.add(*scene.next(), k % 3 == 0);
-    if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
-    createLandmarks(test.window, test.factors, test.options.landmark);
+    addNext(test, scene, 3, &marginalizer);
     marginalizer.shorten(test.window, wanted);
     for (const MapPoint& point : marginalizer.takeMapPoints()) map[point.track] = point;
 
@@ -307,9 +311,7 @@ TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
     Marginalizer marginalizer(test.factors);
     TestScene scene(sceneOptions(7.0, 10.0));
     for (int k = 0; k < 60; ++k) {
-      Frame& added = test.add(*scene.next(), k % 3 == 0);
-      if (k == 0) marginalizer.start(startPrior(added, test.options.initial_state, 0.05, false));
-      createLandmarks(test.window, test.factors, test.options.landmark);
+      addNext(test, scene, 3, &marginalizer);
       updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
       marginalizer.shorten(test.window,
                            {.recent_frames = 5, .keyframes = 4, .interpolated_spacing_s = spacing_s});

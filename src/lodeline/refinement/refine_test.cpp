@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, RefineTest, testing::Values(1, 2));
 Refinement refinedDive(int keyframes, double duration_s) {
   HeadingTrialOptions dive = exactDive(duration_s);
   dive.estimator.window.keyframes = keyframes;
-  ForwardRecord record(0.5);
+  ForwardRecord record(0.0);
   Rig rig;
   EstimatorOptions options;
   runTrialDive(dive,
