@@ -156,9 +156,10 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
   settings->bind("magnetometer.floor_T", &options->floor_T,
                  "lasting errors of the field, one sigma per axis, to start with");
   settings->bind("magnetometer.floor_correlation_s", &options->floor_correlation_s, "for which they last");
-  settings->bind("magnetometer.floor_prior_samples", &options->floor_prior_samples,
-                 "that floor_T is worth against what size and dip of the field teach");
-  settings->bind("magnetometer.floor_memory_s", &options->floor_memory_s, "over which they teach");
+  settings->bind("magnetometer.floor_memory_s", &options->floor_memory_s,
+                 "over which size and dip of the field teach it");
+  settings->bind("magnetometer.floor_freedom", &options->floor_freedom,
+                 "degrees of freedom of the distribution of these errors");
   settings->bind("magnetometer.noise_inflation", &options->noise_inflation,
                  "factor on the noise density of its calibration");
   settings->bind("magnetometer.offset_sigma_T", &options->offset_sigma_T,
@@ -168,7 +169,7 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
   settings->bind("magnetometer.uncalibrated_offset_sigma_T", &options->uncalibrated_offset_sigma_T,
                  "of one that was never calibrated");
   settings->bind("magnetometer.offset_walk_T_per_sqrt_s", &options->offset_walk_T_per_sqrt_s,
-                 "random walk of that offset");
+                 "random walk of that offset, to start with");
   settings->bind("magnetometer.disturbance_sigma_T", &options->disturbance_sigma_T,
                  "of a disturbance that has come to stay");
   settings->bind("magnetometer.disturbance_walk_T_per_sqrt_s", &options->disturbance_walk_T_per_sqrt_s,

@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--floor", magnetometer.floor_T, "T")->capture_default_str();
   app.add_option("--floor-correlation", magnetometer.floor_correlation_s, "s")->capture_default_str();
-  app.add_option("--floor-samples", magnetometer.floor_prior_samples, "that the first floor counts for")
+  app.add_option("--floor-freedom", magnetometer.floor_freedom, "degrees of it, of the floor's distribution")
       ->capture_default_str();
   app.add_option("--offset-sigma", magnetometer.offset_sigma_T, "T")->capture_default_str();
   app.add_option("--offset-walk", magnetometer.offset_walk_T_per_sqrt_s, "T/sqrt(s)")->capture_default_str();

@@ -61,7 +61,8 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
       readings_(calibration_, diagnostics),
       comparison_(options.magnetometer),
       gate_(options.magnetometer.gate),
-      floor_(options.magnetometer),
+      errors_(options.magnetometer, offsetSigma()),
+      deviation_(options.magnetometer),
       step_(options.magnetometer.step) {
   if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
     return;
@@ -138,7 +139,8 @@ double MagnetometerFusion::offsetSigma() const {
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
-  return std::hypot(floor_.sigma_T(), calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
+  return std::hypot(deviation_.sigma_T(errors_.floor_T()),
+                    calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
 }
 
 void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const {
@@ -253,9 +255,9 @@ void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window,
 void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
   Frame& newest = window.newest();
   comparison_.add(mean, whiteVariance(mean), window);
-  const FieldCheck earth = comparison_.check(window, covariance_, floor_.sigma_T(), false);
+  const FieldCheck earth = comparison_.check(window, covariance_, errors_.floor_T(), false);
   std::optional<FieldCheck> with_disturbance;
-  if (disturbed_) with_disturbance = comparison_.check(window, covariance_, floor_.sigma_T(), true);
+  if (disturbed_) with_disturbance = comparison_.check(window, covariance_, errors_.floor_T(), true);
   const GateDecision decision = gate_.decide(mean.time, earth, with_disturbance);
   reportDecision(decision, mean.time);
   status_ = decision.status;
@@ -264,7 +266,7 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
   if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
   // Also a field that is not believed at all is watched, lest it never be believed again.
   if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
-    learnFloor(mean, earth, window);
+    learnErrors(mean, earth, window);
   if (!decision.use) {
     // A field that was rejected a moment ago is no fresh witness: what disturbed it fades.
     last_seen_ = mean.time;
@@ -274,16 +276,19 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
   newest.magnetometer = measurementOf(mean, decision.variance_scale, disturbed);
 }
 
-void MagnetometerFusion::learnFloor(const MagnetometerMean& mean, const FieldCheck& earth,
-                                    const Window& window) {
-  const double norm_T = MagnetometerStates(window).field_W().norm();
+void MagnetometerFusion::learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window) {
+  const MagnetometerStates states(window);
+  errors_.add(mean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(mean),
+              tilt_variance_rad2_);
+  states.offset->walk_per_sqrt_s = errors_.walk_T_per_sqrt_s();
+  const double norm_T = states.field_W().norm();
   const double relative_variance =
       0.5 * (earth.norm_sigma * earth.norm_sigma + earth.dip_sigma_rad * earth.dip_sigma_rad);
   const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
   const double state_variance_T2 =
       norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
-  floor_.add(mean.time, norm_T * earth.norm_error, norm_T * earth.dip_error_rad,
-             std::max(0.0, state_variance_T2), whiteVariance(mean));
+  deviation_.add(mean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
+                 std::max(0.0, state_variance_T2), whiteVariance(mean));
 }
 
 void MagnetometerFusion::beginDisturbance(const MagnetometerMean& mean, Window& window,
@@ -350,7 +355,7 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   if (states.field != nullptr) {
     estimate.field_W = states.field_W();
     estimate.offset_B = states.offset_B();
-    estimate.floor_T = floor_.sigma_T();
+    estimate.floor_T = errors_.floor_T();
   }
   return estimate;
 }

@@ -7,7 +7,8 @@
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/field_comparison.h"
-#include "lodeline/estimator/field_floor.h"
+#include "lodeline/estimator/field_deviation.h"
+#include "lodeline/estimator/field_errors.h"
 #include "lodeline/estimator/field_step.h"
 #include "lodeline/estimator/heading_alignment.h"
 #include "lodeline/estimator/magnetometer_gate.h"
@@ -73,7 +74,7 @@ class MagnetometerFusion {
   /// What a frame that is used shall be told of the tilt it takes as given, rad per axis; `shared` as for
   /// lasting errors.
   double tiltSigma(double shared);
-  void learnFloor(const MagnetometerMean& mean, const FieldCheck& earth, const Window& window);
+  void learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window);
   void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   void endDisturbance(Window& window, Marginalizer& marginalizer);
   void reportDecision(const GateDecision& decision, Time time);
@@ -87,7 +88,8 @@ class MagnetometerFusion {
   MagnetometerReadings readings_;
   FieldComparison comparison_;
   MagnetometerGate gate_;
-  FieldFloor floor_;
+  FieldErrors errors_;
+  FieldDeviation deviation_;
   FieldStep step_;
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;

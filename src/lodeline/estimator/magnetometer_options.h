@@ -42,7 +42,7 @@ struct MagnetometerGateOptions {
   double account_s = 600.0;
   double max_rejected_ratio = 0.5;
   double credit_s = 90.0;  ///< longer than readmission_s, so that a new field is tried before that
-  /// The same is said of a field whose lasting error (FieldFloor) is worth more of heading than this.
+  /// The same is said of a field whose lasting error (FieldErrors) is worth more of heading than this.
   double max_lasting_sigma_rad = 0.015;
   /// After so long it is tried again, even so.
   double distrust_s = 1800.0;
@@ -76,11 +76,14 @@ struct MagnetometerOptions {
 
   /// Errors of the field that last: iron far away, currents, what calibration leaves. One sigma per axis, and
   /// the time over which they stay the same; frames within that time are not independent witnesses.
-  /// `floor_T` is where it starts; size and dip of the field teach better (FieldFloor).
+  /// `floor_T` is where it starts; size and dip of the field teach better (FieldErrors).
   double floor_T = 0.05e-6;
   double floor_correlation_s = 5.0;
-  double floor_prior_samples = 20.0;
   double floor_memory_s = 300.0;
+  /// What deviates at a moment by more than the floor weighs as a draw of a Student distribution of so many
+  /// degrees of freedom (FieldDeviation), its deviation averaged over `deviation_s`.
+  double floor_freedom = 4.0;
+  double deviation_s = 1.0;
   double noise_inflation = 1.0;  ///< factor on the density of the magnetometer's white noise
 
   double field_sigma_T = 1e-4;  ///< of the field vector at the start
