@@ -26,7 +26,7 @@ struct MonoInitializationOptions {
   double min_frame_distance_s = 0.08;  ///< images in between are left out
   double max_duration_s = 5.0;         ///< a slow swimmer sees far points turn by 10 px only after some way
   int min_frames = 6;
-  int min_common_tracks = 40;  ///< seen by the oldest and the newest frame
+  int min_common_tracks = 20;  ///< seen by the oldest and the newest frame
   double min_parallax_px = 5.0;
   double max_epipolar_error_px = 1.0;
   /// How far gravity may come out from its true magnitude when the alignment leaves it free.
