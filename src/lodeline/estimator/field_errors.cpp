@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastFloor_T = 4e-9, kFloorStep = 2.0;
 constexpr int kFloors = 9;
 constexpr double kLeastWalk_T_per_sqrt_s = 1e-10, kWalkStep = 3.0;
-constexpr int kWalks = 5;
+constexpr int kWalks = 4;
 /// What is believed before the first reading: sizes are log-normal, by this factor wide.
 constexpr double kPriorFactor = 2.0;
 constexpr double kEarthSigma_T = 1e-5;  // of size and dip at the start

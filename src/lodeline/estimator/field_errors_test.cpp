@@ -87,9 +87,9 @@ TEST_F(FieldErrorsTest, TakeALastingOffsetForNeither) {
 }
 
 TEST_F(FieldErrorsTest, TellAWalkFromAFloor) {
-  dive({.floor_T = 0.02e-6, .walk_T_per_sqrt_s = 5e-9}, 4);
+  dive({.floor_T = 0.02e-6, .walk_T_per_sqrt_s = 2.5e-9}, 4);
   EXPECT_NEAR(errors_.floor_T(), 0.02e-6, 0.008e-6);
-  EXPECT_GT(errors_.walk_T_per_sqrt_s(), 1.8e-9);
+  EXPECT_NEAR(errors_.walk_T_per_sqrt_s(), 2.5e-9, 1e-9);
 }
 
 TEST_F(FieldErrorsTest, LearnLittleWhereTheTiltIsTheDoubt) {
