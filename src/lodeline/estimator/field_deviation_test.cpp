@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFloor_T = 0.01e-6;
 
-// A second and a half of readings at 4 Hz that deviate by `deviation_T` in size.
+// Ten seconds of readings at 4 Hz that deviate by `deviation_T` in size.
 FieldDeviation after(double deviation_T, double state_sigma_T, double white_sigma_T) {
   FieldDeviation deviation{MagnetometerOptions()};
   for (int i = 0; i < 40; ++i) {

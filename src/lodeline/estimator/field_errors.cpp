@@ -51,8 +51,8 @@ void FieldErrors::add(const MagnetometerMean& mean, const Quat& world_from_body,
     size_T_ = shape.norm_T;
     for (Model& model : models_) model.state.tail<2>() << size_T_, size_T_ * shape.dip_rad;
   }
-  const Vec3 along = field_W / shape.norm_T;
-  const Vec3 across = Vec3::UnitZ().cross(field_W) / shape.horizontal_T();
+  const Vec3 along = field_W.normalized();
+  const Vec3 across = Vec3::UnitZ().cross(field_W).normalized();  // zero at a magnetic pole
   Mat25 derivative;
   derivative << along.transpose() * world_from_sensed, Eigen::RowVector2d(1.0, 0.0),
       across.cross(along).transpose() * world_from_sensed, Eigen::RowVector2d(0.0, 1.0);

@@ -106,5 +106,17 @@ TEST_F(FieldErrorsTest, ForgetWhatIsLongOver) {
   EXPECT_LT(errors_.floor_T(), 0.1 * disturbed_T);
 }
 
+TEST_F(FieldErrorsTest, AreNumbersAtAMagneticPole) {
+  MagnetometerMean mean;
+  mean.field_B = Vec3(0.0, 0.0, -6e-5);
+  mean.readings = 1;
+  for (int i = 0; i < 100; ++i) {
+    mean.time = Time::fromSeconds(i);
+    errors_.add(mean, Quat::Identity(), Vec3::Zero(), 1e-16, 1e-6);
+  }
+  EXPECT_GT(errors_.floor_T(), 0.0);
+  EXPECT_GT(errors_.walk_T_per_sqrt_s(), 0.0);
+}
+
 }  // namespace
 }  // namespace lodeline
