@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   dives.dive.trouble = FieldTrouble::HardIron;
   double seconds = 60.0, minutes = 0.0;
   int samples = 10;
-  bool each = false, as_shipped = false;
+  bool each = false, as_shipped = false, as_believed = false;
   std::string magnetometer = "off";
   options.estimator = honestOptions(options.scene);
   // The cameras are what their files say; who doubts them claims errors of lenses which do not happen here.
@@ -148,12 +148,17 @@ int main(int argc, char** argv) {
   app.add_option("--magnetometer", magnetometer, "of dives")
       ->check(CLI::IsMember(kUses))
       ->capture_default_str();
+  app.add_flag(
+      "--as-believed", as_believed,
+      "the magnetometer of a dive has the errors that the estimator believes in, drawn anew for each: "
+      "hard iron, its walk, a wandering field; else 0.3 uT of hard iron");
   app.add_flag("--as-shipped", as_shipped,
                "dives with flicker noise, and the estimator's default noise, priors and camera calibration");
   CLI11_PARSE(app, argc, argv);
   options.estimator.solver = solver;
   options.estimator.window = window;
   if (minutes > 0.0) {
+    if (as_believed) dives.dive.trouble = FieldTrouble::AsBelieved;
     if (as_shipped) {
       dives.dive.honest_imu = false;
       dives.dive.bias_instability = true;

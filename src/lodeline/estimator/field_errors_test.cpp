@@ -13,10 +13,10 @@ namespace {
 const Vec3 kField_W(0.0, 24e-6, -38e-6);
 
 struct Conditions {
-  double floor_T = 0.0;  ///< size of an error that is another every 5 s
+  double floor_T = 0.0;  ///< size of an error whose correlation falls to 1/e in 5 s
   double walk_T_per_sqrt_s = 0.0;
   double white_sigma_T = 0.01e-6;
-  double tilt_sigma_rad = 0.0;  ///< of the orientation that is told, another every 5 s
+  double tilt_sigma_rad = 0.0;  ///< of the orientation that is told, likewise
   double minutes = 30.0;
   Vec3 offset_B = Vec3::Zero();  ///< where the walk begins
 };
@@ -32,15 +32,14 @@ class FieldErrorsTest : public testing::Test {
     const auto draw = [&](double sigma) -> Vec3 {
       return sigma * Vec3(normal(engine), normal(engine), normal(engine));
     };
-    Vec3 offset_B = conditions.offset_B, floor_W = Vec3::Zero(), tilt = Vec3::Zero();
-    const double step_s = 0.25;
+    Vec3 offset_B = conditions.offset_B, floor_W = draw(conditions.floor_T),
+         tilt = draw(conditions.tilt_sigma_rad);
+    const double step_s = 0.25, correlation_s = 5.0;
+    const double kept = std::exp(-step_s / correlation_s), fresh = std::sqrt(1.0 - kept * kept);
     for (int i = 0; i < static_cast<int>(conditions.minutes * 60.0 / step_s); ++i) {
       time_s_ += step_s;
-      if (i % 20 == 0) {
-        floor_W = draw(conditions.floor_T);
-        tilt = draw(conditions.tilt_sigma_rad);
-        tilt.z() = 0.0;
-      }
+      floor_W = kept * floor_W + draw(fresh * conditions.floor_T);
+      tilt = kept * tilt + draw(fresh * conditions.tilt_sigma_rad);
       offset_B += draw(conditions.walk_T_per_sqrt_s * std::sqrt(step_s));
       const Quat world_from_body =
           so3::exp(Vec3(0.0, 0.0, 0.05 * time_s_)) *
@@ -50,8 +49,9 @@ class FieldErrorsTest : public testing::Test {
       mean.field_B =
           world_from_body.conjugate() * (kField_W + floor_W) + offset_B + draw(conditions.white_sigma_T);
       mean.readings = 1;
-      errors_.add(mean, so3::exp(tilt) * world_from_body, Vec3::Zero(), std::pow(conditions.white_sigma_T, 2),
-                  std::pow(conditions.tilt_sigma_rad, 2));
+      errors_.add(mean, so3::exp(Vec3(tilt.x(), tilt.y(), 0.0)) * world_from_body, Vec3::Zero(),
+                  std::pow(conditions.white_sigma_T, 2),
+                  {std::pow(conditions.tilt_sigma_rad, 2), correlation_s});
     }
   }
 
@@ -112,7 +112,7 @@ TEST_F(FieldErrorsTest, AreNumbersAtAMagneticPole) {
   mean.readings = 1;
   for (int i = 0; i < 100; ++i) {
     mean.time = Time::fromSeconds(i);
-    errors_.add(mean, Quat::Identity(), Vec3::Zero(), 1e-16, 1e-6);
+    errors_.add(mean, Quat::Identity(), Vec3::Zero(), 1e-16, {1e-6, 5.0});
   }
   EXPECT_GT(errors_.floor_T(), 0.0);
   EXPECT_GT(errors_.walk_T_per_sqrt_s(), 0.0);

@@ -5,6 +5,7 @@
 
 #include "lodeline/base/angles.h"
 #include "lodeline/base/thread_clock.h"
+#include "lodeline/estimator/field_errors.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/simulation/point_dive.h"
 
@@ -45,11 +46,31 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
   }
 }
 
+/// Of sizes as FieldErrors expects them.
+double drawSize(double root_mean_square, Random& random) {
+  const double spread = std::log(FieldErrors::kPriorFactor);
+  return root_mean_square * std::exp(spread * (random.normal() - spread));
+}
+
+/// The hard iron's walk and the wandering field of a dive.
+void drawAsBelieved(const HeadingTrialOptions& options, PointMagnetometer* magnetometer) {
+  const MagnetometerOptions& believed = options.estimator.magnetometer;
+  Random random(options.seed, "heading trial/as believed");
+  magnetometer->errors.hard_iron_walk_T_per_sqrt_s = drawSize(believed.offset_walk_T_per_sqrt_s, random);
+  magnetometer->disturbances.wandering = drawWanderingField(
+      options.duration_s, drawSize(believed.floor_T, random), believed.floor_correlation_s, options.seed);
+}
+
 /// What is wrong with the calibration.
-void spoil(FieldTrouble trouble, Random& random, MagnetometerCalibration* calibration) {
+void spoil(const HeadingTrialOptions& options, Random& random, MagnetometerCalibration* calibration) {
   const Vec3 direction = random.direction();
   Mat3& iron = calibration->iron_correction;
-  switch (trouble) {
+  switch (options.trouble) {
+    case FieldTrouble::AsBelieved:
+      calibration->hard_iron_T += std::hypot(options.estimator.magnetometer.offset_sigma_T,
+                                             calibration->hard_iron_sigma_T.value_or(0.0)) *
+                                  random.normal3();
+      return;
     case FieldTrouble::HardIron:
       calibration->hard_iron_T += 0.3e-6 * direction;
       return;
@@ -75,16 +96,16 @@ void spoil(FieldTrouble trouble, Random& random, MagnetometerCalibration* calibr
 }
 
 /// The calibration that the rig is given for a magnetometer with these errors.
-void calibrate(const MagnetometerErrors& errors, FieldTrouble trouble, uint64_t seed,
+void calibrate(const MagnetometerErrors& errors, const HeadingTrialOptions& options,
                MagnetometerCalibration* calibration) {
-  Random random(seed, "heading trial/calibration");
+  Random random(options.seed, "heading trial/calibration");
   calibration->noise_density_T_per_sqrtHz = errors.noise_density_T_per_sqrtHz;
   calibration->body_from_magnetometer = errors.body_from_magnetometer;
   calibration->iron_correction = errors.soft_iron.inverse();
   calibration->hard_iron_T = errors.hard_iron_T;
   calibration->is_calibrated = true;
   calibration->hard_iron_sigma_T = 0.01e-6;  // what calibrating on a figure of eight states
-  spoil(trouble, random, calibration);
+  spoil(options, random, calibration);
 }
 
 PointDive diveOf(const HeadingTrialOptions& options, const ImuErrors& imu) {
@@ -125,8 +146,8 @@ double rootMeanSquare(const std::vector<HeadingSample>& samples, double begin_s,
 }  // namespace
 
 const char* toString(FieldTrouble trouble) {
-  constexpr std::array kNames = {"none", "hard iron", "disturbances", "tank",  "dipole",      "calibration",
-                                 "lamp", "soft iron", "misaligned",   "scale", "swapped axes"};
+  constexpr std::array kNames = {"none", "hard iron", "disturbances", "tank",  "dipole",       "calibration",
+                                 "lamp", "soft iron", "misaligned",   "scale", "swapped axes", "as believed"};
   return kNames[static_cast<size_t>(trouble)];
 }
 
@@ -173,7 +194,8 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
   magnetometer.field_W = kField_W;
   magnetometer.errors = drawMagnetometerErrors(options.imu_grade, {}, options.seed);
   magnetometer.disturbances = disturbancesOf(options, dive.motion);
-  calibrate(magnetometer.errors, options.trouble, options.seed, &*dive.mounted.rig.magnetometer);
+  if (options.trouble == FieldTrouble::AsBelieved) drawAsBelieved(options, &magnetometer);
+  calibrate(magnetometer.errors, options, &*dive.mounted.rig.magnetometer);
 
   PointSimulationOptions points;
   points.seed = options.seed;

@@ -25,6 +25,7 @@ enum class FieldTrouble {
   Misalignment,  ///< axes turned by 20 degrees
   Scale,         ///< corrected readings too large by half
   SwappedAxes,   ///< two axes taken for each other
+  AsBelieved,    ///< hard iron, its walk and a wandering field, drawn from what the estimator believes
 };
 const char* toString(FieldTrouble trouble);
 

@@ -7,6 +7,13 @@
 
 namespace lodeline {
 
+/// An error that is hardly another from one moment to the next; its correlation falls to 1/e in
+/// `correlation_s`.
+struct LastingError {
+  double variance = 0.0;
+  double correlation_s = 0.0;
+};
+
 /// Factor on the variance of an error that stays the same for `correlation_s`, by which frames at `now` and
 /// `last` (none: long ago) can be taken for independent: over averages, such an error weighs like white noise
 /// of density sigma sqrt(2 correlation_s).

@@ -169,7 +169,16 @@ void MagnetometerFusion::remember(JointCovariance covariance) {
   tilt_variance_rad2_ = 0.5 * covariance_.newest().diagonal().segment<2>(3).sum();
 }
 
-double MagnetometerFusion::tiltSigma(double shared) {
+LastingError MagnetometerFusion::tiltError() const {
+  const double longest_s = options_.magnetometer.floor_correlation_s;
+  const double growth_rad2_per_s = gyroscope_density_ * gyroscope_density_;
+  return {tilt_variance_rad2_, tilt_variance_rad2_ < longest_s * growth_rad2_per_s
+                                   ? tilt_variance_rad2_ / growth_rad2_per_s
+                                   : longest_s};
+}
+
+double MagnetometerFusion::tiltSigma(Time now) {
+  const double shared = lastingErrorShare(now, last_seen_, tiltError().correlation_s);
   // An error of the tilt lasts too, but what has been learned of it since is new: of all that the frames so
   // far have said, the part that took the tilt as wrongly as then shall fade. The weighted mean of errors of
   // an estimate whose information grows has twice the variance of its last one, hence the half.
@@ -196,7 +205,7 @@ FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean,
   const double variance_T2 = whiteVariance(mean) + shared * std::pow(floorSigma(mean.field_B), 2);
   measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
   measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
-  measurement.noise.tilt_sigma_rad = tiltSigma(shared) * std::sqrt(variance_scale);
+  measurement.noise.tilt_sigma_rad = tiltSigma(mean.time) * std::sqrt(variance_scale);
   last_seen_ = mean.time;
   return measurement;
 }
@@ -279,7 +288,7 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
 void MagnetometerFusion::learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window) {
   const MagnetometerStates states(window);
   errors_.add(mean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(mean),
-              tilt_variance_rad2_);
+              tiltError());
   states.offset->walk_per_sqrt_s = errors_.walk_T_per_sqrt_s();
   const double norm_T = states.field_W().norm();
   const double relative_variance =

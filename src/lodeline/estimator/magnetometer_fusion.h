@@ -71,9 +71,11 @@ class MagnetometerFusion {
   void judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   /// Of a mean's white noise, T^2 per axis.
   double whiteVariance(const MagnetometerMean& mean) const;
-  /// What a frame that is used shall be told of the tilt it takes as given, rad per axis; `shared` as for
-  /// lasting errors.
-  double tiltSigma(double shared);
+  /// Of roll and pitch, rad^2 per axis, as the window knows them. The gyroscope adds errors all the time;
+  /// none lasts for longer than it takes these to make up the whole.
+  LastingError tiltError() const;
+  /// What a frame at `now` that is used shall be told of the tilt it takes as given, rad per axis.
+  double tiltSigma(Time now);
   void learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window);
   void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   void endDisturbance(Window& window, Marginalizer& marginalizer);
@@ -94,7 +96,7 @@ class MagnetometerFusion {
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;
   JointCovariance covariance_;
-  double tilt_variance_rad2_ = 0.0;        ///< of roll and pitch, per axis, as the window knows them
+  double tilt_variance_rad2_ = 0.0;
   double least_tilt_variance_rad2_ = 0.0;  ///< of those with which a field was used; 0: none was
   bool disturbed_ = false;                 ///< the disturbance is among the window's states
   std::optional<Time> last_seen_;          ///< frame with a field, used or not

@@ -50,8 +50,18 @@ Vec3 dipoleField(const Vec3& moment, const Vec3& offset) {
   return kMu0Over4Pi / (r * r * r) * (3.0 * direction * direction.dot(moment) - moment);
 }
 
+Vec3 WanderingField::at(double time_s) const {
+  if (field_W.empty()) return Vec3::Zero();
+  const double last = static_cast<double>(field_W.size()) - 1.0;
+  const double position = std::clamp(time_s / interval_s, 0.0, last);
+  const auto before = static_cast<size_t>(position);
+  const size_t after = std::min(before + 1, field_W.size() - 1);
+  const double share = position - static_cast<double>(before);
+  return (1.0 - share) * field_W[before] + share * field_W[after];
+}
+
 Vec3 MagneticDisturbances::at(const Rigid3& world_from_body, double time_s) const {
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = wandering.at(time_s);
   for (const LyingDipole& d : lying)
     sum += dipoleField(d.moment_W, world_from_body.translation - d.position_W);
   for (const PassingIron& iron : passing) {
@@ -109,6 +119,19 @@ MagneticDisturbances drawDisturbances(const Motion& motion, const Vec3& field_W,
     }
     t += duration_s + interval_s;
   }
+}
+
+WanderingField drawWanderingField(double duration_s, double sigma_T, double correlation_s, uint64_t seed) {
+  Random random(seed, "magnetic/wandering");
+  WanderingField field;
+  field.interval_s = 0.2 * correlation_s;
+  const double kept = std::exp(-field.interval_s / correlation_s);
+  Vec3 now = sigma_T * random.normal3();
+  for (double t = 0.0; t < duration_s + field.interval_s; t += field.interval_s) {
+    field.field_W.push_back(now);
+    now = kept * now + std::sqrt(1.0 - kept * kept) * sigma_T * random.normal3();
+  }
+  return field;
 }
 
 std::vector<SwitchedCurrent> drawLampSwitching(double duration_s, uint64_t seed) {

@@ -32,11 +32,21 @@ struct SwitchedCurrent {
   Vec3 field_B = Vec3::Zero();  ///< T
 };
 
+/// A field of the world that is hardly the same from one moment to the next: rock, what lies about. Samples
+/// of a process, straight lines between them; constant before and after.
+struct WanderingField {
+  double interval_s = 1.0;
+  std::vector<Vec3> field_W;  ///< T
+
+  Vec3 at(double time_s) const;
+};
+
 /// What else than the Earth acts on the magnetometer from outside.
 struct MagneticDisturbances {
   std::vector<LyingDipole> lying;
   std::vector<PassingIron> passing;
   std::vector<SwitchedCurrent> switched;
+  WanderingField wandering;
 
   /// Sum in world axes, T, at the body's origin.
   Vec3 at(const Rigid3& world_from_body, double time_s) const;
@@ -61,5 +71,9 @@ MagneticDisturbances drawDisturbances(const Motion& motion, const Vec3& field_W,
 
 /// The lamp switched off and on again (or dimmed) every few minutes, with 0.1 to 0.4 uT at the sensor.
 std::vector<SwitchedCurrent> drawLampSwitching(double duration_s, uint64_t seed);
+
+/// A stationary Gauss-Markov process of this sigma an axis, whose correlation falls to 1/e within
+/// `correlation_s`.
+WanderingField drawWanderingField(double duration_s, double sigma_T, double correlation_s, uint64_t seed);
 
 }  // namespace lodeline

@@ -17,10 +17,14 @@ MagnetometerModel::MagnetometerModel(const Motion& motion, const Vec3& field_W,
       errors_(errors),
       sigma_T_(errors.noise_density_T_per_sqrtHz * std::sqrt(rate_hz)),
       noise_(seed, "magnetometer/white"),
-      repeats_(seed, "magnetometer/repeats") {}
+      repeats_(seed, "magnetometer/repeats"),
+      walk_(seed, "magnetometer/walk") {}
 
 Vec3 MagnetometerModel::measure(double time_s) {
   const Vec3 noise = sigma_T_ * noise_.normal3();
+  const double elapsed_s = time_s - measured_s_.value_or(time_s);
+  measured_s_ = time_s;
+  walked_T_ += errors_.hard_iron_walk_T_per_sqrt_s * std::sqrt(elapsed_s) * walk_.normal3();
   const bool repeat = repeats_.chance(errors_.repeat_share);
   if (repeat && last_) return *last_;
   const double sensed_s = time_s - errors_.lag_s;
@@ -28,8 +32,8 @@ Vec3 MagnetometerModel::measure(double time_s) {
   const Vec3 field_B =
       world_from_body.rotation.conjugate() * (field_W_ + disturbances_.at(world_from_body, sensed_s));
   const Vec3 field_M = errors_.body_from_magnetometer.rotation.conjugate() * field_B;
-  Vec3 reading =
-      errors_.soft_iron * field_M + errors_.hard_iron_T + errors_.hard_iron_creep_T_per_s * sensed_s + noise;
+  Vec3 reading = errors_.soft_iron * field_M + errors_.hard_iron_T +
+                 errors_.hard_iron_creep_T_per_s * sensed_s + walked_T_ + noise;
   reading = reading.cwiseMax(-errors_.range_T).cwiseMin(errors_.range_T);
   if (errors_.resolution_T > 0.0) {
     reading = (reading / errors_.resolution_T).array().round().matrix() * errors_.resolution_T;

@@ -9,14 +9,15 @@
 namespace lodeline {
 
 /// The magnetometer as it really is. Its reading at time t, in the magnetometer frame M:
-///   reading(t) = S R_M_B R_B_W(t') m_W(t') + h + c t' + white noise,  t' = t - lag,
+///   reading(t) = S R_M_B R_B_W(t') m_W(t') + h + c t' + w(t) + white noise,  t' = t - lag,
 /// where m_W holds the Earth's field and the disturbances, clipped to +-range and rounded to the resolution;
 /// now and then the row before is repeated instead. S is the soft iron (A = S^-1 corrects it), h the hard
-/// iron.
+/// iron, w a random walk of it.
 struct MagnetometerErrors {
   Mat3 soft_iron = Mat3::Identity();
   Vec3 hard_iron_T = Vec3::Zero();
   Vec3 hard_iron_creep_T_per_s = Vec3::Zero();
+  double hard_iron_walk_T_per_sqrt_s = 0.0;
   Rigid3 body_from_magnetometer;
   double noise_density_T_per_sqrtHz = 0.0;
   double lag_s = 0.0;
@@ -45,7 +46,9 @@ class MagnetometerModel {
   MagneticDisturbances disturbances_;
   MagnetometerErrors errors_;
   double sigma_T_;
-  Random noise_, repeats_;
+  Random noise_, repeats_, walk_;
+  Vec3 walked_T_ = Vec3::Zero();
+  std::optional<double> measured_s_;
   std::optional<Vec3> last_;
 };
 
