@@ -30,8 +30,13 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
   settings->bind("front_end.pyramid_levels", &options->pyramid_levels, "halvings of the image plus one");
   settings->bind("front_end.max_forward_backward_px", &options->tracker.max_forward_backward_px,
                  "largest error when a point is followed back");
-  settings->bind("front_end.max_stereo_epipolar_px", &options->stereo.max_epipolar_px,
-                 "largest distance of a stereo match from its epipolar line");
+  settings->bind(
+      "front_end.max_stereo_epipolar_px", &options->stereo.max_epipolar_px,
+      "largest distance of a stereo match from its epipolar line; a quarter of a degree where that "
+      "is more");
+  settings->bind("front_end.learn_stereo_rotation", &options->stereo.learn_rotation,
+                 "find out from stereo matches how a camera is turned against its file; only while the "
+                 "cameras' calibration is estimated");
   settings->bind("front_end.min_depth_m", &options->stereo.min_depth_m,
                  "nearest point that stereo matching looks for");
   settings->bind("front_end.max_epipolar_px", &options->consensus.max_error_px,

@@ -15,12 +15,14 @@ std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera
 
 std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
 
-void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas) {
+void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
+              const Vec3& start = Vec3::Zero()) {
   // Small enough to hold a state, large enough to keep the prior well conditioned.
   constexpr double kHeld = 1e-7;
   GlobalState state;
   state.name = name;
   state.value.assign(static_cast<size_t>(sigmas.size()), 0.0);
+  if (!start.isZero()) std::copy_n(start.data(), 3, state.value.begin());
   GlobalState& added = window.add(std::move(state));
   prior.append(added.value.data(), static_cast<int>(sigmas.size()), sigmas.cwiseMax(kHeld));
 }
@@ -40,14 +42,16 @@ Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options) {
 
 }  // namespace
 
-void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
+void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options,
+                     const std::vector<Vec3>& rotations) {
   if (!options.enabled) return;
   addState(window, prior, extrinsicsName(0),
            extrinsicsSigmas(options.rotation_sigma_rad, options.position_sigma_m));
   addState(window, prior, kTimeOffset, Eigen::VectorXd::Constant(1, options.time_offset_sigma_s));
-  for (int camera = 1; camera < cameras; ++camera) {
-    addState(window, prior, extrinsicsName(static_cast<size_t>(camera)),
-             extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m));
+  for (size_t camera = 1; camera < static_cast<size_t>(cameras); ++camera) {
+    addState(window, prior, extrinsicsName(camera),
+             extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m),
+             camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
   }
 }
 

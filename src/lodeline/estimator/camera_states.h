@@ -22,7 +22,9 @@ struct CameraStates {
 };
 
 /// Adds placement and delay of as many cameras as the rig has, and to the prior what `options` say of them.
-void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
+/// `rotations`: from which those of further cameras start, see FrameTracks::camera_rotations.
+void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options,
+                     const std::vector<Vec3>& rotations = {});
 /// The same for their lenses, where these are to be estimated.
 void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
 

@@ -187,6 +187,22 @@ TEST(CameraStates, StayNearARightCalibration) {
   EXPECT_LT(std::abs(last.camera_corrections->time_offset_s), 1e-3);
 }
 
+TEST(CameraStates, StartWhereTheFrontEndFoundACamera) {
+  const Vec3 turn(0.014, 0.0, -0.007);
+  Window window;
+  Prior prior;
+  addCameraStates(window, prior, 3, {}, {turn});
+  const std::optional<CameraCorrections> corrections = cameraCorrections(window);
+  ASSERT_TRUE(corrections);
+  ASSERT_EQ(corrections->extrinsics.size(), 3u);
+  EXPECT_TRUE(corrections->extrinsics[0].isZero());
+  EXPECT_EQ(Vec3(corrections->extrinsics[1].head<3>()), turn);
+  EXPECT_TRUE(corrections->extrinsics[2].isZero());
+  // What is known beforehand counts from there.
+  const Eigen::VectorXd known = prior.blocks[2].first_estimate;
+  EXPECT_EQ(Vec3(known.head<3>()), turn);
+}
+
 TEST(CameraStates, AreHeldByASigmaOfZeroAndAbsentWhenOff) {
   EstimatorOptions options = honestOptions(sceneOptions());
   options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0, true, 0.0, 0.0, 0.0, 0.0};

@@ -187,6 +187,7 @@ SightingList Estimator::sightingsOf(const FrameTracks& tracks) const {
 
 bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sightings,
                            std::span<const ImuSample> imu, FrameEstimate* estimate) {
+  camera_rotations_ = tracks.camera_rotations;
   imu_before_start_.insert(imu_before_start_.end(),
                            imu.begin() + (imu_before_start_.empty() || imu.empty() ? 0 : 1), imu.end());
   const Duration longest = Duration::fromSeconds(options_.initial_state.alignment_window_s);
@@ -205,7 +206,8 @@ bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sighti
 }
 
 void Estimator::addCalibration(Prior* prior) {
-  addCameraStates(window_, *prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  addCameraStates(window_, *prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration,
+                  camera_rotations_);
   addInertialStates(window_, rig_.imu.noise, options_.imu_axes);
 }
 

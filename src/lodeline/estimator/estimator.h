@@ -107,6 +107,8 @@ class Estimator {
   FactorMaker factors_;
   Marginalizer marginalizer_;
   MonoInitializer mono_initializer_;
+  std::vector<Vec3>
+      camera_rotations_;  ///< FrameTracks::camera_rotations of the newest frame before the start
   MagnetometerFusion magnetometer_;
   DepthFusion depth_;
   ScaleBudget scale_;

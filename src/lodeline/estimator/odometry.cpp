@@ -2,21 +2,34 @@
 
 #include <fmt/format.h>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/thread_clock.h"
 
 namespace lodeline {
+namespace {
+
+/// Matches that lie off the planes of a calibration that is held would be of no use to the estimator.
+FrontEndOptions frontEndOptions(const OdometryOptions& options) {
+  FrontEndOptions front_end = options.front_end;
+  front_end.stereo.learn_rotation &= options.estimator.camera_calibration.enabled;
+  return front_end;
+}
+
+}  // namespace
 
 Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics)
     : imu_(rig.imu),
-      front_end_(rig, options.front_end),
+      front_end_(rig, frontEndOptions(options)),
       estimator_(rig, options.estimator, diagnostics),
       fixed_structure_reported_(rig.cameras.size(), false),
+      turn_reported_(rig.cameras.size() - 1, false),
       diagnostics_(diagnostics) {}
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
   tracks_ = front_end_.process(packet.time, packet.images, previousFromCurrent(packet));
   reportFixedStructure(packet.time);
+  reportTurnedCameras();
   const double tracked_s = threadSeconds();
   const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
   times_.front_end_s += tracked_s - start_s;
@@ -39,6 +52,22 @@ void Odometry::reportFixedStructure(Time time) {
             "parts of the rig, a hood, dirt on the port or characters in the picture; left out from "
             "there on. A mask in the calibration would leave it out from the start",
             front_end_.cameras()[i]->calibration().name, 100.0 * share, time.nanoseconds()));
+  }
+}
+
+void Odometry::reportTurnedCameras() {
+  for (size_t i = 0; i < tracks_.camera_rotations.size(); ++i) {
+    const double turn_rad = tracks_.camera_rotations[i].norm();
+    if (turn_rad == 0.0 || turn_reported_[i]) continue;
+    turn_reported_[i] = true;
+    diagnostics_->report(
+        Severity::Warning, "camera_turned",
+        fmt::format(
+            "camera '{}': at {} ns stereo matches lie off their epipolar lines as if it were turned by "
+            "{:.2f} degrees against its calibration; matched accordingly, and estimated from there "
+            "on where a start is still to come. Calibrate the pair anew",
+            front_end_.cameras()[i + 1]->calibration().name, tracks_.time.nanoseconds(),
+            turn_rad * kDegreesPerRadian));
   }
 }
 

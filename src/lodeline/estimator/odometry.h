@@ -40,6 +40,7 @@ class Odometry {
   Quat previousFromCurrent(const FramePacket& packet) const;
   /// Of each camera once.
   void reportFixedStructure(Time time);
+  void reportTurnedCameras();
 
   ImuCalibration imu_;
   FrontEnd front_end_;
@@ -48,6 +49,7 @@ class Odometry {
   Vec3 gyroscope_bias_B_ = Vec3::Zero();
   bool first_ = true;
   std::vector<bool> fixed_structure_reported_;
+  std::vector<bool> turn_reported_;  ///< of camera 1, 2, ...
   Diagnostics* diagnostics_;
   StageTimes times_;
 };

@@ -66,7 +66,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   previous_from_current_B_ = (previous_from_current_B_ * previous_from_current_B).normalized();
   if (images.front().empty()) {
     statistics_.missing = true;
-    return {time, {}};
+    return {time};
   }
 
   ImagePyramid current = pyramid(images.front());
@@ -198,10 +198,7 @@ void FrontEnd::matchOthers(Time time, const ImagePyramid& current, const std::ve
     }
     const ImagePyramid other = pyramid(image);
     fixed_structures_[m + 1].add(time, other);
-    for (Track& track : tracks_) {
-      track.matches[m] = matchers_[m].match(current, other, track.matches[m], track);
-      if (track.matches[m] && isHidden(m + 1, track.matches[m]->position)) track.matches[m].reset();
-    }
+    matchOther(m, current, other);
   }
   for (const Track& track : tracks_) {
     statistics_.matched += std::any_of(track.matches.begin(), track.matches.end(),
@@ -211,8 +208,30 @@ void FrontEnd::matchOthers(Time time, const ImagePyramid& current, const std::ve
   }
 }
 
+void FrontEnd::matchOther(size_t m, const ImagePyramid& current, const ImagePyramid& other) {
+  std::vector<std::optional<StereoCandidate>> candidates;
+  std::vector<RayPair> rays;
+  for (const Track& track : tracks_) {
+    auto candidate = matchers_[m].find(current, other, track.matches[m], track);
+    if (candidate && isHidden(m + 1, candidate->warp.position)) candidate.reset();
+    if (candidate) rays.push_back(candidate->rays);
+    candidates.push_back(std::move(candidate));
+  }
+  matchers_[m].learn(rays);
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    tracks_[i].matches[m].reset();
+    if (!candidates[i]) continue;
+    const auto inverse_depth = matchers_[m].accept(candidates[i]->rays);
+    if (!inverse_depth) continue;
+    tracks_[i].inverse_depth_per_m = inverse_depth;
+    tracks_[i].matches[m] = candidates[i]->warp;
+  }
+}
+
 FrameTracks FrontEnd::observations(Time time) const {
-  FrameTracks result{time, {}};
+  FrameTracks result{time};
+  for (const StereoMatcher& matcher : matchers_)
+    result.camera_rotations.push_back(matcher.rotationCorrection());
   const auto add = [&](TrackId id, size_t camera, const Eigen::Vector2f& position) {
     const Vec2 pixel = position.cast<double>();
     const auto bearing = cameras_[camera]->unproject(pixel);

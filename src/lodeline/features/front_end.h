@@ -77,6 +77,7 @@ class FrontEnd {
   void rejectCrowded();
   bool isHidden(size_t camera, const Eigen::Vector2f& pixel) const;
   void detect(const ImagePyramid& current);
+  void matchOther(size_t m, const ImagePyramid& current, const ImagePyramid& other);
   void matchOthers(Time time, const ImagePyramid& current, const std::vector<cv::Mat>& images);
   FrameTracks observations(Time time) const;
 

@@ -7,10 +7,12 @@
 #include <map>
 #include <set>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
 #include "lodeline/features/draw_tracks.h"
 #include "lodeline/features/test_accuracy.h"
 #include "lodeline/features/test_sequence.h"
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
@@ -121,6 +123,34 @@ TEST(FrontEnd, MatchesAcrossTheStereoPair) {
     EXPECT_LT(errors[errors.size() / 2], 0.06);
     EXPECT_LT(errors[errors.size() * 95 / 100], 0.2);
   }
+}
+
+// Half a degree across the epipolar lines puts every match beyond the limit.
+TEST(FrontEnd, MatchesACameraThatIsTurnedAgainstItsFile) {
+  const Vec3 turn = 0.5 * kDegree * Vec3(1.0, 0.0, 1.0);
+  Rig rig = daylight().sequence.rig();
+  const Rigid3 camera0 = rig.cameras[0].body_from_camera;
+  Quat& rotation = rig.cameras[1].body_from_camera.rotation;
+  rotation = camera0.rotation * so3::exp(-turn) * camera0.rotation.conjugate() * rotation;
+  FrontEnd front_end(rig, {});
+  const std::vector<FrameTracks> frames = track(daylight(), front_end);
+  EXPECT_GE(pixels(frames.front(), 1).size(), 150u);
+  EXPECT_GE(pixels(frames.back(), 1).size(), 190u);
+  ASSERT_EQ(frames.back().camera_rotations.size(), 1u);
+  const Vec3 found = frames.back().camera_rotations.front();
+  EXPECT_NEAR(found.x(), turn.x(), 0.03 * kDegree);
+  EXPECT_NEAR(found.z(), turn.z(), 0.1 * kDegree);
+
+  FrontEndOptions believing;
+  believing.stereo.learn_rotation = false;
+  FrontEnd lost(rig, believing);
+  EXPECT_LT(pixels(track(daylight(), lost).back(), 1).size(), 50u);
+}
+
+TEST(FrontEnd, BelievesARightFile) {
+  FrontEnd front_end(daylight().sequence.rig(), {});
+  for (const FrameTracks& frame : track(daylight(), front_end))
+    EXPECT_TRUE(frame.camera_rotations.front().isZero());
 }
 
 TEST(FrontEnd, KeepsItsPromiseOnTheOutput) {

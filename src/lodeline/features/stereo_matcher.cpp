@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/geometry/so3.h"
+
 namespace lodeline {
 namespace {
 
@@ -11,6 +13,11 @@ constexpr int kSearchLevel = 2;
 constexpr int kFramesBetweenSearches = 4;
 /// A match may lie this far on the wrong side of infinity, for calibrations are not perfect.
 constexpr double kBeyondInfinityPx = 1.0;
+constexpr double kLimit_rad = 0.25 * kDegree;
+
+Rigid3 relativePose(const Camera& first, const Camera& second) {
+  return second.calibration().body_from_camera.inverse() * first.calibration().body_from_camera;
+}
 
 }  // namespace
 
@@ -18,27 +25,28 @@ StereoMatcher::StereoMatcher(std::shared_ptr<const Camera> first, std::shared_pt
                              const StereoMatcherOptions& options)
     : first_(std::move(first)),
       second_(std::move(second)),
-      second_from_first_(second_->calibration().body_from_camera.inverse() *
-                         first_->calibration().body_from_camera),
-      options_(options) {}
+      options_(options),
+      limit_px_(std::max(options.max_epipolar_px, kLimit_rad * second_->calibration().fx_px)),
+      rotation_(relativePose(*first_, *second_), second_->calibration().fx_px, limit_px_),
+      second_from_first_by_file_(relativePose(*first_, *second_)),
+      second_from_first_(second_from_first_by_file_) {}
 
 std::optional<Vec2> StereoMatcher::projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const {
   return second_->project(second_from_first_.rotation * first_bearing +
                           inverse_depth_per_m * second_from_first_.translation);
 }
 
-double StereoMatcher::epipolarErrorPx(const Vec3& first_bearing, const Vec3& second_bearing) const {
-  const Vec3 normal = second_from_first_.translation.cross(second_from_first_.rotation * first_bearing);
+double StereoMatcher::epipolarErrorPx(const RayPair& rays) const {
+  const Vec3 normal = second_from_first_.translation.cross(second_from_first_.rotation * rays.first);
   const double length = normal.norm();
   if (length < 1e-9) return 0.0;
-  return second_->calibration().fx_px * std::abs(normal.dot(second_bearing)) / length;
+  return second_->calibration().fx_px * std::abs(normal.dot(rays.second)) / length;
 }
 
-std::optional<double> StereoMatcher::inverseDepth(const Vec3& first_bearing,
-                                                  const Vec3& second_bearing) const {
+std::optional<double> StereoMatcher::inverseDepth(const RayPair& rays) const {
   // second x (R first + inverse_depth t) = 0, in the least-squares sense.
-  const Vec3 a = second_bearing.cross(second_from_first_.translation);
-  const Vec3 b = second_bearing.cross(second_from_first_.rotation * first_bearing);
+  const Vec3 a = rays.second.cross(second_from_first_.translation);
+  const Vec3 b = rays.second.cross(second_from_first_.rotation * rays.first);
   const double parallax2 = a.squaredNorm();
   if (parallax2 < 1e-12) return std::nullopt;
   return -a.dot(b) / parallax2;
@@ -76,8 +84,9 @@ bool StereoMatcher::returns(const ImagePyramid& first, const ImagePyramid& secon
          (back.position - track.warp.position).norm() <= options_.max_left_right_px;
 }
 
-std::optional<PatchWarp> StereoMatcher::match(const ImagePyramid& first, const ImagePyramid& second,
-                                              const std::optional<PatchWarp>& hint, Track& track) const {
+std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, const ImagePyramid& second,
+                                                   const std::optional<PatchWarp>& hint,
+                                                   const Track& track) const {
   const auto first_bearing = first_->unproject(track.warp.position.cast<double>());
   if (!first_bearing) return std::nullopt;
 
@@ -100,15 +109,34 @@ std::optional<PatchWarp> StereoMatcher::match(const ImagePyramid& first, const I
 
   const auto second_bearing = second_->unproject(warp->position.cast<double>());
   if (!second_bearing) return std::nullopt;
-  if (epipolarErrorPx(*first_bearing, *second_bearing) > options_.max_epipolar_px) return std::nullopt;
-  const auto inverse_depth = inverseDepth(*first_bearing, *second_bearing);
+  const RayPair rays{*first_bearing, *second_bearing};
+  const double widest_px = options_.learn_rotation
+                               ? std::max(limit_px_, options_.max_rotation_rad * second_->calibration().fx_px)
+                               : limit_px_;
+  if (epipolarErrorPx(rays) > widest_px || !returns(first, second, *warp, track)) return std::nullopt;
+  return StereoCandidate{*warp, rays};
+}
+
+void StereoMatcher::learn(const std::vector<RayPair>& candidates) {
+  if (!options_.learn_rotation) return;
+  rotation_.add(candidates);
+  const Quat turn = so3::exp(rotation_.turn());
+  second_from_first_ =
+      Rigid3(turn * second_from_first_by_file_.rotation, turn * second_from_first_by_file_.translation);
+}
+
+std::optional<double> StereoMatcher::accept(const RayPair& candidate) const {
+  if (epipolarErrorPx(candidate) > limit_px_) return std::nullopt;
+  const auto inverse_depth = inverseDepth(candidate);
   if (!inverse_depth) return std::nullopt;
   const double farthest_per_m =
       -kBeyondInfinityPx / (second_->calibration().fx_px * second_from_first_.translation.norm());
   if (*inverse_depth < farthest_per_m || *inverse_depth > 1.0 / options_.min_depth_m) return std::nullopt;
-  if (!returns(first, second, *warp, track)) return std::nullopt;
-  track.inverse_depth_per_m = std::max(0.0, *inverse_depth);
-  return warp;
+  return std::max(0.0, *inverse_depth);
+}
+
+Vec3 StereoMatcher::rotationCorrection() const {
+  return -(second_from_first_by_file_.rotation.conjugate() * rotation_.turn());
 }
 
 }  // namespace lodeline

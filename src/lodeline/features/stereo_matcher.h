@@ -2,8 +2,10 @@
 
 #include <memory>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/cameras/camera.h"
 #include "lodeline/features/match_quality.h"
+#include "lodeline/features/stereo_rotation.h"
 #include "lodeline/features/track.h"
 
 namespace lodeline {
@@ -12,37 +14,58 @@ struct StereoMatcherOptions {
   MatchQuality quality;
   int coarsest_level = 3;
   double min_depth_m = 0.2;
+  /// Of a match; a quarter of a degree where that is more, for what is wrong with a lens grows with it.
   double max_epipolar_px = 2.0;
+  /// Learn how a camera is turned against its file (StereoRotation), up to so much.
+  bool learn_rotation = true;
+  double max_rotation_rad = 1.5 * kDegree;
   double max_left_right_px = 0.7;
   double border_px = 8.0;
 };
 
-/// Finds points of camera 0 in the image another camera of the rig took at the same time.
+/// A point found in another camera by its looks.
+struct StereoCandidate {
+  PatchWarp warp;
+  RayPair rays;
+};
+
+/// Finds points of camera 0 in the image another camera of the rig took at the same time. What is found by
+/// its looks is a candidate; all candidates of a frame together tell how the camera is turned against its
+/// file, and then which of them are matches.
 class StereoMatcher {
  public:
   StereoMatcher(std::shared_ptr<const Camera> first, std::shared_ptr<const Camera> second,
                 const StereoMatcherOptions& options);
 
-  /// Matches `track.current`, expected at `track.inverse_depth_per_m` or, where that is unknown, anywhere
-  /// between `min_depth_m` and infinity. On success sets the inverse depth and returns the place; `hint` is
-  /// the match in the images before.
-  std::optional<PatchWarp> match(const ImagePyramid& first, const ImagePyramid& second,
-                                 const std::optional<PatchWarp>& hint, Track& track) const;
+  /// Looks for `track.current`, expected at `track.inverse_depth_per_m` or, where that is unknown, anywhere
+  /// between `min_depth_m` and infinity; `hint` is the match in the images before.
+  std::optional<StereoCandidate> find(const ImagePyramid& first, const ImagePyramid& second,
+                                      const std::optional<PatchWarp>& hint, const Track& track) const;
+  /// All that were found in a frame.
+  void learn(const std::vector<RayPair>& candidates);
+  /// The inverse depth (1/m along the first camera's ray, not below zero) of a candidate that lies on its
+  /// epipolar line and neither too near nor beyond infinity.
+  std::optional<double> accept(const RayPair& candidate) const;
 
-  /// Distance of a match from the epipolar plane, px of the second camera.
-  double epipolarErrorPx(const Vec3& first_bearing, const Vec3& second_bearing) const;
+  /// Rotation phi (rad, axes of the first camera) by which the second one is turned against its file:
+  /// first_from_second is exp(phi) times the file's. Zero where the file does.
+  Vec3 rotationCorrection() const;
 
  private:
+  /// Distance of a candidate from the epipolar plane, px of the second camera.
+  double epipolarErrorPx(const RayPair& rays) const;
   std::optional<Vec2> projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const;
   std::optional<PatchWarp> search(const ImagePyramid& second, const Vec3& first_bearing,
                                   const PatchTemplate& looks) const;
-  std::optional<double> inverseDepth(const Vec3& first_bearing, const Vec3& second_bearing) const;
+  std::optional<double> inverseDepth(const RayPair& rays) const;
   bool returns(const ImagePyramid& first, const ImagePyramid& second, const PatchWarp& match,
                const Track& track) const;
 
   std::shared_ptr<const Camera> first_, second_;
-  Rigid3 second_from_first_;
   StereoMatcherOptions options_;
+  double limit_px_;  ///< max_epipolar_px or what takes its place
+  StereoRotation rotation_;
+  Rigid3 second_from_first_by_file_, second_from_first_;
 };
 
 }  // namespace lodeline

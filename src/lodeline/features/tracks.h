@@ -24,7 +24,11 @@ struct Observation {
 /// camera.
 struct FrameTracks {
   Time time;
-  std::vector<Observation> observations;
+  std::vector<Observation> observations = {};
+  /// How camera 1, 2, ... are turned against what the rig says, where their epipolar lines say so beyond
+  /// doubt: phi in rad, axes of camera 0, whose exp(phi) comes before the rotation of camera0_from_camera.
+  /// Zero where the rig may be right; empty where nothing was compared.
+  std::vector<Vec3> camera_rotations = {};
 };
 
 }  // namespace lodeline

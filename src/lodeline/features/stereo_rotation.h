@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "lodeline/geometry/rigid3.h"
+
+namespace lodeline {
+
+/// A point as two cameras saw it at the same time, unit rays.
+struct RayPair {
+  Vec3 first, second;
+};
+
+/// How the second camera of a pair is turned against what its file says, as epipolar planes show it. A few
+/// tenths of a degree are more than a match may be off, and where the turn is across the planes, no match
+/// would be left without it; about their common axis it shows as depth only and remains unknown here.
+///
+/// With n the normal of the plane through both cameras and the point by the file, a turn theta of the second
+/// camera (in its axes, second_from_first becomes exp(theta) second_from_first) leaves of a match b
+///   e(theta) = focal_px n^T exp(-theta) b,
+/// whose absolute values are minimised over a frame's matches, right and wrong ones (iteratively reweighted
+/// least squares), and gathered over frames.
+class StereoRotation {
+ public:
+  /// `limit_px`: by which a match may be off its plane. What lies within half of it is left alone.
+  StereoRotation(const Rigid3& second_from_first, double focal_px, double limit_px)
+      : second_from_first_(second_from_first), focal_px_(focal_px), limit_px_(limit_px) {}
+
+  /// The matches of one frame.
+  void add(const std::vector<RayPair>& pairs);
+
+  /// Whether the file's rotation would leave most matches off their planes, and this one does not.
+  bool isFound() const { return found_; }
+  /// theta, rad; zero until it is found.
+  Vec3 turn() const { return found_ ? turn_ : Vec3::Zero(); }
+
+ private:
+  struct Equation;
+  std::vector<Equation> equationsOf(const std::vector<RayPair>& pairs) const;
+
+  Rigid3 second_from_first_;
+  double focal_px_, limit_px_;
+  Mat3 information_ = Mat3::Zero();
+  Vec3 right_side_ = Vec3::Zero();
+  Vec3 turn_ = Vec3::Zero();
+  bool found_ = false;
+};
+
+}  // namespace lodeline
