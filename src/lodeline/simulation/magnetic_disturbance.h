@@ -46,7 +46,7 @@ struct MagneticDisturbances {
   std::vector<LyingDipole> lying;
   std::vector<PassingIron> passing;
   std::vector<SwitchedCurrent> switched;
-  WanderingField wandering;
+  WanderingField wandering = {};
 
   /// Sum in world axes, T, at the body's origin.
   Vec3 at(const Rigid3& world_from_body, double time_s) const;

@@ -89,6 +89,37 @@ TEST_F(MagnetometerModelTest, LagsRepeatsSaturatesAndCreeps) {
   EXPECT_LT((creeping.measure(300.0) - prompt.measure(300.0) - Vec3(0.3e-6, 0, 0)).norm(), 1e-15);
 }
 
+TEST_F(MagnetometerModelTest, HardIronWalksWithTheRootOfTime) {
+  MagnetometerErrors errors;
+  errors.hard_iron_walk_T_per_sqrt_s = 2e-9;
+  constexpr int kWalks = 300;
+  double squares = 0.0;
+  for (uint64_t seed = 1; seed <= kWalks; ++seed) {
+    MagnetometerModel walking(dive_.motion, field_W_, {}, errors, 1.0, seed);
+    for (const double t : {0.0, 40.0, 100.0}) {
+      const Vec3 walked = worldField(errors, walking.measure(t), t) - field_W_;
+      if (t == 100.0) squares += walked.squaredNorm();
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares / (3 * kWalks)), 2e-9 * 10.0, 2e-9);
+}
+
+TEST(WanderingField, HasItsSizeAndItsMemory) {
+  constexpr double kSigma_T = 5e-8, kCorrelation_s = 5.0, kDuration_s = 40000.0;
+  const WanderingField field = drawWanderingField(kDuration_s, kSigma_T, kCorrelation_s, 1);
+  double squares = 0.0, products = 0.0;
+  int count = 0;
+  for (double t = 0.0; t < kDuration_s - kCorrelation_s; t += 1.0, count += 3) {
+    squares += field.at(t).squaredNorm();
+    products += field.at(t).dot(field.at(t + kCorrelation_s));
+  }
+  EXPECT_NEAR(std::sqrt(squares / count), kSigma_T, 0.05 * kSigma_T);
+  EXPECT_NEAR(products / squares, std::exp(-1.0), 0.05);
+  EXPECT_EQ(field.at(-1.0), field.at(0.0));
+  EXPECT_EQ(field.at(2.0 * kDuration_s), field.field_W.back());
+  EXPECT_TRUE(WanderingField().at(3.0).isZero());
+}
+
 TEST(Dipole, FollowsTheInverseCubeAndItsAxes) {
   const Vec3 moment(0.0, 0.0, 10.0);
   EXPECT_LT((dipoleField(moment, Vec3(0, 0, 1)) - Vec3(0, 0, 2e-6)).norm(), 1e-18);
