@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <deque>
 #include <vector>
 
 #include "lodeline/geometry/rigid3.h"
@@ -18,8 +20,8 @@ struct RayPair {
 /// With n the normal of the plane through both cameras and the point by the file, a turn theta of the second
 /// camera (in its axes, second_from_first becomes exp(theta) second_from_first) leaves of a match b
 ///   e(theta) = focal_px n^T exp(-theta) b,
-/// whose absolute values are minimised over a frame's matches, right and wrong ones (iteratively reweighted
-/// least squares), and gathered over frames.
+/// whose absolute values are minimised over the newest matches, right and wrong ones (iteratively reweighted
+/// least squares).
 class StereoRotation {
  public:
   /// `limit_px`: by which a match may be off its plane. What lies within half of it is left alone.
@@ -35,13 +37,19 @@ class StereoRotation {
   Vec3 turn() const { return found_ ? turn_ : Vec3::Zero(); }
 
  private:
-  struct Equation;
-  std::vector<Equation> equationsOf(const std::vector<RayPair>& pairs) const;
+  /// error_px = e(0), slope = -de/dtheta: small turns are linear.
+  struct Equation {
+    double error_px;
+    Vec3 slope;
+    double after(const Vec3& turn) const { return std::abs(error_px - slope.dot(turn)); }
+  };
+  void remember(const RayPair& pair);
+  void fit();
+  double medianAfter(const Vec3& turn) const;
 
   Rigid3 second_from_first_;
   double focal_px_, limit_px_;
-  Mat3 information_ = Mat3::Zero();
-  Vec3 right_side_ = Vec3::Zero();
+  std::deque<Equation> newest_;
   Vec3 turn_ = Vec3::Zero();
   bool found_ = false;
 };

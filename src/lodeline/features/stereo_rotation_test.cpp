@@ -66,8 +66,10 @@ TEST_F(StereoRotationTest, TakesChanceForNothing) {
 }
 
 TEST_F(StereoRotationTest, WaitsForEnoughMatches) {
-  for (int frame = 0; frame < 50; ++frame) rotation_.add(pairs(Vec3(0.8 * kDegree, 0.0, 0.0), 10));
+  for (int frame = 0; frame < 5; ++frame) rotation_.add(pairs(Vec3(0.8 * kDegree, 0.0, 0.0), 10));
   EXPECT_FALSE(rotation_.isFound());
+  rotation_.add(pairs(Vec3(0.8 * kDegree, 0.0, 0.0), 10));
+  EXPECT_TRUE(rotation_.isFound());
 }
 
 TEST_F(StereoRotationTest, HasNoPlanesWhereBothCamerasAreAtOnePlace) {
