@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/inspection/findings.h"
 
 namespace lodeline::findings {
@@ -62,6 +63,17 @@ void judgePair(const StereoSurvey& stereo, const std::string& sensor, Inspection
                    100.0 * (1.0 - stereo.agreement), sensor, 100.0 * stereo.best_agreement, readings)});
 }
 
+void judgeTurn(const StereoSurvey& stereo, const std::string& sensor, Inspection* inspection) {
+  constexpr double kAgrees = 0.5;  // else more is wrong than that
+  if (stereo.turn_rad == 0.0 || stereo.agreement < kAgrees) return;
+  inspection->findings.push_back(
+      {Severity::Warning, 60.0, sensor, "camera_turned",
+       fmt::format("extrinsics: points that cam0 and {} both see lie off their epipolar lines as if {} were "
+                   "turned by {:.2f} degrees against its T_BS; a run finds it out and goes on, but calibrate "
+                   "the pair anew",
+                   sensor, sensor, stereo.turn_rad * kDegreesPerRadian)});
+}
+
 }  // namespace
 
 void judgeExtrinsics(Inspection* inspection) {
@@ -75,6 +87,7 @@ void judgeExtrinsics(Inspection* inspection) {
   if (!inspection->stereo) return;
   judgeBaseline(*inspection->stereo, rig.cameras[1].name, inspection);
   judgePair(*inspection->stereo, rig.cameras[1].name, inspection);
+  judgeTurn(*inspection->stereo, rig.cameras[1].name, inspection);
 }
 
 }  // namespace lodeline::findings

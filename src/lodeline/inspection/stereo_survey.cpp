@@ -7,6 +7,7 @@
 #include "lodeline/cameras/camera.h"
 #include "lodeline/features/corner_detector.h"
 #include "lodeline/features/mask.h"
+#include "lodeline/features/stereo_rotation.h"
 
 namespace lodeline {
 namespace {
@@ -59,6 +60,22 @@ PointVerdict judge(const PointPair& point, const Arrangement& arrangement) {
   return is_on_line && is_in_front ? PointVerdict::Agrees : PointVerdict::Disagrees;
 }
 
+double turnOf(const Arrangement& as_calibrated, const std::vector<PointPair>& points) {
+  constexpr double kLimit_px = 2.0;  // of stereo matches in a run
+  const Rigid3 second_from_first = as_calibrated.first_from_second.inverse();
+  StereoRotation rotation(second_from_first, as_calibrated.second->calibration().fx_px, kLimit_px);
+  std::vector<RayPair> pairs;
+  for (const PointPair& point : points) {
+    const std::optional<Vec3> first = as_calibrated.first->unproject(point.first);
+    const std::optional<Vec3> second = as_calibrated.second->unproject(point.second);
+    if (!first || !second) continue;
+    const Vec3 normal = second_from_first.translation.cross(second_from_first.rotation * *first).normalized();
+    if (std::abs(normal.dot(*second)) < kOffLine_rad) pairs.push_back({*first, *second});
+  }
+  rotation.add(pairs);
+  return rotation.turn().norm();
+}
+
 cv::Mat grey(const PendingImage& image, const CameraCalibration& calibration) {
   cv::Mat pixels = image.load().image;
   return pixels.cols == calibration.width_px && pixels.rows == calibration.height_px ? pixels : cv::Mat();
@@ -102,6 +119,7 @@ StereoSurvey compareStereo(const CameraCalibration& first, const CameraCalibrati
   for (size_t i = 0; i < all.size(); ++i) {
     if (agreeing[i] >= kNearlyAll * best) survey.fitting.push_back(all[i].hypothesis);
   }
+  survey.turn_rad = turnOf(all[0], points);
   return survey;
 }
 

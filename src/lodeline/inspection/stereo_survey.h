@@ -28,6 +28,9 @@ struct StereoSurvey {
   double best_agreement = 0.0;  ///< under the hypothesis under which most do
   /// The hypotheses under which (nearly) as many do: often more than one, as all of them turn the baseline.
   std::vector<StereoHypothesis> fitting;
+  /// By which the second camera is turned against its calibration, rad, as far as epipolar lines show it
+  /// (features/stereo_rotation.h); 0 where they need no turn.
+  double turn_rad = 0.0;
 };
 
 /// Looks at the first two cameras of the rig, which must be calibrated. `stream`: of the first; the source

@@ -57,12 +57,16 @@ TEST_F(StereoSurveyTest, AgreesWithARightCalibration) {
   EXPECT_GT(survey.agreement, 0.98);
   EXPECT_THAT(survey.fitting, ElementsAre(StereoHypothesis::AsCalibrated));
   EXPECT_NEAR(survey.baseline_m, 0.15, 1e-12);
+  EXPECT_EQ(survey.turn_rad, 0.0);
 }
 
 TEST_F(StereoSurveyTest, AgreesWithACalibrationThatIsHalfADegreeOff) {
   const std::vector<PointPair> seen = points();
   right_.body_from_camera.rotation = right_.body_from_camera.rotation * so3::exp(Vec3(0.008, 0.003, 0.003));
-  EXPECT_GT(compareStereo(left_, right_, seen).agreement, 0.9);
+  const StereoSurvey survey = compareStereo(left_, right_, seen);
+  EXPECT_GT(survey.agreement, 0.9);
+  // As far as epipolar lines show it: not what looks like depth.
+  EXPECT_NEAR(survey.turn_rad, std::hypot(0.008, 0.003), 0.001);
 }
 
 TEST_F(StereoSurveyTest, NamesExchangedImages) {
