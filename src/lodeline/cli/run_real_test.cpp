@@ -8,9 +8,11 @@
 #include <sstream>
 #include <vector>
 
+#include "lodeline/base/angles.h"
 #include "lodeline/base/test_data.h"
 #include "lodeline/cli/test_program.h"
 #include "lodeline/evaluation/test_trajectories.h"
+#include "lodeline/geometry/so3.h"
 
 // The program on a real recording (EuRoC MH_01_easy, first 14 s of images) against the figures that it has to
 // reach, and on variants of it that are cut or lengthened.
@@ -81,6 +83,24 @@ class Mh01Program : public testing::Test {
     }
   }
 
+  /// Turns camera 1 about its own axes in its file.
+  static void turnCamera1(const std::filesystem::path& variant, const Vec3& turn) {
+    const std::filesystem::path file = variant / "mav0" / "cam1" / "sensor.yaml";
+    std::string text = readText(file);
+    const size_t begin = text.find('[', text.find("T_BS")) + 1;
+    const size_t end = text.find(']', begin);
+    std::string numbers = text.substr(begin, end - begin);
+    std::replace(numbers.begin(), numbers.end(), ',', ' ');
+    std::istringstream stream(numbers);
+    Eigen::Matrix<double, 4, 4, Eigen::RowMajor> body_from_camera;
+    for (double& number : body_from_camera.reshaped<Eigen::RowMajor>()) stream >> number;
+    body_from_camera.topLeftCorner<3, 3>() *= so3::exp(turn).toRotationMatrix();
+    const auto rows = body_from_camera.reshaped<Eigen::RowMajor>();
+    text.replace(begin, end - begin, fmt::format("{}", fmt::join(rows.begin(), rows.end(), ", ")));
+    std::filesystem::remove(file);  // a link
+    std::ofstream(file) << text;
+  }
+
   std::filesystem::path run(const std::filesystem::path& data, const std::string& name,
                             const std::string& options = "") const {
     const std::filesystem::path output = folder_.path() / name;
@@ -118,6 +138,16 @@ class Mh01Program : public testing::Test {
 TEST_F(Mh01Program, StereoReachesItsFigures) { expectStereoFigures(data_); }
 
 TEST_F(Mh01Program, LeftCameraAloneReachesItsFigures) { expectMonoFigures(data_); }
+
+TEST_F(Mh01Program, RightCameraTurnedByADegreeInItsFile) {
+  const std::filesystem::path variant = makeVariant("turned");
+  turnCamera1(variant, Vec3(1.0 * kDegree, 0.0, 0.0));
+  expectStereoFigures(variant);
+  const nlohmann::json summary = readJson(folder_.path() / "stereo" / "run.json");
+  const nlohmann::json turn = summary["camera_corrections"]["cameras"][1]["rotation_rad"];
+  EXPECT_NEAR(std::hypot(turn[0].get<double>(), turn[1].get<double>(), turn[2].get<double>()), 1.0 * kDegree,
+              0.1 * kDegree);
+}
 
 TEST_F(Mh01Program, ImagesOfTheFirstSecondRemoved) {
   const std::filesystem::path variant = makeVariant("first_second_removed");
