@@ -48,7 +48,7 @@ class StereoMatcher {
   std::optional<double> accept(const RayPair& candidate) const;
 
   /// Rotation phi (rad, axes of the first camera) by which the second one is turned against its file:
-  /// first_from_second is exp(phi) times the file's. Zero where the file does.
+  /// first_from_second is exp(phi) times the file's. Zero where nothing speaks against that.
   Vec3 rotationCorrection() const;
 
  private:
