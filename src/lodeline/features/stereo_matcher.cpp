@@ -37,10 +37,8 @@ std::optional<Vec2> StereoMatcher::projectAt(const Vec3& first_bearing, double i
 }
 
 double StereoMatcher::epipolarErrorPx(const RayPair& rays) const {
-  const Vec3 normal = second_from_first_.translation.cross(second_from_first_.rotation * rays.first);
-  const double length = normal.norm();
-  if (length < 1e-9) return 0.0;
-  return second_->calibration().fx_px * std::abs(normal.dot(rays.second)) / length;
+  const std::optional<Vec3> normal = epipolarNormal(second_from_first_, rays.first);
+  return normal ? second_->calibration().fx_px * std::abs(normal->dot(rays.second)) : 0.0;
 }
 
 std::optional<double> StereoMatcher::inverseDepth(const RayPair& rays) const {

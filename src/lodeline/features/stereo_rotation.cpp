@@ -11,23 +11,28 @@ namespace {
 // Three numbers that fit fewer matches well may do so by chance.
 constexpr size_t kEnough = 60, kMost = 300;
 constexpr int kIterations = 10;
-constexpr double kSigma = 1.0 * kDegree;  // beforehand
-constexpr double kLeastError_px = 0.2;    // below which errors weigh alike
+constexpr double kSigma_rad = 1.0 * kDegree;  // beforehand
+constexpr double kLeastError_px = 0.2;        // below which errors weigh alike
 
 }  // namespace
 
-void StereoRotation::remember(const RayPair& pair) {
-  const Vec3 normal = second_from_first_.translation.cross(second_from_first_.rotation * pair.first);
+std::optional<Vec3> epipolarNormal(const Rigid3& second_from_first, const Vec3& first_ray) {
+  const Vec3 normal = second_from_first.translation.cross(second_from_first.rotation * first_ray);
   const double length = normal.norm();
-  if (length < 1e-9) return;  // cameras at one place have no epipolar planes
-  const Vec3 n = normal / length;
-  newest_.push_back({focal_px_ * n.dot(pair.second), focal_px_ * pair.second.cross(n)});
+  if (length < 1e-9) return std::nullopt;
+  return normal / length;
+}
+
+void StereoRotation::remember(const RayPair& pair) {
+  const std::optional<Vec3> normal = epipolarNormal(second_from_first_, pair.first);
+  if (!normal) return;
+  newest_.push_back({focal_px_ * normal->dot(pair.second), focal_px_ * pair.second.cross(*normal)});
   if (newest_.size() > kMost) newest_.pop_front();
 }
 
 void StereoRotation::fit() {
   for (int i = 0; i < kIterations; ++i) {
-    Mat3 information = Mat3::Identity() / (kSigma * kSigma);
+    Mat3 information = Mat3::Identity() / (kSigma_rad * kSigma_rad);
     Vec3 right_side = Vec3::Zero();
     for (const Equation& equation : newest_) {
       const double weight = 1.0 / std::max(equation.after(turn_), kLeastError_px);

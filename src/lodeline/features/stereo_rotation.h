@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "lodeline/geometry/rigid3.h"
@@ -12,6 +13,10 @@ namespace lodeline {
 struct RayPair {
   Vec3 first, second;
 };
+
+/// Unit normal, in the second camera's frame, of the plane through both cameras and a ray of the first one;
+/// nothing where there is no such plane: cameras at one place, a ray along the baseline.
+std::optional<Vec3> epipolarNormal(const Rigid3& second_from_first, const Vec3& first_ray);
 
 /// How the second camera of a pair is turned against what its file says, as epipolar planes show it. A few
 /// tenths of a degree are more than a match may be off, and where the turn is across the planes, no match

@@ -69,8 +69,8 @@ double turnOf(const Arrangement& as_calibrated, const std::vector<PointPair>& po
     const std::optional<Vec3> first = as_calibrated.first->unproject(point.first);
     const std::optional<Vec3> second = as_calibrated.second->unproject(point.second);
     if (!first || !second) continue;
-    const Vec3 normal = second_from_first.translation.cross(second_from_first.rotation * *first).normalized();
-    if (std::abs(normal.dot(*second)) < kOffLine_rad) pairs.push_back({*first, *second});
+    const std::optional<Vec3> normal = epipolarNormal(second_from_first, *first);
+    if (normal && std::abs(normal->dot(*second)) < kOffLine_rad) pairs.push_back({*first, *second});
   }
   rotation.add(pairs);
   return rotation.turn().norm();
