@@ -218,6 +218,8 @@ void bindDepth(Settings* settings, DepthOptions* options) {
       "density of the water over that which the gauge assumes: 0.975 for a gauge set to salt water "
       "in fresh water");
   settings->bind("pressure.density_ratio_sigma", &options->density_ratio_sigma, "of that ratio; 0 holds it");
+  settings->bind("pressure.known_waters", &options->known_waters,
+                 "whether that ratio is rather that of fresh or salt water to a gauge set to either");
   settings->bind("pressure.least_density_sigma", &options->least_density_sigma,
                  "what images tell of that ratio is never taken for better than this in what heights claim");
   settings->bind("pressure.lag_s", &options->lag_s, "time constant of the gauge's answer");

@@ -170,6 +170,31 @@ DepthFusion::Innovation DepthFusion::innovate(const CarriedDepth& depth, const W
   return innovation;
 }
 
+void DepthFusion::remember(const JointCovariance& covariance, Window& window) {
+  covariance_ = covariance;
+  const DepthStates states(window);
+  if (!options_.known_waters || options_.density_ratio_sigma <= kOneWaterSigma || !states) return;
+  const std::optional<DensityRatio> seen = seenRatio(*states.scale);
+  if (!seen) return;
+  const DensityRatio honest{seen->mean, std::hypot(seen->sigma, unmodelled_density_sigma_)};
+  known_ratio_ = amongKnownWaters(honest);
+  states.scale->belief.reset();
+  likelihood_ = likelihoodBetween(honest, *known_ratio_);
+  if (!likelihood_) return;
+  // The window takes what it has seen for better than it is; what it is told has to gain as much to weigh the
+  // same.
+  states.scale->belief = {likelihood_->mean, likelihood_->sigma * seen->sigma / honest.sigma};
+}
+
+std::optional<DensityRatio> DepthFusion::seenRatio(const GlobalState& scale) const {
+  const double* value = scale.value.data();
+  if (!covariance_.knows(value)) return std::nullopt;
+  const DensityRatio all{scale.value[0], std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0)))};
+  if (!(all.sigma > 0.0)) return std::nullopt;
+  if (!scale.belief) return all;
+  return without({scale.belief->value, scale.belief->sigma}, all);
+}
+
 void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer) {
   const Rigid3& body_from_port = gauge_->body_from_pressure;
   const double height_m = (window.newest().worldFromBody() * body_from_port.translation).z() - depth.rise_m;
@@ -243,7 +268,14 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
   DepthEstimate::Gauge gauge;
   gauge.depth_at_origin_m = states.offset_m();
   gauge.density_ratio = states.density_ratio();
-  gauge.density_ratio_sigma = std::hypot(sigma(*states.scale), unmodelled_density_sigma_);
+  const double window_sigma = sigma(*states.scale);
+  gauge.density_ratio_sigma =
+      known_ratio_ ? known_ratio_->sigma : std::hypot(window_sigma, unmodelled_density_sigma_);
+  gauge.unmodelled_sigma =
+      std::sqrt(std::max(0.0, std::pow(gauge.density_ratio_sigma, 2) - window_sigma * window_sigma));
+  gauge.told_sigma = options_.density_ratio_sigma;
+  if (likelihood_) gauge.told_sigma = 1.0 / std::hypot(1.0 / gauge.told_sigma, 1.0 / likelihood_->sigma);
+  gauge.belief = states.scale->belief;
   gauge.lag_s = states.lag_s();
   gauge.lag_sigma_s = sigma(*states.lag);
   gauge.body_depth_m =

@@ -9,6 +9,7 @@
 #include "lodeline/estimator/depth_gate.h"
 #include "lodeline/estimator/depth_health.h"
 #include "lodeline/estimator/depth_states.h"
+#include "lodeline/estimator/known_waters.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/vertical_motion.h"
@@ -23,8 +24,18 @@ struct DepthEstimate {
     double density_ratio = 1.0, density_ratio_sigma = 0.0;
     double lag_s = 0.0, lag_sigma_s = 0.0;
     double body_depth_m = 0.0;  ///< of the body, as the gauge would read it there
+    /// Of the density ratio, beyond what the window's covariance says.
+    double unmodelled_sigma = 0.0;
+    /// Of the density ratio, before images have said anything of it.
+    double told_sigma = 0.0;
+    std::optional<Belief> belief = std::nullopt;  ///< of the density ratio, see GlobalState
   };
   std::optional<Gauge> gauge;  ///< nothing until it was heard
+
+  /// For EstimateSources.
+  std::optional<double> unmodelledDensitySigma() const {
+    return gauge ? std::optional(gauge->unmodelled_sigma) : std::nullopt;
+  }
 };
 
 /// Brings the pressure sensor into a window: keeps its global states, carries readings to their frame, asks
@@ -39,8 +50,9 @@ class DepthFusion {
   void take(std::span<const DepthSample> readings);
   /// The newest frame has just been added, with its predicted state.
   void addToNewest(Window& window, Marginalizer& marginalizer);
-  /// Joint covariance after the window was solved; the next reading is judged by it.
-  void remember(const JointCovariance& covariance) { covariance_ = covariance; }
+  /// Joint covariance after the window was solved; the next reading is judged by it, and the next solution
+  /// believes what known waters say of the ratio that was found.
+  void remember(const JointCovariance& covariance, Window& window);
 
   DepthEstimate estimate(const Window& window) const;
 
@@ -64,10 +76,14 @@ class DepthFusion {
   /// Takes the gauge's offset as unknown, and back what the window's frames were told.
   void restart(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer);
   DepthMeasurement measurementOf(const std::vector<CarriedDepth>& depths, double variance_scale, Time time);
+  /// What the window says of the ratio by itself, without its belief; nothing while it has no covariance.
+  std::optional<DensityRatio> seenRatio(const GlobalState& scale) const;
   void report(DepthStatus status, const DepthSample& reading);
 
   DepthOptions options_;
   double unmodelled_density_sigma_ = 0.0;
+  /// The ratio as images and known waters have it, and what the latter add; nothing where it was told.
+  std::optional<DensityRatio> known_ratio_, likelihood_;
   Diagnostics* diagnostics_;
   std::optional<PressureCalibration> gauge_;
   DepthStatus status_ = DepthStatus::Off;

@@ -144,6 +144,7 @@ TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
   options.drift_m_per_s = Vec3(0.0, 0.0, -0.2);
   EstimatorOptions estimator = honestOptions(options);
   estimator.camera_calibration.enabled = true;
+  estimator.depth.known_waters = false;
   const auto lastWith = [&](double least_density_sigma) {
     estimator.depth.least_density_sigma = least_density_sigma;
     return dive(options, Gauge(), estimator).last();
@@ -159,6 +160,61 @@ TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
   estimator.depth.density_ratio_sigma = 0.001;
   const double told = lastWith(0.007).covariance(2, 2) - lastWith(0.0).covariance(2, 2);
   EXPECT_NEAR(told, 1e-6 * height_m * height_m, 1e-8) << "a density that was told";
+}
+
+/// A descent of 8 m.
+FrameEstimate endOfDescent(double density_ratio, const std::function<void(EstimatorOptions*)>& change) {
+  TestSceneOptions options = sceneOptions(40.0);
+  options.points.frame_rate_hz = 5.0;
+  options.drift_m_per_s = Vec3(0.0, 0.0, -0.2);
+  EstimatorOptions estimator = honestOptions(options);
+  change(&estimator);
+  Gauge gauge;
+  gauge.density_ratio = density_ratio;
+  return dive(options, gauge, estimator).last();
+}
+
+TEST(DepthFusion, KnowsFreshWaterAndSalt) {
+  for (const double ratio : {0.975, 1.0, 1.025}) {
+    const auto descend = [ratio](bool known_waters) {
+      return endOfDescent(ratio, [known_waters](EstimatorOptions* options) {
+        options->camera_calibration.enabled = false;
+        options->depth.known_waters = known_waters;
+      });
+    };
+    const FrameEstimate with = descend(true), without = descend(false);
+    const DepthEstimate::Gauge &known = *with.depth.gauge, &seen = *without.depth.gauge;
+    EXPECT_LT(std::abs(known.density_ratio - ratio), 0.8 * std::abs(seen.density_ratio - ratio)) << ratio;
+    EXPECT_NEAR(known.density_ratio, ratio, 3.0 * known.density_ratio_sigma) << ratio;
+    EXPECT_LT(known.density_ratio_sigma, seen.density_ratio_sigma) << ratio;
+    EXPECT_LT(with.covariance(2, 2), without.covariance(2, 2)) << "known of the water is known of the height";
+    EXPECT_GT(with.scale.depth, without.scale.depth) << "and of the scale";
+  }
+}
+
+// Images claim the ratio to less than half a per cent here, and are not worth more than 0.7.
+TEST(DepthFusion, WeighsKnownWatersAgainstWhatCrookedCamerasAreWorth) {
+  const auto descend = [](bool known_waters) {
+    return *endOfDescent(1.0, [known_waters](EstimatorOptions* options) {
+              options->camera_calibration.enabled = true;
+              options->depth.known_waters = known_waters;
+            }).depth.gauge;
+  };
+  const DepthEstimate::Gauge known = descend(true), seen = descend(false);
+  EXPECT_GT(std::abs(seen.density_ratio - 1.0), 0.007) << "too easy a scene";
+  EXPECT_LT(std::abs(known.density_ratio - 1.0), 0.7 * std::abs(seen.density_ratio - 1.0));
+}
+
+TEST(DepthFusion, BelievesWhoWasToldTheDensity) {
+  const auto told = [](bool known_waters) {
+    return endOfDescent(0.99, [known_waters](EstimatorOptions* options) {
+      options->depth.density_ratio = 0.99;
+      options->depth.density_ratio_sigma = 0.002;
+      options->depth.known_waters = known_waters;
+    });
+  };
+  EXPECT_EQ(told(true).state.world_from_body.translation, told(false).state.world_from_body.translation);
+  EXPECT_EQ(told(true).covariance, told(false).covariance);
 }
 
 TEST(DepthFusion, CarriesTheScaleOfOneCameraThatSinks) {

@@ -21,7 +21,9 @@ struct DepthOptions {
   /// Density of the water over that which the gauge assumes, and how far that may be off: gauges are set to
   /// 1000, 1020 or 1030 kg/m^3, water has 997 to 1030.
   double density_ratio = 1.0;
-  double density_ratio_sigma = 0.015;
+  double density_ratio_sigma = 0.02;
+  /// Whether waters and gauges as they mostly are (known_waters.h) say more than that, to who was not told.
+  bool known_waters = true;
   /// Images learn the density from the direction in which they see the rig move. A lens that is not as its
   /// file says puts that off by one or two tenths of a degree for minutes, which no covariance knows: in a
   /// passage that descends by one metre in seven it is worth so much. Heights are claimed no better than

@@ -98,7 +98,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   startAgainAfterDarkness(estimate);
   shortenWindow(estimate);
   unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
-  unmodelled_.addTo({scale_is_given_, estimate.depth.gauge.has_value()}, &estimate.covariance);
+  unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma()}, &estimate.covariance);
   return estimate;
 }
 
@@ -276,7 +276,7 @@ void Estimator::startMagnetometer() {
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
   estimate->covariance = covariance.newest();
-  depth_.remember(covariance);
+  depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
 }
 
@@ -307,7 +307,8 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->gyroscope_axes = gyroscopeAxes(window_);
   estimate->magnetometer = magnetometer_.estimate(window_);
   estimate->depth = depth_.estimate(window_);
-  estimate->scale = scale_.add(window_);
+  const auto& gauge = estimate->depth.gauge;
+  estimate->scale = scale_.add(window_, gauge ? gauge->told_sigma : options_.depth.density_ratio_sigma);
   estimate->landmarks = statistics.landmarks;
   estimate->scene_distance_m = meanLandmarkDistance_m(window_, newest.id, 0);
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;

@@ -117,6 +117,17 @@ std::optional<Factor> FactorMaker::depth(const Window& window, Frame& frame) con
   return factor;
 }
 
+std::optional<Factor> FactorMaker::depthScale(const Window& window) const {
+  GlobalState* scale = DepthStates(window).scale;
+  if (!scale || !scale->belief) return std::nullopt;
+  const ceres::Matrix whitening = ceres::Matrix::Constant(1, 1, 1.0 / scale->belief->sigma);
+  Factor factor;
+  factor.function =
+      std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Constant(1, scale->belief->value));
+  factor.blocks = {scale->value.data()};
+  return factor;
+}
+
 std::optional<Factor> FactorMaker::rest(Frame& frame) const {
   if (!frame.rest_sigma_m_per_s) return std::nullopt;
   const ceres::Matrix whitening = ceres::Matrix::Identity(3, kMotionSize) / *frame.rest_sigma_m_per_s;

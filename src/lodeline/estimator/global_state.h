@@ -8,6 +8,11 @@
 
 namespace lodeline {
 
+/// A number as it is believed to be: a normal distribution.
+struct Belief {
+  double value = 0.0, sigma = 0.0;
+};
+
 /// A quantity that the window estimates but that belongs to no frame: a field vector, a sensor's offset, an
 /// extrinsic calibration, a time offset. Factors name its block like that of a frame; solver, normal
 /// equations, marginalisation (with its first estimates) and covariance treat it alike. It enters with an
@@ -27,6 +32,9 @@ struct GlobalState {
   /// Of a change that has happened all at once, each coordinate, [unit of the block]^2: joins the walk when
   /// the next frame is marginalised.
   double sudden_variance = 0.0;
+  /// What is known of a single number beside all that the window was told: may change from frame to frame, so
+  /// it never becomes part of the prior.
+  std::optional<Belief> belief = std::nullopt;
 
   bool isPose() const { return value.size() == kPoseSize; }
   int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(value.size()); }

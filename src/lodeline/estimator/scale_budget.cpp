@@ -34,13 +34,13 @@ void ScaleBudget::Scatter::add(const Vec3& value, double weight) {
 double ScaleBudget::Scatter::sum() const { return squares_; }
 
 ScaleBudget::ScaleBudget(const Rig& rig, const EstimatorOptions& options)
-    : calibration_(options.camera_calibration), density_sigma_(options.depth.density_ratio_sigma) {
+    : calibration_(options.camera_calibration) {
   if (rig.cameras.size() < 2) return;
   baseline_m_ =
       (rig.cameras[1].body_from_camera.translation - rig.cameras[0].body_from_camera.translation).norm();
 }
 
-ScaleInformation ScaleBudget::add(const Window& window) {
+ScaleInformation ScaleBudget::add(const Window& window, double density_sigma) {
   const Frame& newest = window.newest();
   if (last_) {
     const double keep = std::exp(-(newest.time - *last_).seconds() / kMemory_s);
@@ -61,8 +61,7 @@ ScaleInformation ScaleBudget::add(const Window& window) {
   ScaleInformation information;
   information.stereo = stereoInformation(window);
   information.accelerometer = trusted(accelerations_.sum());
-  if (heights_.sum() > 0.0)
-    information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma_ * density_sigma_);
+  if (heights_.sum() > 0.0) information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma * density_sigma);
   return information;
 }
 

@@ -29,8 +29,9 @@ class ScaleBudget {
  public:
   ScaleBudget(const Rig& rig, const EstimatorOptions& options);
 
-  /// The window with its newest frame solved.
-  ScaleInformation add(const Window& window);
+  /// The window with its newest frame solved. `density_sigma`: what is known of a depth gauge's ratio of
+  /// densities (DepthFactor's k) without images.
+  ScaleInformation add(const Window& window, double density_sigma);
 
  private:
   /// Weighted scatter of a quantity about its mean, with a memory.
@@ -51,7 +52,6 @@ class ScaleBudget {
 
   std::optional<double> baseline_m_;
   CameraCalibrationOptions calibration_;
-  double density_sigma_;
   Scatter accelerations_, heights_;
   std::optional<Time> last_;
 };

@@ -26,7 +26,7 @@ ScaleInformation informationAfter(int cameras, double liveliness, double depth_s
     Frame& frame = test.add(*simulated, true);
     if (depth_sigma_m > 0.0) frame.depth = DepthMeasurement{CarriedDepth(), depth_sigma_m};
     createLandmarks(test.window, test.factors, test.options.landmark);
-    information = budget.add(test.window);
+    information = budget.add(test.window, options.depth.density_ratio_sigma);
   }
   return information;
 }

@@ -45,11 +45,11 @@ void UnmodelledErrors::addTo(const EstimateSources& sources,
     const Vec3 by_scale = kOneCameraScaleSigma * position_W;
     added += by_scale * by_scale.transpose();
   }
-  if (sources.has_depth) {
+  if (sources.density_sigma) {
     const double held = std::min(1.0, kHeldHeightSigma_m / std::sqrt(std::max(added(2, 2), 1e-12)));
     added.row(2) *= held;
     added.col(2) *= held;
-    const double height_sigma_m = unmodelledDensitySigma(options_) * position_W.z();
+    const double height_sigma_m = *sources.density_sigma * position_W.z();
     added(2, 2) += height_sigma_m * height_sigma_m;
   }
   covariance->topLeftCorner<3, 3>() += added;

@@ -27,7 +27,9 @@ constexpr double kHeldHeightSigma_m = 0.05;
 /// What a frame's estimate hangs on, as far as it matters here.
 struct EstimateSources {
   bool is_scale_given = false;  ///< by a second camera
-  bool has_depth = false;       ///< of a pressure sensor
+  /// Of the ratio of densities by which a pressure sensor tells the height, beyond what the covariance has of
+  /// it; nothing without such a sensor.
+  std::optional<double> density_sigma = std::nullopt;
 };
 
 /// Of the density ratio, beyond what the covariance says; see DepthOptions::least_density_sigma.

@@ -86,20 +86,18 @@ TEST(UnmodelledErrors, OfOneCameraCountItsScaleToo) {
 }
 
 TEST(UnmodelledErrors, OfTheHeightAreHeldByAPressureSensorUpToItsDensity) {
-  EstimatorOptions options;
-  options.depth.density_ratio_sigma = 0.001;
-  UnmodelledErrors errors(options);
+  UnmodelledErrors errors({});
   errors.follow(heading(0.0, Vec3::Zero()), 2.0);
   swim(heading(0.0, Vec3::Zero()), heading(0.0, kPosition), 2.0, &errors);
   const Mat15 free = added(errors, kTwoCameras);
-  const Mat15 held = added(errors, {.is_scale_given = true, .has_depth = true});
+  const Mat15 held = added(errors, {.is_scale_given = true, .density_sigma = 0.001});
   EXPECT_NEAR(held(2, 2), std::pow(kHeldHeightSigma_m, 2) + std::pow(0.001 * 20.0, 2), 1e-12);
   EXPECT_NEAR((held - free).topLeftCorner(2, 2).norm(), 0.0, 1e-15);
 
   UnmodelledErrors at_start(EstimatorOptions{});
   at_start.follow(heading(0.0, kPosition), 2.0);
-  EXPECT_NEAR(added(at_start, {.is_scale_given = true, .has_depth = true})(2, 2), std::pow(0.007 * 20.0, 2),
-              1e-12);
+  EXPECT_NEAR(added(at_start, {.is_scale_given = true, .density_sigma = 0.007})(2, 2),
+              std::pow(0.007 * 20.0, 2), 1e-12);
 }
 
 TEST(UnmodelledErrors, AreNoneWhereTheCalibrationIsBelieved) {
@@ -108,7 +106,7 @@ TEST(UnmodelledErrors, AreNoneWhereTheCalibrationIsBelieved) {
   UnmodelledErrors errors(options);
   errors.follow(heading(0.0, Vec3::Zero()), 2.0);
   swim(heading(0.0, Vec3::Zero()), heading(2.0, kPosition), 2.0, &errors);
-  EXPECT_EQ(added(errors, {.is_scale_given = false, .has_depth = true}).norm(), 0.0);
+  EXPECT_EQ(added(errors, {.is_scale_given = false, .density_sigma = 0.007}).norm(), 0.0);
   EXPECT_EQ(unmodelledDensitySigma(options), 0.0);
 }
 

@@ -14,6 +14,7 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
   std::vector<Factor> terms;
   if (auto axes = factors.gyroscopeAxes(window)) terms.push_back(std::move(*axes));
+  if (auto scale = factors.depthScale(window)) terms.push_back(std::move(*scale));
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
     frame->updateImageMotion();

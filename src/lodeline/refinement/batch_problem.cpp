@@ -49,6 +49,7 @@ std::vector<Factor> BatchProblem::motionFactors() {
   std::vector<Factor> terms;
   for (const Prior& prior : priors_) terms.push_back(factors_.prior(prior));
   if (auto axes = factors_.gyroscopeAxes(window_)) terms.push_back(std::move(*axes));
+  if (auto scale = factors_.depthScale(window_)) terms.push_back(std::move(*scale));
   for (size_t k = 0; k < states(); ++k) {
     Frame& frame = *window_.frames()[k];
     if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));

@@ -100,6 +100,7 @@ void BatchProblem::addGlobals(const ForwardRecord& record) {
     scale->value = {depth.density_ratio};
     addKnowledge(scale, std::max(depth.density_ratio_sigma, 1e-7));
     scale->value = record.globals().at(DepthStates::kScale);
+    if (const auto& gauge = record.frames().back().depth.gauge) scale->belief = gauge->belief;
   }
   if (GlobalState* lag = addGlobal(record, DepthStates::kLag, DepthStates::kLag)) {
     lag->value = {depth.lag_s};

@@ -38,7 +38,7 @@ class FrameMaker {
     describeMagnetometer(forward, &refined);
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
-    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.gauge.has_value()}, &refined.covariance);
+    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma()}, &refined.covariance);
     return refined;
   }
 
