@@ -173,6 +173,9 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
                  "of what a calibration leaves that does not say how sure it is");
   settings->bind("magnetometer.uncalibrated_offset_sigma_T", &options->uncalibrated_offset_sigma_T,
                  "of one that was never calibrated");
+  settings->bind("magnetometer.uncalibrated_axes_sigma", &options->uncalibrated_axes_sigma,
+                 "of such a one, relative: what soft iron and turned axes make of the field, in what heading "
+                 "claims");
   settings->bind("magnetometer.offset_walk_T_per_sqrt_s", &options->offset_walk_T_per_sqrt_s,
                  "random walk of that offset, to start with");
   settings->bind("magnetometer.disturbance_sigma_T", &options->disturbance_sigma_T,

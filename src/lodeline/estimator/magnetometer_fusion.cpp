@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lodeline/estimator/lasting_error.h"
 #include "lodeline/geometry/so3.h"
@@ -362,6 +363,12 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   }
   const MagnetometerStates states(window);
   if (states.field != nullptr) {
+    if (!calibration_.is_calibrated) {
+      const Vec3 field_W = states.field_W();
+      estimate.axes_sigma_rad = std::min(std::numbers::pi, options_.magnetometer.uncalibrated_axes_sigma *
+                                                               field_W.norm() / field_W.head<2>().norm());
+      estimate.heading_sigma_rad = std::hypot(estimate.heading_sigma_rad, estimate.axes_sigma_rad);
+    }
     estimate.field_W = states.field_W();
     estimate.offset_B = states.offset_B();
     estimate.floor_T = errors_.floor_T();

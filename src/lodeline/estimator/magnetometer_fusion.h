@@ -25,6 +25,9 @@ struct MagnetometerEstimate {
   HeadingReference heading_reference = HeadingReference::Start;
   /// Of the heading against that reference, rad.
   double heading_sigma_rad = 0.0;
+  /// Part of it that the window's covariance has not: of the axes of a magnetometer that was never
+  /// calibrated.
+  double axes_sigma_rad = 0.0;
   /// Estimated field of the Earth and offset of the corrected readings, T; nothing unless fused absolutely.
   std::optional<Vec3> field_W;
   std::optional<Vec3> offset_B;

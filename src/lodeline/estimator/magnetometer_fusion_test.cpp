@@ -367,6 +367,9 @@ TEST_F(SpoiltMagnetometer, WithoutCalibrationIsUsedOnlyWhenAskedTo) {
   const FrameEstimate asked = run(leave, MagnetometerUse::Absolute);
   EXPECT_EQ(asked.magnetometer.status, MagnetometerStatus::Used);
   EXPECT_GT(asked.magnetometer.heading_sigma_rad, 1.0 * kDegree) << "hard iron may be anything";
+  const Vec3 field_W = asked.magnetometer.field_W.value();
+  EXPECT_NEAR(asked.magnetometer.axes_sigma_rad, 0.03 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
+  EXPECT_GT(asked.covariance(5, 5), std::pow(asked.magnetometer.axes_sigma_rad, 2)) << "and so may its axes";
   EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 2);
 }
 

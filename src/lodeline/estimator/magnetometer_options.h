@@ -92,6 +92,9 @@ struct MagnetometerOptions {
   double offset_sigma_T = 0.15e-6;
   double unstated_offset_sigma_T = 0.3e-6;
   double uncalibrated_offset_sigma_T = 10e-6;
+  /// Of one that was never calibrated, too: what soft iron and turned axes make of the field, relative to it.
+  /// Counts in what is claimed of the heading, not in what is estimated.
+  double uncalibrated_axes_sigma = 0.03;
   double offset_walk_T_per_sqrt_s = 1e-9;  ///< 0.04 uT in half an hour
   double disturbance_sigma_T = 5e-6;
   double disturbance_walk_T_per_sqrt_s = 5e-8;

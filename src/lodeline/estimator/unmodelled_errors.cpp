@@ -55,4 +55,12 @@ void UnmodelledErrors::addTo(const EstimateSources& sources,
   covariance->topLeftCorner<3, 3>() += added;
 }
 
+void addHeadingError(double sigma_rad, const NavigationState& state,
+                     Eigen::Matrix<double, 15, 15>* covariance) {
+  Eigen::Matrix<double, 9, 1> moved;
+  moved << Vec3::UnitZ().cross(state.world_from_body.translation), Vec3::UnitZ(),
+      Vec3::UnitZ().cross(state.velocity_W);
+  covariance->topLeftCorner<9, 9>() += sigma_rad * sigma_rad * moved * moved.transpose();
+}
+
 }  // namespace lodeline

@@ -6,6 +6,7 @@
 
 #include "lodeline/estimator/options.h"
 #include "lodeline/geometry/rigid3.h"
+#include "lodeline/inertial/propagation.h"
 
 namespace lodeline {
 
@@ -60,5 +61,10 @@ class UnmodelledErrors {
   std::array<Mat3, 3> by_way_{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
   std::array<Mat3, 3> by_turn_{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
 };
+
+/// Adds an error of the whole world's heading about its origin, one sigma, to the covariance of a state as
+/// above.
+void addHeadingError(double sigma_rad, const NavigationState& state,
+                     Eigen::Matrix<double, 15, 15>* covariance);
 
 }  // namespace lodeline

@@ -110,5 +110,21 @@ TEST(UnmodelledErrors, AreNoneWhereTheCalibrationIsBelieved) {
   EXPECT_EQ(unmodelledDensitySigma(options), 0.0);
 }
 
+TEST(UnmodelledErrors, OfTheHeadingTurnWayAndSpeedAboutTheOrigin) {
+  NavigationState state;
+  state.world_from_body = heading(0.3, kPosition);
+  state.velocity_W = Vec3(0.2, -0.1, 0.05);
+  constexpr double kSigma = 0.05, kTurn = 1e-6;
+  Mat15 covariance = Mat15::Zero();
+  addHeadingError(kSigma, state, &covariance);
+  const Mat3 turned = so3::exp(kTurn * Vec3::UnitZ()).toRotationMatrix();
+  Eigen::Matrix<double, 9, 1> moved;
+  moved << turned * kPosition - kPosition, kTurn * Vec3::UnitZ(),
+      turned * state.velocity_W - state.velocity_W;
+  moved *= kSigma / kTurn;
+  EXPECT_NEAR((covariance.topLeftCorner<9, 9>() - moved * moved.transpose()).norm(), 0.0, 1e-5);
+  EXPECT_EQ(covariance.bottomRightCorner(6, 15).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace lodeline

@@ -39,6 +39,7 @@ class FrameMaker {
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
     unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma()}, &refined.covariance);
+    addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
     return refined;
   }
 
@@ -73,7 +74,8 @@ class FrameMaker {
         forward.magnetometer.heading_sigma_rad * forward.magnetometer.heading_sigma_rad;
     // The declination's part stays.
     const double beside = std::max(0.0, forward_variance - forward.covariance(5, 5));
-    refined->magnetometer.heading_sigma_rad = std::sqrt(refined->covariance(5, 5) + beside);
+    refined->magnetometer.heading_sigma_rad =
+        std::hypot(std::sqrt(refined->covariance(5, 5) + beside), forward.magnetometer.axes_sigma_rad);
     const MagnetometerStates states(problem_.window());
     if (states.field == nullptr || !refined->magnetometer.field_W) return;
     refined->magnetometer.field_W = states.field_W();
