@@ -174,22 +174,22 @@ void DepthFusion::remember(const JointCovariance& covariance, Window& window) {
   covariance_ = covariance;
   const DepthStates states(window);
   if (!options_.known_waters || options_.density_ratio_sigma <= kOneWaterSigma || !states) return;
-  const std::optional<DensityRatio> seen = seenRatio(*states.scale);
+  const std::optional<Belief> seen = seenRatio(*states.scale);
   if (!seen) return;
-  const DensityRatio honest{seen->mean, std::hypot(seen->sigma, unmodelled_density_sigma_)};
+  const Belief honest{seen->value, std::hypot(seen->sigma, unmodelled_density_sigma_)};
   known_ratio_ = amongKnownWaters(honest);
   states.scale->belief.reset();
   likelihood_ = likelihoodBetween(honest, *known_ratio_);
   if (!likelihood_) return;
   // The window takes what it has seen for better than it is; what it is told has to gain as much to weigh the
   // same.
-  states.scale->belief = {likelihood_->mean, likelihood_->sigma * seen->sigma / honest.sigma};
+  states.scale->belief = {likelihood_->value, likelihood_->sigma * seen->sigma / honest.sigma};
 }
 
-std::optional<DensityRatio> DepthFusion::seenRatio(const GlobalState& scale) const {
+std::optional<Belief> DepthFusion::seenRatio(const GlobalState& scale) const {
   const double* value = scale.value.data();
   if (!covariance_.knows(value)) return std::nullopt;
-  const DensityRatio all{scale.value[0], std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0)))};
+  const Belief all{scale.value[0], std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0)))};
   if (!(all.sigma > 0.0)) return std::nullopt;
   if (!scale.belief) return all;
   return without({scale.belief->value, scale.belief->sigma}, all);

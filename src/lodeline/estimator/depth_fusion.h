@@ -77,13 +77,13 @@ class DepthFusion {
   void restart(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer);
   DepthMeasurement measurementOf(const std::vector<CarriedDepth>& depths, double variance_scale, Time time);
   /// What the window says of the ratio by itself, without its belief; nothing while it has no covariance.
-  std::optional<DensityRatio> seenRatio(const GlobalState& scale) const;
+  std::optional<Belief> seenRatio(const GlobalState& scale) const;
   void report(DepthStatus status, const DepthSample& reading);
 
   DepthOptions options_;
   double unmodelled_density_sigma_ = 0.0;
   /// The ratio as images and known waters have it, and what the latter add; nothing where it was told.
-  std::optional<DensityRatio> known_ratio_, likelihood_;
+  std::optional<Belief> known_ratio_, likelihood_;
   Diagnostics* diagnostics_;
   std::optional<PressureCalibration> gauge_;
   DepthStatus status_ = DepthStatus::Off;
