@@ -44,14 +44,18 @@ ClaimCheck checkClaims(const RunClaims& claims, const Trajectory& reference,
   Trajectory estimate;
   for (const ClaimedPose& claim : claims.poses) estimate.poses.push_back(claim.pose);
   const PosePairs pairs = associate(estimate, withZUp(reference), association);
-  const std::vector<Rigid3> poses = applyAlignment(alignStarts(claims.basis, pairs), pairs.estimate);
+  const Alignment alignment = alignStarts(claims.basis, pairs);
+  const std::vector<Rigid3> poses = applyAlignment(alignment, pairs.estimate);
+  const Quat claimed_from_reference = alignment.reference_from_estimate.rotation.conjugate();
   const Duration offset = Duration::fromSeconds(association.time_offset_s);
   AxesSum position, rotation;
   for (size_t i = 1; i < poses.size(); ++i) {
     const ClaimedPose& claim = nearest(claims.poses, pairs.time[i] - offset);
-    position.add(poses[i].translation - pairs.reference[i].translation, claim.position_sigma_m);
-    rotation.add(so3::log(poses[i].rotation * pairs.reference[i].rotation.conjugate()),
-                 claim.rotation_sigma_rad);
+    position.add(claimed_from_reference * (poses[i].translation - pairs.reference[i].translation),
+                 claim.position_sigma_m);
+    rotation.add(
+        claimed_from_reference * so3::log(poses[i].rotation * pairs.reference[i].rotation.conjugate()),
+        claim.rotation_sigma_rad);
     ++check.poses;
   }
   if (check.poses == 0) return check;

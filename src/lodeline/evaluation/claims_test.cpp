@@ -49,6 +49,25 @@ TEST(Claims, AreNotAboutTheStartButAboutNorthWhereItIsClaimed) {
   EXPECT_GT(checkClaims(claims, truth, {}).position.rms_sigmas.x(), 1.0);
 }
 
+TEST(Claims, AreInTheAxesOfTheWorldThatTheEstimateChose) {
+  const Trajectory truth = test::bend(101);
+  Trajectory estimate =
+      test::transformed(truth, Rigid3(Quat(Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ())), Vec3::Zero()));
+  for (size_t i = 1; i < estimate.size(); ++i) {
+    estimate.poses[i].world_from_body.translation.x() += 0.05;
+    estimate.poses[i].world_from_body.rotation =
+        Quat(Eigen::AngleAxisd(0.02, Vec3::UnitY())) * estimate.poses[i].world_from_body.rotation;
+  }
+  RunClaims claims = claimsOf(estimate, 0.01, 0.02);
+  for (ClaimedPose& claim : claims.poses) {
+    claim.position_sigma_m.x() = 0.05;
+    claim.rotation_sigma_rad.y() = 0.01;
+  }
+  const ClaimCheck check = checkClaims(claims, truth, {});
+  EXPECT_NEAR((check.position.rms_sigmas - Vec3(1.0, 0.0, 0.0)).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((check.rotation.rms_sigmas - Vec3(0.0, 2.0, 0.0)).norm(), 0.0, 1e-6);
+}
+
 TEST(Claims, WithoutTimesOrPosesThereIsNothingToJudge) {
   Trajectory truth = test::bend(20);
   EXPECT_EQ(checkClaims({}, truth, {}).poses, 0u);
