@@ -93,7 +93,9 @@ void judgeStillness(std::span<const ImuSample> samples, const Vec3& gyroscope_bi
   result.gyroscope_std_rad_per_s = standardDeviation(rates);
   result.specific_force_std_m_per_s2 = standardDeviation(forces);
   const Vec3 mean_rate = mean(rates);
-  result.still = result.gyroscope_std_rad_per_s < options.still_gyroscope_std_rad_per_s &&
+  const double span_s = (samples.back().time - samples.front().time).seconds();
+  result.still = span_s >= options.still_min_span_s &&
+                 result.gyroscope_std_rad_per_s < options.still_gyroscope_std_rad_per_s &&
                  result.specific_force_std_m_per_s2 < options.still_specific_force_std_m_per_s2 &&
                  (mean_rate - gyroscope_bias).norm() < options.still_rate_rad_per_s;
   if (result.still) result.gyroscope_bias_B = mean_rate;

@@ -14,6 +14,9 @@ struct GravityAlignmentOptions {
   double still_gyroscope_std_rad_per_s = 0.02;
   double still_specific_force_std_m_per_s2 = 0.15;
   double still_rate_rad_per_s = 0.15;
+  /// Readings of a shorter span do not show stillness: a swimmer's scatter no more within a tenth of a
+  /// second.
+  double still_min_span_s = 0.5;
 
   /// Slow disturbances of a still rig count as independent after this time.
   double correlation_s = 0.5;

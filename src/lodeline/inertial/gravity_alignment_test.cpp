@@ -76,6 +76,15 @@ TEST(GravityAlignment, AtRestTheMeanRateIsTheBias) {
   EXPECT_LT(tiltError(alignment.world_from_body, Quat::Identity()), 1e-3);
 }
 
+TEST(GravityAlignment, ATenthOfASecondDoesNotShowRest) {
+  const Vec3 rate(0.05, -0.03, 0.02);
+  const auto samples = atRest(Quat::Identity(), rate, 1.0);
+  const GravityAlignment alignment = alignWithGravity(std::span(samples).last(21), Vec3::Zero());
+  EXPECT_FALSE(alignment.still);
+  EXPECT_EQ(alignment.gyroscope_bias_B, Vec3::Zero());
+  EXPECT_GT(alignment.tilt_sigma_rad, 0.1);
+}
+
 TEST(GravityAlignment, TurnsReadingsOfAMovingRigIntoTheLastFrame) {
   const Vec3 bias(0.05, -0.02, 0.03);
   const Vec3 rate(0.5, 0.8, -0.6);
