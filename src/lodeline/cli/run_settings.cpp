@@ -74,9 +74,7 @@ void bindStart(Settings* settings, InitialStateOptions* start, MonoInitializatio
   settings->bind("start.alignment_window_s", &start->alignment_window_s,
                  "inertial readings that give the first tilt");
   settings->bind("start.min_stereo_tracks", &start->min_stereo_tracks, "stereo matches that a start takes");
-  settings->bind("start.velocity_sigma_m_per_s", &start->velocity_sigma_m_per_s, "of a start in motion");
-  settings->bind("start.velocity_sigma_still_m_per_s", &start->velocity_sigma_still_m_per_s,
-                 "of a start at rest");
+  settings->bind("start.velocity_sigma_m_per_s", &start->velocity_sigma_m_per_s, "of the start");
   settings->bind("start.gyroscope_bias_sigma_rad_per_s", &start->gyroscope_bias_sigma_rad_per_s,
                  "turn-on bias");
   settings->bind("start.accelerometer_bias_sigma_m_per_s2", &start->accelerometer_bias_sigma_m_per_s2,

@@ -246,7 +246,7 @@ bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstim
   frame->gyroscope_B = imu_before_start_.back().angular_velocity_B;
   Frame& first = window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
-  Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_rad, up.still);
+  Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_rad);
   tieTiltToAccelerometerBias(first, options_.gravity_W.norm(), &prior);
   addCalibration(&prior);
   marginalizer_.start(std::move(prior));

@@ -76,6 +76,16 @@ TEST_F(EstimatorSceneTest, StereoStartsMovingAndStaysOnTrack) {
   EXPECT_NEAR(comparisons.back().estimate.reprojection_rms_sigmas, 1.0, 0.25);
 }
 
+// Its readings are as still as those of a rig at rest.
+TEST_F(EstimatorSceneTest, StereoDoesNotTakeAGlideForRest) {
+  TestSceneOptions options = smallScene(2, 3.0);
+  options.liveliness = 0.05;
+  options.drift_m_per_s = Vec3(0.2, 0.25, -0.05);
+  const auto comparisons = run(options);
+  for (const Comparison& c : comparisons) expectWithinItsSigmas(c);
+  EXPECT_LT(comparisons.back().positionError(), 0.02);
+}
+
 TEST_F(EstimatorSceneTest, SaysWhenTheAccelerometersBiasIsImplausible) {
   const TestSceneOptions options = smallScene(2, 6.0);
   for (const double bias_m_per_s2 : {0.0, 3.0}) {

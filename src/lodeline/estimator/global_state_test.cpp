@@ -39,7 +39,7 @@ class GlobalStateTest : public testing::Test {
 
   // Knows the two states, and their sum with the first frame's position and rotation as well.
   Prior coupledPrior() {
-    Prior prior = startPrior(first(), test_.options.initial_state, 0.05, false);
+    Prior prior = startPrior(first(), test_.options.initial_state, 0.05);
     prior.append(vector_->value.data(), 3, Vec3::Constant(1e-6));
     prior.append(pose_->value.data(), kPoseSize, Eigen::VectorXd::Constant(6, 0.02));
     prior.sqrt_information.block<3, 3>(3, 15) = 1e6 * Mat3::Identity();

@@ -84,7 +84,7 @@ TEST(TurnWorld, TurnsStatesAndPriorAlike) {
   TestScene scene(scene_options);
   while (const auto frame = scene.next()) test.add(*frame);
   Frame& first = *test.window.frames().front();
-  Prior prior = startPrior(first, test.options.initial_state, 0.05, false);
+  Prior prior = startPrior(first, test.options.initial_state, 0.05);
   const NavigationState before = test.window.newest().state();
   turnWorld(1.2, 0.3, &test.window, &prior);
 

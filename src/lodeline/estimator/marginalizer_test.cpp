@@ -53,7 +53,7 @@ class LosslessMarginalizationTest : public testing::Test {
       test.add(frame);
       createLandmarks(test.window, test.factors, test.options.landmark);
     }
-    test.start = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05, false);
+    test.start = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
     ASSERT_TRUE(solveWindow(test.window, test.start, test.factors, kToTheEnd).usable);
   }
   static constexpr SolveLimits kToTheEnd{100, 1e-16};
@@ -142,7 +142,7 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
   int interpolated = 0;
   for (int k = 0; k < frames; ++k) {
     Frame& added = test.add(*scene.next(), k % 2 == 0);
-    if (k == 0 && interpolates) marginalizer.start(startPrior(added, nearlyNothing(), 0.3, false));
+    if (k == 0 && interpolates) marginalizer.start(startPrior(added, nearlyNothing(), 0.3));
     createLandmarks(test.window, test.factors, options.landmark);
     if (k < 3) continue;
     const SolveLimits limits{4, 1e-6};
@@ -193,7 +193,7 @@ TEST(Marginalizer, WithoutFirstEstimatesWouldInventAHeading) {
 void addNext(TestWindow& test, TestScene& scene, FrameId keyframe_every, Marginalizer* marginalizer) {
   const FrameId count = test.window.empty() ? 0 : test.window.newest().id + 1;
   Frame& added = test.add(*scene.next(), count % keyframe_every == 0);
-  if (count == 0) marginalizer->start(startPrior(added, test.options.initial_state, 0.05, false));
+  if (count == 0) marginalizer->start(startPrior(added, test.options.initial_state, 0.05));
   createLandmarks(test.window, test.factors, test.options.landmark);
 }
 

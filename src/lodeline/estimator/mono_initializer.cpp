@@ -142,8 +142,7 @@ bool MonoInitializer::alignWithInertial() {
 bool MonoInitializer::refine() {
   InitialStateOptions known = options_.initial_state;
   if (gyroscope_) known.gyroscope_bias_sigma_rad_per_s = gyroscope_->sigma_rad_per_s;
-  prior_ =
-      startPrior(*window_.frames().front(), known, options_.mono_initialization.start_tilt_sigma_rad, false);
+  prior_ = startPrior(*window_.frames().front(), known, options_.mono_initialization.start_tilt_sigma_rad);
   for (const auto& frame : window_.frames()) {
     const auto interval = intervals_.find(frame->id);
     if (interval != intervals_.end()) frame->from_previous = std::move(interval->second);

@@ -17,7 +17,6 @@ struct InitialStateOptions {
   double yaw_sigma_rad = 1e-4;
   double tilt_sigma_min_rad = 0.01;
   double velocity_sigma_m_per_s = 1.0;
-  double velocity_sigma_still_m_per_s = 0.02;
   double gyroscope_bias_sigma_rad_per_s = 0.1;
   double accelerometer_bias_sigma_m_per_s2 = 0.2;
 };

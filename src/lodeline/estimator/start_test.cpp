@@ -26,7 +26,7 @@ TEST(StartPrior, HoldsTheStateWithTheStatedSigmas) {
   NavigationState state;
   state.velocity_W = Vec3(1, 2, 3);
   frame.setState(state);
-  const Prior prior = startPrior(frame, options, 0.07, false);
+  const Prior prior = startPrior(frame, options, 0.07);
   ASSERT_EQ(prior.blocks.size(), 2u);
   EXPECT_EQ(prior.blocks[0].value, frame.pose.data());
   EXPECT_EQ(prior.blocks[1].value, frame.motion.data());
@@ -39,17 +39,10 @@ TEST(StartPrior, HoldsTheStateWithTheStatedSigmas) {
   EXPECT_LT((sigmasOf(prior) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(StartPrior, IsSurerOfTheVelocityWhenStill) {
-  const InitialStateOptions options;
-  Frame frame;
-  EXPECT_NEAR(sigmasOf(startPrior(frame, options, 0.07, true))[6], options.velocity_sigma_still_m_per_s,
-              1e-12);
-}
-
 TEST(StartPrior, NeverBelievesTheTiltTooMuch) {
   const InitialStateOptions options;
   Frame frame;
-  EXPECT_NEAR(sigmasOf(startPrior(frame, options, 1e-9, true))[3], options.tilt_sigma_min_rad, 1e-12);
+  EXPECT_NEAR(sigmasOf(startPrior(frame, options, 1e-9))[3], options.tilt_sigma_min_rad, 1e-12);
 }
 
 // A rig at rest whose accelerometer has a bias, levelled by what that reads.
@@ -62,7 +55,7 @@ TEST(StartPrior, TiltAndAccelerometerBiasAnswerForEachOther) {
   state.world_from_body.rotation = levelWithZeroYaw(force_B.normalized());
   frame.setState(state);
   InitialStateOptions options;
-  Prior prior = startPrior(frame, options, 0.01, true);
+  Prior prior = startPrior(frame, options, 0.01);
   tieTiltToAccelerometerBias(frame, kStandardGravity, &prior);
 
   const Eigen::MatrixXd covariance = (prior.sqrt_information.transpose() * prior.sqrt_information).inverse();
@@ -90,7 +83,7 @@ TEST(StartPrior, TiltAndAccelerometerBiasAnswerForEachOther) {
   state.accelerometer_bias_B.setZero();
   added->setState(state);
   Frame& first = window.add(std::move(added));
-  Prior turned = startPrior(first, options, 0.01, true);
+  Prior turned = startPrior(first, options, 0.01);
   tieTiltToAccelerometerBias(first, kStandardGravity, &turned);
   turnWorld(1.2, 0.3, &window, &turned);
   state = first.state();

@@ -52,7 +52,7 @@ Prior TestWindow::fill() {
   TestScene scene(scene_options);
   while (const auto frame = scene.next()) add(*frame);
   createLandmarks(window, factors, options.landmark);
-  return startPrior(*window.frames().front(), options.initial_state, 0.05, false);
+  return startPrior(*window.frames().front(), options.initial_state, 0.05);
 }
 
 void TestWindow::addSighting(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera,

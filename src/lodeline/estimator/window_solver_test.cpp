@@ -29,7 +29,7 @@ void fill(TestWindow& test, double pixel_sigma_px) {
 TEST(WindowSolver, FindsBackToTheTruth) {
   TestWindow test(2);
   fill(test, 0.1);
-  const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05, false);
+  const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
   std::vector<Rigid3> truth;
   for (const auto& frame : test.window.frames()) truth.push_back(frame->worldFromBody());
   test.disturb(0.02, 5);
@@ -47,7 +47,7 @@ TEST(WindowSolver, FindsBackToTheTruth) {
 TEST(WindowSolver, StaysWhereItIsAtTheMinimum) {
   TestWindow test(2);
   fill(test, 0.5);
-  const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05, false);
+  const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
   solveWindow(test.window, prior, test.factors, {100, 1e-14});
   const Rigid3 before = test.window.newest().worldFromBody();
   const SolveSummary again = solveWindow(test.window, prior, test.factors, {10, 1e-9});
@@ -58,7 +58,7 @@ TEST(WindowSolver, StaysWhereItIsAtTheMinimum) {
 TEST(WindowSolver, CovarianceEqualsTheDenseInverse) {
   TestWindow test(2);
   fill(test, 0.5);
-  const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05, false);
+  const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
   const auto covariance = newestCovariance(test.window, prior, test.factors);
   const DenseSystem dense = denseSystem(test.window, prior, test.factors);
   const Reduced reduced = denseSchur(dense.hessian, dense.gradient, dense.frame_rows);
