@@ -297,7 +297,7 @@ void Estimator::optimize(FrameEstimate* estimate) {
   std::vector<SightingError> errors;
   removeOutliers(window_, update.errors_sigmas, options_.landmark, &errors);
   // As long as the scale is unknown, small errors do not mean that the poses are right.
-  if (is_settled_) adaptRobustLosses(window_, errors, options_.solver);
+  if (is_settled_ || scale_is_given_) adaptRobustLosses(window_, errors, options_.solver);
 }
 
 void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
