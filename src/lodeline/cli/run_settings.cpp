@@ -55,6 +55,8 @@ void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOpt
   settings->bind("inertial.calibrated_below_rad_per_s_sqrtHz",
                  &calibration->calibrated_below_rad_per_s_sqrtHz,
                  "white noise of a gyroscope below which its axes are believed");
+  settings->bind("inertial.uncalibrated_sigma", &calibration->uncalibrated_sigma,
+                 "of the axes of an IMU above that, which was perhaps never calibrated; in what is claimed");
   settings->bind("inertial.noise_inflation", &options->noise_inflation,
                  "factor on all noise densities of the IMU's calibration");
   settings->bind("inertial.unresolved_share", &options->motion_noise.unresolved_share,

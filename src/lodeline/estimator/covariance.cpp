@@ -1,6 +1,7 @@
 #include "lodeline/estimator/covariance.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -74,6 +75,24 @@ Eigen::MatrixXd JointCovariance::between(const double* rows, const double* colum
   const auto& [row, height] = offsets_.at(rows);
   const auto& [column, width] = offsets_.at(columns);
   return matrix_.block(row, column, height, width);
+}
+
+Eigen::Matrix<double, 15, 15> JointCovariance::newestWithout(const double* block,
+                                                             const Eigen::MatrixXd& information) const {
+  const auto& [offset, size] = offsets_.at(block);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> told(information);
+  const double least = 1e-12 * told.eigenvalues().cwiseAbs().maxCoeff();
+  Eigen::Matrix<double, 15, 15> without = newest();
+  const int count = static_cast<int>((told.eigenvalues().array() > least).count());
+  if (count == 0) return without;
+  // (P^-1 - V J V^T)^-1 by Woodbury's identity.
+  const Eigen::MatrixXd directions = told.eigenvectors().rightCols(count);
+  const Eigen::MatrixXd across = matrix_.block(0, offset, 15, size) * directions;
+  const Eigen::MatrixXd rest =
+      Eigen::MatrixXd(told.eigenvalues().tail(count).cwiseInverse().asDiagonal()) -
+      directions.transpose() * matrix_.block(offset, offset, size, size) * directions;
+  without += across * rest.ldlt().solve(across.transpose());
+  return 0.5 * (without + without.transpose());
 }
 
 JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors) {

@@ -98,8 +98,12 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   startAgainAfterDarkness(estimate);
   shortenWindow(estimate);
   unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
-  unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma()}, &estimate.covariance);
+  unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
+                     estimate.gyroscope_axes && !estimate.magnetometer.field_W},
+                    &estimate.covariance);
   addHeadingError(estimate.magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
+  estimate.magnetometer.heading_sigma_rad =
+      std::hypot(std::sqrt(estimate.covariance(5, 5)), estimate.magnetometer.declination_sigma_rad);
   return estimate;
 }
 
@@ -276,7 +280,7 @@ void Estimator::startMagnetometer() {
 }
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
-  estimate->covariance = covariance.newest();
+  estimate->covariance = claimedCovariance(covariance, window_, factors_, options_.imu_axes);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
 }

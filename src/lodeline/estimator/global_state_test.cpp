@@ -100,6 +100,21 @@ TEST_F(GlobalStateTest, KeepsItsCovarianceAndCorrelationThroughMarginalisation) 
       << "nothing is coupled here";
 }
 
+TEST_F(GlobalStateTest, WhatItWasToldCanBeTakenBack) {
+  vector_->is_correlation_wanted = true;
+  constexpr double kMore = 3.0;
+  Prior told = coupledPrior();
+  told.sqrt_information.block<3, 3>(15, 15) *= kMore;
+  const auto with = jointCovariance(test_.window, told, test_.factors);
+  const auto without = jointCovariance(test_.window, coupledPrior(), test_.factors);
+  const Mat3 information = (kMore * kMore - 1.0) * 1e12 * Mat3::Identity();
+  EXPECT_LT(relativeDifference(with.newestWithout(vector_->value.data(), information), without.newest()),
+            1e-6);
+  EXPECT_GT(relativeDifference(with.newest(), without.newest()), 0.01) << "it told nothing";
+  EXPECT_LT(relativeDifference(with.newestWithout(vector_->value.data(), -information), with.newest()),
+            1e-12);
+}
+
 TEST_F(GlobalStateTest, WalksWhileFramesAreMarginalised) {
   vector_->walk_per_sqrt_s = 2e-6;
   const std::vector<const double*> both = {first().pose.data(), vector_->value.data()};

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/window.h"
 #include "lodeline/sensors/rig.h"
@@ -16,5 +17,13 @@ void addInertialStates(Window& window, const ImuNoise& noise, const ImuAxesOptio
 /// Null where the axes are taken as calibrated.
 GlobalState* gyroscopeAxesState(const Window& window);
 std::optional<GyroscopeAxes> gyroscopeAxes(const Window& window);
+
+/// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows. Of an
+/// IMU whose gyroscope's axes are estimated nobody knows whether its maker has calibrated it
+/// (ImuAxesOptions:: uncalibrated_sigma). The estimate takes it for calibrated until turns tell otherwise,
+/// and would claim as much of the first turns. No state stands for the accelerometer's axes: what it takes
+/// for up is as wrong as they are.
+Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
+                                                const FactorMaker& factors, const ImuAxesOptions& options);
 
 }  // namespace lodeline

@@ -20,17 +20,18 @@ TestSceneOptions sceneOptions(uint64_t seed) {
 
 struct Outcome {
   FrameEstimate last;
+  double first_heading_variance_rad2 = 0.0;  ///< claimed after 3 s
   /// What the rotation's error has changed by since the middle of the scene, root mean square.
   double drift_rad = 0.0;
 };
 
 /// A scene seen with a gyroscope whose true rates are (I + D) times what it reads, D column by column.
-Outcome runWith(const GyroscopeAxes& axes, double sigma, uint64_t seed = 1) {
+Outcome runWith(const GyroscopeAxes& axes, double sigma, uint64_t seed = 1, double uncalibrated_sigma = 0.0) {
   const Mat3 reading_from_true = (Mat3::Identity() + axes.reshaped(3, 3)).inverse();
   const TestSceneOptions scene_options = sceneOptions(seed);
   TestScene scene(scene_options);
   EstimatorOptions options = honestOptions(scene_options);
-  options.imu_axes = {sigma, 0.0};
+  options.imu_axes = {sigma, 0.0, uncalibrated_sigma};
   ComparedEstimator estimator(scene, options);
   Outcome outcome;
   std::optional<Vec3> error_before;
@@ -41,6 +42,7 @@ Outcome runWith(const GyroscopeAxes& axes, double sigma, uint64_t seed = 1) {
       reading.angular_velocity_B = reading_from_true * reading.angular_velocity_B;
     const Comparison compared = estimator.add(*frame);
     outcome.last = compared.estimate;
+    if (compared.time_s < 3.0) outcome.first_heading_variance_rad2 = compared.estimate.covariance(5, 5);
     if (compared.time_s < 0.5 * scene_options.duration_s) continue;
     const Vec3 error = compared.error.tail<3>();
     error_before = error_before.value_or(error);
@@ -83,6 +85,22 @@ TEST(InertialStates, AreBelievedOfAQuietGyroscope) {
   addInertialStates(loud, noise, options);
   ASSERT_TRUE(gyroscopeAxes(loud));
   EXPECT_TRUE(gyroscopeAxes(loud)->isZero());
+}
+
+TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
+  constexpr double kUncalibrated = 0.007;
+  const Outcome taken_for_calibrated = runWith(GyroscopeAxes::Zero(), 0.001);
+  const Outcome in_doubt = runWith(GyroscopeAxes::Zero(), 0.001, 1, kUncalibrated);
+  const FrameEstimate& believed = taken_for_calibrated.last;
+  const FrameEstimate& doubted = in_doubt.last;
+  EXPECT_EQ(doubted.state.world_from_body.translation, believed.state.world_from_body.translation);
+  for (int axis = 0; axis < 15; ++axis)
+    EXPECT_GE(doubted.covariance(axis, axis), believed.covariance(axis, axis)) << axis;
+  EXPECT_GT(doubted.covariance(3, 3), std::pow(kUncalibrated, 2));
+  EXPECT_GT(doubted.covariance(4, 4), std::pow(kUncalibrated, 2));
+  EXPECT_GT(in_doubt.first_heading_variance_rad2, 1.02 * taken_for_calibrated.first_heading_variance_rad2);
+  EXPECT_LT(doubted.covariance(5, 5), 1.02 * believed.covariance(5, 5)) << "turns have told by now";
+  EXPECT_EQ(doubted.magnetometer.heading_sigma_rad, std::sqrt(doubted.covariance(5, 5)));
 }
 
 TEST(InertialStates, StayNearRightAxes) {

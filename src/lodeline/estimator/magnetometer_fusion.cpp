@@ -355,19 +355,14 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   MagnetometerEstimate estimate;
   estimate.status = status_;
   estimate.heading_reference = heading_reference_;
-  if (!covariance_.empty()) {
-    const double declination_sigma_rad =
-        heading_reference_ == HeadingReference::True ? options_.magnetometer.declination_sigma_rad : 0.0;
-    estimate.heading_sigma_rad =
-        std::hypot(std::sqrt(std::max(0.0, covariance_.newest()(5, 5))), declination_sigma_rad);
-  }
+  if (heading_reference_ == HeadingReference::True)
+    estimate.declination_sigma_rad = options_.magnetometer.declination_sigma_rad;
   const MagnetometerStates states(window);
   if (states.field != nullptr) {
     if (!calibration_.is_calibrated) {
       const Vec3 field_W = states.field_W();
       estimate.axes_sigma_rad = std::min(std::numbers::pi, options_.magnetometer.uncalibrated_axes_sigma *
                                                                field_W.norm() / field_W.head<2>().norm());
-      estimate.heading_sigma_rad = std::hypot(estimate.heading_sigma_rad, estimate.axes_sigma_rad);
     }
     estimate.field_W = states.field_W();
     estimate.offset_B = states.offset_B();

@@ -23,8 +23,9 @@ namespace lodeline {
 struct MagnetometerEstimate {
   MagnetometerStatus status = MagnetometerStatus::Off;
   HeadingReference heading_reference = HeadingReference::Start;
-  /// Of the heading against that reference, rad.
+  /// Of the heading against that reference, rad: as the frame's covariance says, and the declination's.
   double heading_sigma_rad = 0.0;
+  double declination_sigma_rad = 0.0;
   /// Part of it that the window's covariance has not: of the axes of a magnetometer that was never
   /// calibrated.
   double axes_sigma_rad = 0.0;

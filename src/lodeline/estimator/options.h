@@ -118,6 +118,10 @@ struct ImuAxesOptions {
   /// Makers calibrate the axes of their better sensors, to less than vision's own error in turns: those of a
   /// gyroscope with less white noise than this are believed.
   double calibrated_below_rad_per_s_sqrtHz = 1.2e-4;
+  /// What is claimed of the axes of an IMU above that, which may never have been calibrated: of the
+  /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
+  /// of others.
+  double uncalibrated_sigma = 0.007;
 };
 
 /// When a rig counts as resting, see RestWatch.

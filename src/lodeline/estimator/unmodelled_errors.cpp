@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lodeline/geometry/so3.h"
 
@@ -18,11 +19,15 @@ void UnmodelledErrors::follow(const Rigid3& world_from_body, std::optional<doubl
   if (newest_) {
     const Rigid3 step = newest_->inverse() * world_from_body;
     const Mat3 world_from_newest = newest_->rotation.toRotationMatrix();
-    const Vec3 turn = scene_distance_m_ * so3::log(step.rotation);
+    const Vec3 turn = so3::log(step.rotation);
     for (int k = 0; k < 3; ++k) {
       by_way_[k] += step.translation[k] * world_from_newest;
-      by_turn_[k] += turn[k] * world_from_newest;
+      by_turn_[k] += scene_distance_m_ * turn[k] * world_from_newest;
     }
+    const Vec3 step_W = world_from_body.translation - newest_->translation;
+    x_ -= step_W.y() * heading_;
+    y_ += step_W.x() * heading_;
+    heading_ += world_from_newest.row(2).transpose() * turn.transpose();
   }
   newest_ = world_from_body;
 }
@@ -34,6 +39,16 @@ Mat3 UnmodelledErrors::byTheWay() const {
     covariance += kWayPerTurnSigma * kWayPerTurnSigma * by_turn_[k] * by_turn_[k].transpose();
   }
   return covariance;
+}
+
+void UnmodelledErrors::addHeading(Eigen::Matrix<double, 15, 15>* covariance) const {
+  const std::array<std::pair<int, const Mat3*>, 3> moved{{{0, &x_}, {1, &y_}, {5, &heading_}}};
+  for (const auto& [row, by_row] : moved) {
+    for (const auto& [column, by_column] : moved) {
+      (*covariance)(row, column) +=
+          kTurnPerTurnSigma * kTurnPerTurnSigma * by_row->cwiseProduct(*by_column).sum();
+    }
+  }
 }
 
 void UnmodelledErrors::addTo(const EstimateSources& sources,
@@ -53,6 +68,7 @@ void UnmodelledErrors::addTo(const EstimateSources& sources,
     added(2, 2) += height_sigma_m * height_sigma_m;
   }
   covariance->topLeftCorner<3, 3>() += added;
+  if (sources.is_heading_by_images) addHeading(covariance);
 }
 
 void addHeadingError(double sigma_rad, const NavigationState& state,

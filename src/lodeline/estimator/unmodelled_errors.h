@@ -22,6 +22,9 @@ constexpr double kOneCameraScaleSigma = 0.01;
 /// former and a third of the latter.
 constexpr double kWayPerWaySigma = 0.003;
 constexpr double kWayPerTurnSigma = 0.005;
+/// The same lens sees a turn w as w + E w. A calibrated gyroscope knows better; where its axes are estimated
+/// as well, the turn, and the heading since, are as wrong as that. One sigma of each entry.
+constexpr double kTurnPerTurnSigma = 0.004;
 /// With a pressure sensor these errors move the height by no more than this; 1 sigma.
 constexpr double kHeldHeightSigma_m = 0.05;
 
@@ -31,6 +34,8 @@ struct EstimateSources {
   /// Of the ratio of densities by which a pressure sensor tells the height, beyond what the covariance has of
   /// it; nothing without such a sensor.
   std::optional<double> density_sigma = std::nullopt;
+  /// By neither a calibrated gyroscope nor a magnetometer.
+  bool is_heading_by_images = false;
 };
 
 /// Of the density ratio, beyond what the covariance says; see DepthOptions::least_density_sigma.
@@ -53,6 +58,8 @@ class UnmodelledErrors {
  private:
   /// Of p_W by the errors of the way: sum over the entries of both matrices.
   Mat3 byTheWay() const;
+  /// Of the position and the heading by the errors of turns: sum over the entries of E.
+  void addHeading(Eigen::Matrix<double, 15, 15>* covariance) const;
 
   EstimatorOptions options_;
   std::optional<Rigid3> newest_;
@@ -60,6 +67,9 @@ class UnmodelledErrors {
   /// d p_W / d C and d p_W / d D, one column of C or D in each: sums of R v_k and of R d w_k.
   std::array<Mat3, 3> by_way_{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
   std::array<Mat3, 3> by_turn_{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
+  /// Derivatives by the entries of E of the heading, of the way's x and of its y in the world: sum of
+  /// (R^T e_z) w^T, and of what that has made of each step since.
+  Mat3 heading_ = Mat3::Zero(), x_ = Mat3::Zero(), y_ = Mat3::Zero();
 };
 
 /// Adds an error of the whole world's heading about its origin, one sigma, to the covariance of a state as

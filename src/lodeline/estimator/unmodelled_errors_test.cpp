@@ -76,6 +76,29 @@ TEST(UnmodelledErrors, OfADirectionCancelOnTheWayBackOnlyWhereTheRigTurnsRound) 
   EXPECT_NEAR(covariance.topLeftCorner(2, 2).norm(), 0.0, 1e-9);
 }
 
+TEST(UnmodelledErrors, OfTurnsSeenByImagesAloneBendTheWaySince) {
+  constexpr EstimateSources kByImages{.is_scale_given = true, .is_heading_by_images = true};
+  constexpr double kTurn = 2.0, kWay = 10.0;
+  UnmodelledErrors errors({});
+  errors.follow(heading(0.0, Vec3::Zero()), 0.0);
+  swim(heading(0.0, Vec3::Zero()), heading(kTurn, Vec3::Zero()), 0.0, &errors);
+  const Vec3 end = kWay * Vec3::UnitX();
+  swim(heading(kTurn, Vec3::Zero()), heading(kTurn, end), 0.0, &errors);
+  Mat15 covariance = Mat15::Zero(), by_way = Mat15::Zero();
+  errors.addTo(kByImages, &covariance);
+  errors.addTo(kTwoCameras, &by_way);
+  covariance -= by_way;
+  const double sigma_rad = kTurnPerTurnSigma * kTurn;
+  EXPECT_NEAR(covariance(5, 5), sigma_rad * sigma_rad, 1e-9);
+  EXPECT_NEAR(covariance(1, 1), std::pow(sigma_rad * kWay, 2), 1e-9);
+  EXPECT_NEAR(covariance(1, 5), sigma_rad * sigma_rad * kWay, 1e-9);
+  EXPECT_NEAR(covariance(0, 0), 0.0, 1e-12);
+  swim(heading(kTurn, end), heading(0.0, end), 0.0, &errors);
+  covariance.setZero();
+  errors.addTo(kByImages, &covariance);
+  EXPECT_NEAR(covariance(5, 5), 0.0, 1e-9) << "what turns back has the same error once more";
+}
+
 TEST(UnmodelledErrors, OfOneCameraCountItsScaleToo) {
   UnmodelledErrors errors({});
   errors.follow(heading(0.0, kPosition), 2.0);

@@ -35,11 +35,15 @@ class FrameMaker {
     refined.covariance = covarianceAt(share);
     refined.camera_corrections = cameraCorrections(problem_.window());
     refined.gyroscope_axes = gyroscopeAxes(problem_.window());
-    describeMagnetometer(forward, &refined);
+    describeMagnetometer(&refined);
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
-    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma()}, &refined.covariance);
+    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
+                       refined.gyroscope_axes && !refined.magnetometer.field_W},
+                      &refined.covariance);
     addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
+    refined.magnetometer.heading_sigma_rad =
+        std::hypot(std::sqrt(refined.covariance(5, 5)), refined.magnetometer.declination_sigma_rad);
     return refined;
   }
 
@@ -69,13 +73,7 @@ class FrameMaker {
     return (1.0 - share) * covariances_[state_] + share * covariances_[state_ + 1];
   }
 
-  void describeMagnetometer(const FrameEstimate& forward, FrameEstimate* refined) const {
-    const double forward_variance =
-        forward.magnetometer.heading_sigma_rad * forward.magnetometer.heading_sigma_rad;
-    // The declination's part stays.
-    const double beside = std::max(0.0, forward_variance - forward.covariance(5, 5));
-    refined->magnetometer.heading_sigma_rad =
-        std::hypot(std::sqrt(refined->covariance(5, 5) + beside), forward.magnetometer.axes_sigma_rad);
+  void describeMagnetometer(FrameEstimate* refined) const {
     const MagnetometerStates states(problem_.window());
     if (states.field == nullptr || !refined->magnetometer.field_W) return;
     refined->magnetometer.field_W = states.field_W();
