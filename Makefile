@@ -27,6 +27,7 @@ experiments: build
 # All tests; those that need recordings say SKIPPED where these are missing.
 test: everything check-format
 	ctest --test-dir build/release --output-on-failure -j2
+	@grep -A1 ': Skipped$$' build/release/Testing/Temporary/LastTest.log || true
 
 # The fast tests of these layers under address and undefined-behaviour sanitizers: those that read what others
 # wrote, and those that the rest computes with. The layers from the estimator up take longer to build so than all of
