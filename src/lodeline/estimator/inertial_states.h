@@ -20,9 +20,9 @@ std::optional<GyroscopeAxes> gyroscopeAxes(const Window& window);
 
 /// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows. Of an
 /// IMU whose gyroscope's axes are estimated nobody knows whether its maker has calibrated it
-/// (ImuAxesOptions:: uncalibrated_sigma). The estimate takes it for calibrated until turns tell otherwise,
-/// and would claim as much of the first turns. No state stands for the accelerometer's axes: what it takes
-/// for up is as wrong as they are.
+/// (uncalibrated_sigma of the options). The estimate takes it for calibrated until turns tell otherwise, and
+/// would claim as much of the first turns. No state stands for the accelerometer's axes: what it takes for up
+/// is as wrong as they are.
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
                                                 const FactorMaker& factors, const ImuAxesOptions& options);
 

@@ -38,8 +38,8 @@ struct ClaimCheck {
 /// Errors against a reference from equal first positions and, with HeadingBasis::Start, first headings: what
 /// sigmas of a run are about. They are turned to the axes of the estimate's world, where a way's length and
 /// its direction may be known very differently. The first pair, which has no error then, does not count.
-/// Nothing to judge
-/// (`poses` is 0) without claims or without times in the reference; throws InputError as associate() does.
+/// Nothing to judge (`poses` is 0) without claims or without times in the reference; throws InputError as
+/// associate() does.
 ClaimCheck checkClaims(const RunClaims& claims, const Trajectory& reference,
                        const AssociationOptions& association);
 
