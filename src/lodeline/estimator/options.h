@@ -120,7 +120,7 @@ struct ImuAxesOptions {
   double calibrated_below_rad_per_s_sqrtHz = 1.2e-4;
   /// What is claimed of the axes of an IMU above that, which may never have been calibrated: of the
   /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
-  /// of others.
+  /// of others. Relative, and rad.
   double uncalibrated_sigma = 0.007;
 };
 
