@@ -1,5 +1,7 @@
 #include "lodeline/estimator/inertial_states.h"
 
+#include <Eigen/Eigenvalues>
+
 #include "lodeline/factors/inertial_factor.h"
 
 namespace lodeline {
@@ -27,17 +29,32 @@ std::optional<GyroscopeAxes> gyroscopeAxes(const Window& window) {
   return GyroscopeAxes(state->value.data());
 }
 
-Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
-                                                const FactorMaker& factors, const ImuAxesOptions& options) {
+std::optional<Eigen::MatrixXd> unclaimedInformation(const Window& window, const FactorMaker& factors,
+                                                    const ImuAxesOptions& options) {
   const auto belief = factors.gyroscopeAxes(window);
-  if (!belief || options.uncalibrated_sigma <= 0.0) return known.newest();
-  const double variance = options.uncalibrated_sigma * options.uncalibrated_sigma;
+  if (!belief || options.uncalibrated_sigma <= 0.0) return std::nullopt;
   NormalEquations believed;
   believed.add(*belief);
-  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(kGyroscopeAxesSize, kGyroscopeAxesSize) / variance;
+  Eigen::MatrixXd information = believed.hessian();
+  information.diagonal().array() -= 1.0 / (options.uncalibrated_sigma * options.uncalibrated_sigma);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(information);
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         parts.eigenvectors().transpose();
+}
+
+void addDoubtAboutUp(const Window& window, const ImuAxesOptions& options,
+                     Eigen::Matrix<double, 15, 15>* covariance) {
+  if (!gyroscopeAxesState(window)) return;
+  covariance->diagonal().segment<2>(3).array() += options.uncalibrated_sigma * options.uncalibrated_sigma;
+}
+
+Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
+                                                const FactorMaker& factors, const ImuAxesOptions& options) {
+  const auto unclaimed = unclaimedInformation(window, factors, options);
+  if (!unclaimed) return known.newest();
   Eigen::Matrix<double, 15, 15> claimed =
-      known.newestWithout(belief->blocks.front(), believed.hessian() - left);
-  claimed.diagonal().segment<2>(3).array() += variance;
+      known.newestWithout(gyroscopeAxesState(window)->value.data(), *unclaimed);
+  addDoubtAboutUp(window, options, &claimed);
   return claimed;
 }
 

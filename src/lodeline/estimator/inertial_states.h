@@ -18,11 +18,20 @@ void addInertialStates(Window& window, const ImuNoise& noise, const ImuAxesOptio
 GlobalState* gyroscopeAxesState(const Window& window);
 std::optional<GyroscopeAxes> gyroscopeAxes(const Window& window);
 
-/// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows. Of an
-/// IMU whose gyroscope's axes are estimated nobody knows whether its maker has calibrated it
+/// Of an IMU whose gyroscope's axes are estimated nobody knows whether its maker has calibrated it
 /// (uncalibrated_sigma of the options). The estimate takes it for calibrated until turns tell otherwise, and
-/// would claim as much of the first turns. No state stands for the accelerometer's axes: what it takes for up
-/// is as wrong as they are.
+/// would claim as much of the first turns. What is claimed is less:
+///
+/// Information of those axes (9 x 9, positive semidefinite) that is used and not claimed; none where the axes
+/// are believed.
+std::optional<Eigen::MatrixXd> unclaimedInformation(const Window& window, const FactorMaker& factors,
+                                                    const ImuAxesOptions& options);
+/// Adds to a state's covariance what no state stands for, the accelerometer's axes: what it takes for up is
+/// as wrong as they are.
+void addDoubtAboutUp(const Window& window, const ImuAxesOptions& options,
+                     Eigen::Matrix<double, 15, 15>* covariance);
+
+/// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows.
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
                                                 const FactorMaker& factors, const ImuAxesOptions& options);
 

@@ -1,7 +1,9 @@
 #include "lodeline/estimator/scale_budget.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/landmarks.h"
 
 namespace lodeline {
@@ -13,8 +15,8 @@ constexpr double kMemory_s = 30.0;
 constexpr double kUnstated = 1e-3;
 
 /// What is left of some information when an unstated error of the scale is added.
-double trusted(double information) {
-  return information > 0.0 ? 1.0 / (1.0 / information + kUnstated * kUnstated) : 0.0;
+double trusted(double information, double unstated) {
+  return information > 0.0 ? 1.0 / (1.0 / information + unstated * unstated) : 0.0;
 }
 
 }  // namespace
@@ -34,7 +36,7 @@ void ScaleBudget::Scatter::add(const Vec3& value, double weight) {
 double ScaleBudget::Scatter::sum() const { return squares_; }
 
 ScaleBudget::ScaleBudget(const Rig& rig, const EstimatorOptions& options)
-    : calibration_(options.camera_calibration) {
+    : calibration_(options.camera_calibration), imu_axes_(options.imu_axes) {
   if (rig.cameras.size() < 2) return;
   baseline_m_ =
       (rig.cameras[1].body_from_camera.translation - rig.cameras[0].body_from_camera.translation).norm();
@@ -60,7 +62,9 @@ ScaleInformation ScaleBudget::add(const Window& window, double density_sigma) {
                  1.0 / std::pow(newest.depth->sigma_m, 2));
   ScaleInformation information;
   information.stereo = stereoInformation(window);
-  information.accelerometer = trusted(accelerations_.sum());
+  const bool is_calibrated = !gyroscopeAxesState(window);
+  information.accelerometer = trusted(
+      accelerations_.sum(), is_calibrated ? kUnstated : std::max(kUnstated, imu_axes_.uncalibrated_sigma));
   if (heights_.sum() > 0.0) information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma * density_sigma);
   return information;
 }

@@ -23,7 +23,8 @@ struct ScaleInformation {
 ///   (sigma_rotation d / b)^2 at the mean distance d of what both cameras see (a turn of one camera moves all
 ///   points);
 /// - accelerometer: changes of the acceleration against the noise of its integral; what is constant counts as
-///   bias and tilt; never better than the 0.1 % that files leave open;
+///   bias and tilt; never better than the 0.1 % that files leave open, nor than uncalibrated_sigma of an IMU
+///   that was perhaps never calibrated (estimator/inertial_states.h);
 /// - depth: changes of the height against the readings' sigma, and the water's density.
 class ScaleBudget {
  public:
@@ -52,6 +53,7 @@ class ScaleBudget {
 
   std::optional<double> baseline_m_;
   CameraCalibrationOptions calibration_;
+  ImuAxesOptions imu_axes_;
   Scatter accelerations_, heights_;
   std::optional<Time> last_;
 };

@@ -2,15 +2,23 @@
 
 #include <gtest/gtest.h>
 
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/test_window.h"
 
 namespace lodeline {
 namespace {
 
+/// Of an IMU that its maker has calibrated, or perhaps not.
+EstimatorOptions optionsOf(bool is_calibrated) {
+  EstimatorOptions options;
+  options.imu_axes.calibrated_below_rad_per_s_sqrtHz = is_calibrated ? 1.0 : 0.0;
+  return options;
+}
+
 /// Information after the frames of a scene, at their true states.
 ScaleInformation informationAfter(int cameras, double liveliness, double depth_sigma_m, double sink_m_per_s,
-                                  const EstimatorOptions& options = {}) {
+                                  const EstimatorOptions& options = optionsOf(true)) {
   TestSceneOptions scene_options;
   scene_options.cameras = cameras;
   scene_options.liveliness = liveliness;
@@ -20,6 +28,7 @@ ScaleInformation informationAfter(int cameras, double liveliness, double depth_s
   scene_options.drift_m_per_s = Vec3(0.0, 0.0, -sink_m_per_s);
   TestScene scene(scene_options);
   TestWindow test(cameras);
+  addInertialStates(test.window, test.rig.imu.noise, options.imu_axes);
   ScaleBudget budget(test.rig, options);
   ScaleInformation information;
   while (const auto simulated = scene.next()) {
@@ -46,8 +55,13 @@ TEST(ScaleBudget, AccelerationCountsWithItsSquare) {
 }
 
 TEST(ScaleBudget, NoAccelerometerIsTrustedBeyondItsScale) {
-  EXPECT_LT(informationAfter(1, 50.0, 0.0, 0.0).accelerometer, 1.0 / (1e-3 * 1e-3));
-  EXPECT_GT(informationAfter(1, 50.0, 0.0, 0.0).accelerometer, 0.5 / (1e-3 * 1e-3));
+  for (const bool is_calibrated : {true, false}) {
+    const EstimatorOptions options = optionsOf(is_calibrated);
+    const double sigma = is_calibrated ? 1e-3 : options.imu_axes.uncalibrated_sigma;
+    const double information = informationAfter(1, 50.0, 0.0, 0.0, options).accelerometer;
+    EXPECT_LT(information, 1.0 / (sigma * sigma)) << is_calibrated;
+    EXPECT_GT(information, 0.5 / (sigma * sigma)) << is_calibrated;
+  }
 }
 
 TEST(ScaleBudget, StereoIsAsGoodAsItsCalibration) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/robust_loss.h"
 #include "lodeline/refinement/batch_structure.h"
 
@@ -111,6 +112,13 @@ void BatchProblem::linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient) 
     local.addEliminated(factors_.landmark(window_, track));
     scatter(local, hessian, gradient);
   }
+}
+
+void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
+  const auto unclaimed = unclaimedInformation(window_, factors_, options_.imu_axes);
+  if (!unclaimed) return;
+  const int row = rowOf(gyroscopeAxesState(window_)->value.data());
+  hessian->block(row, row) -= *unclaimed;
 }
 
 void BatchProblem::step(const Eigen::VectorXd& step) {

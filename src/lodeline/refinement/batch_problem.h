@@ -37,6 +37,9 @@ class BatchProblem {
   double cost();
   /// The Gauss-Newton system H d = -g, landmarks eliminated.
   void linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient);
+  /// Takes from the Hessian what is known and not claimed (estimator/inertial_states.h), before it is
+  /// inverted for covariances.
+  void subtractUnclaimed(SkylineMatrix* hessian) const;
   /// Moves everything by a step of that system; no value may have moved since.
   void step(const Eigen::VectorXd& step);
   /// All values, to go back to.

@@ -130,6 +130,7 @@ Refinement refine(const Rig& rig, const EstimatorOptions& options, const Forward
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
     Eigen::VectorXd gradient;
     problem.linearise(&hessian, &gradient);
+    problem.subtractUnclaimed(&hessian);
     summary.has_covariance = hessian.factorise();
     if (summary.has_covariance) hessian.invert();
   }

@@ -175,6 +175,23 @@ TEST(Refine, LeavesLensesAsTheRunFoundThem) {
   }
 }
 
+// The window claims as little: InertialStates.ClaimLessOfWhatWasPerhapsNeverCalibrated.
+TEST(Refine, ClaimsLessOfWhatWasPerhapsNeverCalibrated) {
+  ForwardRun run(smallScene(2));
+  run.options.imu_axes = {0.001, 0.0, 0.0};
+  const Refinement taken_for_calibrated = run.refined();
+  run.options.imu_axes.uncalibrated_sigma = 0.007;
+  const Refinement in_doubt = run.refined();
+  ASSERT_TRUE(taken_for_calibrated.summary.has_covariance && in_doubt.summary.has_covariance);
+  const FrameEstimate& believed = taken_for_calibrated.frames.back();
+  const FrameEstimate& doubted = in_doubt.frames.back();
+  EXPECT_EQ(doubted.state.world_from_body.translation, believed.state.world_from_body.translation);
+  for (int axis = 0; axis < 15; ++axis)
+    EXPECT_GE(doubted.covariance(axis, axis), believed.covariance(axis, axis)) << axis;
+  EXPECT_NEAR(doubted.covariance(3, 3) - believed.covariance(3, 3), std::pow(0.007, 2), 1e-6);
+  EXPECT_GT(doubted.covariance(5, 5), 1.02 * believed.covariance(5, 5));
+}
+
 TEST(Refine, GivesTheSameBytesAgain) {
   const ForwardRun run(smallScene(2));
   const Refinement first = run.refined(), second = run.refined();

@@ -33,6 +33,7 @@ class FrameMaker {
                                    (problem_.state(state_ + 1).time - begin.time).seconds();
     refined.state = is_state ? begin.state() : between(begin, forward.time, share);
     refined.covariance = covarianceAt(share);
+    addDoubtAboutUp(problem_.window(), options_.imu_axes, &refined.covariance);
     refined.camera_corrections = cameraCorrections(problem_.window());
     refined.gyroscope_axes = gyroscopeAxes(problem_.window());
     describeMagnetometer(&refined);
