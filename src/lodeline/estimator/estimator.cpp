@@ -99,7 +99,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   shortenWindow(estimate);
   unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
   unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
-                     estimate.gyroscope_axes && !estimate.magnetometer.field_W},
+                     estimate.magnetometer.field_W.has_value(), !estimate.gyroscope_axes},
                     &estimate.covariance);
   addHeadingError(estimate.magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
   estimate.magnetometer.heading_sigma_rad =

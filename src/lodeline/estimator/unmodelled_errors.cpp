@@ -41,12 +41,11 @@ Mat3 UnmodelledErrors::byTheWay() const {
   return covariance;
 }
 
-void UnmodelledErrors::addHeading(Eigen::Matrix<double, 15, 15>* covariance) const {
+void UnmodelledErrors::addHeading(double turn_sigma, Eigen::Matrix<double, 15, 15>* covariance) const {
   const std::array<std::pair<int, const Mat3*>, 3> moved{{{0, &x_}, {1, &y_}, {5, &heading_}}};
   for (const auto& [row, by_row] : moved) {
     for (const auto& [column, by_column] : moved) {
-      (*covariance)(row, column) +=
-          kTurnPerTurnSigma * kTurnPerTurnSigma * by_row->cwiseProduct(*by_column).sum();
+      (*covariance)(row, column) += turn_sigma * turn_sigma * by_row->cwiseProduct(*by_column).sum();
     }
   }
 }
@@ -68,7 +67,8 @@ void UnmodelledErrors::addTo(const EstimateSources& sources,
     added(2, 2) += height_sigma_m * height_sigma_m;
   }
   covariance->topLeftCorner<3, 3>() += added;
-  if (sources.is_heading_by_images) addHeading(covariance);
+  if (sources.has_magnetometer) return;
+  addHeading(sources.are_gyroscope_axes_known ? kHeldTurnPerTurnSigma : kTurnPerTurnSigma, covariance);
 }
 
 void addHeadingError(double sigma_rad, const NavigationState& state,

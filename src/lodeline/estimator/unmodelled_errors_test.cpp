@@ -35,8 +35,8 @@ Mat15 added(const UnmodelledErrors& errors, const EstimateSources& sources) {
   return covariance;
 }
 
-constexpr EstimateSources kTwoCameras{.is_scale_given = true};
-constexpr EstimateSources kOneCamera{.is_scale_given = false};
+constexpr EstimateSources kTwoCameras{.is_scale_given = true, .has_magnetometer = true};
+constexpr EstimateSources kOneCamera{.is_scale_given = false, .has_magnetometer = true};
 const Vec3 kPosition(30.0, 40.0, -20.0);
 
 TEST(UnmodelledErrors, OfAStraightWayGrowInProportionToIt) {
@@ -76,8 +76,9 @@ TEST(UnmodelledErrors, OfADirectionCancelOnTheWayBackOnlyWhereTheRigTurnsRound) 
   EXPECT_NEAR(covariance.topLeftCorner(2, 2).norm(), 0.0, 1e-9);
 }
 
-TEST(UnmodelledErrors, OfTurnsSeenByImagesAloneBendTheWaySince) {
-  constexpr EstimateSources kByImages{.is_scale_given = true, .is_heading_by_images = true};
+TEST(UnmodelledErrors, OfTurnsBendTheWaySince) {
+  constexpr EstimateSources kByImages{.is_scale_given = true, .are_gyroscope_axes_known = false};
+  constexpr EstimateSources kByGyroscope{.is_scale_given = true};
   constexpr double kTurn = 2.0, kWay = 10.0;
   UnmodelledErrors errors({});
   errors.follow(heading(0.0, Vec3::Zero()), 0.0);
@@ -90,6 +91,9 @@ TEST(UnmodelledErrors, OfTurnsSeenByImagesAloneBendTheWaySince) {
   covariance -= by_way;
   const double sigma_rad = kTurnPerTurnSigma * kTurn;
   EXPECT_NEAR(covariance(5, 5), sigma_rad * sigma_rad, 1e-9);
+  Mat15 held = Mat15::Zero();
+  errors.addTo(kByGyroscope, &held);
+  EXPECT_NEAR(held(5, 5), std::pow(kHeldTurnPerTurnSigma * kTurn, 2), 1e-9);
   EXPECT_NEAR(covariance(1, 1), std::pow(sigma_rad * kWay, 2), 1e-9);
   EXPECT_NEAR(covariance(1, 5), sigma_rad * sigma_rad * kWay, 1e-9);
   EXPECT_NEAR(covariance(0, 0), 0.0, 1e-12);

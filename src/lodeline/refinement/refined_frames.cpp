@@ -40,7 +40,7 @@ class FrameMaker {
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
     unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
-                       refined.gyroscope_axes && !refined.magnetometer.field_W},
+                       refined.magnetometer.field_W.has_value(), !refined.gyroscope_axes},
                       &refined.covariance);
     addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
     refined.magnetometer.heading_sigma_rad =
