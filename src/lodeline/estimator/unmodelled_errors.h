@@ -24,7 +24,7 @@ constexpr double kWayPerWaySigma = 0.003;
 constexpr double kWayPerTurnSigma = 0.005;
 /// The same lens sees a turn w as w + E w, and the heading since is as wrong. One sigma of each entry: by
 /// images alone, where the gyroscope's axes are estimated as well, and against a gyroscope whose axes are
-/// known, which holds half of it (simulated half turns came out 0.05 to 0.27 % wrong with it).
+/// known, which holds half of it (simulated half turns came out 0.04 to 0.27 % wrong with it).
 constexpr double kTurnPerTurnSigma = 0.004;
 constexpr double kHeldTurnPerTurnSigma = 0.002;
 /// With a pressure sensor these errors move the height by no more than this; 1 sigma.
