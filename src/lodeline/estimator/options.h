@@ -83,7 +83,7 @@ struct LandmarkOptions {
 
 struct SolverOptions {
   int max_iterations = 4;
-  double function_tolerance = 1e-2;   ///< relative change of the cost that ends a frame's iterations
+  double function_tolerance = 3e-2;   ///< relative change of the cost that ends a frame's iterations
   double robust_scale_sigmas = 2.0;   ///< width of the Cauchy loss on reprojection errors, at most...
   double robust_scale_medians = 2.5;  ///< ...and in medians of those of a frame (robust_loss.h)
   bool track_weights = true;          ///< weigh each track by what its own errors say of it (robust_loss.h)

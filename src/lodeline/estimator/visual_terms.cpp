@@ -101,6 +101,7 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::option
     landmarks_.push_back(landmark);
   }
   arrangeColumns();
+  update();
 }
 
 /// Most landmarks are seen by some frames of the window only. With columns in the order of the time that
@@ -124,26 +125,30 @@ void VisualTerms::arrangeColumns() {
   }
 }
 
-Vec2 VisualTerms::residualByFile(const Landmark& landmark, const Sighting& sighting) const {
-  const CameraViews::Relative& seen = values_.relative(landmark.host, sighting.frame, sighting.camera);
-  const Vec3 point_C =
-      seen.rotation * landmark.base.direction(landmark.value) + landmark.value[2] * seen.translation;
-  return directionResidual(*sighting.measurement, point_C, nullptr);
-}
-
-Vec2 VisualTerms::residual(const Landmark& landmark, const Sighting& sighting) const {
-  const Vec2 by_file = residualByFile(landmark, sighting);
-  if (states_.intrinsics.empty()) return by_file;
-  return by_file + lensEffect(*sighting.measurement, by_file, lensOf(sighting.camera)).shift;
-}
-
-double VisualTerms::cost() {
+void VisualTerms::update() {
   values_.update();
+  residuals_.resize(sightings_.size());
+  for (const Landmark& landmark : landmarks_) {
+    const Vec3 direction = landmark.base.direction(landmark.value);
+    const double rho = landmark.value[2];
+    for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
+      const Sighting& sighting = sightings_[i];
+      const CameraViews::Relative& seen = values_.relative(landmark.host, sighting.frame, sighting.camera);
+      const Vec3 point_C = seen.rotation * direction + rho * seen.translation;
+      Residual& residual = residuals_[i];
+      residual.by_file = residual.by_lens = directionResidual(*sighting.measurement, point_C, nullptr);
+      if (states_.intrinsics.empty()) continue;
+      residual.by_lens += lensShift(*sighting.measurement, residual.by_file, lensOf(sighting.camera));
+    }
+  }
+}
+
+double VisualTerms::cost() const {
   double sum = 0.0;
   for (const Landmark& landmark : landmarks_) {
     double of_landmark = 0.0;
     for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
-      const double squared = residual(landmark, sightings_[i]).squaredNorm();
+      const double squared = residuals_[i].by_lens.squaredNorm();
       of_landmark += sightings_[i].scale_squared * std::log1p(squared / sightings_[i].scale_squared);
     }
     sum += landmark.weight * of_landmark;
@@ -151,14 +156,10 @@ double VisualTerms::cost() {
   return 0.5 * sum;
 }
 
-std::vector<double> VisualTerms::errors() {
-  values_.update();
+std::vector<double> VisualTerms::errors() const {
   std::vector<double> errors;
-  errors.reserve(sightings_.size());
-  for (const Landmark& landmark : landmarks_) {
-    for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i)
-      errors.push_back(residual(landmark, sightings_[i]).norm());
-  }
+  errors.reserve(residuals_.size());
+  for (const Residual& residual : residuals_) errors.push_back(residual.by_lens.norm());
   return errors;
 }
 
@@ -169,22 +170,22 @@ std::vector<double*> VisualTerms::landmarks() const {
   return landmarks;
 }
 
-VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const Sighting& sighting) const {
+VisualTerms::Linearised VisualTerms::linearise(const Landmark& landmark, const Sighting& sighting,
+                                               const Residual& residual) const {
   const double rho = landmark.value[2];
   const Vec3 direction = landmark.base.direction(landmark.value);
   const CameraViews::Relative& seen = first_.relative(landmark.host, sighting.frame, sighting.camera);
   Linearised term;
-  Vec2 residual = residualByFile(landmark, sighting);
   Mat23 by_point;
   directionResidual(*sighting.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
   if (!states_.intrinsics.empty()) {
-    const LensEffect lens = lensEffect(*sighting.measurement, residual, lensOf(sighting.camera));
-    residual += lens.shift;
+    const LensEffect lens = lensEffect(*sighting.measurement, residual.by_file, lensOf(sighting.camera));
     by_point = (lens.by_residual * by_point).eval();
     term.by(Columns::kLens) = lens.by_intrinsics;
   }
-  const double weight = std::sqrt(landmark.weight / (1.0 + residual.squaredNorm() / sighting.scale_squared));
-  term.by_nodes.col(Columns::kResidual) = weight * residual;
+  const double weight =
+      std::sqrt(landmark.weight / (1.0 + residual.by_lens.squaredNorm() / sighting.scale_squared));
+  term.by_nodes.col(Columns::kResidual) = weight * residual.by_lens;
   by_point *= weight;
   const Mat23 by_direction = by_point * seen.rotation;
   term.by_landmark << by_direction * landmark.base.tangent_C, by_point * seen.translation;
@@ -212,7 +213,7 @@ void VisualTerms::eliminate(Landmark* of) {
   Vec3 g_landmark = Vec3::Zero();
   for (size_t i = landmark.first_sighting; i < landmark.end_sighting; ++i) {
     const Sighting& sighting = sightings_[i];
-    const Linearised term = linearise(landmark, sighting);
+    const Linearised term = linearise(landmark, sighting, residuals_[i]);
     h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
     g_landmark.noalias() += term.by_landmark.transpose() * term.residual();
     const auto couple = [&](int node, int columns) {
@@ -290,7 +291,6 @@ void VisualTerms::addCalibration(int camera) {
 }
 
 void VisualTerms::addTo(NormalEquations* system) {
-  values_.update();
   first_.update();
   blocks_.update();
   const int rows = 6 * nodes_;

@@ -21,12 +21,14 @@ class VisualTerms {
   /// sightings in that frame alone.
   VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only = {});
 
-  /// At the blocks' present values.
-  double cost();
+  /// Takes the blocks' present values: to be called after they have moved. All of the following is at the
+  /// values taken last, at first those of the construction.
+  void update();
 
-  /// Length of the whitened error of every sighting at the blocks' present values, landmarks in the order of
-  /// their tracks.
-  std::vector<double> errors();
+  double cost() const;
+
+  /// Length of the whitened error of every sighting, landmarks in the order of their tracks.
+  std::vector<double> errors() const;
 
   /// The blocks of the landmarks in that order.
   std::vector<double*> landmarks() const;
@@ -59,9 +61,13 @@ class VisualTerms {
     Eigen::Index column, columns;
     int first_frame, end_frame;
   };
+  /// Of a sighting, by the lens of the calibration file and by the lens as it is estimated.
+  struct Residual {
+    Vec2 by_file, by_lens;
+  };
   struct Linearised;
 
-  Linearised linearise(const Landmark& landmark, const Sighting& sighting) const;
+  Linearised linearise(const Landmark& landmark, const Sighting& sighting, const Residual& residual) const;
   void arrangeColumns();
   void eliminate(Landmark* landmark);
   void subtractEliminated();
@@ -79,9 +85,6 @@ class VisualTerms {
   const double* lensOf(int camera) const {
     return states_.intrinsics[static_cast<size_t>(camera)]->value.data();
   }
-  /// By the lens of the calibration file, and by the lens as it is estimated.
-  Vec2 residualByFile(const Landmark& landmark, const Sighting& sighting) const;
-  Vec2 residual(const Landmark& landmark, const Sighting& sighting) const;
 
   CameraStates states_;
   CameraViews values_;
@@ -93,6 +96,7 @@ class VisualTerms {
   std::vector<Landmark> landmarks_;
   std::vector<Stretch> stretches_;
   std::vector<Sighting> sightings_;
+  std::vector<Residual> residuals_;  ///< of the sightings
   // Nodes are what landmarks are eliminated against, six coordinates each: the camera poses of the frames in
   // the window's order, then the extrinsics of further cameras, then the lenses where they are estimated.
   std::vector<HostProducts> by_host_;                ///< by indexOf()

@@ -125,6 +125,18 @@ TEST_P(VisualTermsTest, EqualTheFactors) {
             1e-9 * scale.cwiseProduct(expected.gradient()).norm());
 }
 
+TEST_P(VisualTermsTest, TakeNewValuesWhenTold) {
+  VisualTerms terms(test_.window, test_.factors);
+  const double before = terms.cost();
+  for (auto& [id, track] : test_.window.tracks()) {
+    if (track.landmark) track.landmark->parameters[2] *= 1.01;
+  }
+  EXPECT_EQ(terms.cost(), before);
+  terms.update();
+  EXPECT_GT(std::abs(terms.cost() - before), 1e-3 * before);
+  EXPECT_NEAR(terms.cost(), referenceCost(), 1e-10 * referenceCost());
+}
+
 TEST_P(VisualTermsTest, StepLandmarksLikeTheFactors) {
   const std::vector<Vec3> before = landmarks();
   ASSERT_GT(before.size(), 20u);

@@ -59,13 +59,16 @@ class QuickTerms {
         visual_(window, factors),
         size_(tangentSizeOf(window)) {}
 
+  /// After blocks have moved.
+  void update() { visual_.update(); }
+
   double cost() {
     double cost = prior_.cost() + visual_.cost();
     for (const Factor& factor : motion_) cost += costOf(factor, residual_);
     return cost;
   }
 
-  std::vector<double> errors() { return visual_.errors(); }
+  std::vector<double> errors() const { return visual_.errors(); }
 
   Snapshot snapshot(const Window& window) const { return {window, visual_.landmarks()}; }
 
@@ -89,6 +92,7 @@ class QuickTerms {
     }
     visual_.stepLandmarks(system, step);
     window.placeInterpolated();
+    update();
   }
 
  private:
@@ -124,7 +128,10 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
       if (cholesky.factorise(damping)) {
         terms.apply(window, system, -cholesky.solve(system.gradient()));
         gain = cost - terms.cost();
-        if (!(gain > 0.0)) before.restore();
+        if (!(gain > 0.0)) {
+          before.restore();
+          terms.update();
+        }
       }
       damping = gain > 0.0 ? 0.01 * damping : std::max(kLeastDamping, 100.0 * damping);
     }

@@ -3,26 +3,52 @@
 #include <utility>
 
 namespace lodeline {
+namespace {
+
+/// Where a point should be seen.
+struct Place {
+  Vec2 from_centre_sigmas, off_axis;
+  double sine_squared;
+
+  Place(const DirectionMeasurement& measurement, const Vec2& residual) {
+    // Behind the camera there is no place that the point should be seen at.
+    constexpr double kFar_sigmas = 200.0;
+    const Vec2 moved = residual.squaredNorm() < kFar_sigmas * kFar_sigmas ? residual : Vec2::Zero();
+    from_centre_sigmas = measurement.from_centre_sigmas + moved;
+    off_axis = measurement.bearing_C.head<2>() + measurement.off_axis_by_sigmas * moved;
+    sine_squared = off_axis.squaredNorm();
+  }
+  /// Relative change of the radial profile there.
+  double profile(const double* intrinsics) const {
+    return intrinsics[4] * sine_squared + intrinsics[5] * sine_squared * sine_squared;
+  }
+  Vec2 shift(const DirectionMeasurement& measurement, const double* intrinsics) const {
+    const double profile = this->profile(intrinsics);
+    return {(intrinsics[0] + profile) * from_centre_sigmas.x() + measurement.sigmas_per_px * intrinsics[2],
+            (intrinsics[1] + profile) * from_centre_sigmas.y() + measurement.sigmas_per_px * intrinsics[3]};
+  }
+};
+
+}  // namespace
+
+Vec2 lensShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics) {
+  return Place(measurement, residual).shift(measurement, intrinsics);
+}
 
 LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& residual,
                       const double* intrinsics) {
-  // Behind the camera there is no place that the point should be seen at.
-  constexpr double kFar_sigmas = 200.0;
-  const Vec2 moved = residual.norm() < kFar_sigmas ? residual : Vec2::Zero();
-  const Vec2 from_centre = measurement.from_centre_sigmas + moved;
-  const Vec2 off_axis = measurement.bearing_C.head<2>() + measurement.off_axis_by_sigmas * moved;
-  const double sine_squared = off_axis.squaredNorm();
-  const double k_1 = intrinsics[4], k_2 = intrinsics[5];
+  const Place place(measurement, residual);
+  const double sine_squared = place.sine_squared;
   LensEffect effect;
-  effect.by_intrinsics << Mat2(from_centre.asDiagonal()), measurement.sigmas_per_px * Mat2::Identity(),
-      sine_squared * from_centre, sine_squared * sine_squared * from_centre;
-  effect.shift =
-      effect.by_intrinsics * Eigen::Map<const Eigen::Matrix<double, kIntrinsicsSize, 1>>(intrinsics);
-  const Eigen::RowVector2d profile_by_residual =
-      2.0 * (k_1 + 2.0 * k_2 * sine_squared) * off_axis.transpose() * measurement.off_axis_by_sigmas;
-  effect.by_residual = from_centre * profile_by_residual;
-  effect.by_residual.diagonal() += Vec2(1.0 + intrinsics[0], 1.0 + intrinsics[1]) +
-                                   Vec2::Constant(k_1 * sine_squared + k_2 * sine_squared * sine_squared);
+  effect.by_intrinsics << Mat2(place.from_centre_sigmas.asDiagonal()),
+      measurement.sigmas_per_px * Mat2::Identity(), sine_squared * place.from_centre_sigmas,
+      sine_squared * sine_squared * place.from_centre_sigmas;
+  effect.shift = place.shift(measurement, intrinsics);
+  const Eigen::RowVector2d profile_by_residual = 2.0 * (intrinsics[4] + 2.0 * intrinsics[5] * sine_squared) *
+                                                 place.off_axis.transpose() * measurement.off_axis_by_sigmas;
+  effect.by_residual = place.from_centre_sigmas * profile_by_residual;
+  effect.by_residual.diagonal() +=
+      Vec2(1.0 + intrinsics[0], 1.0 + intrinsics[1]) + Vec2::Constant(place.profile(intrinsics));
   return effect;
 }
 

@@ -33,6 +33,9 @@ struct LensEffect {
 LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& residual,
                       const double* intrinsics);
 
+/// LensEffect::shift alone.
+Vec2 lensShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics);
+
 /// A calibration file's lens with an intrinsics block put in, in its own model (which becomes
 /// radial-tangential where it had no distortion): exact for the pinhole part, to the fourth power of the
 /// angle for the profile.

@@ -30,17 +30,16 @@ PatchWarp atLevel(const PatchWarp& warp, int level) {
 
 }  // namespace
 
-bool PatchTemplate::fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, Level& level,
-                              std::array<PatchValues, kParameters>* gain, float& norm) {
+bool PatchTemplate::fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, PatchMotion motion,
+                              Level& level, Jacobian& jacobian, float& norm) {
   if (!staysInside(image, {centre, Eigen::Matrix2f::Identity()}, 1.0F)) return false;
   const PatchBlock block(image, centre);
   block.values(level.values);
   norm = normalise(level.values);
   if (norm < kMinContrastGrey) return false;
 
-  std::array<PatchValues, kParameters> jacobian;
   block.gradients(1.0F / norm, jacobian[0], jacobian[1]);
-  if (gain) {
+  if (motion == PatchMotion::Deformation) {
     for (size_t i = 0; i < jacobian[0].size(); ++i) {
       jacobian[2][i] = jacobian[0][i] * kPatchU[i];
       jacobian[3][i] = jacobian[0][i] * kPatchV[i];
@@ -48,7 +47,7 @@ bool PatchTemplate::fillLevel(const cv::Mat& image, const Eigen::Vector2f& centr
       jacobian[5][i] = jacobian[1][i] * kPatchV[i];
     }
   }
-  const size_t parameters = gain ? kParameters : 2;
+  const size_t parameters = motion == PatchMotion::Deformation ? kParameters : 2;
   for (size_t p = 0; p < parameters; ++p) projectOutNormalisation(level.values, jacobian[p]);
 
   const float xx = dot(jacobian[0], jacobian[0]), yy = dot(jacobian[1], jacobian[1]);
@@ -60,37 +59,40 @@ bool PatchTemplate::fillLevel(const cv::Mat& image, const Eigen::Vector2f& centr
     level.shift_gain[1][i] = (xx * jacobian[1][i] - xy * jacobian[0][i]) / determinant;
   }
   level.valid = true;
-  if (!gain) return true;
-
-  Eigen::Matrix<float, kParameters, kParameters> information;
-  for (size_t r = 0; r < parameters; ++r) {
-    for (size_t c = 0; c <= r; ++c) {
-      information(static_cast<int>(r), static_cast<int>(c)) =
-          information(static_cast<int>(c), static_cast<int>(r)) = dot(jacobian[r], jacobian[c]);
-    }
-  }
-  const float damping = kDeformationDamping * 0.5F * (xx + yy) * PatchPattern::kReach * PatchPattern::kReach;
-  information.diagonal().tail<kParameters - 2>().array() += damping;
-  using Rows = Eigen::Matrix<float, kParameters, kPatchSize, Eigen::RowMajor>;
-  Eigen::Map<Rows>(gain->front().data()) =
-      information.llt().solve(Eigen::Map<const Rows>(jacobian.front().data()));
   return true;
 }
 
+void PatchTemplate::invertInformation() {
+  using Information = Eigen::Matrix<float, kParameters, kParameters>;
+  Information information;
+  for (size_t r = 0; r < kParameters; ++r) {
+    for (size_t c = 0; c <= r; ++c) {
+      information(static_cast<int>(r), static_cast<int>(c)) =
+          information(static_cast<int>(c), static_cast<int>(r)) = dot(jacobian_[r], jacobian_[c]);
+    }
+  }
+  const float damping = kDeformationDamping * 0.5F * (information(0, 0) + information(1, 1)) *
+                        PatchPattern::kReach * PatchPattern::kReach;
+  information.diagonal().tail<kParameters - 2>().array() += damping;
+  inverse_information_ = information.llt().solve(Information::Identity());
+}
+
 std::optional<PatchTemplate> PatchTemplate::extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
-                                                    int levels) {
+                                                    int levels, PatchMotion motion) {
   PatchTemplate result;
   levels = std::min(levels, image.levels());
   result.levels_.resize(static_cast<size_t>(levels));
+  Jacobian coarse;
   for (int l = 0; l < levels; ++l) {
     float norm = 0.0F;
     const bool filled =
-        fillLevel(image.level(l), centre / static_cast<float>(1 << l), result.levels_[static_cast<size_t>(l)],
-                  l == 0 ? &result.deformation_gain_ : nullptr, norm);
+        fillLevel(image.level(l), centre / static_cast<float>(1 << l), l == 0 ? motion : PatchMotion::Shift,
+                  result.levels_[static_cast<size_t>(l)], l == 0 ? result.jacobian_ : coarse, norm);
     if (l > 0) continue;
     if (!filled) return std::nullopt;
     result.contrast_grey_ = norm;
   }
+  if (motion == PatchMotion::Deformation) result.invertInformation();
   return result;
 }
 
@@ -116,14 +118,16 @@ bool PatchTemplate::shiftOnLevel(const Level& level, const cv::Mat& image, float
 bool PatchTemplate::deform(const cv::Mat& image, PatchWarp& warp, float& correlation) const {
   const Eigen::Vector2f start = warp.position;
   std::array<const PatchValues*, 1 + kParameters> rows{&levels_.front().values};
-  for (size_t p = 0; p < deformation_gain_.size(); ++p) rows[1 + p] = &deformation_gain_[p];
+  for (size_t p = 0; p < jacobian_.size(); ++p) rows[1 + p] = &jacobian_[p];
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (!staysInside(image, warp, 0.0F)) return false;
     PatchValues values;
     sample(image, warp, values);
     const auto along = normalisedAlong(values, rows);
     correlation = along[0];
-    const float* step = along.data() + 1;
+    // As the gain's, these rows are orthogonal to the template.
+    const Eigen::Matrix<float, kParameters, 1> step =
+        inverse_information_ * Eigen::Map<const Eigen::Matrix<float, kParameters, 1>>(along.data() + 1);
     Eigen::Matrix2f deformation;
     deformation << 1.0F + step[2], step[3], step[4], 1.0F + step[5];
     const float determinant = deformation.determinant();

@@ -29,10 +29,10 @@ class PatchTemplate {
  public:
   PatchTemplate() = default;
 
-  /// Nothing where the finest level leaves the image or has no texture. Coarser levels that leave the image
-  /// are passed over.
+  /// For being found with up to the `motion` given. Nothing where the finest level leaves the image or has no
+  /// texture. Coarser levels that leave the image are passed over.
   static std::optional<PatchTemplate> extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
-                                              int levels);
+                                              int levels, PatchMotion motion = PatchMotion::Deformation);
 
   /// Finds the template in another image, from level `coarsest` down to the image itself. Deformation
   /// follows the linear part of the warp as well, on the finest level. Nothing where it leaves the image or
@@ -49,6 +49,7 @@ class PatchTemplate {
 
  private:
   static constexpr int kParameters = 6;
+  using Jacobian = std::array<PatchValues, kParameters>;
   struct Level {
     bool valid = false;
     PatchValues values{};  ///< normalised
@@ -56,15 +57,19 @@ class PatchTemplate {
     std::array<PatchValues, 2> shift_gain{};
   };
 
-  static bool fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, Level& level,
-                        std::array<PatchValues, kParameters>* gain, float& norm);
+  /// The Jacobian of the normalised values by the shift, or by (shift, linear part).
+  static bool fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, PatchMotion motion, Level& level,
+                        Jacobian& jacobian, float& norm);
+  void invertInformation();
   bool shiftOnLevel(const Level& level, const cv::Mat& image, float converged_px, PatchWarp& warp,
                     float& correlation) const;
   bool deform(const cv::Mat& image, PatchWarp& warp, float& correlation) const;
 
   std::vector<Level> levels_;
-  /// As `shift_gain` of the finest level, by (shift, linear part).
-  std::array<PatchValues, kParameters> deformation_gain_{};
+  /// Of the finest level, by (shift, linear part), and the inverse of its damped square; empty in a template
+  /// that is only shifted.
+  Jacobian jacobian_{};
+  Eigen::Matrix<float, kParameters, kParameters> inverse_information_;
   float contrast_grey_ = 0.0F;
 };
 

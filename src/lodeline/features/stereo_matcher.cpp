@@ -75,7 +75,7 @@ std::optional<PatchWarp> StereoMatcher::search(const ImagePyramid& second, const
 
 bool StereoMatcher::returns(const ImagePyramid& first, const ImagePyramid& second, const PatchWarp& match,
                             const Track& track) const {
-  const auto looks = PatchTemplate::extract(second, match.position, 2);
+  const auto looks = PatchTemplate::extract(second, match.position, 2, PatchMotion::Shift);
   if (!looks) return false;
   PatchWarp back{track.warp.position + Eigen::Vector2f(1.0F, 0.5F), match.linear.inverse()};
   return looks->align(first, 1, PatchMotion::Shift, back) &&
