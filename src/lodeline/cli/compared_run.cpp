@@ -80,8 +80,7 @@ bool estimate(const RunRequest& request) {
 
 /// The heading of a run by what its summary says of it.
 HeadingBasis basisOf(const nlohmann::json& summary) {
-  const std::string reference = summary.value("/heading/reference"_json_pointer, std::string());
-  return reference.find("north") != std::string::npos ? HeadingBasis::North : HeadingBasis::Start;
+  return headingBasisOf(summary.value("/heading/reference"_json_pointer, std::string()));
 }
 
 Trajectory readPoses(const fs::path& folder) {

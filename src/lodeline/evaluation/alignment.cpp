@@ -146,6 +146,10 @@ Alignment alignFirstPose(AlignmentType type, const PosePairs& pairs, double scal
 
 const char* toString(HeadingBasis basis) { return basis == HeadingBasis::North ? "north" : "start"; }
 
+HeadingBasis headingBasisOf(const std::string& heading_reference) {
+  return heading_reference == "true north" ? HeadingBasis::North : HeadingBasis::Start;
+}
+
 Alignment alignStarts(HeadingBasis basis, const PosePairs& pairs) {
   if (basis == HeadingBasis::Start) return alignFirstPose(AlignmentType::Yaw, pairs, 1.0);
   Alignment shift;

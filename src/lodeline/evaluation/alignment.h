@@ -52,6 +52,10 @@ enum class HeadingBasis {
 
 const char* toString(HeadingBasis basis);
 
+/// Of a run by its word for what its heading is counted from (`heading.reference` of run.json). Magnetic
+/// north is off the reference's north by a declination that such a run does not know.
+HeadingBasis headingBasisOf(const std::string& heading_reference);
+
 /// Makes the first positions coincide and, with HeadingBasis::Start, the first headings.
 Alignment alignStarts(HeadingBasis basis, const PosePairs& pairs);
 

@@ -121,6 +121,12 @@ TEST(Alignment, FirstPosesCoincide) {
             1e-9);
 }
 
+TEST(Alignment, OnlyTrueNorthIsTheReferences) {
+  EXPECT_EQ(headingBasisOf("true north"), HeadingBasis::North);
+  for (const char* reference : {"magnetic north", "start heading", ""})
+    EXPECT_EQ(headingBasisOf(reference), HeadingBasis::Start) << reference;
+}
+
 TEST(Alignment, NamesAreRefusedWhenUnknown) {
   EXPECT_EQ(alignmentTypeFromString("sim3"), AlignmentType::Sim3);
   EXPECT_STREQ(toString(AlignmentType::Yaw), "yaw");

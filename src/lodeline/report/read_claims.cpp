@@ -61,8 +61,7 @@ HeadingBasis readBasis(const fs::path& file) {
   try {
     const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
     if (!json.contains("heading")) return HeadingBasis::Start;
-    return json["heading"].at("reference").get<std::string>() == "start heading" ? HeadingBasis::Start
-                                                                                 : HeadingBasis::North;
+    return headingBasisOf(json["heading"].at("reference").get<std::string>());
   } catch (const nlohmann::json::exception& error) {
     throw InputError(
         fmt::format("{}: {}; run.json of `lodeline run` is wanted", file.string(), error.what()));
