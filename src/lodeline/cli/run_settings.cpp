@@ -127,7 +127,6 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("camera_calibration.stereo_position_sigma_m", &cameras->stereo_position_sigma_m,
                  "of further cameras to camera 0; 0 holds it");
   settings->bind("camera_calibration.intrinsics", &cameras->intrinsics, "refine the lenses as well");
-  settings->bind("camera_calibration.lens_held_s", &cameras->lens_held_s, "since the window has settled");
   settings->bind("camera_calibration.focal_length_sigma", &cameras->focal_length_sigma,
                  "relative, of both focal lengths; 0 holds them");
   settings->bind("camera_calibration.principal_point_sigma_px", &cameras->principal_point_sigma_px,

@@ -153,14 +153,11 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
   if (!was_settled) marginalizer_.relinearise(window_);
   marginalizer_.shorten(window_, options_.window);
   if (!is_settled_) marginalizer_.relinearise(window_);
-  if (is_settled_) freeLenses(estimate.time);
+  if (is_settled_) freeLenses();
 }
 
-void Estimator::freeLenses(Time time) {
-  if (!options_.camera_calibration.intrinsics) return;
-  settled_time_ = settled_time_.value_or(time);
-  if ((time - *settled_time_).seconds() < options_.camera_calibration.lens_held_s) return;
-  if (!cameraStates(window_).intrinsics.empty()) return;
+void Estimator::freeLenses() {
+  if (!options_.camera_calibration.intrinsics || !cameraStates(window_).intrinsics.empty()) return;
   Prior prior = marginalizer_.prior();
   addLensStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
   marginalizer_.start(std::move(prior));

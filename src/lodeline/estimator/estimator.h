@@ -94,7 +94,7 @@ class Estimator {
   /// Whether the window may begin to be marginalised for good.
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   /// Lets the lenses, which are held at first, be estimated.
-  void freeLenses(Time time);
+  void freeLenses();
   /// Turns a window that has just started to north.
   void startMagnetometer();
   void rememberCovariance(JointCovariance covariance, FrameEstimate* estimate);
@@ -120,12 +120,11 @@ class Estimator {
   std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
-  bool starting_up_ = true;           ///< nothing is marginalised
-  bool is_settled_ = false;           ///< the scale is known: first estimates are kept
-  bool scale_is_given_ = false;       ///< by a stereo start
-  std::optional<Time> blind_since_;   ///< the newest frames see nothing known
-  bool lost_scale_ = false;           ///< at some time since the start
-  std::optional<Time> settled_time_;  ///< for the first time
+  bool starting_up_ = true;          ///< nothing is marginalised
+  bool is_settled_ = false;          ///< the scale is known: first estimates are kept
+  bool scale_is_given_ = false;      ///< by a stereo start
+  std::optional<Time> blind_since_;  ///< the newest frames see nothing known
+  bool lost_scale_ = false;          ///< at some time since the start
 };
 
 }  // namespace lodeline

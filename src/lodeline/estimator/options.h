@@ -100,10 +100,9 @@ struct CameraCalibrationOptions {
   /// Further cameras to camera 0. Their distance is the only ruler a stereo rig has; files state it well.
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
-  /// The lens as well (factors/intrinsics_factor.h), once the scale is known and the rig has been under way
-  /// for a while: a start tells too little of it.
+  /// The lens as well (factors/intrinsics_factor.h), as soon as the window has settled: the start of one
+  /// camera, whose scale is not known yet, tells too little of it.
   bool intrinsics = true;
-  double lens_held_s = 15.0;          ///< since the window has settled
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
   double radial_sigma = 0.005;

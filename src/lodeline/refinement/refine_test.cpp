@@ -43,7 +43,6 @@ struct ForwardRun {
   static EstimatorOptions optionsOf(const TestSceneOptions& wanted, bool calibrates_cameras) {
     EstimatorOptions options = honestOptions(wanted);
     options.camera_calibration.enabled = calibrates_cameras;
-    options.camera_calibration.lens_held_s = 2.0;
     return options;
   }
 
