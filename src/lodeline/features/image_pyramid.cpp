@@ -1,7 +1,9 @@
 #include "lodeline/features/image_pyramid.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -10,35 +12,80 @@
 namespace lodeline {
 namespace {
 
-/// `columns`: sums down the columns with one more at either end.
-LODELINE_WIDE_VECTORS
-void smoothRow(const uint8_t* __restrict above, const uint8_t* __restrict here,
-               const uint8_t* __restrict below, int width, uint16_t* __restrict columns,
-               float* __restrict smoothed) {
-  for (int x = 0; x < width; ++x) columns[x + 1] = static_cast<uint16_t>(above[x] + 2 * here[x] + below[x]);
-  columns[0] = columns[2];
-  columns[width + 1] = columns[width - 1];
+// Weights of cv::getGaussianKernel(side, 0) in whole numbers, from the middle outwards.
+constexpr std::array<int, 2> kThree = {2, 1};
+constexpr std::array<int, 4> kSeven = {18, 14, 7, 2};
+
+/// One row of the smoothed image from the rows about it, this one in the middle. `columns`: room for the sums
+/// down the columns, with the kernel's reach more at either end, where the image is mirrored about its
+/// outermost pixels.
+template <size_t kWeights>
+inline __attribute__((always_inline)) void smoothRowBy(const std::array<int, kWeights>& weights,
+                                                       const uint8_t* const* rows, int width,
+                                                       uint16_t* __restrict columns,
+                                                       float* __restrict smoothed) {
+  constexpr int kReach = kWeights - 1;
+  int total = weights[0];
+  for (int k = 1; k <= kReach; ++k) total += 2 * weights[static_cast<size_t>(k)];
+  const float scale = 1.0F / static_cast<float>(total * total);
   for (int x = 0; x < width; ++x) {
-    const auto sixteenths = static_cast<uint16_t>(columns[x] + 2 * columns[x + 1] + columns[x + 2]);
-    smoothed[x] = static_cast<float>(sixteenths) / 16.0F;
+    auto sum = static_cast<uint16_t>(weights[0] * rows[kReach][x]);
+    for (int k = 1; k <= kReach; ++k) {
+      const auto pair = static_cast<uint16_t>(rows[kReach - k][x] + rows[kReach + k][x]);
+      sum = static_cast<uint16_t>(sum + weights[static_cast<size_t>(k)] * pair);
+    }
+    columns[kReach + x] = sum;
+  }
+  for (int k = 1; k <= kReach; ++k) {
+    columns[kReach - k] = columns[kReach + k];
+    columns[kReach + width - 1 + k] = columns[kReach + width - 1 - k];
+  }
+  for (int x = 0; x < width; ++x) {
+    const uint16_t* middle = columns + kReach + x;
+    int sum = weights[0] * middle[0];
+    for (int k = 1; k <= kReach; ++k) sum += weights[static_cast<size_t>(k)] * (middle[-k] + middle[k]);
+    smoothed[x] = scale * static_cast<float>(sum);
   }
 }
 
-/// A Gaussian of the side given. The usual one, of three pixels, is made of whole numbers, at a fifth of the
-/// price of OpenCV's sum of floating-point ones; the result is the same.
+LODELINE_WIDE_VECTORS
+void smoothRow(const std::array<int, 2>&, const uint8_t* const* rows, int width, uint16_t* columns,
+               float* smoothed) {
+  smoothRowBy(kThree, rows, width, columns, smoothed);
+}
+
+LODELINE_WIDE_VECTORS
+void smoothRow(const std::array<int, 4>&, const uint8_t* const* rows, int width, uint16_t* columns,
+               float* smoothed) {
+  smoothRowBy(kSeven, rows, width, columns, smoothed);
+}
+
+template <size_t kWeights>
+void smooth(const cv::Mat& image, const std::array<int, kWeights>& weights, cv::Mat* smoothed) {
+  constexpr int kReach = kWeights - 1, kSide = 2 * kReach + 1;
+  smoothed->create(image.size(), CV_32F);
+  std::vector<uint16_t> columns(static_cast<size_t>(image.cols + 2 * kReach));
+  std::array<const uint8_t*, kSide> rows{};
+  for (int y = 0; y < image.rows; ++y) {
+    for (int k = -kReach; k <= kReach; ++k) {
+      const int mirrored = std::min(std::abs(y + k), 2 * (image.rows - 1) - (y + k));
+      rows[static_cast<size_t>(k + kReach)] = image.ptr(mirrored);
+    }
+    smoothRow(weights, rows.data(), image.cols, columns.data(), smoothed->ptr<float>(y));
+  }
+}
+
+/// As cv::GaussianBlur, which cannot give floating-point pixels for those of 8 bits, and to the last bit as
+/// OpenCV's filter of floating-point weights, which takes several times as long.
 void smooth(const cv::Mat& image, int side_px, cv::Mat* smoothed) {
-  if (side_px != 3 || image.rows < 2 || image.cols < 2) {
-    // As cv::GaussianBlur, which cannot give floating-point pixels for those of 8 bits in one pass.
+  const bool is_wide = std::min(image.rows, image.cols) > side_px / 2;
+  if (side_px == 3 && is_wide) {
+    smooth(image, kThree, smoothed);
+  } else if (side_px == 7 && is_wide) {
+    smooth(image, kSeven, smoothed);
+  } else {
     const cv::Mat kernel = cv::getGaussianKernel(side_px, 0.0, CV_32F);
     cv::sepFilter2D(image, *smoothed, CV_32F, kernel, kernel);
-    return;
-  }
-  smoothed->create(image.size(), CV_32F);
-  std::vector<uint16_t> columns(static_cast<size_t>(image.cols) + 2);
-  for (int y = 0; y < image.rows; ++y) {
-    const int above = y > 0 ? y - 1 : 1, below = y + 1 < image.rows ? y + 1 : image.rows - 2;
-    smoothRow(image.ptr(above), image.ptr(y), image.ptr(below), image.cols, columns.data(),
-              smoothed->ptr<float>(y));
   }
 }
 

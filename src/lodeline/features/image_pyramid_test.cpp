@@ -16,9 +16,10 @@ cv::Mat noise(int width, int height) {
 
 // To the last bit: the sums are of whole numbers, borders are mirrored about the outermost pixels.
 TEST(ImagePyramid, IsSmoothedAsByAGaussian) {
-  for (const auto& [width, height] : {std::pair(97, 51), {64, 48}, {2, 2}, {1, 40}, {40, 1}}) {
+  for (const auto& [width, height] :
+       {std::pair(97, 51), {64, 48}, {4, 4}, {3, 5}, {2, 2}, {1, 40}, {40, 1}}) {
     const cv::Mat image = noise(width, height);
-    for (const int side_px : {3, 7}) {
+    for (const int side_px : {3, 5, 7}) {
       cv::Mat expected;
       const cv::Mat kernel = cv::getGaussianKernel(side_px, 0.0, CV_32F);
       cv::sepFilter2D(image, expected, CV_32F, kernel, kernel);
