@@ -25,9 +25,8 @@ void UnmodelledErrors::follow(const Rigid3& world_from_body, std::optional<doubl
       by_turn_[k] += scene_distance_m_ * turn[k] * world_from_newest;
     }
     const Vec3 step_W = world_from_body.translation - newest_->translation;
-    x_ -= step_W.y() * heading_;
-    y_ += step_W.x() * heading_;
-    heading_ += world_from_newest.row(2).transpose() * turn.transpose();
+    bent_by_turns_.follow(turn, world_from_newest, step_W);
+    bent_by_the_way_.follow(step.translation, world_from_newest, step_W);
   }
   newest_ = world_from_body;
 }
@@ -41,12 +40,17 @@ Mat3 UnmodelledErrors::byTheWay() const {
   return covariance;
 }
 
-void UnmodelledErrors::addHeading(double turn_sigma, Eigen::Matrix<double, 15, 15>* covariance) const {
-  const std::array<std::pair<int, const Mat3*>, 3> moved{{{0, &x_}, {1, &y_}, {5, &heading_}}};
+void UnmodelledErrors::Bend::follow(const Vec3& cause_B, const Mat3& world_from_body, const Vec3& step_W) {
+  x -= step_W.y() * heading;
+  y += step_W.x() * heading;
+  heading += world_from_body.row(2).transpose() * cause_B.transpose();
+}
+
+void UnmodelledErrors::Bend::addTo(double sigma, Eigen::Matrix<double, 15, 15>* covariance) const {
+  const std::array<std::pair<int, const Mat3*>, 3> moved{{{0, &x}, {1, &y}, {5, &heading}}};
   for (const auto& [row, by_row] : moved) {
-    for (const auto& [column, by_column] : moved) {
-      (*covariance)(row, column) += turn_sigma * turn_sigma * by_row->cwiseProduct(*by_column).sum();
-    }
+    for (const auto& [column, by_column] : moved)
+      (*covariance)(row, column) += sigma * sigma * by_row->cwiseProduct(*by_column).sum();
   }
 }
 
@@ -68,7 +72,9 @@ void UnmodelledErrors::addTo(const EstimateSources& sources,
   }
   covariance->topLeftCorner<3, 3>() += added;
   if (sources.has_magnetometer) return;
-  addHeading(sources.are_gyroscope_axes_known ? kHeldTurnPerTurnSigma : kTurnPerTurnSigma, covariance);
+  bent_by_turns_.addTo(sources.are_gyroscope_axes_known ? kHeldTurnPerTurnSigma : kTurnPerTurnSigma,
+                       covariance);
+  if (!sources.is_scale_given) bent_by_the_way_.addTo(kTurnPerWaySigma_rad_per_m, covariance);
 }
 
 void addHeadingError(double sigma_rad, const NavigationState& state,

@@ -103,6 +103,28 @@ TEST(UnmodelledErrors, OfTurnsBendTheWaySince) {
   EXPECT_NEAR(covariance(5, 5), 0.0, 1e-9) << "what turns back has the same error once more";
 }
 
+TEST(UnmodelledErrors, OfOneCameraTurnItOnItsWayOutAndBack) {
+  const Vec3 end(20.0, 0.0, 0.0);
+  UnmodelledErrors errors({});
+  errors.follow(heading(0.0, Vec3::Zero()), 0.0);
+  swim(heading(0.0, Vec3::Zero()), heading(0.0, end), 0.0, &errors);
+  const auto byTheWay = [&] {
+    Mat15 one = Mat15::Zero(), two = Mat15::Zero();
+    errors.addTo({.is_scale_given = false}, &one);
+    errors.addTo({.is_scale_given = true}, &two);
+    return Mat15(one - two);
+  };
+  const double sigma_rad = kTurnPerWaySigma_rad_per_m * 20.0;
+  EXPECT_NEAR(std::sqrt(byTheWay()(5, 5)), sigma_rad, 1e-9);
+  EXPECT_NEAR(std::sqrt(byTheWay()(1, 1)), 0.5 * sigma_rad * 20.0, 1e-4) << "an arc";
+  EXPECT_NEAR(byTheWay()(1, 5), 0.5 * sigma_rad * sigma_rad * 20.0, 1e-6);
+
+  errors.follow(heading(std::numbers::pi, end), std::nullopt);
+  swim(heading(std::numbers::pi, end), heading(std::numbers::pi, Vec3::Zero()), 0.0, &errors);
+  EXPECT_NEAR(std::sqrt(byTheWay()(5, 5)), 2.0 * sigma_rad, 1e-9) << "the camera looks ahead on both";
+  EXPECT_NEAR(added(errors, kOneCamera)(5, 5), 0.0, 1e-12) << "a magnetometer holds the heading";
+}
+
 TEST(UnmodelledErrors, OfOneCameraCountItsScaleToo) {
   UnmodelledErrors errors({});
   errors.follow(heading(0.0, kPosition), 2.0);
