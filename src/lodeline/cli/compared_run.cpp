@@ -78,9 +78,11 @@ bool estimate(const RunRequest& request) {
   return true;
 }
 
-/// The heading of a run by what its summary says of it.
+/// The heading of a run by what its summary says of it. Methods are held against each other and a corrected
+/// azimuth here, so that magnetic north counts as north, with its declination as an error of all of them.
 HeadingBasis basisOf(const nlohmann::json& summary) {
-  return headingBasisOf(summary.value("/heading/reference"_json_pointer, std::string()));
+  const std::string reference = summary.value("/heading/reference"_json_pointer, std::string());
+  return reference.find("north") != std::string::npos ? HeadingBasis::North : HeadingBasis::Start;
 }
 
 Trajectory readPoses(const fs::path& folder) {

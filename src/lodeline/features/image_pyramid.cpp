@@ -76,7 +76,7 @@ void smooth(const cv::Mat& image, const std::array<int, kWeights>& weights, cv::
 }
 
 /// As cv::GaussianBlur, which cannot give floating-point pixels for those of 8 bits, and to the last bit as
-/// OpenCV's filter of floating-point weights, which takes several times as long.
+/// OpenCV's filter of floating-point weights, which takes half as long again.
 void smooth(const cv::Mat& image, int side_px, cv::Mat* smoothed) {
   const bool is_wide = std::min(image.rows, image.cols) > side_px / 2;
   if (side_px == 3 && is_wide) {
