@@ -80,6 +80,7 @@ void PatchTemplate::invertInformation() {
 std::optional<PatchTemplate> PatchTemplate::extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
                                                     int levels, PatchMotion motion) {
   PatchTemplate result;
+  result.most_ = motion;
   levels = std::min(levels, image.levels());
   result.levels_.resize(static_cast<size_t>(levels));
   Jacobian coarse;
@@ -150,7 +151,7 @@ std::optional<PatchMatch> PatchTemplate::align(const ImagePyramid& image, int co
     const Level& level = levels_[static_cast<size_t>(l)];
     if (!level.valid) continue;
     PatchWarp scaled = atLevel(warp, l);
-    const bool aligned = l == 0 && motion == PatchMotion::Deformation
+    const bool aligned = l == 0 && motion == PatchMotion::Deformation && most_ == PatchMotion::Deformation
                              ? deform(image.level(l), scaled, correlation)
                              : shiftOnLevel(level, image.level(l), l == 0 ? kConvergedStepPx : kCoarseStepPx,
                                             scaled, correlation);

@@ -29,8 +29,8 @@ class PatchTemplate {
  public:
   PatchTemplate() = default;
 
-  /// For being found with up to the `motion` given. Nothing where the finest level leaves the image or has no
-  /// texture. Coarser levels that leave the image are passed over.
+  /// `motion`: the most that align() will ever change. Nothing where the finest level leaves the image or has
+  /// no texture. Coarser levels that leave the image are passed over.
   static std::optional<PatchTemplate> extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
                                               int levels, PatchMotion motion = PatchMotion::Deformation);
 
@@ -66,8 +66,9 @@ class PatchTemplate {
   bool deform(const cv::Mat& image, PatchWarp& warp, float& correlation) const;
 
   std::vector<Level> levels_;
-  /// Of the finest level, by (shift, linear part), and the inverse of its damped square; empty in a template
-  /// that is only shifted.
+  PatchMotion most_ = PatchMotion::Shift;
+  /// Of the finest level, by (shift, linear part), and the inverse of its damped square; not worked out in a
+  /// template that is only shifted.
   Jacobian jacobian_{};
   Eigen::Matrix<float, kParameters, kParameters> inverse_information_;
   float contrast_grey_ = 0.0F;

@@ -48,6 +48,18 @@ TEST(PatchTemplate, FindsASubPixelShift) {
   }
 }
 
+TEST(PatchTemplate, IsOnlyShiftedWhereThatIsAllItWasMadeFor) {
+  const ImagePyramid image(render(texture), 2);
+  const ImagePyramid moved(render([](double x, double y) { return texture(x - 0.6, y + 0.9); }), 2);
+  const auto shifted = PatchTemplate::extract(image, kCentre, 2, PatchMotion::Shift);
+  ASSERT_TRUE(shifted);
+  PatchWarp expected{kCentre, Eigen::Matrix2f::Identity()}, warp = expected;
+  ASSERT_TRUE(templateOf(image).align(moved, 1, PatchMotion::Shift, expected));
+  ASSERT_TRUE(shifted->align(moved, 1, PatchMotion::Deformation, warp));
+  EXPECT_EQ(warp.position, expected.position);
+  EXPECT_EQ(warp.linear, expected.linear);
+}
+
 TEST(PatchTemplate, IsBlindToGainOffsetAndSlopeOfLight) {
   const PatchTemplate patch = templateOf(ImagePyramid(render(texture), 1));
   const ImagePyramid relit(render([](double x, double y) {
