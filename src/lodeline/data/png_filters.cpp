@@ -6,13 +6,15 @@
 #include <cstring>
 #include <vector>
 
+#include "lodeline/base/wide_vectors.h"
+
 namespace lodeline::png {
 namespace {
 
 enum Filter : uint8_t { kNone = 0, kSub = 1, kUp = 2, kAverage = 3, kPaeth = 4 };
 
-constexpr int kLanes = 8;
-using Short8 = int16_t __attribute__((vector_size(2 * kLanes)));
+constexpr size_t kLanes = 16;
+using Bytes = uint8_t __attribute__((vector_size(kLanes)));
 
 void unfilterRow(uint8_t filter, const uint8_t* filtered, const uint8_t* above, int width, uint8_t* row) {
   uint8_t left = 0, up_left = 0;
@@ -38,59 +40,110 @@ void unfilterRow(uint8_t filter, const uint8_t* filtered, const uint8_t* above, 
   }
 }
 
-/// Whether rows are quicker abreast than one by one: Paeth alone is slow enough.
+/// Whether rows are quicker abreast than one by one: Average and Paeth alone are slow enough.
 bool payAbreast(const uint8_t* filtered, int width, int rows) {
   constexpr int kFewest = 3;
   int slow = 0;
-  for (int r = 0; r < rows; ++r) slow += filtered[r * (width + 1)] == kPaeth;
-  return filtered[0] == kPaeth && slow >= kFewest;
+  for (int r = 0; r < rows; ++r) slow += filtered[r * (width + 1)] >= kAverage;
+  return filtered[0] >= kAverage && slow >= kFewest;
 }
 
-/// Paeth makes each pixel wait for its left neighbour, so a row alone leaves the processor idle. Here eight
-/// rows go abreast, one to a lane, each a pixel behind the row above it.
+using Block = std::array<Bytes, kLanes>;
+
+/// Byte j of vector i becomes byte i of vector j: four perfect shuffles of all bytes.
+inline __attribute__((always_inline)) void transpose(Block* block) {
+  constexpr Bytes kLow{0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23};
+  constexpr Bytes kHigh{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31};
+  for (int round = 0; round < 4; ++round) {
+    const Block from = *block;
+    for (size_t i = 0; i < kLanes / 2; ++i) {
+      (*block)[2 * i] = __builtin_shuffle(from[i], from[i + kLanes / 2], kLow);
+      (*block)[2 * i + 1] = __builtin_shuffle(from[i], from[i + kLanes / 2], kHigh);
+    }
+  }
+}
+
+/// By filter: all bits set in the lanes that have it.
+using Masks = std::array<Bytes, kPaeth + 1>;
+
+/// What each lane's filter makes of its neighbours.
+template <bool kAnyPaeth>
+inline __attribute__((always_inline)) Bytes predicted(const Masks& is, Bytes left, Bytes up, Bytes up_left) {
+  const Bytes average = (left & up) + ((left ^ up) >> 1);
+  Bytes sum = (is[kSub] & left) | (is[kUp] & up) | (is[kAverage] & average);
+  if constexpr (kAnyPaeth) sum |= is[kPaeth] & paeth(left, up, up_left);
+  return sum;
+}
+
+/// One step a byte of `above`, which are as many as fill `blocks` blocks. Lane r begins at rows[r].
+template <bool kAnyPaeth>
+inline __attribute__((always_inline)) void stepAbreast(const Masks& is, const uint8_t* above, size_t blocks,
+                                                       const std::array<uint8_t*, kLanes>& rows) {
+  Bytes left{}, up_left{};
+  for (size_t first = 0; first < blocks * kLanes; first += kLanes) {
+    Block block;
+    for (size_t r = 0; r < kLanes; ++r) std::memcpy(&block[r], rows[r] + first, kLanes);
+    transpose(&block);
+    for (size_t i = 0; i < kLanes; ++i) {
+      constexpr Bytes kNextLane{16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
+      const Bytes up = __builtin_shuffle(left, Bytes{above[first + i]}, kNextLane);
+      left = block[i] + predicted<kAnyPaeth>(is, left, up, up_left);
+      up_left = up;
+      block[i] = left;
+    }
+    transpose(&block);
+    for (size_t r = 0; r < kLanes; ++r) std::memcpy(rows[r] + first, &block[r], kLanes);
+  }
+}
+
+LODELINE_WIDE_VECTORS
+void stepWithPaeth(const Masks& is, const uint8_t* above, size_t blocks,
+                   const std::array<uint8_t*, kLanes>& rows) {
+  stepAbreast<true>(is, above, blocks, rows);
+}
+
+LODELINE_WIDE_VECTORS
+void stepWithoutPaeth(const Masks& is, const uint8_t* above, size_t blocks,
+                      const std::array<uint8_t*, kLanes>& rows) {
+  stepAbreast<false>(is, above, blocks, rows);
+}
+
+/// A pixel waits for its left neighbour, so a row alone leaves the processor idle. Here sixteen rows go
+/// abreast, one to a lane, each a pixel behind the row above it.
 class RowsAbreast {
  public:
-  explicit RowsAbreast(int width) : width_(width), steps_(static_cast<size_t>(width + kLanes - 1)) {}
+  explicit RowsAbreast(int width)
+      : width_(static_cast<size_t>(width)),
+        blocks_((width_ + 2 * kLanes - 2) / kLanes),
+        above_(blocks_ * kLanes),
+        bytes_(kLanes * stride()) {}
 
   /// Any filters; `rows` may be fewer than lanes.
-  void unfilter(const uint8_t* filtered, const uint8_t* above, int rows, uint8_t* pixels) {
-    load(filtered, rows);
-    Short8 left{}, up_left{};
-    for (size_t k = 0; k < steps_.size(); ++k) {
-      // Lanes that have not come to their row yet see zeros all around and stay zero.
-      Short8 up = __builtin_shuffle(left, Short8{0, 0, 1, 2, 3, 4, 5, 6});
-      up[0] = k < static_cast<size_t>(width_) ? above[k] : 0;
-      const Short8 predicted = (is_[kSub] & left) | (is_[kUp] & up) | (is_[kAverage] & ((left + up) >> 1)) |
-                               (is_[kPaeth] & paeth(left, up, up_left));
-      left = (steps_[k] + predicted) & 255;
-      up_left = up;
-      steps_[k] = left;
+  void unfilter(const uint8_t* filtered, const uint8_t* above, size_t rows, uint8_t* pixels) {
+    // Lanes that have not come to their row yet see zeros all around and stay zero.
+    std::fill(bytes_.begin(), bytes_.end(), uint8_t{0});
+    std::copy_n(above, width_, above_.begin());
+    Masks is{};
+    std::array<uint8_t*, kLanes> begins;
+    for (size_t r = 0; r < kLanes; ++r) begins[r] = pixelsOf(r) - r;
+    bool any_paeth = false;
+    for (size_t r = 0; r < rows; ++r) {
+      const uint8_t* row = filtered + r * (width_ + 1);
+      is[row[0]][r] = 0xff;
+      any_paeth |= row[0] == kPaeth;
+      std::copy_n(row + 1, width_, pixelsOf(r));
     }
-    for (int r = 0; r < rows; ++r) {
-      uint8_t* row = pixels + r * width_;
-      const int16_t* lane = laneOf(r);
-      for (int x = 0; x < width_; ++x) row[x] = static_cast<uint8_t>(lane[x * kLanes]);
-    }
+    (any_paeth ? stepWithPaeth : stepWithoutPaeth)(is, above_.data(), blocks_, begins);
+    for (size_t r = 0; r < rows; ++r) std::copy_n(pixelsOf(r), width_, pixels + r * width_);
   }
 
  private:
-  void load(const uint8_t* filtered, int rows) {
-    std::fill(steps_.begin(), steps_.end(), Short8{});
-    is_ = {};
-    for (int r = 0; r < rows; ++r) {
-      const uint8_t* row = filtered + r * (width_ + 1);
-      is_[row[0]][r] = -1;
-      int16_t* lane = laneOf(r);
-      for (int x = 0; x < width_; ++x) lane[x * kLanes] = row[x + 1];
-    }
-  }
+  size_t stride() const { return (blocks_ + 1) * kLanes; }
+  uint8_t* pixelsOf(size_t row) { return bytes_.data() + row * stride() + kLanes; }
 
-  /// Of a row's first pixel; the others follow at a distance of kLanes.
-  int16_t* laneOf(int row) { return reinterpret_cast<int16_t*>(&steps_[static_cast<size_t>(row)]) + row; }
-
-  int width_;
-  std::vector<Short8> steps_;            ///< first the filtered bytes, then the pixels
-  std::array<Short8, kPaeth + 1> is_{};  ///< by filter: all bits set in the lanes that have it
+  size_t width_, blocks_;
+  std::vector<uint8_t> above_;
+  std::vector<uint8_t> bytes_;  ///< of every lane, zeros before its row: first filtered, then pixels
 };
 
 }  // namespace
@@ -104,9 +157,9 @@ bool unfilter(const uint8_t* filtered, int width, int height, uint8_t* pixels) {
   const uint8_t* above = black.data();
   RowsAbreast abreast(width);
   for (int y = 0; y < height;) {
-    int rows = std::min(kLanes, height - y);
+    int rows = std::min(static_cast<int>(kLanes), height - y);
     if (payAbreast(filtered, width, rows)) {
-      abreast.unfilter(filtered, above, rows, pixels);
+      abreast.unfilter(filtered, above, static_cast<size_t>(rows), pixels);
     } else {
       rows = 1;
       unfilterRow(filtered[0], filtered + 1, above, width, pixels);

@@ -5,16 +5,18 @@
 namespace lodeline::png {
 
 /// The Paeth predictor: whichever of left, up and up-left is nearest to left + up - up_left, in this order
-/// among equals; of integers, or of vectors of them element by element. Written with comparisons of left and
-/// up against 3 up_left - left - up instead of three absolute differences, which compiles without branches;
-/// the test compares it with the definition for all arguments.
+/// among equals; of unsigned bytes, or of vectors of them element by element. That point is as far from left
+/// as up is from up-left, and the other way round; up-left can only be nearer where it lies between the two.
+/// The test compares this with the definition for all arguments.
 template <typename T>
 T paeth(T left, T up, T up_left) {
-  const T threshold = 3 * up_left - left - up;
-  const T low = left < up ? left : up;
-  const T high = left < up ? up : left;
-  const T upper = high <= threshold ? low : up_left;
-  return threshold <= low ? high : upper;
+  const T to_left = up < up_left ? up_left - up : up - up_left;
+  const T to_up = left < up_left ? up_left - left : left - up_left;
+  const T nearer = to_left <= to_up ? left : up;
+  const T less = to_left < to_up ? to_left : to_up;
+  const T more = to_left < to_up ? to_up : to_left;
+  const auto is_between = (left < up_left) != (up < up_left);
+  return is_between & (more - less < less) ? up_left : nearer;
 }
 
 /// Undoes the filters of an image of one byte per pixel. `filtered` holds `height` rows of a filter type and

@@ -294,13 +294,12 @@ void VisualTerms::addTo(NormalEquations* system) {
   first_.update();
   blocks_.update();
   const int rows = 6 * nodes_;
-  const auto columns = kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size());
   by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
   by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
   hessian_.setZero(rows, rows);
   gradient_.setZero(rows);
-  couplings_.setZero(rows, columns);
-  rooted_gradients_.resize(columns);
+  clearCouplings();
+  rooted_gradients_.resize(kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
   for (Landmark& landmark : landmarks_) eliminate(&landmark);
   for (const int host : first_.hosts()) {
     for (int target = 0; target < frames_; ++target) {
@@ -315,22 +314,40 @@ void VisualTerms::addTo(NormalEquations* system) {
   system->add(blocks_.blocks(), h, g);
 }
 
+void VisualTerms::clearCouplings() {
+  couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
+  for (const Stretch& stretch : stretches_) {
+    couplingsOfFrames(stretch).setZero();
+    couplingsOfCalibration(stretch).setZero();
+  }
+}
+
 void VisualTerms::subtractEliminated() {
   const int calibration = 6 * (nodes_ - frames_);
   for (const Stretch& stretch : stretches_) {
     const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
-    const auto by_frames = couplings_.block(first, stretch.column, rows, stretch.columns);
-    const auto by_calibration = couplings_.block(6 * frames_, stretch.column, calibration, stretch.columns);
+    const auto by_frames = couplingsOfFrames(stretch);
+    const auto by_calibration = couplingsOfCalibration(stretch);
+    const auto rooted = rooted_gradients_.segment(stretch.column, stretch.columns);
+    gradient_.segment(first, rows).noalias() -= by_frames * rooted;
+    gradient_.tail(calibration).noalias() -= by_calibration * rooted;
     subtractSquare(by_frames, hessian_.block(first, first, rows, rows));
     subtractProduct(by_calibration, by_frames, hessian_.block(6 * frames_, first, calibration, rows));
     subtractSquare(by_calibration, hessian_.bottomRightCorner(calibration, calibration));
   }
-  gradient_.noalias() -= couplings_ * rooted_gradients_;
 }
 
 void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step) {
-  const Eigen::VectorXd rooted =
-      rooted_gradients_ + couplings_.transpose() * blocks_.stepOfNodes(system, step);
+  const Eigen::VectorXd of_nodes = blocks_.stepOfNodes(system, step);
+  Eigen::VectorXd rooted = rooted_gradients_;
+  for (const Stretch& stretch : stretches_) {
+    const auto by_frames = couplingsOfFrames(stretch);
+    const auto by_calibration = couplingsOfCalibration(stretch);
+    auto of_stretch = rooted.segment(stretch.column, stretch.columns);
+    of_stretch.noalias() +=
+        by_frames.transpose() * of_nodes.segment(6 * stretch.first_frame, by_frames.rows());
+    of_stretch.noalias() += by_calibration.transpose() * of_nodes.tail(by_calibration.rows());
+  }
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     Eigen::Map<Vec3>(landmarks_[i].value) -=
         landmarks_[i].inverse_root * rooted.segment<kLandmarkSize>(landmarks_[i].column);

@@ -70,11 +70,19 @@ class VisualTerms {
   Linearised linearise(const Landmark& landmark, const Sighting& sighting, const Residual& residual) const;
   void arrangeColumns();
   void eliminate(Landmark* landmark);
+  void clearCouplings();
   void subtractEliminated();
   void addPair(int host, int target);
   void addCalibration(int camera);
   size_t indexOf(int host, int target, int camera) const {
     return static_cast<size_t>((host * frames_ + target) * cameras_ + camera);
+  }
+  auto couplingsOfFrames(const Stretch& stretch) {
+    return couplings_.block(6 * stretch.first_frame, stretch.column,
+                            6 * (stretch.end_frame - stretch.first_frame), stretch.columns);
+  }
+  auto couplingsOfCalibration(const Stretch& stretch) {
+    return couplings_.block(6 * frames_, stretch.column, 6 * (nodes_ - frames_), stretch.columns);
   }
   /// From a target's camera 0 to a host's.
   Vec3 baseline_W(int host, int target) const {
@@ -103,7 +111,9 @@ class VisualTerms {
   std::vector<CalibrationProducts> by_calibration_;  ///< by camera
   Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle
   Eigen::VectorXd gradient_;
-  Eigen::MatrixXd couplings_;         ///< of nodes (rows) and landmarks, times the latter's inverse roots
+  /// Of nodes (rows) and landmarks, times the latter's inverse roots. Of the frames that a stretch does not
+  /// touch it says nothing.
+  Eigen::MatrixXd couplings_;
   Eigen::VectorXd rooted_gradients_;  ///< of landmarks, by the transposed inverse roots
 };
 
