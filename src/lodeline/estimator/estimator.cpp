@@ -96,7 +96,8 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   createLandmarks(window_, factors_, options_.landmark);
   ++frames_since_start_;
   startAgainAfterDarkness(estimate);
-  shortenWindow(estimate);
+  // Not at the start: whoever records it needs the prior of the first frame as it was.
+  if (carries_on) shortenWindow(estimate);
   unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
   unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
                      estimate.magnetometer.field_W.has_value(), !estimate.gyroscope_axes},

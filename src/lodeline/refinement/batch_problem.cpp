@@ -201,6 +201,29 @@ double BatchProblem::renewLandmarks() {
   return placed > 0.0 ? removed / placed : 0.0;
 }
 
+LastingErrors BatchProblem::lastingErrors() {
+  constexpr double kBelieved = 2.0;  // widths of the loss: what is further off it hardly counts
+  LastingErrors lasting;
+  for (auto& [id, track] : window_.tracks()) {
+    if (!track.landmark) continue;
+    const LandmarkFactors terms = factors_.landmark(window_, track);
+    std::vector<std::vector<Vec2>> by_camera(cameras_.size());
+    for (size_t i = 0; i < track.sightings.size(); ++i) {
+      const Sighting& sighting = track.sightings[i];
+      Vec2 error;
+      terms.factors[i].function->Evaluate(terms.factors[i].blocks.data(), error.data(), nullptr);
+      if (error.norm() < kBelieved * factors_.robustScale(*window_.find(sighting.frame)))
+        by_camera[static_cast<size_t>(sighting.camera)].push_back(error);
+    }
+    for (const std::vector<Vec2>& of_camera : by_camera) lasting.add(of_camera);
+  }
+  return lasting;
+}
+
+void BatchProblem::weighSightings(double design_effect) {
+  for (auto& [id, track] : window_.tracks()) track.weight /= design_effect;
+}
+
 Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index, const SkylineMatrix& inverse) const {
   const int pose = rowOf(state(index).pose.data()), motion = rowOf(state(index).motion.data());
   Eigen::Matrix<double, 15, 15> covariance;

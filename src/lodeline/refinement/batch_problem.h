@@ -9,6 +9,7 @@
 #include "lodeline/estimator/normal_equations.h"
 #include "lodeline/estimator/window.h"
 #include "lodeline/refinement/forward_record.h"
+#include "lodeline/refinement/lasting_errors.h"
 #include "lodeline/refinement/skyline_matrix.h"
 
 namespace lodeline {
@@ -53,6 +54,10 @@ class BatchProblem {
   /// whatever was left out before. The robust loss becomes as wide as the errors ask. Returns the share of
   /// the sightings that went.
   double renewLandmarks();
+  /// The errors at the present values, without those that the robust loss hardly counts.
+  LastingErrors lastingErrors();
+  /// Lets so many sightings count as one, until landmarks are renewed.
+  void weighSightings(double design_effect);
 
   /// The offset of the magnetometer's corrected readings (T) and the depth at the origin (m) that are in
   /// force for a state; null where there is no such sensor.

@@ -14,11 +14,6 @@ namespace {
 constexpr double kNode_s = 60.0;  // for which a wandering offset counts as constant
 // Longer tracks are cut: their states form a clique, and a rig at rest would tie thousands together.
 constexpr size_t kLongestTrack = 40;
-// Sigmas of sightings by further cameras, for as long as the calibration is not believed. A lens that is not
-// quite as its file says, behind a flat port above all, bends the distances that stereo sees by the place in
-// the image; bent to one side, a rig that swims ahead seems to turn. A point's disparity is as wrong in every
-// image that shows it, some ten of them, where the batch takes each for news.
-constexpr double kFurtherCameraSigmas = 3.0;
 
 /// The end of a random walk against its beginning, as a quadratic term.
 Prior walkBetween(GlobalState* begin, GlobalState* end, double sigma) {
@@ -59,7 +54,6 @@ void BatchProblem::addTracks(const ForwardRecord& record) {
     TrackId id;
     size_t first;
   };
-  const double further_sigmas = options_.camera_calibration.enabled ? kFurtherCameraSigmas : 1.0;
   std::unordered_map<TrackId, Piece> pieces;
   TrackId next = 0;
   for (size_t k = 0; k < states(); ++k) {
@@ -71,8 +65,7 @@ void BatchProblem::addTracks(const ForwardRecord& record) {
       sighting.frame = static_cast<FrameId>(k);
       sighting.camera = observation.camera;
       sighting.measurement = DirectionMeasurement::fromBearing(
-          *cameras_[static_cast<size_t>(observation.camera)], observation.bearing_C,
-          observation.camera > 0 ? further_sigmas * observation.sigma_px : observation.sigma_px);
+          *cameras_[static_cast<size_t>(observation.camera)], observation.bearing_C, observation.sigma_px);
       all_tracks_[entry->second.id].sightings.push_back(sighting);
     }
   }

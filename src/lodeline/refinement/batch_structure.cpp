@@ -13,6 +13,49 @@ bool hosts(const TrackHistory& track) {
   return track.seenIn(track.landmark->host) && track.find(track.landmark->host, 0) != nullptr;
 }
 
+/// Cost of a landmark's terms and, under their losses, the normal equations of the landmark alone.
+struct LandmarkSystem {
+  double cost = 0.0;
+  Mat3 hessian = Mat3::Zero();
+  Vec3 gradient = Vec3::Zero();
+
+  explicit LandmarkSystem(const LandmarkFactors& terms) {
+    for (const Factor& factor : terms.factors) add(factor, terms.landmark);
+  }
+  void add(const Factor& factor, const double* landmark) {
+    using RowMajor = Eigen::Matrix<double, 2, kLandmarkSize, Eigen::RowMajor>;
+    RowMajor by_landmark;
+    std::vector<double*> jacobians(factor.blocks.size(), nullptr);
+    const auto block = std::find(factor.blocks.begin(), factor.blocks.end(), landmark);
+    jacobians[static_cast<size_t>(block - factor.blocks.begin())] = by_landmark.data();
+    Vec2 residual;
+    factor.function->Evaluate(factor.blocks.data(), residual.data(), jacobians.data());
+    double rho[3];
+    factor.loss->Evaluate(residual.squaredNorm(), rho);
+    cost += 0.5 * rho[0];
+    hessian += rho[1] * by_landmark.transpose() * by_landmark;
+    gradient += rho[1] * by_landmark.transpose() * residual;
+  }
+};
+
+/// Moves a landmark to where the robust loss has it, poses as they are. A place in the middle of all
+/// sightings is off by so much where one of them strays that most of the others contradict it.
+void settle(const LandmarkFactors& terms) {
+  constexpr int kMostSteps = 10;
+  constexpr double kLeastGain = 1e-3;
+  Eigen::Map<Vec3> landmark(terms.landmark);
+  LandmarkSystem system(terms);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Vec3 before = landmark;
+    landmark -= system.hessian.ldlt().solve(system.gradient);
+    const LandmarkSystem next(terms);
+    const double gain = system.cost - next.cost;
+    if (!(gain > 0.0)) landmark = before;
+    if (!(gain > kLeastGain * system.cost)) return;
+    system = next;
+  }
+}
+
 }  // namespace
 
 void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
@@ -53,6 +96,7 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
                          TrackId id, TrackHistory* track, std::vector<SightingError>* errors) {
   const LandmarkFactors terms = factors.landmark(window, *track);
+  settle(terms);
   std::vector<Sighting> kept;
   for (size_t i = 0; i < track->sightings.size(); ++i) {
     const Factor& factor = terms.factors[i];

@@ -11,9 +11,9 @@ namespace lodeline {
 void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
                    TrackHistory* track);
 
-/// Removes sightings that contradict the landmark by more than `max_error_sigmas`, and the landmark itself
-/// where too little is left of it or it lies behind its host. Returns the number of sightings removed, and
-/// adds those of all to `errors`.
+/// Settles a landmark among its sightings, removes those that contradict it by more than `max_error_sigmas`,
+/// and the landmark itself where too little is left of it or it lies behind its host. Returns the number of
+/// sightings removed, and adds those of all to `errors`.
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
                          TrackId id, TrackHistory* track, std::vector<SightingError>* errors);
 

@@ -111,8 +111,11 @@ Refinement refine(const Rig& rig, const EstimatorOptions& options, const Forward
   summary.states = static_cast<int>(problem.states());
   for (int i = 0; i < wanted.rounds; ++i) {
     if (i > 0) {
+      // Of a solution: the errors of the run's poses last themselves.
+      summary.design_effect = problem.lastingErrors().designEffect();
       problem.relinearise();
       summary.outlier_share = problem.renewLandmarks();
+      problem.weighSightings(summary.design_effect);
     }
     const Round round = solve(problem, wanted, &hessian);
     if (i == 0) {

@@ -27,6 +27,7 @@ struct RefinementSummary {
   int states = 0;
   int64_t landmarks = 0;
   int64_t sightings = 0;          ///< of these
+  double design_effect = 1.0;     ///< so many of them count as one: LastingErrors
   double outlier_share = 0.0;     ///< of the sightings, left out at the end
   int iterations = 0;             ///< of all rounds
   double forward_cost = 0.0;      ///< of the forward run's states

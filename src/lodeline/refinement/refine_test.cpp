@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/estimator/camera_states.h"
@@ -22,11 +23,12 @@ struct ForwardRun {
   std::vector<Comparison> comparisons;  // of the frames that have a pose
 
   using Tamper = std::function<void(double time_s, SimulatedFrame& frame)>;
+  using Change = std::function<void(EstimatorOptions& options)>;
 
   explicit ForwardRun(const TestSceneOptions& wanted, double state_interval_s = 0.0,
-                      const Tamper& tamper = {}, bool calibrates_cameras = false)
+                      const Tamper& tamper = {}, const Change& change = {})
       : scene(wanted),
-        options(optionsOf(wanted, calibrates_cameras)),
+        options(optionsOf(wanted, change)),
         estimator(scene.rig(), options, &diagnostics),
         record(state_interval_s) {
     TruthComparison truth;
@@ -40,9 +42,10 @@ struct ForwardRun {
     record.finish(estimator);
   }
 
-  static EstimatorOptions optionsOf(const TestSceneOptions& wanted, bool calibrates_cameras) {
+  static EstimatorOptions optionsOf(const TestSceneOptions& wanted, const Change& change) {
     EstimatorOptions options = honestOptions(wanted);
-    options.camera_calibration.enabled = calibrates_cameras;
+    options.camera_calibration.enabled = false;
+    if (change) change(options);
     return options;
   }
 
@@ -76,7 +79,8 @@ TEST_P(RefineTest, LowersTheCostAndTheErrorAndStaysWithinItsSigmas) {
   EXPECT_TRUE(summary.converged);
   EXPECT_LT(summary.first_round_cost, summary.forward_cost);
   // Whitened residuals of honest noise: two of each sighting, under a loss that makes them count for less.
-  EXPECT_NEAR(2.0 * summary.cost / (2.0 * static_cast<double>(summary.sightings)), 0.7, 0.2);
+  const double worth = static_cast<double>(summary.sightings) / summary.design_effect;
+  EXPECT_NEAR(2.0 * summary.cost / (2.0 * worth), 0.7, 0.2);
   ASSERT_EQ(refinement.frames.size(), run.comparisons.size());
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
   for (size_t i = 0; i < refinement.frames.size(); i += 10) {
@@ -157,8 +161,33 @@ TEST(Refine, CarriesOnThroughDarkness) {
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
 }
 
+// One camera that has waited for long knows its scale at once. What it believes of its first frame must be on
+// record before any of the frames that it started with is marginalised.
+TEST(Refine, StartsFromWhatWasBelievedBeforeAnyFrameWent) {
+  const ForwardRun run(smallScene(1), 0.0, {}, [](EstimatorOptions& options) {
+    options.window.startup_frames_mono = 2;
+    options.window.startup_scale_sigma = 1.0;
+  });
+  const std::vector<std::string>& names = run.record.startPrior().names;
+  EXPECT_EQ(std::count(names.begin(), names.end(), "pose"), 1);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "motion"), 1);
+  EXPECT_GT(run.record.states().size(), run.record.frames().size()) << "those of the start as well";
+  const Refinement refinement = run.refined();
+  ASSERT_TRUE(refinement.summary.usable()) << refinement.summary.refusal;
+  EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
+}
+
+// A landmark in the middle of sightings of which one strays would lose the others as well.
+TEST(Refine, LosesTheStrayingSightingsAlone) {
+  TestSceneOptions options = smallScene(2);
+  options.points.outlier_share = 0.05;
+  const ForwardRun run(options);
+  EXPECT_NEAR(run.refined().summary.outlier_share, 0.05, 0.02);
+}
+
 TEST(Refine, LeavesLensesAsTheRunFoundThem) {
-  const ForwardRun run(smallScene(2), 0.5, {}, true);
+  const ForwardRun run(smallScene(2), 0.5, {},
+                       [](EstimatorOptions& options) { options.camera_calibration.enabled = true; });
   BatchProblem problem(run.scene.rig(), run.options, run.record);
   SkylineMatrix hessian = problem.emptyMatrix();
   Eigen::VectorXd gradient;
