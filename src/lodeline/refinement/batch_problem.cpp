@@ -206,14 +206,12 @@ LastingErrors BatchProblem::lastingErrors() {
   LastingErrors lasting;
   for (auto& [id, track] : window_.tracks()) {
     if (!track.landmark) continue;
-    const LandmarkFactors terms = factors_.landmark(window_, track);
+    const std::vector<Vec2> errors = residualsOf(factors_.landmark(window_, track));
     std::vector<std::vector<Vec2>> by_camera(cameras_.size());
-    for (size_t i = 0; i < track.sightings.size(); ++i) {
+    for (size_t i = 0; i < errors.size(); ++i) {
       const Sighting& sighting = track.sightings[i];
-      Vec2 error;
-      terms.factors[i].function->Evaluate(terms.factors[i].blocks.data(), error.data(), nullptr);
-      if (error.norm() < kBelieved * factors_.robustScale(*window_.find(sighting.frame)))
-        by_camera[static_cast<size_t>(sighting.camera)].push_back(error);
+      if (errors[i].norm() < kBelieved * factors_.robustScale(*window_.find(sighting.frame)))
+        by_camera[static_cast<size_t>(sighting.camera)].push_back(errors[i]);
     }
     for (const std::vector<Vec2>& of_camera : by_camera) lasting.add(of_camera);
   }

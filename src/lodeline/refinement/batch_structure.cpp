@@ -58,6 +58,13 @@ void settle(const LandmarkFactors& terms) {
 
 }  // namespace
 
+std::vector<Vec2> residualsOf(const LandmarkFactors& landmark) {
+  std::vector<Vec2> residuals;
+  for (const Factor& factor : landmark.factors)
+    factor.function->Evaluate(factor.blocks.data(), residuals.emplace_back().data(), nullptr);
+  return residuals;
+}
+
 void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
                    TrackHistory* track) {
   const auto host = std::find_if(track->sightings.begin(), track->sightings.end(),
@@ -96,16 +103,15 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
                          TrackId id, TrackHistory* track, std::vector<SightingError>* errors) {
   const LandmarkFactors terms = factors.landmark(window, *track);
+  const std::vector<Vec2> as_placed = residualsOf(terms);
   settle(terms);
+  const std::vector<Vec2> settled = residualsOf(terms);
   std::vector<Sighting> kept;
   for (size_t i = 0; i < track->sightings.size(); ++i) {
-    const Factor& factor = terms.factors[i];
-    Vec2 residual;
-    factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
     const Sighting& sighting = track->sightings[i];
     const bool is_host = sighting.frame == track->landmark->host && sighting.camera == 0;
-    if (!is_host) errors->push_back({id, sighting.frame, residual.norm()});
-    if (residual.norm() <= options.max_error_sigmas) kept.push_back(sighting);
+    if (!is_host) errors->push_back({id, sighting.frame, as_placed[i].norm()});
+    if (settled[i].norm() <= options.max_error_sigmas) kept.push_back(sighting);
   }
   const int removed = static_cast<int>(track->sightings.size() - kept.size());
   track->sightings = std::move(kept);

@@ -13,8 +13,12 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
 
 /// Settles a landmark among its sightings, removes those that contradict it by more than `max_error_sigmas`,
 /// and the landmark itself where too little is left of it or it lies behind its host. Returns the number of
-/// sightings removed, and adds those of all to `errors`.
+/// sightings removed, and adds to `errors` those of all where the landmark was placed, in the middle of its
+/// sightings: robust losses as wide as what is left once it has settled take too much from the images.
 int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
                          TrackId id, TrackHistory* track, std::vector<SightingError>* errors);
+
+/// Whitened reprojection errors of a landmark's sightings, in their order.
+std::vector<Vec2> residualsOf(const LandmarkFactors& landmark);
 
 }  // namespace lodeline
