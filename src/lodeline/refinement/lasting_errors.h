@@ -19,9 +19,10 @@ class LastingErrors {
   /// 1 + (n - 1) rho (L. Kish, "Survey Sampling", 1965, section 5.4), with n the number of sightings in one
   /// camera, averaged over sightings. rho is 0 where neighbours are no more alike than those of white noise,
   /// and 1 where they are as alike as those of a random walk; of either the landmark has taken the mean and,
-  /// along its parallax, the trend. That leaves neighbours with a correlation of -1.6 / n of white noise (two
-  /// cameras, which share a landmark: -0.7 / n, taken for both) and of 1 - 5.8 / n, to 0.05 for 6 to 40
-  /// sightings, of a random walk (both found with simulated ones). 1 while there is nothing to tell it by.
+  /// along its parallax, the trend. That leaves neighbours with a correlation of 1 - 5.8 / n of a random walk
+  /// (to 0.05 for 6 to 40 sightings; found with simulated ones) and of -1.6 / n of white noise; of two
+  /// cameras, which share a landmark, with less, and -0.7 / n, at which scenes of points with white noise
+  /// come out at 1, is taken for both. 1 while there is nothing to tell it by.
   double designEffect() const;
 
  private:

@@ -93,12 +93,14 @@ nlohmann::ordered_json toJson(const DepthEstimate::Gauge& gauge) {
 std::string describe(const RefinementSummary& refined) {
   if (!refined.usable()) return "refused: " + refined.refusal + "; the forward run is what there is";
   return fmt::format(
-      "{} states, {} landmarks, {} sightings ({:.1f} % left out), {} steps{}; cost {:.4g} of {:.4g}; moved "
+      "{} states, {} landmarks, {} sightings ({:.1f} % left out, {:.1f} of them count as one), {} steps{}; "
+      "cost {:.4g} of {:.4g}; moved "
       "by "
       "{:.3f} m and {:.2f} deg rms, {:.3f} m at most; {:.1f} core-s",
-      refined.states, refined.landmarks, refined.sightings, 100.0 * refined.outlier_share, refined.iterations,
-      refined.converged ? "" : " (not converged)", refined.first_round_cost, refined.forward_cost,
-      refined.moved_rms_m, refined.turned_rms_rad * 180.0 / M_PI, refined.moved_max_m, refined.processor_s);
+      refined.states, refined.landmarks, refined.sightings, 100.0 * refined.outlier_share,
+      refined.design_effect, refined.iterations, refined.converged ? "" : " (not converged)",
+      refined.first_round_cost, refined.forward_cost, refined.moved_rms_m,
+      refined.turned_rms_rad * 180.0 / M_PI, refined.moved_max_m, refined.processor_s);
 }
 
 nlohmann::ordered_json toJson(const RefinementSummary& refined) {
