@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/lasting_error.h"
 #include "lodeline/geometry/so3.h"
 
@@ -351,6 +352,11 @@ void MagnetometerFusion::reportDecision(const GateDecision& decision, Time time)
   status_before_ = decision.status;
 }
 
+double MagnetometerFusion::axesSigma(const Window& window) const {
+  if (!calibration_.is_calibrated) return options_.magnetometer.uncalibrated_axes_sigma;
+  return gyroscopeAxesState(window) ? options_.imu_axes.uncalibrated_sigma : 0.0;
+}
+
 MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   MagnetometerEstimate estimate;
   estimate.status = status_;
@@ -359,12 +365,10 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
     estimate.declination_sigma_rad = options_.magnetometer.declination_sigma_rad;
   const MagnetometerStates states(window);
   if (states.field != nullptr) {
-    if (!calibration_.is_calibrated) {
-      const Vec3 field_W = states.field_W();
-      estimate.axes_sigma_rad = std::min(std::numbers::pi, options_.magnetometer.uncalibrated_axes_sigma *
-                                                               field_W.norm() / field_W.head<2>().norm());
-    }
-    estimate.field_W = states.field_W();
+    const Vec3 field_W = states.field_W();
+    estimate.axes_sigma_rad =
+        std::min(std::numbers::pi, axesSigma(window) * field_W.norm() / field_W.head<2>().norm());
+    estimate.field_W = field_W;
     estimate.offset_B = states.offset_B();
     estimate.floor_T = errors_.floor_T();
   }

@@ -27,7 +27,7 @@ struct MagnetometerEstimate {
   double heading_sigma_rad = 0.0;
   double declination_sigma_rad = 0.0;
   /// Part of it that the window's covariance has not: of the axes of a magnetometer that was never
-  /// calibrated.
+  /// calibrated, or of those of an IMU that perhaps never was, against which a calibration turned it.
   double axes_sigma_rad = 0.0;
   /// Estimated field of the Earth and offset of the corrected readings, T; nothing unless fused absolutely.
   std::optional<Vec3> field_W;
@@ -63,6 +63,8 @@ class MagnetometerFusion {
  private:
   bool absolute() const { return use_ == MagnetometerUse::Absolute; }
 
+  /// Of axes that no state stands for, relative and rad.
+  double axesSigma(const Window& window) const;
   double offsetSigma() const;
   double floorSigma(const Vec3& field_B) const;
   void align(Window* window, Prior* prior);

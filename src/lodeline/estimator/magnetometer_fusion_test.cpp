@@ -257,6 +257,7 @@ class SpoiltMagnetometer : public testing::Test {
     rig.magnetometer->rate_hz = rate_hz;
     EstimatorOptions options;
     options.magnetometer.use = use;
+    options.imu_axes.calibrated_below_rad_per_s_sqrtHz = calibrated_below_rad_per_s_sqrtHz_;
     Estimator estimator(rig, options, &diagnostics_);
     FrameEstimate estimate;
     int64_t reading = 0;
@@ -288,6 +289,7 @@ class SpoiltMagnetometer : public testing::Test {
   SpoiltMagnetometer() { calibration_.is_calibrated = true; }
 
   MagnetometerCalibration calibration_;
+  double calibrated_below_rad_per_s_sqrtHz_ = 1.0;  // any gyroscope
   Diagnostics diagnostics_;
   std::map<MagnetometerStatus, int> statuses_;
 };
@@ -371,6 +373,18 @@ TEST_F(SpoiltMagnetometer, WithoutCalibrationIsUsedOnlyWhenAskedTo) {
   EXPECT_NEAR(asked.magnetometer.axes_sigma_rad, 0.03 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
   EXPECT_GT(asked.covariance(5, 5), std::pow(asked.magnetometer.axes_sigma_rad, 2)) << "and so may its axes";
   EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 2);
+}
+
+// A calibration turns it against the gyroscope, whose axes are not the housing's.
+TEST_F(SpoiltMagnetometer, OnAnImuThatWasPerhapsNeverCalibratedClaimsLess) {
+  const FrameEstimate believed = run(leave);
+  EXPECT_EQ(believed.magnetometer.axes_sigma_rad, 0.0);
+  calibrated_below_rad_per_s_sqrtHz_ = 0.0;
+  const FrameEstimate doubted = run(leave);
+  const Vec3 field_W = doubted.magnetometer.field_W.value();
+  EXPECT_NEAR(doubted.magnetometer.axes_sigma_rad, 0.007 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
+  EXPECT_GT(doubted.covariance(5, 5),
+            believed.covariance(5, 5) + std::pow(0.9 * doubted.magnetometer.axes_sigma_rad, 2));
 }
 
 TEST_F(SpoiltMagnetometer, AsInThePaperTellsNoField) {
