@@ -223,6 +223,11 @@ void NormalEquations::stepLandmarks(const Eigen::VectorXd& step) const {
   }
 }
 
+void NormalEquations::forgetTerms() {
+  h_.resize(0, 0);
+  g_.resize(0);
+}
+
 Eigen::MatrixXd NormalEquations::hessian() const {
   Eigen::MatrixXd full = h_.topLeftCorner(size_, size_).selfadjointView<Eigen::Lower>();
   return full;

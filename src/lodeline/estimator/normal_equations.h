@@ -40,6 +40,9 @@ class NormalEquations {
   /// Moves the eliminated landmarks along with a step d of the blocks.
   void stepLandmarks(const Eigen::VectorXd& step) const;
 
+  /// Frees the system and keeps what stepLandmarks() needs.
+  void forgetTerms();
+
   const std::vector<Block>& blocks() const { return blocks_; }
   int size() const { return size_; }
   const Block* find(const double* value) const;

@@ -15,7 +15,10 @@ constexpr double kSensorLoss = 3.0;  // Cauchy, in standard deviations
 }  // namespace
 
 BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record)
-    : options_(options), factors_(rig, options_), loss_(std::make_shared<ceres::CauchyLoss>(kSensorLoss)) {
+    : options_(options),
+      factors_(rig, options_),
+      loss_(std::make_shared<ceres::CauchyLoss>(kSensorLoss)),
+      visual_(window_, factors_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
   addStates(rig, record);
   addTracks(record);
@@ -74,26 +77,29 @@ std::vector<Factor> BatchProblem::motionFactors() {
 
 double BatchProblem::cost() {
   std::vector<double> residual;
-  double sum = 0.0;
+  double sum = visual_.cost();
   for (const Factor& factor : motionFactors()) sum += costOf(factor, residual);
-  for (auto& [id, track] : window_.tracks()) {
-    if (!track.landmark) continue;
-    for (const Factor& factor : factors_.landmark(window_, track).factors) sum += costOf(factor, residual);
-  }
   return sum;
 }
 
 void BatchProblem::scatter(const NormalEquations& local, SkylineMatrix* hessian,
                            Eigen::VectorXd* gradient) const {
-  const Eigen::MatrixXd h = local.hessian();
+  const auto h = local.lowerTriangle();
   const Eigen::VectorXd g = local.gradient();
+  std::vector<int> rows;
   for (const NormalEquations::Block& a : local.blocks()) {
-    const int row = rowOf(a.value);
+    const int row = rows.emplace_back(rowOf(a.value));
     gradient->segment(hessian->offset(row), a.tangentSize()) += g.segment(a.offset, a.tangentSize());
-    for (const NormalEquations::Block& b : local.blocks()) {
-      const int column = rowOf(b.value);
-      if (column <= row)
-        hessian->block(row, column) += h.block(a.offset, b.offset, a.tangentSize(), b.tangentSize());
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const NormalEquations::Block& b = local.blocks()[i];
+      const auto product = h.block(a.offset, b.offset, a.tangentSize(), b.tangentSize());
+      if (rows[i] == row) {
+        hessian->block(row, row) += product.selfadjointView<Eigen::Lower>().toDenseMatrix();
+      } else if (rows[i] < row) {
+        hessian->block(row, rows[i]) += product;
+      } else {
+        hessian->block(rows[i], row) += product.transpose();
+      }
     }
   }
 }
@@ -106,12 +112,7 @@ void BatchProblem::linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient) 
     local.add(factor);
     scatter(local, hessian, gradient);
   }
-  for (auto& [id, track] : window_.tracks()) {
-    if (!track.landmark) continue;
-    NormalEquations local;
-    local.addEliminated(factors_.landmark(window_, track));
-    scatter(local, hessian, gradient);
-  }
+  visual_.linearise([&](const NormalEquations& local) { scatter(local, hessian, gradient); });
 }
 
 void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
@@ -127,16 +128,12 @@ void BatchProblem::step(const Eigen::VectorXd& step) {
   const auto stepOf = [&](const double* value, int size) {
     return step.segment(offsets[static_cast<size_t>(rowOf(value))], size);
   };
-  // Landmarks follow from the poses' step and from their terms as they were before it.
-  for (auto& [id, track] : window_.tracks()) {
-    if (!track.landmark) continue;
-    NormalEquations local;
-    local.addEliminated(factors_.landmark(window_, track));
+  visual_.step([&](const NormalEquations& local) {
     Eigen::VectorXd local_step(local.size());
     for (const NormalEquations::Block& block : local.blocks())
       local_step.segment(block.offset, block.tangentSize()) = stepOf(block.value, block.tangentSize());
-    local.stepLandmarks(local_step);
-  }
+    return local_step;
+  });
   for (const auto& frame : window_.frames()) {
     const Eigen::Matrix<double, 6, 1> moved = stepOf(frame->pose.data(), kPoseTangentSize);
     poseToBlock(perturbed(frame->worldFromBody(), moved), frame->pose.data());
@@ -198,6 +195,7 @@ double BatchProblem::renewLandmarks() {
     removed += removeContradictions(window_, factors_, options_.landmark, id, &track, &errors);
   }
   adaptRobustLosses(window_, errors, options_.solver);
+  visual_.arrange();
   return placed > 0.0 ? removed / placed : 0.0;
 }
 

@@ -8,6 +8,7 @@
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/normal_equations.h"
 #include "lodeline/estimator/window.h"
+#include "lodeline/refinement/batch_landmarks.h"
 #include "lodeline/refinement/forward_record.h"
 #include "lodeline/refinement/lasting_errors.h"
 #include "lodeline/refinement/skyline_matrix.h"
@@ -41,7 +42,7 @@ class BatchProblem {
   /// Takes from the Hessian what is known and not claimed (estimator/inertial_states.h), before it is
   /// inverted for covariances.
   void subtractUnclaimed(SkylineMatrix* hessian) const;
-  /// Moves everything by a step of that system; no value may have moved since.
+  /// Moves everything by a step of the system linearised last; no value may have moved since.
   void step(const Eigen::VectorXd& step);
   /// All values, to go back to.
   std::vector<double> values();
@@ -103,6 +104,7 @@ class BatchProblem {
   FactorMaker factors_;
   std::shared_ptr<const ceres::LossFunction> loss_;  ///< on magnetometer and depth
   Window window_;
+  BatchLandmarks visual_;
   Tracks all_tracks_;  ///< with all their sightings, without landmarks
   std::vector<Prior> priors_;
   Chain field_offsets_, depth_offsets_;

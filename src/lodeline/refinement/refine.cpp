@@ -98,7 +98,7 @@ std::string refusalOf(const RefinementSummary& summary, const RefinementOptions&
 
 Refinement refine(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record,
                   const RefinementOptions& wanted) {
-  const double start_s = threadSeconds();
+  const double start_s = processSeconds();
   Refinement result;
   RefinementSummary& summary = result.summary;
   result.frames = record.frames();
@@ -140,7 +140,7 @@ Refinement refine(const Rig& rig, const EstimatorOptions& options, const Forward
   result.frames = refinedFrames(problem, rig, options, record, summary.has_covariance ? &hessian : nullptr);
   result.landmarks = mapPoints(problem);
   measureMoves(record.frames(), result.frames, &summary);
-  summary.processor_s = threadSeconds() - start_s;
+  summary.processor_s = processSeconds() - start_s;
   return result;
 }
 
