@@ -54,7 +54,7 @@ void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOpt
                  "relative scale errors and misalignment of a calibrated gyroscope's axes; 0: not estimated");
   settings->bind("inertial.calibrated_below_rad_per_s_sqrtHz",
                  &calibration->calibrated_below_rad_per_s_sqrtHz,
-                 "white noise of a gyroscope below which its axes are believed");
+                 "white noise of a gyroscope below which its maker is taken to have calibrated the IMU");
   settings->bind("inertial.uncalibrated_sigma", &calibration->uncalibrated_sigma,
                  "of the axes of an IMU above that, which was perhaps never calibrated; in what is claimed");
   settings->bind("inertial.noise_inflation", &options->noise_inflation,

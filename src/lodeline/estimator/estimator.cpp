@@ -31,6 +31,11 @@ const char* toString(Status status) {
 
 namespace {
 
+EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options) {
+  options.imu_axes = axesOptionsFor(rig.imu.noise, options.imu_axes);
+  return options;
+}
+
 /// A bias that no accelerometer has: a start of one camera that was a false minimum, or readings that are not
 /// what the calibration says. What follows is wrong, however small the reprojection errors.
 void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions& options,
@@ -54,7 +59,7 @@ void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions
 
 Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
     : rig_(rig),
-      options_(options),
+      options_(optionsFor(rig, options)),
       diagnostics_(diagnostics),
       factors_(rig_, options_),
       marginalizer_(factors_),
@@ -100,7 +105,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   if (carries_on) shortenWindow(estimate);
   unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
   unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
-                     estimate.magnetometer.field_W.has_value(), !estimate.gyroscope_axes},
+                     estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
                     &estimate.covariance);
   addHeadingError(estimate.magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
   estimate.magnetometer.heading_sigma_rad =
@@ -211,7 +216,7 @@ bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sighti
 void Estimator::addCalibration(Prior* prior) {
   addCameraStates(window_, *prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration,
                   camera_rotations_);
-  addInertialStates(window_, rig_.imu.noise, options_.imu_axes);
+  addInertialStates(window_, options_.imu_axes);
 }
 
 bool Estimator::startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu) {

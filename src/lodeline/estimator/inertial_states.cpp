@@ -11,9 +11,14 @@ constexpr const char* kGyroscopeAxes = "imu.gyro_axes";
 
 }  // namespace
 
-void addInertialStates(Window& window, const ImuNoise& noise, const ImuAxesOptions& options) {
+ImuAxesOptions axesOptionsFor(const ImuNoise& noise, ImuAxesOptions options) {
+  const bool is_quiet = noise.gyroscope_density_rad_per_s_sqrtHz < options.calibrated_below_rad_per_s_sqrtHz;
+  if (is_quiet || options.gyroscope_sigma <= 0.0) options.uncalibrated_sigma = 0.0;
+  return options;
+}
+
+void addInertialStates(Window& window, const ImuAxesOptions& options) {
   if (options.gyroscope_sigma <= 0.0) return;
-  if (noise.gyroscope_density_rad_per_s_sqrtHz < options.calibrated_below_rad_per_s_sqrtHz) return;
   GlobalState state;
   state.name = kGyroscopeAxes;
   state.value.assign(kGyroscopeAxesSize, 0.0);
@@ -32,7 +37,7 @@ std::optional<GyroscopeAxes> gyroscopeAxes(const Window& window) {
 std::optional<Eigen::MatrixXd> unclaimedInformation(const Window& window, const FactorMaker& factors,
                                                     const ImuAxesOptions& options) {
   const auto belief = factors.gyroscopeAxes(window);
-  if (!belief || options.uncalibrated_sigma <= 0.0) return std::nullopt;
+  if (!belief || !options.areDoubted()) return std::nullopt;
   NormalEquations believed;
   believed.add(*belief);
   Eigen::MatrixXd information = believed.hessian();
@@ -42,9 +47,7 @@ std::optional<Eigen::MatrixXd> unclaimedInformation(const Window& window, const 
          parts.eigenvectors().transpose();
 }
 
-void addDoubtAboutUp(const Window& window, const ImuAxesOptions& options,
-                     Eigen::Matrix<double, 15, 15>* covariance) {
-  if (!gyroscopeAxesState(window)) return;
+void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15>* covariance) {
   covariance->diagonal().segment<2>(3).array() += options.uncalibrated_sigma * options.uncalibrated_sigma;
 }
 
@@ -54,7 +57,7 @@ Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, co
   if (!unclaimed) return known.newest();
   Eigen::Matrix<double, 15, 15> claimed =
       known.newestWithout(gyroscopeAxesState(window)->value.data(), *unclaimed);
-  addDoubtAboutUp(window, options, &claimed);
+  addDoubtAboutUp(options, &claimed);
   return claimed;
 }
 

@@ -9,27 +9,30 @@
 
 namespace lodeline {
 
-/// Adds the axes of a gyroscope with this noise (factors/inertial_factor.h), unless they are to be believed.
+/// The options for an IMU with this noise: uncalibrated_sigma is 0 where its maker has calibrated it, or
+/// where its axes are held.
+ImuAxesOptions axesOptionsFor(const ImuNoise& noise, ImuAxesOptions options);
+
+/// Adds the axes of the gyroscope (factors/inertial_factor.h), unless they are to be held.
 /// Every turn then teaches what the next one needs: vision, and the magnetometer where there is one, say how
 /// far the rig has really turned. FactorMaker::gyroscopeAxes() holds them to what is known beforehand.
-void addInertialStates(Window& window, const ImuNoise& noise, const ImuAxesOptions& options);
+void addInertialStates(Window& window, const ImuAxesOptions& options);
 
-/// Null where the axes are taken as calibrated.
+/// Null where the axes are held.
 GlobalState* gyroscopeAxesState(const Window& window);
 std::optional<GyroscopeAxes> gyroscopeAxes(const Window& window);
 
-/// Of an IMU whose gyroscope's axes are estimated nobody knows whether its maker has calibrated it
-/// (uncalibrated_sigma of the options). The estimate takes it for calibrated until turns tell otherwise, and
-/// would claim as much of the first turns. What is claimed is less:
+/// Of some IMUs nobody knows whether their maker has calibrated them (options.areDoubted()). The estimate
+/// takes them for calibrated until turns tell otherwise, and would claim as much of the first turns. What is
+/// claimed is less:
 ///
-/// Information of those axes (9 x 9, positive semidefinite) that is used and not claimed; none where the axes
-/// are believed.
+/// Information of the gyroscope's axes (9 x 9, positive semidefinite) that is used and not claimed; none
+/// where they are not doubted.
 std::optional<Eigen::MatrixXd> unclaimedInformation(const Window& window, const FactorMaker& factors,
                                                     const ImuAxesOptions& options);
 /// Adds to a state's covariance what no state stands for, the accelerometer's axes: what it takes for up is
 /// as wrong as they are.
-void addDoubtAboutUp(const Window& window, const ImuAxesOptions& options,
-                     Eigen::Matrix<double, 15, 15>* covariance);
+void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15>* covariance);
 
 /// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows.
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,

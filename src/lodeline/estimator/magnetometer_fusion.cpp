@@ -352,9 +352,9 @@ void MagnetometerFusion::reportDecision(const GateDecision& decision, Time time)
   status_before_ = decision.status;
 }
 
-double MagnetometerFusion::axesSigma(const Window& window) const {
+double MagnetometerFusion::axesSigma() const {
   if (!calibration_.is_calibrated) return options_.magnetometer.uncalibrated_axes_sigma;
-  return gyroscopeAxesState(window) ? options_.imu_axes.uncalibrated_sigma : 0.0;
+  return options_.imu_axes.uncalibrated_sigma;
 }
 
 MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
@@ -367,7 +367,7 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   if (states.field != nullptr) {
     const Vec3 field_W = states.field_W();
     estimate.axes_sigma_rad =
-        std::min(std::numbers::pi, axesSigma(window) * field_W.norm() / field_W.head<2>().norm());
+        std::min(std::numbers::pi, axesSigma() * field_W.norm() / field_W.head<2>().norm());
     estimate.field_W = field_W;
     estimate.offset_B = states.offset_B();
     estimate.floor_T = errors_.floor_T();

@@ -64,7 +64,7 @@ class MagnetometerFusion {
   bool absolute() const { return use_ == MagnetometerUse::Absolute; }
 
   /// Of axes that no state stands for, relative and rad.
-  double axesSigma(const Window& window) const;
+  double axesSigma() const;
   double offsetSigma() const;
   double floorSigma(const Vec3& field_B) const;
   void align(Window* window, Prior* prior);

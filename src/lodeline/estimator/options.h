@@ -114,13 +114,15 @@ struct ImuAxesOptions {
   /// (GyroscopeAxes); 0 holds them. Some are, to less than a thousandth, and some never were and are off by
   /// one or two per cent: no Gaussian describes both, see FactorMaker::gyroscopeAxes().
   double gyroscope_sigma = 0.001;
-  /// Makers calibrate the axes of their better sensors, to less than vision's own error in turns: those of a
-  /// gyroscope with less white noise than this are believed.
+  /// Makers calibrate the axes of their better sensors: of an IMU whose gyroscope has less white noise than
+  /// this, no more than `gyroscope_sigma` is doubted in what is claimed.
   double calibrated_below_rad_per_s_sqrtHz = 1.2e-4;
   /// What is claimed of the axes of an IMU above that, which may never have been calibrated: of the
   /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
   /// of others. Relative, and rad.
   double uncalibrated_sigma = 0.007;
+
+  bool areDoubted() const { return uncalibrated_sigma > 0.0; }
 };
 
 /// When a rig counts as resting, see RestWatch.

@@ -62,9 +62,8 @@ ScaleInformation ScaleBudget::add(const Window& window, double density_sigma) {
                  1.0 / std::pow(newest.depth->sigma_m, 2));
   ScaleInformation information;
   information.stereo = stereoInformation(window);
-  const bool is_calibrated = !gyroscopeAxesState(window);
-  information.accelerometer = trusted(
-      accelerations_.sum(), is_calibrated ? kUnstated : std::max(kUnstated, imu_axes_.uncalibrated_sigma));
+  information.accelerometer =
+      trusted(accelerations_.sum(), std::max(kUnstated, imu_axes_.uncalibrated_sigma));
   if (heights_.sum() > 0.0) information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma * density_sigma);
   return information;
 }

@@ -12,7 +12,7 @@ namespace {
 /// Of an IMU that its maker has calibrated, or perhaps not.
 EstimatorOptions optionsOf(bool is_calibrated) {
   EstimatorOptions options;
-  options.imu_axes.calibrated_below_rad_per_s_sqrtHz = is_calibrated ? 1.0 : 0.0;
+  if (is_calibrated) options.imu_axes.uncalibrated_sigma = 0.0;
   return options;
 }
 
@@ -28,7 +28,6 @@ ScaleInformation informationAfter(int cameras, double liveliness, double depth_s
   scene_options.drift_m_per_s = Vec3(0.0, 0.0, -sink_m_per_s);
   TestScene scene(scene_options);
   TestWindow test(cameras);
-  addInertialStates(test.window, test.rig.imu.noise, options.imu_axes);
   ScaleBudget budget(test.rig, options);
   ScaleInformation information;
   while (const auto simulated = scene.next()) {

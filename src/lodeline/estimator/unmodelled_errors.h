@@ -42,7 +42,7 @@ struct EstimateSources {
   /// it; nothing without such a sensor.
   std::optional<double> density_sigma = std::nullopt;
   bool has_magnetometer = false;         ///< which tells the heading whatever turns came to
-  bool are_gyroscope_axes_known = true;  ///< and not estimated
+  bool are_gyroscope_axes_known = true;  ///< calibrated by their maker, or held
 };
 
 /// Of the density ratio, beyond what the covariance says; see DepthOptions::least_density_sigma.

@@ -25,7 +25,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addGlobals(record);
   addStartPrior(record.startPrior(), record.globals());
   holdLenses(record.globals());
-  addGyroscopeAxes(rig.imu.noise, record.globals());
+  addGyroscopeAxes(record.globals());
   orderBlocks();
   relinearise();
   renewLandmarks();

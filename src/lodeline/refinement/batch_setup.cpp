@@ -185,8 +185,8 @@ void BatchProblem::holdLenses(const GlobalValues& globals) {
   priors_.push_back(std::move(prior));
 }
 
-void BatchProblem::addGyroscopeAxes(const ImuNoise& noise, const GlobalValues& globals) {
-  addInertialStates(window_, noise, options_.imu_axes);
+void BatchProblem::addGyroscopeAxes(const GlobalValues& globals) {
+  addInertialStates(window_, options_.imu_axes);
   GlobalState* axes = gyroscopeAxesState(window_);
   if (!axes) return;
   const auto end = globals.find(axes->name);

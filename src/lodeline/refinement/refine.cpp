@@ -44,14 +44,19 @@ std::optional<double> lowerCost(BatchProblem& problem, double cost, SkylineMatri
   return std::nullopt;
 }
 
-Round solve(BatchProblem& problem, const RefinementOptions& wanted, SkylineMatrix* hessian) {
+/// With `is_last`, until the solution is reached; else until the next round's landmarks and weights can be
+/// told from it.
+Round solve(BatchProblem& problem, const RefinementOptions& wanted, bool is_last, SkylineMatrix* hessian) {
+  constexpr double kRoughGain = 1e-4;  // of the cost
   Round round;
   double damping = 1e-7;
   double cost = round.initial_cost = problem.cost();
   while (round.iterations < wanted.max_iterations && !round.converged) {
     ++round.iterations;
     const std::optional<double> lowered = lowerCost(problem, cost, hessian, &damping);
-    round.converged = !lowered || cost - *lowered < wanted.gain_tolerance;
+    const double least_gain =
+        is_last ? wanted.gain_tolerance : std::max(wanted.gain_tolerance, kRoughGain * cost);
+    round.converged = !lowered || cost - *lowered < least_gain;
     cost = lowered.value_or(cost);
   }
   round.final_cost = cost;
@@ -117,7 +122,7 @@ Refinement refine(const Rig& rig, const EstimatorOptions& options, const Forward
       summary.outlier_share = problem.renewLandmarks();
       problem.weighSightings(summary.design_effect);
     }
-    const Round round = solve(problem, wanted, &hessian);
+    const Round round = solve(problem, wanted, i + 1 == wanted.rounds, &hessian);
     if (i == 0) {
       summary.forward_cost = round.initial_cost;
       summary.first_round_cost = round.final_cost;

@@ -33,14 +33,14 @@ class FrameMaker {
                                    (problem_.state(state_ + 1).time - begin.time).seconds();
     refined.state = is_state ? begin.state() : between(begin, forward.time, share);
     refined.covariance = covarianceAt(share);
-    addDoubtAboutUp(problem_.window(), options_.imu_axes, &refined.covariance);
+    addDoubtAboutUp(options_.imu_axes, &refined.covariance);
     refined.camera_corrections = cameraCorrections(problem_.window());
     refined.gyroscope_axes = gyroscopeAxes(problem_.window());
     describeMagnetometer(&refined);
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
     unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
-                       refined.magnetometer.field_W.has_value(), !refined.gyroscope_axes},
+                       refined.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
                       &refined.covariance);
     addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
     refined.magnetometer.heading_sigma_rad =
