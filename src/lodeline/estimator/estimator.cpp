@@ -31,11 +31,6 @@ const char* toString(Status status) {
 
 namespace {
 
-EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options) {
-  options.imu_axes = axesOptionsFor(rig.imu.noise, options.imu_axes);
-  return options;
-}
-
 /// A bias that no accelerometer has: a start of one camera that was a false minimum, or readings that are not
 /// what the calibration says. What follows is wrong, however small the reprojection errors.
 void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions& options,

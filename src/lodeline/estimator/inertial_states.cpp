@@ -11,9 +11,11 @@ constexpr const char* kGyroscopeAxes = "imu.gyro_axes";
 
 }  // namespace
 
-ImuAxesOptions axesOptionsFor(const ImuNoise& noise, ImuAxesOptions options) {
-  const bool is_quiet = noise.gyroscope_density_rad_per_s_sqrtHz < options.calibrated_below_rad_per_s_sqrtHz;
-  if (is_quiet || options.gyroscope_sigma <= 0.0) options.uncalibrated_sigma = 0.0;
+EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options) {
+  ImuAxesOptions& axes = options.imu_axes;
+  const bool is_calibrated =
+      rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz < axes.calibrated_below_rad_per_s_sqrtHz;
+  if (is_calibrated || axes.gyroscope_sigma <= 0.0) axes.uncalibrated_sigma = 0.0;
   return options;
 }
 

@@ -9,12 +9,12 @@
 
 namespace lodeline {
 
-/// The options for an IMU with this noise: uncalibrated_sigma is 0 where its maker has calibrated it, or
-/// where its axes are held.
-ImuAxesOptions axesOptionsFor(const ImuNoise& noise, ImuAxesOptions options);
+/// The options for a rig's IMU: of one that its maker has calibrated, or whose axes are held, nothing is
+/// doubted beyond what is estimated. Everything below takes options that have been through this.
+EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options);
 
-/// Adds the axes of the gyroscope (factors/inertial_factor.h), unless they are to be held.
-/// Every turn then teaches what the next one needs: vision, and the magnetometer where there is one, say how
+/// Adds the axes of the gyroscope (factors/inertial_factor.h), unless they are to be held. Every turn then
+/// teaches what the next one needs: vision, and the magnetometer where there is one, say how
 /// far the rig has really turned. FactorMaker::gyroscopeAxes() holds them to what is known beforehand.
 void addInertialStates(Window& window, const ImuAxesOptions& options);
 

@@ -85,14 +85,15 @@ TEST(InertialStates, FindTheAxesOfAGyroscopeThatWasNeverCalibrated) {
 }
 
 TEST(InertialStates, AreDoubtedOfALoudGyroscopeThatIsNotHeld) {
-  ImuNoise noise;
-  ImuAxesOptions options;
-  noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * options.calibrated_below_rad_per_s_sqrtHz;
-  EXPECT_FALSE(axesOptionsFor(noise, options).areDoubted());
-  noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * options.calibrated_below_rad_per_s_sqrtHz;
-  EXPECT_TRUE(axesOptionsFor(noise, options).areDoubted());
-  options.gyroscope_sigma = 0.0;
-  EXPECT_FALSE(axesOptionsFor(noise, options).areDoubted());
+  Rig rig;
+  EstimatorOptions options;
+  ImuAxesOptions& axes = options.imu_axes;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * axes.calibrated_below_rad_per_s_sqrtHz;
+  EXPECT_FALSE(optionsFor(rig, options).imu_axes.areDoubted());
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * axes.calibrated_below_rad_per_s_sqrtHz;
+  EXPECT_TRUE(optionsFor(rig, options).imu_axes.areDoubted());
+  axes.gyroscope_sigma = 0.0;
+  EXPECT_FALSE(optionsFor(rig, options).imu_axes.areDoubted());
 }
 
 TEST(InertialStates, AreNoneWhereTheAxesAreHeld) {

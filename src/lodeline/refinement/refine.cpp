@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "lodeline/base/thread_clock.h"
+#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/refinement/batch_problem.h"
 #include "lodeline/refinement/refined_frames.h"
@@ -101,8 +102,9 @@ std::string refusalOf(const RefinementSummary& summary, const RefinementOptions&
 
 }  // namespace
 
-Refinement refine(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record,
+Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const ForwardRecord& record,
                   const RefinementOptions& wanted) {
+  const EstimatorOptions options = optionsFor(rig, of_run);
   const double start_s = processSeconds();
   Refinement result;
   RefinementSummary& summary = result.summary;

@@ -1,6 +1,7 @@
 #include "lodeline/refinement/refine.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -141,6 +142,19 @@ TEST(Refine, EndsAtTheSameSolutionWhereverTheRunWas) {
   EXPECT_GT(b.summary.moved_rms_m, 0.2 * b.summary.sigma_m) << "the runs must have been elsewhere";
   const double apart_m = std::sqrt(squares / static_cast<double>(a.frames.size()));
   EXPECT_LT(apart_m, 0.02 * a.summary.sigma_m);
+}
+
+TEST(Refine, GivesTheSameBytesOnAnyNumberOfCores) {
+  const ForwardRun run(smallScene(2), 0.3);
+  const Refinement on_all = run.refined();
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Refinement on_one = run.refined();
+  ASSERT_EQ(on_one.frames.size(), on_all.frames.size());
+  for (size_t i = 0; i < on_all.frames.size(); ++i) {
+    EXPECT_EQ(on_one.frames[i].state.world_from_body.translation,
+              on_all.frames[i].state.world_from_body.translation);
+    EXPECT_EQ(on_one.frames[i].covariance, on_all.frames[i].covariance);
+  }
 }
 
 TEST(Refine, LeavesOutOutliers) {
