@@ -14,8 +14,8 @@ namespace lodeline {
 EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options);
 
 /// Adds the axes of the gyroscope (factors/inertial_factor.h), unless they are to be held. Every turn then
-/// teaches what the next one needs: vision, and the magnetometer where there is one, say how
-/// far the rig has really turned. FactorMaker::gyroscopeAxes() holds them to what is known beforehand.
+/// teaches what the next one needs: vision, and the magnetometer where there is one, say how far the rig has
+/// really turned. FactorMaker::gyroscopeAxes() keeps them near what is known beforehand.
 void addInertialStates(Window& window, const ImuAxesOptions& options);
 
 /// Null where the axes are held.

@@ -24,6 +24,8 @@ class BatchProblem {
   /// contradict those are left out from the start. `rig` and `options` as of the forward run; everything must
   /// outlive the problem.
   BatchProblem(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record);
+  BatchProblem(const BatchProblem&) = delete;  // its parts refer to each other
+  BatchProblem& operator=(const BatchProblem&) = delete;
 
   size_t states() const { return window_.frames().size(); }
   size_t landmarks() const;
