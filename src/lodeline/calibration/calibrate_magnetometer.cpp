@@ -233,6 +233,8 @@ MagnetometerCalibrationResult calibrateMagnetometer(const MagnetometerRecord& re
     const UsedReadings used = usedReadings(screen.usable, result.iron);
     result.inertial = withInertialSensors(record, used, result.iron, options.old.has_value());
     adopt(*result.inertial, iron.field_strength_T, rate_hz, &result.fit);
+    // Of an error D of the axes, (D - D^T) / 2 turns them all.
+    result.fit.axes_sigma_rad = imu_axes::sigmaFor(record.imu_noise) / std::sqrt(2.0);
     result.fit.residual_T = normResidual_T(result);
     result.fit.rejected_share += (1.0 - result.fit.rejected_share) * result.inertial->rejected_share;
     if (!options.site_field_ENU) {

@@ -79,6 +79,23 @@ TEST(CalibrateMagnetometer, WithoutImuTheRotationStaysUnknown) {
   EXPECT_NEAR(*result.fit.noise_density_T_per_sqrtHz, kField_T * sensor.field_sigma / std::sqrt(50.0), 1e-9);
 }
 
+// No motion tells how the axes of the gyroscope, which the rotation leads to, are turned against the body.
+TEST(CalibrateMagnetometer, DoubtsTheRotationAsItDoubtsTheAxesOfTheImu) {
+  const test::TurningSensor sensor = rollingSensor();
+  const auto headingSigma_rad = [&](double gyroscope_density) {
+    MagnetometerRecord record = recordOf(sensor);
+    record.imu_noise.gyroscope_density_rad_per_s_sqrtHz = gyroscope_density;
+    Diagnostics diagnostics;
+    return calibrateMagnetometer(record, {}, &diagnostics).fit.heading_error_rad;
+  };
+  const double limit = imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
+  const double calibrated = headingSigma_rad(0.99 * limit), doubted = headingSigma_rad(1.01 * limit);
+  EXPECT_GT(calibrated, imu_axes::kCalibratedSigma / std::sqrt(2.0));
+  EXPECT_LT(calibrated, 5.0 * imu_axes::kCalibratedSigma);
+  EXPECT_GT(doubted, imu_axes::kUncalibratedSigma / std::sqrt(2.0));
+  EXPECT_LT(doubted, 5.0 * imu_axes::kUncalibratedSigma);
+}
+
 TEST(CalibrateMagnetometer, WorksAtOneHertzAndAtOneKilohertz) {
   for (const double rate_hz : {1.0, 1000.0}) {
     test::TurningSensor sensor = rollingSensor();

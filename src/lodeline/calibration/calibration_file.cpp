@@ -121,11 +121,13 @@ std::string calibrationYaml(const MagnetometerFit& fit) {
       fit.field_strength_T, fit.field_strength_known);
   text += fmt::format(
       "residual_T: {}\ncoverage_percent: {}\ncondition_number: {}\nrejected_percent: {}\n"
-      "readings: {}\n# one sigma, from the covariance\nheading_error_rad: {}\n",
+      "readings: {}\n# one sigma\nheading_error_rad: {}\n",
       fit.residual_T, 100.0 * fit.coverage_share, fit.condition_number, 100.0 * fit.rejected_share,
       fit.readings, fit.heading_error_rad);
   text +=
       "# of A (xx yy zz xy xz yz), h and the rotation (rad, body axes)\ncovariance:" + rows(fit.covariance);
+  text += fmt::format("# of the IMU's axes against the body, each; no motion tells\naxes_sigma_rad: {}\n",
+                      fit.axes_sigma_rad);
   return text;
 }
 
@@ -161,6 +163,7 @@ MagnetometerFit readCalibrationFile(const std::filesystem::path& file) {
   fit.rejected_share = map.numberOr("rejected_percent", 0.0) / 100.0;
   fit.readings = static_cast<int>(map.numberOr("readings", 0.0));
   fit.heading_error_rad = map.numberOr("heading_error_rad", 0.0);
+  fit.axes_sigma_rad = map.numberOr("axes_sigma_rad", 0.0);
   map.refuseUnknownKeys();
   return fit;
 }
@@ -190,7 +193,7 @@ void applyCalibration(const MagnetometerFit& fit, const std::filesystem::path& f
     return std::sqrt(fit.covariance.diagonal().segment<3>(begin).cwiseMax(0.0).mean());
   };
   const double hard_iron_sigma_T = rmsSigma(fit_parameter::kHardIron);
-  const double rotation_sigma_rad = rmsSigma(fit_parameter::kRotation);
+  const double rotation_sigma_rad = std::hypot(rmsSigma(fit_parameter::kRotation), fit.axes_sigma_rad);
   if (hard_iron_sigma_T > 0.0) magnetometer.hard_iron_sigma_T = hard_iron_sigma_T;
   if (rotation_sigma_rad > 0.0) magnetometer.rotation_sigma_rad = rotation_sigma_rad;
 }

@@ -33,6 +33,7 @@ MagnetometerFit exampleFit() {
   fit.rejected_share = 0.02;
   fit.readings = 4500;
   fit.heading_error_rad = 1e-3;
+  fit.axes_sigma_rad = 7e-4;
   fit.verdict = "say \"good\"";
   return fit;
 }
@@ -64,6 +65,7 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWritten) {
   EXPECT_FALSE(read.raw_readings);
   EXPECT_LT(read.body_from_magnetometer->angularDistance(*fit.body_from_magnetometer), 1e-7);
   EXPECT_EQ(read.covariance, fit.covariance);
+  EXPECT_EQ(read.axes_sigma_rad, fit.axes_sigma_rad);
   EXPECT_EQ(read.time_offset_to_imu_s, fit.time_offset_to_imu_s);
   EXPECT_EQ(read.dip_rad, fit.dip_rad);
   EXPECT_EQ(read.verdict, fit.verdict);

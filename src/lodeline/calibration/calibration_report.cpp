@@ -49,6 +49,8 @@ std::string inertialRows(const MagnetometerCalibrationResult& result) {
   text += fmt::format(
       "  {:<18}{:9.3f} {:9.3f} {:9.3f}   +- {:.3f} {:.3f} {:.3f} degrees (rotation vector, M to B)\n",
       "rotation to IMU", turn.x(), turn.y(), turn.z(), sigma.x(), sigma.y(), sigma.z());
+  text += fmt::format("  {:<18}+- {:.3f} degrees each against the body, beyond that; no motion tells\n",
+                      "axes of the IMU", fit.axes_sigma_rad / kDegree);
   text += fmt::format("  {:<18}{:.1f} +- {:.1f} ms behind the gyroscope{}\n", "lag",
                       -1e3 * inertial.measured_time_offset_s, 1e3 * inertial.time_offset_sigma_s,
                       inertial.time_offset_significant ? "" : " (not significant, not used)");
@@ -125,6 +127,7 @@ nlohmann::ordered_json calibrationJson(const MagnetometerCalibrationResult& resu
   if (result.inertial) {
     const InertialCalibration& inertial = *result.inertial;
     json["rotation_sigma_rad"] = jsonList(sigmas.tail<3>());
+    json["axes_sigma_rad"] = fit.axes_sigma_rad;
     json["time_offset_measured_s"] = inertial.measured_time_offset_s;
     json["time_offset_sigma_s"] = inertial.time_offset_sigma_s;
     json["time_offset_used"] = inertial.time_offset_significant;

@@ -21,8 +21,10 @@ void bindSource(Settings* settings, EurocOptions* source, SynchronizerOptions* s
                  "decode the next images while the present are worked on");
 }
 
-void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
-  settings->bind("front_end.max_tracks", &options->detector.max_tracks, "points followed at a time");
+void bindFrontEnd(Settings* settings, FrontEndOptions* options, int* max_tracks) {
+  settings->bind(
+      "front_end.max_tracks", max_tracks,
+      "points followed at a time; 0: 180 where the maker is taken to have calibrated the IMU, else 250");
   settings->bind("front_end.min_distance_px", &options->detector.min_distance_px,
                  "between new points and others");
   settings->bind("front_end.min_gradient_grey_per_px", &options->detector.min_gradient_grey_per_px,
@@ -242,7 +244,7 @@ void bindDepth(Settings* settings, DepthOptions* options) {
 
 void bindRunSettings(Settings* settings, RunSettings* options) {
   bindSource(settings, &options->source, &options->synchronizer);
-  bindFrontEnd(settings, &options->odometry.front_end);
+  bindFrontEnd(settings, &options->odometry.front_end, &options->odometry.max_tracks);
   bindInertial(settings, &options->odometry.estimator.preintegration, &options->odometry.estimator.imu_axes);
   bindStart(settings, &options->odometry.estimator.initial_state,
             &options->odometry.estimator.mono_initialization);

@@ -4,22 +4,29 @@
 
 #include "lodeline/base/angles.h"
 #include "lodeline/base/thread_clock.h"
+#include "lodeline/estimator/inertial_states.h"
 
 namespace lodeline {
 namespace {
 
 /// Matches that lie off the planes of a calibration that is held would be of no use to the estimator.
-FrontEndOptions frontEndOptions(const OdometryOptions& options) {
+FrontEndOptions frontEndOptions(const Rig& rig, const OdometryOptions& options) {
   FrontEndOptions front_end = options.front_end;
+  front_end.detector.max_tracks =
+      options.max_tracks > 0 ? options.max_tracks : tracksFor(rig, options.estimator);
   front_end.stereo.learn_rotation &= options.estimator.camera_calibration.enabled;
   return front_end;
 }
 
 }  // namespace
 
+int tracksFor(const Rig& rig, const EstimatorOptions& options) {
+  return optionsFor(rig, options).imu_axes.areDoubted() ? 250 : 180;
+}
+
 Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics)
     : imu_(rig.imu),
-      front_end_(rig, frontEndOptions(options)),
+      front_end_(rig, frontEndOptions(rig, options)),
       estimator_(rig, options.estimator, diagnostics),
       fixed_structure_reported_(rig.cameras.size(), false),
       turn_reported_(rig.cameras.size() - 1, false),
@@ -64,8 +71,9 @@ void Odometry::reportTurnedCameras() {
         Severity::Warning, "camera_turned",
         fmt::format(
             "camera '{}': at {} ns stereo matches lie off their epipolar lines as if it were turned by "
-            "{:.2f} degrees against its calibration; matched accordingly, and estimated from there "
-            "on where a start is still to come. Calibrate the pair anew",
+            "{:.2f} degrees against its calibration, which a lens that is off can do as well; matched "
+            "accordingly, and estimated from there on where a start is still to come. Calibrate the pair "
+            "anew",
             front_end_.cameras()[i + 1]->calibration().name, tracks_.time.nanoseconds(),
             turn_rad * kDegreesPerRadian));
   }

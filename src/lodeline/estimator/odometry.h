@@ -11,7 +11,13 @@ namespace lodeline {
 struct OdometryOptions {
   FrontEndOptions front_end;
   EstimatorOptions estimator;
+  /// Points followed at a time, in place of front_end.detector.max_tracks; 0: tracksFor().
+  int max_tracks = 0;
 };
+
+/// Points worth following with a rig's IMU: heading hangs on images alone where the gyroscope is loud or of
+/// doubtful axes, and takes more of them.
+int tracksFor(const Rig& rig, const EstimatorOptions& options);
 
 /// Processor time spent in each stage so far, s.
 struct StageTimes {

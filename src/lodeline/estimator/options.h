@@ -113,14 +113,14 @@ struct ImuAxesOptions {
   /// Scale errors and misalignment of the axes of a gyroscope that its maker has calibrated, relative
   /// (GyroscopeAxes); 0 holds them. Some are, to less than a thousandth, and some never were and are off by
   /// one or two per cent: no Gaussian describes both, see FactorMaker::gyroscopeAxes().
-  double gyroscope_sigma = 0.001;
+  double gyroscope_sigma = imu_axes::kCalibratedSigma;
   /// Makers calibrate the axes of their better sensors: of an IMU whose gyroscope has less white noise than
   /// this, no more than `gyroscope_sigma` is doubted in what is claimed.
-  double calibrated_below_rad_per_s_sqrtHz = 1.2e-4;
+  double calibrated_below_rad_per_s_sqrtHz = imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
   /// What is claimed of the axes of an IMU above that, which may never have been calibrated: of the
   /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
   /// of others. Relative, and rad.
-  double uncalibrated_sigma = 0.007;
+  double uncalibrated_sigma = imu_axes::kUncalibratedSigma;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
 };

@@ -63,7 +63,9 @@ double headingSigma(const MagnetometerFit& fit, double dip_rad) {
     const Mat3 p = j * fit.covariance * j.transpose();
     sum += (p.trace() - u.dot(p * u)) / 2.0;
   });
-  return std::sqrt(std::max(0.0, sum / kDirections)) / (fit.field_strength_T * std::cos(dip_rad));
+  const double turned = fit.field_strength_T * fit.axes_sigma_rad;
+  return std::sqrt(std::max(0.0, sum / kDirections) + turned * turned) /
+         (fit.field_strength_T * std::cos(dip_rad));
 }
 
 CalibrationDifference compareCalibrations(const MagnetometerFit& first_as_scaled,

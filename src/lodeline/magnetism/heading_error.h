@@ -11,7 +11,7 @@ namespace lodeline {
 /// the horizontal field F cos(dip); east is normal to the field, so an error of scale costs nothing:
 ///   sigma^2 = mean over directions u of trace((I - u u^T) P_m(u)) / (2 F^2 cos^2 dip),
 /// with P_m the covariance of the corrected field in body axes. Errors of the rotation count where the
-/// covariance has them.
+/// covariance has them, and with them the doubt about the IMU's axes.
 double headingSigma(const MagnetometerFit& fit, double dip_rad);
 
 /// How differently two calibrations correct the same readings.

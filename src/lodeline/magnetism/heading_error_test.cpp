@@ -30,6 +30,8 @@ TEST(HeadingSigma, CountsTheRotationAndNotTheScale) {
   fit.covariance.setZero();
   fit.covariance.topLeftCorner<3, 3>().setConstant(1e-4);  // a common error of all scales
   EXPECT_NEAR(headingSigma(fit, kDip_rad), 0.0, 1e-9);
+  fit.axes_sigma_rad = 0.01;
+  EXPECT_NEAR(headingSigma(fit, kDip_rad), 0.01 / std::cos(kDip_rad), 1e-9);
 }
 
 TEST(CompareCalibrations, FindsNoDifferenceBetweenEqualOnes) {

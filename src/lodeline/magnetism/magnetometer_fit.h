@@ -51,6 +51,9 @@ struct MagnetometerFit {
   bool field_strength_known = false;  ///< from a model of the Earth's field; else the sensor's own scale
   std::optional<double> dip_rad;      ///< of the field below the horizon, measured
   Covariance covariance = Covariance::Zero();
+  /// How far the IMU's axes, to which the estimated rotation leads, may be turned against the body, per axis;
+  /// no motion tells. Not in the covariance: it is the same in every calibration of a rig.
+  double axes_sigma_rad = 0.0;
 
   double residual_T = 0.0;        ///< RMS of |A (reading - h)| - F over the readings used
   double coverage_share = 0.0;    ///< of the sphere of directions

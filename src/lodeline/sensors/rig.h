@@ -18,6 +18,19 @@ struct ImuNoise {
   double accelerometer_random_walk_m_per_s3_sqrtHz = 3.0e-3;
 };
 
+/// What is known beforehand of the axes of an IMU: scale errors and misalignment, one sigma, relative and
+/// rad. Makers calibrate the axes of their better sensors, which the gyroscope's white noise tells.
+namespace imu_axes {
+constexpr double kCalibratedBelow_rad_per_s_sqrtHz = 1.2e-4;
+constexpr double kCalibratedSigma = 0.001;
+constexpr double kUncalibratedSigma = 0.007;  ///< of one that was perhaps never calibrated
+
+inline double sigmaFor(const ImuNoise& noise) {
+  return noise.gyroscope_density_rad_per_s_sqrtHz < kCalibratedBelow_rad_per_s_sqrtHz ? kCalibratedSigma
+                                                                                      : kUncalibratedSigma;
+}
+}  // namespace imu_axes
+
 /// The IMU defines the body frame B.
 struct ImuCalibration {
   double rate_hz = 200.0;
