@@ -7,25 +7,26 @@ namespace {
 
 /// Where a point should be seen.
 struct Place {
-  Vec2 from_centre_sigmas, off_axis;
-  double sine_squared;
+  Vec2 from_centre_sigmas, in_plane, outwards_sigmas;
+  double radius_squared;
 
   Place(const DirectionMeasurement& measurement, const Vec2& residual) {
     // Behind the camera there is no place that the point should be seen at.
     constexpr double kFar_sigmas = 200.0;
     const Vec2 moved = residual.squaredNorm() < kFar_sigmas * kFar_sigmas ? residual : Vec2::Zero();
     from_centre_sigmas = measurement.from_centre_sigmas + moved;
-    off_axis = measurement.bearing_C.head<2>() + measurement.off_axis_by_sigmas * moved;
-    sine_squared = off_axis.squaredNorm();
+    in_plane = measurement.in_plane + measurement.in_plane_by_sigmas * moved;
+    outwards_sigmas = measurement.focal_lengths_sigmas.cwiseProduct(in_plane);
+    radius_squared = in_plane.squaredNorm();
   }
-  /// Relative change of the radial profile there.
+  /// Change of the radial polynomial there.
   double profile(const double* intrinsics) const {
-    return intrinsics[4] * sine_squared + intrinsics[5] * sine_squared * sine_squared;
+    return intrinsics[4] * radius_squared + intrinsics[5] * radius_squared * radius_squared;
   }
   Vec2 shift(const DirectionMeasurement& measurement, const double* intrinsics) const {
-    const double profile = this->profile(intrinsics);
-    return {(intrinsics[0] + profile) * from_centre_sigmas.x() + measurement.sigmas_per_px * intrinsics[2],
-            (intrinsics[1] + profile) * from_centre_sigmas.y() + measurement.sigmas_per_px * intrinsics[3]};
+    return Vec2(intrinsics[0], intrinsics[1]).cwiseProduct(from_centre_sigmas) +
+           measurement.sigmas_per_px * Vec2(intrinsics[2], intrinsics[3]) +
+           profile(intrinsics) * outwards_sigmas;
   }
 };
 
@@ -38,17 +39,17 @@ Vec2 lensShift(const DirectionMeasurement& measurement, const Vec2& residual, co
 LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& residual,
                       const double* intrinsics) {
   const Place place(measurement, residual);
-  const double sine_squared = place.sine_squared;
+  const double squared = place.radius_squared;
   LensEffect effect;
   effect.by_intrinsics << Mat2(place.from_centre_sigmas.asDiagonal()),
-      measurement.sigmas_per_px * Mat2::Identity(), sine_squared * place.from_centre_sigmas,
-      sine_squared * sine_squared * place.from_centre_sigmas;
+      measurement.sigmas_per_px * Mat2::Identity(), squared * place.outwards_sigmas,
+      squared * squared * place.outwards_sigmas;
   effect.shift = place.shift(measurement, intrinsics);
-  const Eigen::RowVector2d profile_by_residual = 2.0 * (intrinsics[4] + 2.0 * intrinsics[5] * sine_squared) *
-                                                 place.off_axis.transpose() * measurement.off_axis_by_sigmas;
-  effect.by_residual = place.from_centre_sigmas * profile_by_residual;
-  effect.by_residual.diagonal() +=
-      Vec2(1.0 + intrinsics[0], 1.0 + intrinsics[1]) + Vec2::Constant(place.profile(intrinsics));
+  Mat2 by_place = 2.0 * (intrinsics[4] + 2.0 * intrinsics[5] * squared) * place.outwards_sigmas *
+                  place.in_plane.transpose();
+  by_place.diagonal() += place.profile(intrinsics) * measurement.focal_lengths_sigmas;
+  effect.by_residual = by_place * measurement.in_plane_by_sigmas;
+  effect.by_residual.diagonal() += Vec2(1.0 + intrinsics[0], 1.0 + intrinsics[1]);
   return effect;
 }
 
@@ -65,11 +66,8 @@ CameraCalibration correctedLens(const CameraCalibration& file, const double* int
     lens.distortion.clear();
   }
   if (lens.distortion.size() < 4) lens.distortion.resize(4, 0.0);
-  // sin^2 in powers of what the model counts in: r^2 - r^4 for the tangent, theta^2 - theta^4 / 3 for the
-  // angle.
-  const double fourth = lens.distortion_model == DistortionModel::Equidistant ? 1.0 / 3.0 : 1.0;
-  lens.distortion[1] += k_2 - fourth * k_1 + lens.distortion[0] * k_1;
   lens.distortion[0] += k_1;
+  lens.distortion[1] += k_2;
   return lens;
 }
 

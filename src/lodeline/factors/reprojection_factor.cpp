@@ -1,6 +1,7 @@
 #include "lodeline/factors/reprojection_factor.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "lodeline/factors/parameters.h"
 #include "lodeline/geometry/so3.h"
@@ -16,6 +17,23 @@ constexpr double kOutlierResidual = 1e4;
 template <int Cols>
 using RowMajor2 = Eigen::Matrix<double, 2, Cols, Eigen::RowMajor>;
 
+/// DirectionMeasurement::in_plane of a unit ray, with its derivative.
+Vec2 placeInPlane(DistortionModel model, const Vec3& ray, Mat23* by_ray) {
+  constexpr double kOnAxis = 1e-6;
+  const double sine = ray.head<2>().norm();
+  if (model != DistortionModel::Equidistant || sine < kOnAxis) {
+    const Vec2 place = ray.head<2>() / ray.z();
+    *by_ray << Mat2::Identity() / ray.z(), -place / ray.z();
+    return place;
+  }
+  const Vec2 outwards = ray.head<2>() / sine;
+  const double angle = std::atan2(sine, ray.z());
+  by_ray->leftCols<2>() =
+      angle / sine * Mat2::Identity() + (ray.z() - angle / sine) * outwards * outwards.transpose();
+  by_ray->col(2) = -sine * outwards;
+  return angle * outwards;
+}
+
 }  // namespace
 
 DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, const Vec3& bearing_C,
@@ -26,8 +44,12 @@ DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, con
   Mat23 pixel_by_point;
   const auto pixel = camera.project(bearing_C, &pixel_by_point);
   measurement.sqrt_information = pixel_by_point * measurement.tangent_C / sigma_px;
-  measurement.off_axis_by_sigmas =
-      measurement.tangent_C.topRows<2>() * measurement.sqrt_information.inverse();
+  const CameraCalibration& calibration = camera.calibration();
+  Mat23 in_plane_by_ray;
+  measurement.in_plane = placeInPlane(calibration.distortion_model, bearing_C, &in_plane_by_ray);
+  measurement.in_plane_by_sigmas =
+      in_plane_by_ray * measurement.tangent_C * measurement.sqrt_information.inverse();
+  measurement.focal_lengths_sigmas = Vec2(calibration.fx_px, calibration.fy_px) / sigma_px;
   measurement.sigmas_per_px = 1.0 / sigma_px;
   if (const auto centre = camera.project(Vec3::UnitZ()); pixel && centre)
     measurement.from_centre_sigmas = (*pixel - *centre) / sigma_px;

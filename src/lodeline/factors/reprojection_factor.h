@@ -17,10 +17,13 @@ struct DirectionMeasurement {
   Vec3 bearing_C = Vec3::UnitZ();
   Mat32 tangent_C = Mat32::Identity();
   Mat2 sqrt_information = Mat2::Identity();
-  Vec2 from_centre_sigmas = Vec2::Zero();  ///< pixel minus principal point, over sigma_px
-  double sigmas_per_px = 1.0;              ///< 1 / sigma_px
-  /// d(x, y of the ray) / d(pixel over sigma_px); their length is the sine of the angle off the axis.
-  Mat2 off_axis_by_sigmas = Mat2::Zero();
+  Vec2 from_centre_sigmas = Vec2::Zero();    ///< pixel minus principal point, over sigma_px
+  double sigmas_per_px = 1.0;                ///< 1 / sigma_px
+  Vec2 focal_lengths_sigmas = Vec2::Ones();  ///< over sigma_px
+  /// Where the ray lies in the plane in which the lens' model counts its radius: as far from the centre as
+  /// the tangent of the angle off the axis, of an equidistant lens the angle.
+  Vec2 in_plane = Vec2::Zero();
+  Mat2 in_plane_by_sigmas = Mat2::Zero();  ///< d(in_plane) / d(pixel over sigma_px)
 
   /// From a pixel's ray. The camera must be able to project that ray.
   static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
