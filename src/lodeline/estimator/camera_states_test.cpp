@@ -147,6 +147,19 @@ TEST(CameraStates, FindAWrongLens) {
   EXPECT_LT(found_m2, 0.5 * held_m2);
 }
 
+TEST(CameraStates, TakeAWrongProfileForNoLongerLens) {
+  Eigen::Matrix<double, 6, 1> lens;
+  lens << 0.0, 0.0, 0.0, 0.0, 0.012, -0.02;
+  FrameEstimate held, found;
+  const double held_m2 = squaredPositionError_m2(false, 1, lens, &held);
+  const double found_m2 = squaredPositionError_m2(true, 1, lens, &found);
+  for (const auto& estimate : found.camera_corrections->intrinsics) {
+    EXPECT_LT((estimate - lens).tail<2>().norm(), 0.3 * lens.tail<2>().norm()) << estimate.transpose();
+    EXPECT_LT(estimate.head<2>().cwiseAbs().maxCoeff(), 0.0025) << estimate.transpose();
+  }
+  EXPECT_LT(found_m2, 0.25 * held_m2);
+}
+
 TEST(CameraStates, StayNearARightLens) {
   FrameEstimate last;
   squaredPositionError_m2(true, 1, Eigen::Matrix<double, 6, 1>::Zero(), &last);

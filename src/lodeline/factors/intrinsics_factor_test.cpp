@@ -52,6 +52,18 @@ TEST_P(IntrinsicsOfAModel, LeaveNothingAtTheTrueLens) {
   EXPECT_LT(corrected, 0.06);
 }
 
+// Where the profile changes most. What were left there a longer focal length would have to explain.
+TEST_P(IntrinsicsOfAModel, ExplainAWrongProfileOutToTheBorder) {
+  constexpr double kBorder_rad = 0.75;
+  const Intrinsics profile = intrinsics(0.0, 0.0, 0.0, 0.0, 0.01, -0.012);
+  for (double angle_rad = 0.05; angle_rad < kBorder_rad; angle_rad += 0.05) {
+    const Vec3 ray(0.6 * std::sin(angle_rad), -0.8 * std::sin(angle_rad), std::cos(angle_rad));
+    const DirectionMeasurement seen = seenThrough(file_, profile, ray, 1.0);
+    const Vec2 by_file_px = directionResidual(seen, ray, nullptr);
+    EXPECT_LT((by_file_px + lensShift(seen, by_file_px, profile.data())).norm(), 0.02) << angle_rad;
+  }
+}
+
 TEST_P(IntrinsicsOfAModel, AreNothingToARightLens) {
   const IntrinsicsFactor right = factor(seenThrough(file_, Intrinsics::Zero(6), scene_.point_host_C, 0.5));
   EXPECT_LT(evaluate(right, {scene_.landmark(), Intrinsics::Zero(6)}).norm(), 1e-6);
