@@ -134,7 +134,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("camera_calibration.principal_point_sigma_px", &cameras->principal_point_sigma_px,
                  "0 holds it");
   settings->bind("camera_calibration.radial_sigma", &cameras->radial_sigma,
-                 "of the radial profile at the image's border, relative; 0 holds it");
+                 "of the first two radial coefficients of the lens' model; 0 holds them");
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
   settings->bind("solver.function_tolerance", &options->solver.function_tolerance,
                  "relative gain below which a frame's iterations end");

@@ -105,7 +105,7 @@ struct CameraCalibrationOptions {
   bool intrinsics = true;
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
-  double radial_sigma = 0.005;
+  double radial_sigma = 0.005;  ///< of the first two coefficients
 };
 
 /// How far the calibration of the IMU may be off, one sigma.

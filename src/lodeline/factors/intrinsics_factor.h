@@ -16,8 +16,8 @@ namespace lodeline {
 // and that the file puts at the pixel u, is seen at
 //   u + diag(s_u, s_v) (u - c) + [c_u, c_v] + (k_1 |p|^2 + k_2 |p|^4) diag(f_u, f_v) p
 // with the file's principal point c and focal lengths f: to first order what other numbers in the file would
-// make of it. Powers of the sine in place of these leave 0.3 px at the border for errors of one per cent in
-// both coefficients, and the focal length took them up.
+// make of it. Powers of the sine would leave 0.3 px at the border for errors of 0.006 in the coefficients, to
+// opposite sides, and the focal length would take them up.
 
 constexpr int kIntrinsicsSize = 6;
 
