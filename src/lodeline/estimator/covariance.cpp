@@ -55,20 +55,29 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
   return covarianceOf(system, {frame.pose.data(), frame.motion.data()});
 }
 
-JointCovariance::JointCovariance(const NormalEquations& system, const Window& window) {
+std::vector<const double*> correlatedBlocks(const NormalEquations& system, const Window& window) {
   const Frame& newest = window.newest();
   std::vector<const double*> blocks = {newest.pose.data(), newest.motion.data()};
   for (const auto& state : window.globals()) {
     if (state->is_correlation_wanted && system.find(state->value.data()))
       blocks.push_back(state->value.data());
   }
+  return blocks;
+}
+
+JointCovariance::JointCovariance(const NormalEquations& system, const Window& window)
+    : JointCovariance(system, correlatedBlocks(system, window),
+                      covarianceOf(system, correlatedBlocks(system, window), motionsButTheNewest(window))) {}
+
+JointCovariance::JointCovariance(const NormalEquations& system, const std::vector<const double*>& blocks,
+                                 Eigen::MatrixXd matrix)
+    : matrix_(std::move(matrix)) {
   int row = 0;
   for (const double* value : blocks) {
     const int size = system.find(value)->tangentSize();
     offsets_[value] = {row, size};
     row += size;
   }
-  matrix_ = covarianceOf(system, blocks, motionsButTheNewest(window));
 }
 
 Eigen::MatrixXd JointCovariance::between(const double* rows, const double* columns) const {

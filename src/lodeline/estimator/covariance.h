@@ -17,12 +17,18 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
                              const std::vector<const double*>& eliminated_first = {});
 
-/// Covariance of the newest frame together with those global states that the system knows and whose
-/// correlation is wanted (GlobalState::is_correlation_wanted).
+/// Pose and motion of the newest frame, and those global states that the system knows and whose correlation
+/// is wanted (GlobalState::is_correlation_wanted).
+std::vector<const double*> correlatedBlocks(const NormalEquations& system, const Window& window);
+
+/// Joint covariance of the correlatedBlocks() of a window.
 class JointCovariance {
  public:
   JointCovariance() = default;
   JointCovariance(const NormalEquations& system, const Window& window);
+  /// Where it is known already: `matrix` is of the correlatedBlocks(), stacked.
+  JointCovariance(const NormalEquations& system, const std::vector<const double*>& blocks,
+                  Eigen::MatrixXd matrix);
 
   bool empty() const { return offsets_.empty(); }
   bool knows(const double* block) const { return offsets_.count(block) > 0; }

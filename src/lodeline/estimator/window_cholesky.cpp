@@ -6,6 +6,12 @@
 #include "lodeline/estimator/wide_products.h"
 
 namespace lodeline {
+namespace {
+
+/// Columns of what is dense that are eliminated together.
+constexpr int kDenseColumns = 24;
+
+}  // namespace
 
 WindowCholesky::WindowCholesky(const NormalEquations& system, const std::vector<const double*>& first,
                                const std::vector<const double*>& last) {
@@ -23,7 +29,9 @@ WindowCholesky::WindowCholesky(const NormalEquations& system, const std::vector<
   rowsOf(last, &at_the_end);
   last_size_ = static_cast<int>(at_the_end.size());
   rowsOf(first, &order_);
-  for (const double* value : first) first_sizes_.push_back(system.find(value)->tangentSize());
+  for (const double* value : first) sizes_.push_back(system.find(value)->tangentSize());
+  for (int row = static_cast<int>(order_.size()); row < system.size(); row += kDenseColumns)
+    sizes_.push_back(std::min(kDenseColumns, system.size() - row));
   for (int row = 0; row < system.size(); ++row) {
     if (!placed[static_cast<size_t>(row)]) order_.push_back(row);
   }
@@ -45,13 +53,12 @@ WindowCholesky::WindowCholesky(const NormalEquations& system, const std::vector<
 bool WindowCholesky::factorise(double damping) {
   factor_ = ordered_;
   factor_.diagonal().array() += damping;
-  if (!eliminateFirst()) return false;
-  Eigen::Index done = 0;
-  for (const int size : first_sizes_) done += size;
-  const Eigen::Index rest = factor_.rows() - done;
-  Eigen::Ref<Eigen::MatrixXd> remainder = factor_.bottomRightCorner(rest, rest);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorised(remainder);
-  return factorised.info() == Eigen::Success;
+  int column = 0;
+  for (const int size : sizes_) {
+    if (!eliminate(column, size)) return false;
+    column += size;
+  }
+  return true;
 }
 
 std::vector<WindowCholesky::Run> WindowCholesky::runsBelow(int column, int size) const {
@@ -67,23 +74,19 @@ std::vector<WindowCholesky::Run> WindowCholesky::runsBelow(int column, int size)
   return runs;
 }
 
-bool WindowCholesky::eliminateFirst() {
-  int column = 0;
-  for (const int size : first_sizes_) {
-    Eigen::Ref<Eigen::MatrixXd> diagonal = factor_.block(column, column, size, size);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorised(diagonal);
-    if (factorised.info() != Eigen::Success) return false;
-    const std::vector<Run> runs = runsBelow(column, size);
-    for (size_t i = 0; i < runs.size(); ++i) {
-      auto below = factor_.block(runs[i].row, column, runs[i].size, size);
-      diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-      for (size_t j = 0; j < i; ++j) {
-        subtractProduct(below, factor_.block(runs[j].row, column, runs[j].size, size),
-                        factor_.block(runs[i].row, runs[j].row, runs[i].size, runs[j].size));
-      }
-      subtractSquare(below, factor_.block(runs[i].row, runs[i].row, runs[i].size, runs[i].size));
+bool WindowCholesky::eliminate(int column, int size) {
+  Eigen::Ref<Eigen::MatrixXd> diagonal = factor_.block(column, column, size, size);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorised(diagonal);
+  if (factorised.info() != Eigen::Success) return false;
+  const std::vector<Run> runs = runsBelow(column, size);
+  for (size_t i = 0; i < runs.size(); ++i) {
+    auto below = factor_.block(runs[i].row, column, runs[i].size, size);
+    diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+    for (size_t j = 0; j < i; ++j) {
+      subtractProduct(below, factor_.block(runs[j].row, column, runs[j].size, size),
+                      factor_.block(runs[i].row, runs[j].row, runs[i].size, runs[j].size));
     }
-    column += size;
+    subtractSquare(below, factor_.block(runs[i].row, runs[i].row, runs[i].size, runs[i].size));
   }
   return true;
 }

@@ -35,10 +35,10 @@ class WindowCholesky {
     int row, size;
   };
   std::vector<Run> runsBelow(int column, int size) const;
-  bool eliminateFirst();
+  bool eliminate(int column, int size);
 
-  std::vector<int> order_;        ///< row of the system that comes at each place
-  std::vector<int> first_sizes_;  ///< of the blocks that are eliminated first
+  std::vector<int> order_;  ///< row of the system that comes at each place
+  std::vector<int> sizes_;  ///< of the blocks of columns that are eliminated together
   int last_size_ = 0;
   Eigen::VectorXd scale_;    ///< roots of the diagonal's inverse, in order
   Eigen::MatrixXd ordered_;  ///< H in order, with a diagonal of ones; lower triangle

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "lodeline/estimator/covariance.h"
@@ -118,15 +119,20 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
   update.summary.initial_cost = cost;
   double damping = 0.0;
   NormalEquations system;
+  std::vector<const double*> correlated;
+  std::optional<WindowCholesky> cholesky;
+  bool is_damped = false;
   while (update.summary.iterations < limits.max_iterations) {
     ++update.summary.iterations;
     system = terms.linearise();
-    WindowCholesky cholesky(system, motionsButTheNewest(window), {});
+    correlated = correlatedBlocks(system, window);
+    cholesky.emplace(system, motionsButTheNewest(window), correlated);
     const Snapshot before = terms.snapshot(window);
     double gain = 0.0;
     while (!(gain > 0.0) && damping <= kMostDamping) {
-      if (cholesky.factorise(damping)) {
-        terms.apply(window, system, -cholesky.solve(system.gradient()));
+      is_damped = damping > 0.0;
+      if (cholesky->factorise(damping)) {
+        terms.apply(window, system, -cholesky->solve(system.gradient()));
         gain = cost - terms.cost();
         if (!(gain > 0.0)) {
           before.restore();
@@ -141,7 +147,8 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
   }
   update.summary.final_cost = cost;
   update.summary.usable = std::isfinite(cost);
-  update.covariance = JointCovariance(system, window);
+  update.covariance = is_damped ? JointCovariance(system, window)
+                                : JointCovariance(system, correlated, cholesky->covarianceOfLast());
   update.errors_sigmas = terms.errors();
   return update;
 }
