@@ -73,6 +73,12 @@ CameraStates cameraStates(const Window& window) {
   return states;
 }
 
+Vec3 rayOf(const Sighting& sighting, const CameraStates& states) {
+  if (states.intrinsics.empty()) return sighting.measurement.bearing_C;
+  const GlobalState* lens = states.intrinsics[static_cast<size_t>(sighting.camera)];
+  return rayThrough(sighting.measurement, lens->value.data());
+}
+
 std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   using Correction = Eigen::Matrix<double, 6, 1>;
   const CameraStates states = cameraStates(window);

@@ -30,6 +30,10 @@ void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibr
 
 CameraStates cameraStates(const Window& window);
 
+/// The ray of a sighting (its camera's frame) by the lens that the states say, by the file's where they are
+/// empty.
+Vec3 rayOf(const Sighting& sighting, const CameraStates& states);
+
 /// What the states say at present.
 struct CameraCorrections {
   std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/visual_terms.h"
+#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 namespace {
@@ -17,11 +19,19 @@ const Sighting* hostSighting(const Window& window, const TrackHistory& track) {
   return nullptr;
 }
 
+/// What the lens adds to the residual of a point that is seen there, sigmas.
+Vec2 shiftByLens(const Sighting& sighting, const CameraStates& cameras) {
+  if (cameras.intrinsics.empty()) return Vec2::Zero();
+  const GlobalState* lens = cameras.intrinsics[static_cast<size_t>(sighting.camera)];
+  return lensShift(sighting.measurement, Vec2::Zero(), lens->value.data());
+}
+
 /// Inverse distance along a host's ray from all other sightings; every candidate asks for it in every frame,
 /// so it is a closed form and not the full fit of features/triangulation.h. With the host's direction d held,
 /// each sighting says
 ///   B^T (R d + rho t) = 0,
-/// which is linear in rho; a second pass weights by the depth that the first one found.
+/// which is linear in rho, but for what the lens adds; a second pass weights by the depth that the first one
+/// found.
 struct InverseDistance {
   double value = 0.0;  ///< 1/m
   double sigma = 1e9;  ///< 1/m
@@ -29,21 +39,23 @@ struct InverseDistance {
 };
 
 InverseDistance solveInverseDistance(const Window& window, const TrackHistory& track, const Sighting& host,
-                                     const FactorMaker& factors) {
+                                     const FactorMaker& factors, const CameraStates& cameras) {
   struct Equation {
     Vec3 direction;  // R d
     Vec3 baseline;   // t
+    Vec2 by_lens;    // sigmas
     const DirectionMeasurement* measurement;
   };
   std::vector<Equation> equations;
   const Rigid3 world_from_host = factors.worldFromCamera(window, *window.find(host.frame), 0);
+  const Vec3 host_ray = rayOf(host, cameras);
   for (const Sighting& sighting : track.sightings) {
     if (&sighting == &host) continue;
     const Rigid3 target_from_host =
         factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera).inverse() *
         world_from_host;
-    equations.push_back({target_from_host.rotation * host.measurement.bearing_C, target_from_host.translation,
-                         &sighting.measurement});
+    equations.push_back({target_from_host.rotation * host_ray, target_from_host.translation,
+                         shiftByLens(sighting, cameras), &sighting.measurement});
   }
   InverseDistance result;
   for (int pass = 0; pass < 3; ++pass) {
@@ -55,7 +67,7 @@ InverseDistance solveInverseDistance(const Window& window, const TrackHistory& t
       const Mat23 weight = e.measurement->sqrt_information * e.measurement->tangent_C.transpose() / depth;
       const Vec2 slope = weight * e.baseline;
       information += slope.squaredNorm();
-      right_side -= slope.dot(weight * e.direction);
+      right_side -= slope.dot(weight * e.direction + e.by_lens);
     }
     if (information <= 0.0) return {};
     result.value = right_side / information;
@@ -63,8 +75,8 @@ InverseDistance solveInverseDistance(const Window& window, const TrackHistory& t
   }
   double squared_error = 0.0;
   for (const Equation& e : equations) {
-    squared_error +=
-        directionResidual(*e.measurement, e.direction + result.value * e.baseline, nullptr).squaredNorm();
+    const Vec3 point = e.direction + result.value * e.baseline;
+    squared_error += (directionResidual(*e.measurement, point, nullptr) + e.by_lens).squaredNorm();
   }
   result.rms_sigmas = std::sqrt(squared_error / (2.0 * static_cast<double>(equations.size())));
   return result;
@@ -97,6 +109,7 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
   std::stable_sort(candidates.begin(), candidates.end(), [](const TrackHistory* a, const TrackHistory* b) {
     return a->sightings.size() > b->sightings.size();
   });
+  const CameraStates cameras = cameraStates(window);
   const int wanted = std::max(options.max_landmarks - landmarks,
                               std::min(options.least_in_view, options.max_landmarks) - in_view);
   int created = 0;
@@ -104,11 +117,11 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
     if (created >= wanted) break;
     const Sighting* host = hostSighting(window, *track);
     if (!host) continue;
-    const InverseDistance rho = solveInverseDistance(window, *track, *host, factors);
+    const InverseDistance rho = solveInverseDistance(window, *track, *host, factors, cameras);
     if (!isUsable(rho, options)) continue;
     Landmark landmark;
     landmark.host = host->frame;
-    landmark.base = LandmarkBase(host->measurement.bearing_C);
+    landmark.base = LandmarkBase(rayOf(*host, cameras));
     landmark.parameters = {0.0, 0.0, std::max(rho.value, 1e-4)};
     track->landmark = landmark;
     ++created;

@@ -42,6 +42,18 @@ TEST_F(LandmarksTest, AreCreatedWhereThePointIs) {
   EXPECT_EQ(create(), 0) << "nothing is created twice";
 }
 
+// By the lens of the file the point would be 25 mm off.
+TEST_F(LandmarksTest, AreCreatedByTheLensThatTheWindowKnows) {
+  const std::vector<double> lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01};
+  const Vec3 point_W(3.0, -0.9, 0.4);
+  test_.calibrate(lens);
+  for (const auto& frame : test_.window.frames()) {
+    for (int camera = 0; camera < 2; ++camera) test_.seeThrough(lens, 1, point_W, *frame, camera);
+  }
+  ASSERT_EQ(create(), 1);
+  EXPECT_LT((test_.position(1) - point_W).norm(), 0.002);
+}
+
 TEST_F(LandmarksTest, WithNoiseComeOutWithinTheirUncertainty) {
   // One-pixel noise, eight views over a baseline of 0.7 m at 3 m: sigma of the distance about
   // 3^2 / (458 * 0.25 * sqrt(8)) m = 2.8 cm; 4 sigma for the worst of 50.

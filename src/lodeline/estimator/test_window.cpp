@@ -5,8 +5,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/start.h"
+#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 
@@ -62,10 +64,13 @@ void TestWindow::addSighting(TrackId track, const Vec3& bearing_C, const Frame& 
   window.addSighting(track, {frame.id, camera, measurement});
 }
 
+Vec3 TestWindow::pointInCamera(const Vec3& point_W, const Frame& frame, int camera) const {
+  return (frame.worldFromBody() * rig.cameras[camera].body_from_camera).inverse() * point_W;
+}
+
 void TestWindow::see(TrackId track, const Vec3& point_W, const Frame& frame, int camera,
                      const Vec2& error_px) {
-  const Rigid3 world_from_camera = frame.worldFromBody() * rig.cameras[camera].body_from_camera;
-  const std::optional<Vec2> pixel = cameras_[camera]->project(world_from_camera.inverse() * point_W);
+  const std::optional<Vec2> pixel = cameras_[camera]->project(pointInCamera(point_W, frame, camera));
   ASSERT_TRUE(pixel && cameras_[camera]->contains(*pixel)) << "track " << track << " is out of view";
   addSighting(track, *cameras_[camera]->unproject(*pixel + error_px), frame, camera, 1.0);
 }
@@ -74,12 +79,28 @@ void TestWindow::seeAlong(TrackId track, const Vec3& bearing_C, const Frame& fra
   addSighting(track, bearing_C.normalized(), frame, camera, 1.0);
 }
 
+void TestWindow::calibrate(const std::vector<double>& lens) {
+  const int cameras = static_cast<int>(cameras_.size());
+  Prior prior;
+  addCameraStates(window, prior, cameras, options.camera_calibration);
+  addLensStates(window, prior, cameras, options.camera_calibration);
+  for (GlobalState* state : cameraStates(window).intrinsics) state->value = lens;
+}
+
+void TestWindow::seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W,
+                            const Frame& frame, int camera) {
+  const auto through = makeCamera(correctedLens(rig.cameras[camera], lens.data()));
+  const std::optional<Vec2> pixel = through->project(pointInCamera(point_W, frame, camera));
+  ASSERT_TRUE(pixel && cameras_[camera]->contains(*pixel)) << "track " << track << " is out of view";
+  addSighting(track, *cameras_[camera]->unproject(*pixel), frame, camera, 1.0);
+}
+
 Landmark& TestWindow::place(TrackId track, const Vec3& point_W, const Frame& host) {
   TrackHistory& history = window.tracks().at(track);
   Landmark landmark;
   landmark.host = host.id;
   landmark.base = LandmarkBase(history.find(host.id, 0)->measurement.bearing_C);
-  const Vec3 point_C = (host.worldFromBody() * rig.cameras[0].body_from_camera).inverse() * point_W;
+  const Vec3 point_C = pointInCamera(point_W, host, 0);
   const double depth = landmark.base.bearing_C.dot(point_C);
   const Vec2 ab = landmark.base.tangent_C.transpose() * point_C / depth;
   landmark.parameters = {ab.x(), ab.y(), 1.0 / depth};

@@ -25,6 +25,12 @@ class TestWindow {
   /// As see(), for points that may lie outside the image or behind the camera: from the ray alone.
   void seeAlong(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera = 0);
 
+  /// Adds the states of the camera calibration, with `lens` (factors/intrinsics_factor.h) for every camera.
+  void calibrate(const std::vector<double>& lens);
+  /// A sighting through such a lens. Fails the test where the camera cannot see the point.
+  void seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W, const Frame& frame,
+                  int camera);
+
   /// A landmark at `point_W`, hosted in `host`, which must have seen the track with camera 0.
   Landmark& place(TrackId track, const Vec3& point_W, const Frame& host);
   Vec3 position(TrackId track) const;
@@ -42,6 +48,7 @@ class TestWindow {
   Window window;
 
  private:
+  Vec3 pointInCamera(const Vec3& point_W, const Frame& frame, int camera) const;
   void addSighting(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera, double sigma_px);
 
   std::vector<std::shared_ptr<const Camera>> cameras_;

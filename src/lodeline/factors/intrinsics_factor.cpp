@@ -53,6 +53,15 @@ LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& resid
   return effect;
 }
 
+Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics) {
+  // What is seen there leaves no residual. A lens moves points by shares of a hundred of what it is moved by.
+  constexpr int kPasses = 3;
+  Vec2 residual = Vec2::Zero();
+  for (int pass = 0; pass < kPasses; ++pass) residual = -lensShift(measurement, residual, intrinsics);
+  const Vec2 offset = measurement.sqrt_information.inverse() * residual;
+  return (measurement.bearing_C + measurement.tangent_C * offset).normalized();
+}
+
 CameraCalibration correctedLens(const CameraCalibration& file, const double* intrinsics) {
   CameraCalibration lens = file;
   lens.fx_px *= 1.0 + intrinsics[0];

@@ -38,6 +38,10 @@ LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& resid
 /// LensEffect::shift alone.
 Vec2 lensShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics);
 
+/// The ray of a sighting that a lens with an intrinsics block put in makes of its pixel, where
+/// DirectionMeasurement::bearing_C is what the file makes of it.
+Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics);
+
 /// A calibration file's lens with an intrinsics block put in, in its own model (which becomes
 /// radial-tangential where it had no distortion).
 CameraCalibration correctedLens(const CameraCalibration& file, const double* intrinsics);

@@ -64,6 +64,15 @@ TEST_P(IntrinsicsOfAModel, ExplainAWrongProfileOutToTheBorder) {
   }
 }
 
+TEST_P(IntrinsicsOfAModel, GiveTheRayThatTheTrueLensMakesOfAPixel) {
+  const DirectionMeasurement seen = seenThrough(file_, kWrongLens, scene_.point_host_C, 0.5);
+  const Vec3 truth = scene_.point_host_C.normalized();
+  const double by_file_rad = (seen.bearing_C - truth).norm();
+  ASSERT_GT(by_file_rad, 0.002);
+  EXPECT_LT((rayThrough(seen, kWrongLens.data()) - truth).norm(), 0.03 * by_file_rad);
+  EXPECT_LT((rayThrough(seen, Intrinsics::Zero(6).eval().data()) - seen.bearing_C).norm(), 1e-12);
+}
+
 TEST_P(IntrinsicsOfAModel, AreNothingToARightLens) {
   const IntrinsicsFactor right = factor(seenThrough(file_, Intrinsics::Zero(6), scene_.point_host_C, 0.5));
   EXPECT_LT(evaluate(right, {scene_.landmark(), Intrinsics::Zero(6)}).norm(), 1e-6);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/features/triangulation.h"
 
@@ -70,11 +71,12 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
   const auto host = std::find_if(track->sightings.begin(), track->sightings.end(),
                                  [](const Sighting& sighting) { return sighting.camera == 0; });
   if (host == track->sightings.end() || track->sightings.size() < 2) return;
+  const CameraStates cameras = cameraStates(window);
   const auto viewOf = [&](const Sighting& sighting) {
     // Pixels over the angle, both axes together.
     const double pixels = std::sqrt(std::abs(sighting.measurement.sqrt_information.determinant()));
     return BearingView{factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera),
-                       sighting.measurement.bearing_C, 1.0 / pixels};
+                       rayOf(sighting, cameras), 1.0 / pixels};
   };
   std::vector<BearingView> views = {viewOf(*host)};
   for (const Sighting& sighting : track->sightings) {
@@ -92,7 +94,7 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
   const Vec3 point_C = views.front().world_from_camera.inverse() * point.point_W;
   Landmark landmark;
   landmark.host = host->frame;
-  landmark.base = LandmarkBase(host->measurement.bearing_C);
+  landmark.base = LandmarkBase(views.front().bearing_C);
   const double depth = landmark.base.bearing_C.dot(point_C);
   if (depth < options.min_distance_m) return;
   const Vec2 ab = landmark.base.tangent_C.transpose() * point_C / depth;
