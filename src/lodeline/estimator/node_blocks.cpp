@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lodeline/estimator/wide_products.h"
 #include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
@@ -56,26 +57,27 @@ void NodeBlocks::transform(const Eigen::MatrixXd& h_nodes, const Eigen::VectorXd
                            Eigen::VectorXd* g) const {
   const int columns = poses_ + others_ + calibration_;
   const Eigen::MatrixXd of_nodes = h_nodes.selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * nodes_, columns);  // h_nodes T
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * nodes_, columns);  // -h_nodes T
   Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
   for (int i = 0; i < frames_; ++i) {
     for (const Part& part : follows_[static_cast<size_t>(i)])
-      half.middleCols<6>(part.column).noalias() += of_nodes.middleCols<6>(6 * i) * part.by_pose;
+      subtractProduct(of_nodes.middleCols<6>(6 * i), part.by_pose.transpose(),
+                      half.middleCols<6>(part.column));
     if (calibration_ > 0) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
   }
-  half.middleCols(poses_, others_) = of_nodes.middleCols(6 * frames_, others_);
-  half.rightCols(calibration_).noalias() = of_nodes * by_calibration;
+  half.middleCols(poses_, others_) = -of_nodes.middleCols(6 * frames_, others_);
+  subtractProduct(of_nodes, by_calibration.transpose(), half.rightCols(calibration_));
   h->setZero(columns, columns);
   g->setZero(columns);
   for (int i = 0; i < frames_; ++i) {
     for (const Part& part : follows_[static_cast<size_t>(i)]) {
-      h->middleRows<6>(part.column).noalias() += part.by_pose.transpose() * half.middleRows<6>(6 * i);
+      h->middleRows<6>(part.column).noalias() -= part.by_pose.transpose() * half.middleRows<6>(6 * i);
       g->segment<6>(part.column).noalias() += part.by_pose.transpose() * g_nodes.segment<6>(6 * i);
     }
   }
-  h->middleRows(poses_, others_) = half.middleRows(6 * frames_, others_);
+  h->middleRows(poses_, others_) = -half.middleRows(6 * frames_, others_);
   g->segment(poses_, others_) = g_nodes.segment(6 * frames_, others_);
-  h->bottomRows(calibration_).noalias() = by_calibration.transpose() * half;
+  h->bottomRows(calibration_).noalias() = -by_calibration.transpose() * half;
   g->tail(calibration_).noalias() = by_calibration.transpose() * g_nodes;
 }
 

@@ -1,5 +1,9 @@
 #include "lodeline/estimator/prior_terms.h"
 
+#include <algorithm>
+
+#include "lodeline/estimator/wide_products.h"
+
 namespace lodeline {
 
 PriorTerms::PriorTerms(const Prior& prior) : prior_(prior) {
@@ -8,8 +12,15 @@ PriorTerms::PriorTerms(const Prior& prior) : prior_(prior) {
     blocks_.push_back({block.value, static_cast<int>(block.first_estimate.size()), offset});
     offset += block.tangentSize();
   }
+  // J^T J, a few rows of J at a time: they are zero left of the diagonal.
+  constexpr int kRows = 24;
+  const Eigen::MatrixXd transposed = prior.sqrt_information.transpose();
   hessian_ = Eigen::MatrixXd::Zero(offset, offset);
-  hessian_.selfadjointView<Eigen::Lower>().rankUpdate(prior.sqrt_information.transpose());
+  for (int row = 0; row < offset; row += kRows) {
+    const int rest = offset - row, rows = std::min(kRows, rest);
+    subtractSquare(transposed.block(row, row, rest, rows), hessian_.bottomRightCorner(rest, rest));
+  }
+  hessian_ = -hessian_;
 }
 
 Eigen::VectorXd PriorTerms::residual() const {
