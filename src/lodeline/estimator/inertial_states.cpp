@@ -50,15 +50,14 @@ std::optional<Eigen::MatrixXd> unclaimedInformation(const Window& window, const 
 }
 
 void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15>* covariance) {
-  covariance->diagonal().segment<2>(3).array() += options.uncalibrated_sigma * options.uncalibrated_sigma;
+  covariance->diagonal().segment<2>(3).array() += options.accelerometerSigma() * options.accelerometerSigma();
 }
 
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
                                                 const FactorMaker& factors, const ImuAxesOptions& options) {
   const auto unclaimed = unclaimedInformation(window, factors, options);
-  if (!unclaimed) return known.newest();
   Eigen::Matrix<double, 15, 15> claimed =
-      known.newestWithout(gyroscopeAxesState(window)->value.data(), *unclaimed);
+      unclaimed ? known.newestWithout(gyroscopeAxesState(window)->value.data(), *unclaimed) : known.newest();
   addDoubtAboutUp(options, &claimed);
   return claimed;
 }

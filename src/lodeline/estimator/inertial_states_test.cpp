@@ -112,6 +112,16 @@ TEST(InertialStates, FindASmallErrorOfACalibratedGyroscope) {
   EXPECT_LT(drift_rad(axes, 0.001, 4), 0.8 * drift_rad(axes, 0.0, 4));
 }
 
+TEST(InertialStates, ClaimNoMoreOfUpThanTheAccelerometersAxesAllow) {
+  constexpr double kSigma = 0.002;
+  const Outcome held = runWith(GyroscopeAxes::Zero(), 0.0);
+  const Outcome in_doubt = runWith(GyroscopeAxes::Zero(), kSigma);
+  for (const int axis : {3, 4}) {
+    EXPECT_GT(in_doubt.last.covariance(axis, axis), std::pow(kSigma, 2)) << axis;
+    EXPECT_LT(held.last.covariance(axis, axis), std::pow(kSigma, 2)) << axis;
+  }
+}
+
 TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   constexpr double kUncalibrated = 0.007;
   const Outcome taken_for_calibrated = runWith(GyroscopeAxes::Zero(), 0.001);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "lodeline/estimator/depth_options.h"
 #include "lodeline/estimator/magnetometer_options.h"
 #include "lodeline/geometry/types.h"
@@ -115,7 +117,7 @@ struct ImuAxesOptions {
   /// one or two per cent: no Gaussian describes both, see FactorMaker::gyroscopeAxes().
   double gyroscope_sigma = imu_axes::kCalibratedSigma;
   /// Makers calibrate the axes of their better sensors: of an IMU whose gyroscope has less white noise than
-  /// this, no more than `gyroscope_sigma` is doubted in what is claimed.
+  /// this, no more than `gyroscope_sigma` is doubted in what is claimed, of either sensor.
   double calibrated_below_rad_per_s_sqrtHz = imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
   /// What is claimed of the axes of an IMU above that, which may never have been calibrated: of the
   /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
@@ -123,6 +125,8 @@ struct ImuAxesOptions {
   double uncalibrated_sigma = imu_axes::kUncalibratedSigma;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
+  /// Of the accelerometer's axes, for which no state stands: makers calibrate both sensors or none.
+  double accelerometerSigma() const { return std::max(gyroscope_sigma, uncalibrated_sigma); }
 };
 
 /// When a rig counts as resting, see RestWatch.
