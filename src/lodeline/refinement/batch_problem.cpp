@@ -216,8 +216,8 @@ LastingErrors BatchProblem::lastingErrors() {
   return lasting;
 }
 
-void BatchProblem::weighSightings(double design_effect) {
-  for (auto& [id, track] : window_.tracks()) track.weight /= design_effect;
+void BatchProblem::weighSightings(double variance) {
+  for (auto& [id, track] : window_.tracks()) track.weight /= variance;
 }
 
 Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index, const SkylineMatrix& inverse) const {

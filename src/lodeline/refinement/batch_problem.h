@@ -59,8 +59,8 @@ class BatchProblem {
   double renewLandmarks();
   /// The errors at the present values, without those that the robust loss hardly counts.
   LastingErrors lastingErrors();
-  /// Lets so many sightings count as one, until landmarks are renewed.
-  void weighSightings(double design_effect);
+  /// Gives sightings so many times their variance, until landmarks are renewed.
+  void weighSightings(double variance);
 
   /// The offset of the magnetometer's corrected readings (T) and the depth at the origin (m) that are in
   /// force for a state; null where there is no such sensor.

@@ -9,6 +9,7 @@ void LastingErrors::add(const std::vector<Vec2>& errors) {
   const auto n = static_cast<double>(errors.size());
   sightings_ += n;
   squared_lengths_ += n * n;
+  for (const Vec2& error : errors) squares_ += error.squaredNorm();
   if (errors.size() < kFewest) return;
   double squares = errors.front().squaredNorm(), products = 0.0;
   for (size_t i = 1; i < errors.size(); ++i) {
@@ -25,6 +26,10 @@ double LastingErrors::designEffect() const {
   if (!(of_random_walk_ > of_white_noise_)) return 1.0;
   const double share = (likeness_ - of_white_noise_) / (of_random_walk_ - of_white_noise_);
   return 1.0 + (squared_lengths_ / sightings_ - 1.0) * std::clamp(share, 0.0, 1.0);
+}
+
+double LastingErrors::variance() const {
+  return sightings_ > 0.0 ? std::max(1.0, designEffect() * squares_ / (2.0 * sightings_)) : 1.0;
 }
 
 }  // namespace lodeline

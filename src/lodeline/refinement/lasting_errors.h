@@ -12,7 +12,7 @@ namespace lodeline {
 /// how much neighbours resemble each other.
 class LastingErrors {
  public:
-  /// The reprojection errors of one track in one camera in order of time, any unit.
+  /// The reprojection errors of one track in one camera in order of time, in standard deviations as stated.
   void add(const std::vector<Vec2>& errors);
 
   /// By how much the variance of what a track tells exceeds that of so many independent sightings:
@@ -25,8 +25,13 @@ class LastingErrors {
   /// come out at 1, is taken for both. 1 while there is nothing to tell it by.
   double designEffect() const;
 
+  /// Variance of a sighting's error for as long as its errors last, in terms of the stated one:
+  /// designEffect() times the errors' mean square along one axis. At least 1: what is stated stands for more
+  /// than what errors after a solution can show.
+  double variance() const;
+
  private:
-  double sightings_ = 0.0, squared_lengths_ = 0.0;
+  double sightings_ = 0.0, squared_lengths_ = 0.0, squares_ = 0.0;
   // Of tracks that are long enough, weighed by their lengths: found, and expected of either kind.
   double likeness_ = 0.0, of_white_noise_ = 0.0, of_random_walk_ = 0.0;
 };

@@ -59,6 +59,25 @@ TEST(LastingErrors, OfBothItLiesBetween) {
   }
 }
 
+// As the solution of images with a tenth of the stated error: that they last is covered.
+TEST(LastingErrors, AddToTheVarianceWhatIsNotStated) {
+  constexpr int kLength = 20;
+  LastingErrors small, large;
+  for (int track = 0; track < 50; ++track) {
+    std::vector<Vec2> errors;
+    for (int i = 0; i < kLength; ++i) errors.push_back(Vec2(i < kLength / 2 ? 1.0 : -1.0, 0.0));
+    for (Vec2& error : errors) error *= 0.1;
+    small.add(errors);
+    for (Vec2& error : errors) error *= 10.0;
+    large.add(errors);
+  }
+  EXPECT_EQ(small.designEffect(), large.designEffect());
+  EXPECT_EQ(small.variance(), 1.0);
+  EXPECT_NEAR(large.variance(), 0.5 * large.designEffect(), 1e-9);
+  EXPECT_GT(large.variance(), 5.0);
+  EXPECT_NEAR(errorsOf(kLength, 0.0).variance(), 1.0, 0.1);
+}
+
 TEST(LastingErrors, AreUnknownWhileThereIsNothingToTellThemBy) {
   LastingErrors lasting;
   EXPECT_EQ(lasting.designEffect(), 1.0);

@@ -119,10 +119,12 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const ForwardR
   for (int i = 0; i < wanted.rounds; ++i) {
     if (i > 0) {
       // Of a solution: the errors of the run's poses last themselves.
-      summary.design_effect = problem.lastingErrors().designEffect();
+      const LastingErrors lasting = problem.lastingErrors();
+      summary.design_effect = lasting.designEffect();
+      summary.sighting_variance = lasting.variance();
       problem.relinearise();
       summary.outlier_share = problem.renewLandmarks();
-      problem.weighSightings(summary.design_effect);
+      problem.weighSightings(summary.sighting_variance);
     }
     const Round round = solve(problem, wanted, i + 1 == wanted.rounds, &hessian);
     if (i == 0) {
@@ -139,6 +141,8 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const ForwardR
   if (!summary.usable()) return result;
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
     Eigen::VectorXd gradient;
+    // What is claimed must also stand for what all tracks have in common, as a lens or a port.
+    problem.weighSightings(std::max(1.0, summary.design_effect / summary.sighting_variance));
     problem.linearise(&hessian, &gradient);
     problem.subtractUnclaimed(&hessian);
     summary.has_covariance = hessian.factorise();

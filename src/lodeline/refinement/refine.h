@@ -26,14 +26,15 @@ struct RefinementSummary {
   bool converged = false;  ///< the last round ended by itself
   int states = 0;
   int64_t landmarks = 0;
-  int64_t sightings = 0;          ///< of these
-  double design_effect = 1.0;     ///< so many of them count as one: LastingErrors
-  double outlier_share = 0.0;     ///< of the sightings, left out at the end
-  int iterations = 0;             ///< of all rounds
-  double forward_cost = 0.0;      ///< of the forward run's states
-  double first_round_cost = 0.0;  ///< of the same terms after the first round
-  double cost = 0.0;              ///< of the terms that are left, at the end
-  double moved_rms_m = 0.0;       ///< refined against forward positions, over all frames
+  int64_t sightings = 0;           ///< of these
+  double sighting_variance = 1.0;  ///< that they were given, of the stated one: LastingErrors::variance()
+  double design_effect = 1.0;      ///< so many of them count as one in what is claimed: LastingErrors
+  double outlier_share = 0.0;      ///< of the sightings, left out at the end
+  int iterations = 0;              ///< of all rounds
+  double forward_cost = 0.0;       ///< of the forward run's states
+  double first_round_cost = 0.0;   ///< of the same terms after the first round
+  double cost = 0.0;               ///< of the terms that are left, at the end
+  double moved_rms_m = 0.0;        ///< refined against forward positions, over all frames
   double moved_max_m = 0.0;
   double turned_rms_rad = 0.0;
   double forward_sigma_m = 0.0, sigma_m = 0.0;  ///< claimed, at the end: root of the position's trace

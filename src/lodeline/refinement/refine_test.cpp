@@ -80,7 +80,7 @@ TEST_P(RefineTest, LowersTheCostAndTheErrorAndStaysWithinItsSigmas) {
   EXPECT_TRUE(summary.converged);
   EXPECT_LT(summary.first_round_cost, summary.forward_cost);
   // Whitened residuals of honest noise: two of each sighting, under a loss that makes them count for less.
-  const double worth = static_cast<double>(summary.sightings) / summary.design_effect;
+  const double worth = static_cast<double>(summary.sightings) / summary.sighting_variance;
   EXPECT_NEAR(2.0 * summary.cost / (2.0 * worth), 0.7, 0.2);
   ASSERT_EQ(refinement.frames.size(), run.comparisons.size());
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));

@@ -111,6 +111,7 @@ nlohmann::ordered_json toJson(const RefinementSummary& refined) {
   json["states"] = refined.states;
   json["landmarks"] = refined.landmarks;
   json["sightings"] = refined.sightings;
+  json["sighting_variance"] = refined.sighting_variance;
   json["design_effect"] = refined.design_effect;
   json["outlier_share"] = refined.outlier_share;
   json["iterations"] = refined.iterations;
