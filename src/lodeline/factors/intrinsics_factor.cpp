@@ -54,7 +54,7 @@ LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& resid
 }
 
 Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics) {
-  // What is seen there leaves no residual. A lens moves points by shares of a hundred of what it is moved by.
+  // What is seen there leaves no residual. The shift hardly depends on the residual, so few passes will do.
   constexpr int kPasses = 3;
   Vec2 residual = Vec2::Zero();
   for (int pass = 0; pass < kPasses; ++pass) residual = -lensShift(measurement, residual, intrinsics);
