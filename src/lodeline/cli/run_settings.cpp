@@ -59,6 +59,8 @@ void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOpt
                  "white noise of a gyroscope below which its maker is taken to have calibrated the IMU");
   settings->bind("inertial.uncalibrated_sigma", &calibration->uncalibrated_sigma,
                  "of the axes of an IMU above that, which was perhaps never calibrated; in what is claimed");
+  settings->bind("inertial.uncalibrated_bias_sigma_m_per_s2", &calibration->uncalibrated_bias_sigma_m_per_s2,
+                 "of the accelerometer's bias of such an IMU at the start, likewise");
   settings->bind("inertial.noise_inflation", &options->noise_inflation,
                  "factor on all noise densities of the IMU's calibration");
   settings->bind("inertial.unresolved_share", &options->motion_noise.unresolved_share,

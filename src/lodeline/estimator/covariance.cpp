@@ -86,22 +86,21 @@ Eigen::MatrixXd JointCovariance::between(const double* rows, const double* colum
   return matrix_.block(row, column, height, width);
 }
 
-Eigen::Matrix<double, 15, 15> JointCovariance::newestWithout(const double* block,
-                                                             const Eigen::MatrixXd& information) const {
+JointCovariance JointCovariance::without(const double* block, const Eigen::MatrixXd& information) const {
   const auto& [offset, size] = offsets_.at(block);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> told(information);
   const double least = 1e-12 * told.eigenvalues().cwiseAbs().maxCoeff();
-  Eigen::Matrix<double, 15, 15> without = newest();
+  JointCovariance without = *this;
   const int count = static_cast<int>((told.eigenvalues().array() > least).count());
   if (count == 0) return without;
   // (P^-1 - V J V^T)^-1 by Woodbury's identity.
   const Eigen::MatrixXd directions = told.eigenvectors().rightCols(count);
-  const Eigen::MatrixXd across = matrix_.block(0, offset, 15, size) * directions;
-  const Eigen::MatrixXd rest =
-      Eigen::MatrixXd(told.eigenvalues().tail(count).cwiseInverse().asDiagonal()) -
-      directions.transpose() * matrix_.block(offset, offset, size, size) * directions;
-  without += across * rest.ldlt().solve(across.transpose());
-  return 0.5 * (without + without.transpose());
+  const Eigen::MatrixXd across = matrix_.middleCols(offset, size) * directions;
+  const Eigen::MatrixXd rest = Eigen::MatrixXd(told.eigenvalues().tail(count).cwiseInverse().asDiagonal()) -
+                               directions.transpose() * across.middleRows(offset, size);
+  without.matrix_ += across * rest.ldlt().solve(across.transpose());
+  without.matrix_ = 0.5 * (without.matrix_ + without.matrix_.transpose()).eval();
+  return without;
 }
 
 JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors) {

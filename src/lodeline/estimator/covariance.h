@@ -36,9 +36,9 @@ class JointCovariance {
   Eigen::MatrixXd between(const double* rows, const double* columns) const;
   /// Of the newest frame's [dp, dtheta, dv, db_g, db_a].
   Eigen::Matrix<double, 15, 15> newest() const { return matrix_.topLeftCorner<15, 15>(); }
-  /// The same had the system not been told `information` of a known block (symmetric; negative parts of it do
-  /// not count). Something else must tell of every direction of it.
-  Eigen::Matrix<double, 15, 15> newestWithout(const double* block, const Eigen::MatrixXd& information) const;
+  /// All of it had the system not been told `information` of a known block (symmetric; negative parts of it
+  /// do not count). Something else must tell of every direction of it.
+  JointCovariance without(const double* block, const Eigen::MatrixXd& information) const;
 
  private:
   Eigen::MatrixXd matrix_;

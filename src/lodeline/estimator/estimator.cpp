@@ -278,7 +278,7 @@ void Estimator::startMagnetometer() {
 }
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
-  estimate->covariance = claimedCovariance(covariance, window_, factors_, options_.imu_axes);
+  estimate->covariance = claimedCovariance(covariance, window_, factors_, options_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lodeline/estimator/consistency.h"
 #include "lodeline/estimator/test_scene.h"
 #include "lodeline/estimator/unmodelled_errors.h"
 
@@ -137,6 +138,32 @@ TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_lenses_rad2, 1.02 * believed.covariance(5, 5))
       << "turns have told by now";
   EXPECT_EQ(doubted.magnetometer.heading_sigma_rad, std::sqrt(doubted.covariance(5, 5)));
+}
+
+/// Means over scenes whose accelerometers are four times as biased as a start supposes, soon after it.
+ConsistencyRow biasedStarts(double uncalibrated_sigma) {
+  constexpr double kBias_m_per_s2 = 0.4;
+  ConsistencyOptions options;
+  options.scene = sceneOptions(1);
+  options.scene.accelerometer_bias_sigma_m_per_s2 = kBias_m_per_s2;
+  options.estimator = honestOptions(options.scene);
+  options.estimator.initial_state.accelerometer_bias_sigma_m_per_s2 = 0.25 * kBias_m_per_s2;
+  options.estimator.imu_axes = {.gyroscope_sigma = 0.001,
+                                .calibrated_below_rad_per_s_sqrtHz = 0.0,
+                                .uncalibrated_sigma = uncalibrated_sigma,
+                                .uncalibrated_bias_sigma_m_per_s2 = kBias_m_per_s2};
+  options.times_s = {1.5};
+  return measureConsistency(options).rows.front();
+}
+
+TEST(InertialStates, ClaimLessOfUpAtTheStartOfWhatWasPerhapsNeverCalibrated) {
+  constexpr double kHardlyAnyAxes = 1e-6;
+  const ConsistencyRow taken_for_calibrated = biasedStarts(0.0), in_doubt = biasedStarts(kHardlyAnyAxes);
+  for (const auto figure : {&NeesSample::orientation, &NeesSample::accelerometer_bias}) {
+    EXPECT_GT(taken_for_calibrated.mean(figure), 5.0 * 3.0);
+    EXPECT_LT(in_doubt.mean(figure), 2.0 * 3.0);
+    EXPECT_GT(in_doubt.mean(figure), 0.5 * 3.0);
+  }
 }
 
 TEST(InertialStates, StayNearRightAxes) {

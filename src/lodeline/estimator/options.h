@@ -123,6 +123,10 @@ struct ImuAxesOptions {
   /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
   /// of others. Relative, and rad.
   double uncalibrated_sigma = imu_axes::kUncalibratedSigma;
+  /// What is claimed of such an IMU's accelerometer bias at the start. Data sheets allow of 0.6 to 0.8 m/s^2
+  /// (60 to 80 mg, e.g. InvenSense MPU-9250, PS-MPU-9250A-01 rev. 1.1), here two sigmas; most parts are far
+  /// better, and a start is estimated by InitialStateOptions.
+  double uncalibrated_bias_sigma_m_per_s2 = 0.4;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
   /// Of the accelerometer's axes, for which no state stands: makers calibrate both sensors or none.

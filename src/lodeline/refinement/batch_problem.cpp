@@ -116,6 +116,9 @@ void BatchProblem::linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient) 
 }
 
 void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
+  const int first_motion = rowOf(state(0).motion.data());
+  hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
+      unclaimedBiasInformation(options_);
   const auto unclaimed = unclaimedInformation(window_, factors_, options_.imu_axes);
   if (!unclaimed) return;
   const int row = rowOf(gyroscopeAxesState(window_)->value.data());
