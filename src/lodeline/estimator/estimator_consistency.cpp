@@ -1,5 +1,5 @@
 // Monte Carlo of simulated scenes and dives: is the estimator as good as it says? Prints the tables of
-// docs/estimator.md.
+// docs/consistency.md.
 
 #include <fmt/core.h>
 

@@ -38,7 +38,7 @@ class HardScene : public testing::TestWithParam<int> {
   }
 
   /// Of position and of each angle, four times the claimed sigma. One camera claims too much of its scale for
-  /// some seconds after the start (docs/estimator.md), hence twice that.
+  /// some seconds after the start (docs/consistency.md), hence twice that.
   void expectWithinItsSigmas() const {
     const double limit = GetParam() == 1 ? 8.0 : 4.0;
     for (const Comparison& c : frames_) {

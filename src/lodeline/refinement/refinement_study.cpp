@@ -1,5 +1,5 @@
 // How much better a batch solution is than the sliding window, on simulated dives of points. Prints the table
-// of docs/estimator.md.
+// of docs/refinement.md.
 
 #include <fmt/core.h>
 
