@@ -53,16 +53,30 @@ void Settings::bind(const std::string& key, bool* target, const std::string& doc
        [target] { return std::string(*target ? "true" : "false"); }});
 }
 
-void Settings::bind(const std::string& key, int* target, const std::string& documentation) {
-  add({key, documentation, "a whole number",
-       [target](const Text& text) { return !text.is_list && parseNumber(text.scalars[0], target); },
+template <typename Number, typename Fits>
+void Settings::addNumber(const std::string& key, Number* target, const std::string& documentation,
+                         const std::string& kind, Fits fits) {
+  add({key, documentation, kind,
+       [target, fits](const Text& text) {
+         Number number = 0;
+         const bool is_number = !text.is_list && parseNumber(text.scalars[0], &number) && fits(number);
+         if (is_number) *target = number;
+         return is_number;
+       },
        [target] { return fmt::format("{}", *target); }});
 }
 
-void Settings::bind(const std::string& key, double* target, const std::string& documentation) {
-  add({key, documentation, "a number",
-       [target](const Text& text) { return !text.is_list && parseNumber(text.scalars[0], target); },
-       [target] { return fmt::format("{}", *target); }});
+void Settings::bind(const std::string& key, int* target, const std::string& documentation, int least) {
+  addNumber(key, target, documentation, fmt::format("a whole number, {} or more", least),
+            [least](int number) { return number >= least; });
+}
+
+void Settings::bind(const std::string& key, double* target, const std::string& documentation, Sign sign) {
+  if (sign == Sign::Positive) {
+    addNumber(key, target, documentation, "a number above 0", [](double number) { return number > 0.0; });
+  } else {
+    addNumber(key, target, documentation, "a number, 0 or more", [](double number) { return number >= 0.0; });
+  }
 }
 
 void Settings::bind(const std::string& key, std::string* target, const std::string& documentation) {

@@ -24,10 +24,15 @@ namespace lodeline {
 /// and what would be right: the nearest known key, or the kind of value.
 class Settings {
  public:
+  enum class Sign { NotNegative, Positive };
+
   /// `target` holds the default and must outlive the settings. Numbers must be finite.
   void bind(const std::string& key, bool* target, const std::string& documentation);
-  void bind(const std::string& key, int* target, const std::string& documentation);
-  void bind(const std::string& key, double* target, const std::string& documentation);
+  /// Counts; `least` is the smallest that makes sense.
+  void bind(const std::string& key, int* target, const std::string& documentation, int least = 0);
+  /// Sizes, times and sigmas: none is negative.
+  void bind(const std::string& key, double* target, const std::string& documentation,
+            Sign sign = Sign::NotNegative);
   void bind(const std::string& key, std::string* target, const std::string& documentation);
   void bind(const std::string& key, std::vector<double>* target, const std::string& documentation);
   void bind(const std::string& key, std::vector<int>* target, const std::string& documentation);
@@ -67,6 +72,9 @@ class Settings {
   class FileReader;
 
   void add(Entry entry);
+  template <typename Number, typename Fits>
+  void addNumber(const std::string& key, Number* target, const std::string& documentation,
+                 const std::string& kind, Fits fits);
   template <typename Number>
   void addList(const std::string& key, std::vector<Number>* target, const std::string& documentation,
                const std::string& kind);

@@ -80,8 +80,9 @@ TEST_F(SettingsTest, UnknownKeyNamesFileLineAndNearestKey) {
 }
 
 TEST_F(SettingsTest, WrongKindSaysWhatIsExpected) {
-  EXPECT_THAT(loading("front_end: {max_features: 3.5}"),
-              ThrowsMessage<UsageError>(AllOf(HasSubstr(":1"), HasSubstr("a whole number, not '3.5'"))));
+  EXPECT_THAT(
+      loading("front_end: {max_features: 3.5}"),
+      ThrowsMessage<UsageError>(AllOf(HasSubstr(":1"), HasSubstr("a whole number, 0 or more, not '3.5'"))));
   EXPECT_THAT(loading("front_end: {max_features: }"), testing::Throws<UsageError>());
   EXPECT_THAT(loading("front_end: 3"), ThrowsMessage<UsageError>(HasSubstr("is a section")));
   EXPECT_THAT(loading("front_end: {equalise: 1}"), ThrowsMessage<UsageError>(HasSubstr("true or false")));
@@ -151,6 +152,25 @@ TEST_F(SettingsTest, ListsOfWholeNumbersTakeNoFractions) {
   EXPECT_THAT([&] { settings_.set("cameras", "[0.5]"); }, testing::Throws<UsageError>());
   EXPECT_THAT([&] { settings_.set("cameras", "1"); }, testing::Throws<UsageError>());
   EXPECT_THAT(cameras, ElementsAre(1, 0));
+}
+
+TEST_F(SettingsTest, RefusesNumbersThatMakeNoSense) {
+  int levels = 3;
+  double density = 1.0;
+  settings_.bind("levels", &levels, "of the pyramid", 1);
+  settings_.bind("density", &density, "of the noise", Settings::Sign::Positive);
+  EXPECT_THAT([&] { settings_.set("levels", "0"); },
+              ThrowsMessage<UsageError>(HasSubstr("must be a whole number, 1 or more, not '0'")));
+  EXPECT_THAT([&] { settings_.set("density", "0"); },
+              ThrowsMessage<UsageError>(HasSubstr("must be a number above 0, not '0'")));
+  EXPECT_THAT([&] { settings_.set("magnetometer.prior.sigma_T", "-1e-9"); },
+              ThrowsMessage<UsageError>(HasSubstr("must be a number, 0 or more, not '-1e-9'")));
+  EXPECT_THAT([&] { settings_.set("front_end.max_features", "-1"); }, testing::Throws<UsageError>());
+  settings_.set("levels", "1");
+  settings_.set("magnetometer.prior.sigma_T", "0");
+  EXPECT_EQ(levels, 1);
+  EXPECT_EQ(density, 1.0);
+  EXPECT_EQ(sigma_T_, 0.0);
 }
 
 TEST_F(SettingsTest, RefusesToBindAKeyTwice) {

@@ -29,7 +29,7 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options, int* max_tracks)
                  "between new points and others");
   settings->bind("front_end.min_gradient_grey_per_px", &options->detector.min_gradient_grey_per_px,
                  "weakest texture that a point may have");
-  settings->bind("front_end.pyramid_levels", &options->pyramid_levels, "halvings of the image plus one");
+  settings->bind("front_end.pyramid_levels", &options->pyramid_levels, "halvings of the image plus one", 1);
   settings->bind("front_end.max_forward_backward_px", &options->tracker.max_forward_backward_px,
                  "largest error when a point is followed back");
   settings->bind(
@@ -48,7 +48,8 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options, int* max_tracks)
   settings->bind("front_end.max_gap_s", &options->max_gap_s, "images missing for longer end all tracks");
   settings->bind("front_end.fixed_structure", &options->fixed_structure.enabled,
                  "leave out what stays at its place in the images, such as parts of the rig");
-  settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation");
+  settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation",
+                 Settings::Sign::Positive);
 }
 
 void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOptions* calibration) {
@@ -62,7 +63,7 @@ void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOpt
   settings->bind("inertial.uncalibrated_bias_sigma_m_per_s2", &calibration->uncalibrated_bias_sigma_m_per_s2,
                  "of the accelerometer's bias of such an IMU at the start, likewise");
   settings->bind("inertial.noise_inflation", &options->noise_inflation,
-                 "factor on all noise densities of the IMU's calibration");
+                 "factor on all noise densities of the IMU's calibration", Settings::Sign::Positive);
   settings->bind("inertial.unresolved_share", &options->motion_noise.unresolved_share,
                  "of the change between two readings that counts as unknown");
   settings->bind("inertial.axis_error", &options->motion_noise.axis_error,
@@ -94,7 +95,7 @@ void bindStart(Settings* settings, InitialStateOptions* start, MonoInitializatio
 
 void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("window.recent_frames", &options->window.recent_frames,
-                 "newest frames, with velocity and biases");
+                 "newest frames, with velocity and biases", 2);
   settings->bind("window.keyframes", &options->window.keyframes, "older keyframes");
   settings->bind("window.interpolated_spacing_s", &options->window.interpolated_spacing_s,
                  "at least, of frames between keyframes whose sightings are kept");
@@ -137,7 +138,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "0 holds it");
   settings->bind("camera_calibration.radial_sigma", &cameras->radial_sigma,
                  "of the first two radial coefficients of the lens' model; 0 holds them");
-  settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame");
+  settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame", 1);
   settings->bind("solver.function_tolerance", &options->solver.function_tolerance,
                  "relative gain below which a frame's iterations end");
   settings->bind(
