@@ -164,9 +164,10 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
                  "automatic: absolute where the magnetometer is calibrated, else off");
   settings->bind("magnetometer.floor_T", &options->floor_T,
                  "lasting errors of the field, one sigma per axis, to start with");
-  settings->bind("magnetometer.floor_correlation_s", &options->floor_correlation_s, "for which they last");
+  settings->bind("magnetometer.floor_correlation_s", &options->floor_correlation_s, "for which they last",
+                 Settings::Sign::Positive);
   settings->bind("magnetometer.floor_memory_s", &options->floor_memory_s,
-                 "over which size and dip of the field teach it");
+                 "over which size and dip of the field teach it", Settings::Sign::Positive);
   settings->bind("magnetometer.floor_freedom", &options->floor_freedom,
                  "degrees of freedom of the distribution of these errors");
   settings->bind("magnetometer.noise_inflation", &options->noise_inflation,
@@ -204,7 +205,7 @@ void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
                  "of the limits, that a rejected field has to keep to be believed again");
   settings->bind("magnetometer.gate.release_s", &gate->release_s, "for so long");
   settings->bind("magnetometer.gate.memory_s", &gate->memory_s,
-                 "over which rejections lower the weight of what is used");
+                 "over which rejections lower the weight of what is used", Settings::Sign::Positive);
   settings->bind("magnetometer.gate.account_s", &gate->account_s,
                  "over which agreement and rejection are weighed against each other");
   settings->bind("magnetometer.gate.max_rejected_ratio", &gate->max_rejected_ratio,
@@ -236,7 +237,8 @@ void bindDepth(Settings* settings, DepthOptions* options) {
   settings->bind("pressure.noise_inflation", &options->noise_inflation,
                  "factor on the depth_noise_std of its file");
   settings->bind("pressure.floor_m", &options->floor_m, "lasting errors of the readings, one sigma");
-  settings->bind("pressure.floor_correlation_s", &options->floor_correlation_s, "for which they last");
+  settings->bind("pressure.floor_correlation_s", &options->floor_correlation_s, "for which they last",
+                 Settings::Sign::Positive);
   settings->bind("pressure.gate.max_sigmas", &options->gate.max_sigmas, "of a jump that is believed");
   settings->bind("pressure.gate.max_jump_m", &options->gate.max_jump_m, "that is believed in any case");
   settings->bind("pressure.gate.readmission_s", &options->gate.readmission_s,
