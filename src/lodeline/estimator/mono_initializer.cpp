@@ -14,6 +14,21 @@
 #include "lodeline/inertial/gravity_alignment.h"
 
 namespace lodeline {
+namespace {
+
+/// Mean square of the whitened inertial errors of a window: about one or less where it is right.
+double inertialDisagreement(Window& window, const FactorMaker& factors) {
+  double square_sum = 0.0;
+  std::vector<double> residual;
+  Frame* before = nullptr;
+  for (const auto& frame : window.frames()) {
+    if (before) square_sum += 2.0 * costOf(factors.inertial(window, *before, *frame), residual);
+    before = frame.get();
+  }
+  return square_sum / static_cast<double>((window.frames().size() - 1) * inertial_error::kSize);
+}
+
+}  // namespace
 
 bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<const ImuSample> imu,
                           FrameId id, const Rest& rest) {
@@ -41,7 +56,11 @@ bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<co
                                wanted.min_common_tracks);
     return false;
   }
-  return solveVisualStructure() && alignWithInertial() && refine();
+  if (refused_ && (time - *refused_).seconds() < wanted.retry_after_s) return false;
+  if (!solveVisualStructure() || !alignWithInertial()) return false;
+  if (refine()) return true;
+  refused_ = time;
+  return false;
 }
 
 void MonoInitializer::insert(Time time, const SightingList& sightings, FrameId id) {
@@ -112,7 +131,8 @@ bool MonoInitializer::alignWithInertial() {
   const Vec3 gyroscope_bias = this->gyroscopeBias(rotations);
   const double gravity = options_.gravity_W.norm();
   const std::optional<VisualInertialAlignment> alignment =
-      alignVisualInertial(rotations, camera_positions, body_from_camera.translation, intervals(), gravity);
+      alignVisualInertial(rotations, camera_positions, body_from_camera.translation, intervals(), gravity,
+                          options_.initial_state.accelerometer_bias_sigma_m_per_s2);
   const double tolerance = options_.mono_initialization.gravity_tolerance_m_per_s2;
   if (!alignment || std::abs(alignment->free_gravity_magnitude - gravity) > tolerance) {
     waiting_for_ = "enough acceleration to tell the scale";
@@ -130,6 +150,7 @@ bool MonoInitializer::alignWithInertial() {
     state.world_from_body = Rigid3(world_from_visual * rotations[k], world_from_visual * (body_V - origin_V));
     state.velocity_W = world_from_visual * alignment->velocities_V[k];
     state.gyroscope_bias_B = gyroscope_bias;
+    state.accelerometer_bias_B = alignment->accelerometer_bias_B;
     frame->setState(state);
     ++k;
   }
@@ -149,10 +170,13 @@ bool MonoInitializer::refine() {
   }
   const SolveSummary summary =
       solveWindow(window_, prior_, factors_, {options_.mono_initialization.max_iterations, 1e-8});
+  const double disagreement = inertialDisagreement(window_, factors_);
   const double share = scaleUncertainty(window_.newest(), newestCovariance(window_, prior_, factors_));
   const double bias_sigmas =
       window_.newest().accelerometerBias().norm() / options_.initial_state.accelerometer_bias_sigma_m_per_s2;
-  if (!summary.usable || bias_sigmas > options_.mono_initialization.max_bias_sigmas) {
+  if (!summary.usable || !summary.converged ||
+      disagreement > options_.mono_initialization.max_inertial_disagreement ||
+      bias_sigmas > options_.mono_initialization.max_bias_sigmas) {
     waiting_for_ = "a start on which images and inertial readings agree";
   } else if (share > options_.mono_initialization.max_scale_sigma) {
     waiting_for_ = fmt::format("scale known to {:.0f} % of {:.0f} %", 100.0 * share,

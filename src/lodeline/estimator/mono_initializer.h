@@ -64,6 +64,7 @@ class MonoInitializer {
   std::optional<GyroscopeAtRest> gyroscope_;
   /// Inertial readings that led to a frame; kept apart from the window while its structure is purely visual.
   std::map<FrameId, std::unique_ptr<Preintegration>> intervals_;
+  std::optional<Time> refused_;  ///< when a start was found, and found not to be good enough
   std::string waiting_for_;
 };
 

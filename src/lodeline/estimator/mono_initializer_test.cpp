@@ -37,7 +37,7 @@ std::vector<Comparison> untilStarted(const TestSceneOptions& options) {
   return comparisons;
 }
 
-void expectSoundStart(const TestSceneOptions& options) {
+void expectSoundStart(const TestSceneOptions& options, double max_rotation_error_rad = 0.05) {
   const std::vector<Comparison> comparisons = untilStarted(options);
   EXPECT_THAT(comparisons.front().estimate.waiting_for, StartsWith("frames 1 of 6"));
   ASSERT_TRUE(comparisons.back().initialized()) << comparisons.back().estimate.waiting_for;
@@ -47,7 +47,7 @@ void expectSoundStart(const TestSceneOptions& options) {
   EXPECT_GT(way_m, 0.1);
   EXPECT_NEAR(start.estimate.state.world_from_body.translation.norm() / way_m, 1.0, 0.3);
   // Against gravity and the frame of the start: 0.1 m/s^2 of unknown accelerometer bias are 0.01 rad.
-  EXPECT_LT(start.rotationError(), 0.05);
+  EXPECT_LT(start.rotationError(), max_rotation_error_rad);
   EXPECT_LT(start.positionError(), 4.0 * std::sqrt(start.estimate.covariance.topLeftCorner<3, 3>().trace()));
 }
 
@@ -68,6 +68,20 @@ TEST(MonoInitializer, StartsWithFewTracks) {
     options.seed = seed;
     options.points.tracks = 35;
     expectSoundStart(options);
+  }
+}
+
+// A consumer IMU carried by a calm swimmer: its bias outweighs the accelerations by far. Looked for from no
+// bias, seed 1 ends in a false minimum, the speed off by a third.
+TEST(MonoInitializer, StartsWithAnAccelerometerThatIsFarOff) {
+  for (const uint64_t seed : {1, 2, 3, 4}) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    TestSceneOptions options = monoScene(8.0);
+    options.seed = seed;
+    options.liveliness = 0.3;
+    options.still = {{-20.0, 25.0}};
+    options.accelerometer_bias_sigma_m_per_s2 = 0.3;
+    expectSoundStart(options, 0.1);
   }
 }
 

@@ -33,9 +33,12 @@ struct MonoInitializationOptions {
   /// How far gravity may come out from its true magnitude when the alignment leaves it free.
   double gravity_tolerance_m_per_s2 = 1.0;
   double start_tilt_sigma_rad = 0.3;
-  int max_iterations = 50;
+  int max_iterations = 100;
   double max_bias_sigmas = 4.0;  ///< a larger accelerometer bias is taken for a false minimum
+  /// Mean square of the whitened inertial errors; more is taken for a false minimum.
+  double max_inertial_disagreement = 1.5;
   double max_scale_sigma = 0.1;  ///< relative; wait on while the scale is known worse
+  double retry_after_s = 0.2;    ///< a start that was refused has cost a second of computing
 };
 
 struct WindowOptions {

@@ -119,6 +119,7 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& 
   summary.initial_cost = ceres_summary.initial_cost;
   summary.final_cost = ceres_summary.final_cost;
   summary.usable = ceres_summary.IsSolutionUsable();
+  summary.converged = ceres_summary.termination_type == ceres::CONVERGENCE;
   if (summary.usable) copies.writeBack();
   return summary;
 }

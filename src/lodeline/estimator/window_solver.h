@@ -8,7 +8,8 @@ struct SolveSummary {
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;
-  bool usable = true;  ///< false where the solver failed and the window was left as it was
+  bool usable = true;      ///< false where the solver failed and the window was left as it was
+  bool converged = false;  ///< before the limit of iterations
 };
 
 /// Minimises the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
