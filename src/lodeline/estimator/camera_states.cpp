@@ -10,6 +10,9 @@ namespace {
 
 constexpr const char* kTimeOffset = "camera.dt";
 
+// Small enough to hold a state, large enough to keep the prior well conditioned.
+constexpr double kHeld = 1e-7;
+
 // Short enough to need no memory of their own: they are looked up for every landmark.
 std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".T_BC"; }
 
@@ -17,8 +20,6 @@ std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera
 
 void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
               const Vec3& start = Vec3::Zero()) {
-  // Small enough to hold a state, large enough to keep the prior well conditioned.
-  constexpr double kHeld = 1e-7;
   GlobalState state;
   state.name = name;
   state.value.assign(static_cast<size_t>(sigmas.size()), 0.0);
@@ -33,14 +34,18 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
-Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options) {
+}  // namespace
+
+Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
+  return extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m).cwiseMax(kHeld);
+}
+
+Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options) {
   Eigen::VectorXd sigmas(kIntrinsicsSize);
   sigmas << Vec2::Constant(options.focal_length_sigma), Vec2::Constant(options.principal_point_sigma_px),
       Vec2::Constant(options.radial_sigma);
-  return sigmas;
+  return sigmas.cwiseMax(kHeld);
 }
-
-}  // namespace
 
 void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options,
                      const std::vector<Vec3>& rotations) {
@@ -49,8 +54,7 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
            extrinsicsSigmas(options.rotation_sigma_rad, options.position_sigma_m));
   addState(window, prior, kTimeOffset, Eigen::VectorXd::Constant(1, options.time_offset_sigma_s));
   for (size_t camera = 1; camera < static_cast<size_t>(cameras); ++camera) {
-    addState(window, prior, extrinsicsName(camera),
-             extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m),
+    addState(window, prior, extrinsicsName(camera), stereoSigmas(options),
              camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
   }
 }
@@ -58,7 +62,7 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
 void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
   if (!options.enabled || !options.intrinsics) return;
   for (int camera = 0; camera < cameras; ++camera)
-    addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), intrinsicsSigmas(options));
+    addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), lensSigmas(options));
 }
 
 CameraStates cameraStates(const Window& window) {
@@ -90,6 +94,7 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   corrections.time_offset_s = states.timeOffset_s();
   for (const GlobalState* lens : states.intrinsics)
     corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));
+  corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->beliefs.empty();
   return corrections;
 }
 

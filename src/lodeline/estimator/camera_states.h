@@ -30,6 +30,10 @@ void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibr
 
 CameraStates cameraStates(const Window& window);
 
+/// Prior sigmas of each coordinate of a further camera's placement and of a lens.
+Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options);
+Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options);
+
 /// The ray of a sighting (its camera's frame) by the lens that the states say, by the file's where they are
 /// empty.
 Vec3 rayOf(const Sighting& sighting, const CameraStates& states);
@@ -40,6 +44,7 @@ struct CameraCorrections {
   double time_offset_s = 0.0;                           ///< to add to the images' stamps
   /// Of each camera as in factors/intrinsics_factor.h; empty where the lenses are not estimated.
   std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
+  bool are_files_held = false;  ///< those of lenses and further cameras, see LensTrust
 };
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 

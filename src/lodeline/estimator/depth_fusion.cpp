@@ -178,12 +178,12 @@ void DepthFusion::remember(const JointCovariance& covariance, Window& window) {
   if (!seen) return;
   const Belief honest{seen->value, std::hypot(seen->sigma, unmodelled_density_sigma_)};
   known_ratio_ = amongKnownWaters(honest);
-  states.scale->belief.reset();
+  states.scale->beliefs.clear();
   likelihood_ = likelihoodBetween(honest, *known_ratio_);
   if (!likelihood_) return;
   // The window takes what it has seen for better than it is; what it is told has to gain as much to weigh the
   // same.
-  states.scale->belief = {likelihood_->value, likelihood_->sigma * seen->sigma / honest.sigma};
+  states.scale->beliefs = {{likelihood_->value, likelihood_->sigma * seen->sigma / honest.sigma}};
 }
 
 std::optional<Belief> DepthFusion::seenRatio(const GlobalState& scale) const {
@@ -191,8 +191,7 @@ std::optional<Belief> DepthFusion::seenRatio(const GlobalState& scale) const {
   if (!covariance_.knows(value)) return std::nullopt;
   const Belief all{scale.value[0], std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0)))};
   if (!(all.sigma > 0.0)) return std::nullopt;
-  if (!scale.belief) return all;
-  return without({scale.belief->value, scale.belief->sigma}, all);
+  return scale.beliefs.empty() ? all : without(scale.beliefs.front(), all);
 }
 
 void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer) {
@@ -275,7 +274,7 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
       std::sqrt(std::max(0.0, std::pow(gauge.density_ratio_sigma, 2) - window_sigma * window_sigma));
   gauge.told_sigma = options_.density_ratio_sigma;
   if (likelihood_) gauge.told_sigma = 1.0 / std::hypot(1.0 / gauge.told_sigma, 1.0 / likelihood_->sigma);
-  gauge.belief = states.scale->belief;
+  if (!states.scale->beliefs.empty()) gauge.belief = states.scale->beliefs.front();
   gauge.lag_s = states.lag_s();
   gauge.lag_sigma_s = sigma(*states.lag);
   gauge.body_depth_m =

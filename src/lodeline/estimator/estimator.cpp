@@ -61,6 +61,7 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       mono_initializer_(rig_, options_, factors_),
       magnetometer_(rig_, options_, diagnostics),
       depth_(rig_, options_, diagnostics),
+      lens_trust_(options_.camera_calibration),
       scale_(rig_, options_),
       rest_(rig_, options_.rest),
       unmodelled_(options_) {
@@ -279,6 +280,7 @@ void Estimator::startMagnetometer() {
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
   estimate->covariance = claimedCovariance(covariance, window_, factors_, options_);
+  lens_trust_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
 }

@@ -8,6 +8,7 @@
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/depth_fusion.h"
 #include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/magnetometer_fusion.h"
 #include "lodeline/estimator/marginalizer.h"
 #include "lodeline/estimator/mono_initializer.h"
@@ -111,6 +112,7 @@ class Estimator {
       camera_rotations_;  ///< FrameTracks::camera_rotations of the newest frame before the start
   MagnetometerFusion magnetometer_;
   DepthFusion depth_;
+  LensTrust lens_trust_;
   ScaleBudget scale_;
   RestWatch rest_;
   bool rests_ = false;  ///< at the newest frame

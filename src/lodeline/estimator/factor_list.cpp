@@ -117,14 +117,18 @@ std::optional<Factor> FactorMaker::depth(const Window& window, Frame& frame) con
   return factor;
 }
 
-std::optional<Factor> FactorMaker::depthScale(const Window& window) const {
-  GlobalState* scale = DepthStates(window).scale;
-  if (!scale || !scale->belief) return std::nullopt;
-  const ceres::Matrix whitening = ceres::Matrix::Constant(1, 1, 1.0 / scale->belief->sigma);
+std::optional<Factor> FactorMaker::belief(GlobalState& state) const {
+  if (state.beliefs.empty()) return std::nullopt;
+  const auto size = static_cast<Eigen::Index>(state.beliefs.size());
+  ceres::Vector value(size), information_root(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Belief& belief = state.beliefs[static_cast<size_t>(i)];
+    value[i] = belief.value;
+    information_root[i] = 1.0 / belief.sigma;
+  }
   Factor factor;
-  factor.function =
-      std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Constant(1, scale->belief->value));
-  factor.blocks = {scale->value.data()};
+  factor.function = std::make_unique<ceres::NormalPrior>(ceres::Matrix(information_root.asDiagonal()), value);
+  factor.blocks = {state.value.data()};
   return factor;
 }
 

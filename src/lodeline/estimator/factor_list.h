@@ -47,8 +47,8 @@ class FactorMaker {
   std::optional<Factor> magnetometer(const Window& window, Frame* before, Frame& frame) const;
   /// Term of the frame's depth readings, if it has any.
   std::optional<Factor> depth(const Window& window, Frame& frame) const;
-  /// What is believed of the depth gauge's scale beside its readings (GlobalState::belief), if anything.
-  std::optional<Factor> depthScale(const Window& window) const;
+  /// What is believed of a state beside all measurements (GlobalState::beliefs), if anything.
+  std::optional<Factor> belief(GlobalState& state) const;
   /// That its velocity is zero, where the rig rests at that frame.
   std::optional<Factor> rest(Frame& frame) const;
   Factor prior(const Prior& prior) const;

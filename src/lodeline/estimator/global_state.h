@@ -32,9 +32,9 @@ struct GlobalState {
   /// Of a change that has happened all at once, each coordinate, [unit of the block]^2: joins the walk when
   /// the next frame is marginalised.
   double sudden_variance = 0.0;
-  /// What is known of a single number beside all that the window was told: may change from frame to frame, so
-  /// it never becomes part of the prior.
-  std::optional<Belief> belief = std::nullopt;
+  /// What is known of each coordinate beside all that the window was told; empty: nothing. May change from
+  /// frame to frame, so it never becomes part of the prior.
+  std::vector<Belief> beliefs = {};
 
   bool isPose() const { return value.size() == kPoseSize; }
   int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(value.size()); }

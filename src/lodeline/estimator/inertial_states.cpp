@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/factors/inertial_factor.h"
 
 namespace lodeline {
@@ -76,6 +77,9 @@ Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, co
                                                 const FactorMaker& factors, const EstimatorOptions& options) {
   const ImuAxesOptions& axes = options.imu_axes;
   JointCovariance claimed = known;
+  for (const auto& [lens, unclaimed] : unclaimedFileInformation(window, options.camera_calibration)) {
+    if (claimed.knows(lens)) claimed = claimed.without(lens, unclaimed);
+  }
   if (const auto unclaimed = unclaimedInformation(window, factors, axes))
     claimed = claimed.without(gyroscopeAxesState(window)->value.data(), *unclaimed);
   if (const double unclaimed = unclaimedBiasInformation(options); unclaimed > 0.0) {

@@ -111,6 +111,8 @@ struct CameraCalibrationOptions {
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
   double radial_sigma = 0.005;  ///< of the first two coefficients
+  /// Whether lenses and further cameras are held at their files while images confirm these, see LensTrust.
+  bool trust_confirmed_files = true;
 };
 
 /// How far the calibration of the IMU may be off, one sigma.

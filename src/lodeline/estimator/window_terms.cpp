@@ -14,7 +14,9 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
   std::vector<Factor> terms;
   if (auto axes = factors.gyroscopeAxes(window)) terms.push_back(std::move(*axes));
-  if (auto scale = factors.depthScale(window)) terms.push_back(std::move(*scale));
+  for (const auto& state : window.globals()) {
+    if (auto belief = factors.belief(*state)) terms.push_back(std::move(*belief));
+  }
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
     frame->updateImageMotion();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/inertial_states.h"
+#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/robust_loss.h"
 #include "lodeline/refinement/batch_structure.h"
 
@@ -25,6 +26,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addGlobals(record);
   addStartPrior(record.startPrior(), record.globals());
   holdLenses(record.globals());
+  believeInFilesAsBefore(record);
   addGyroscopeAxes(record.globals());
   orderBlocks();
   relinearise();
@@ -53,7 +55,9 @@ std::vector<Factor> BatchProblem::motionFactors() {
   std::vector<Factor> terms;
   for (const Prior& prior : priors_) terms.push_back(factors_.prior(prior));
   if (auto axes = factors_.gyroscopeAxes(window_)) terms.push_back(std::move(*axes));
-  if (auto scale = factors_.depthScale(window_)) terms.push_back(std::move(*scale));
+  for (const auto& state : window_.globals()) {
+    if (auto belief = factors_.belief(*state)) terms.push_back(std::move(*belief));
+  }
   for (size_t k = 0; k < states(); ++k) {
     Frame& frame = *window_.frames()[k];
     if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));
@@ -119,6 +123,8 @@ void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
   const int first_motion = rowOf(state(0).motion.data());
   hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
       unclaimedBiasInformation(options_);
+  for (const auto& [lens, unclaimed] : unclaimedFileInformation(window_, options_.camera_calibration))
+    hessian->block(rowOf(lens), rowOf(lens)) -= unclaimed;
   const auto unclaimed = unclaimedInformation(window_, factors_, options_.imu_axes);
   if (!unclaimed) return;
   const int row = rowOf(gyroscopeAxesState(window_)->value.data());

@@ -79,6 +79,8 @@ class BatchProblem {
   /// Lenses stay as the run found them (`globals`). Free, they follow what slides in the images along a mode
   /// that is hardly known: a longer lens whose camera sits further back.
   void holdLenses(const GlobalValues& globals);
+  /// Or does not, as the run did in the end.
+  void believeInFilesAsBefore(const ForwardRecord& record);
   void addGyroscopeAxes(const GlobalValues& globals);
   GlobalState* addGlobal(const ForwardRecord& record, const std::string& name, const std::string& as);
   void addKnowledge(GlobalState* state, double sigma);

@@ -5,6 +5,7 @@
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/inertial_states.h"
+#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/refinement/batch_problem.h"
 
@@ -100,7 +101,8 @@ void BatchProblem::addGlobals(const ForwardRecord& record) {
     scale->value = {depth.density_ratio};
     addKnowledge(scale, std::max(depth.density_ratio_sigma, 1e-7));
     scale->value = record.globals().at(DepthStates::kScale);
-    if (const auto& gauge = record.frames().back().depth.gauge) scale->belief = gauge->belief;
+    const auto& gauge = record.frames().back().depth.gauge;
+    if (gauge && gauge->belief) scale->beliefs = {*gauge->belief};
   }
   if (GlobalState* lag = addGlobal(record, DepthStates::kLag, DepthStates::kLag)) {
     lag->value = {depth.lag_s};
@@ -183,6 +185,11 @@ void BatchProblem::holdLenses(const GlobalValues& globals) {
         Eigen::Map<const Eigen::VectorXd>(end->second.data(), static_cast<Eigen::Index>(end->second.size()));
   }
   priors_.push_back(std::move(prior));
+}
+
+void BatchProblem::believeInFilesAsBefore(const ForwardRecord& record) {
+  const auto& corrections = record.frames().back().camera_corrections;
+  if (corrections) believeInFiles(window_, options_.camera_calibration, corrections->are_files_held);
 }
 
 void BatchProblem::addGyroscopeAxes(const GlobalValues& globals) {

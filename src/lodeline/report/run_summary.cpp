@@ -36,11 +36,15 @@ nlohmann::ordered_json toJson(const RunDescription& run) {
 
 std::string describe(const CameraCorrections& corrections) {
   std::string text = fmt::format("images {:+.1f} ms", 1e3 * corrections.time_offset_s);
-  for (size_t i = 0; i < corrections.extrinsics.size(); ++i) {
+  const size_t placed = corrections.are_files_held ? 1 : corrections.extrinsics.size();
+  for (size_t i = 0; i < placed; ++i) {
     const auto& extrinsics = corrections.extrinsics[i];
     text += fmt::format(", camera {}{} {:.2f} deg {:.1f} mm", i, i > 0 ? " to camera 0" : "",
                         extrinsics.head<3>().norm() * 180.0 / M_PI, 1e3 * extrinsics.tail<3>().norm());
   }
+  if (corrections.are_files_held)
+    return text + (corrections.extrinsics.size() > 1 ? " off the files; lenses and camera 1 as the files say"
+                                                     : " off the files; lens as the file says");
   for (size_t i = 0; i < corrections.intrinsics.size(); ++i) {
     const auto& lens = corrections.intrinsics[i];
     text += fmt::format(", lens {} focal length {:+.2f} % {:+.2f} %, centre {:+.1f} {:+.1f} px", i,
@@ -52,6 +56,7 @@ std::string describe(const CameraCorrections& corrections) {
 nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
   nlohmann::ordered_json json;
   json["time_offset_s"] = corrections.time_offset_s;
+  json["are_files_held"] = corrections.are_files_held;
   for (const auto& extrinsics : corrections.extrinsics) {
     json["cameras"].push_back({{"rotation_rad", {extrinsics[0], extrinsics[1], extrinsics[2]}},
                                {"position_m", {extrinsics[3], extrinsics[4], extrinsics[5]}}});

@@ -1,0 +1,118 @@
+#include "lodeline/estimator/lens_trust.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/estimator/camera_states.h"
+#include "lodeline/estimator/estimator.h"
+#include "lodeline/estimator/test_scene.h"
+
+namespace lodeline {
+namespace {
+
+TEST(EvidenceForFile, IsNoneWhereNothingIsSeen) {
+  EXPECT_NEAR(evidenceForFile(Eigen::VectorXd::Zero(6), Eigen::MatrixXd::Identity(6, 6), 1.0), 0.0, 1e-12);
+  EXPECT_NEAR(evidenceForFile(Eigen::VectorXd::Zero(6), 0.5 * Eigen::MatrixXd::Identity(6, 6), 0.5), 0.0,
+              1e-12);
+}
+
+TEST(EvidenceForFile, GrowsAsLongAsTheDeviationStaysNone) {
+  double before = 0.0;
+  for (const double sigma : {0.5, 0.2, 0.1, 0.01}) {
+    const double evidence =
+        evidenceForFile(Eigen::VectorXd::Zero(6), sigma * sigma * Eigen::MatrixXd::Identity(6, 6), 1.0);
+    EXPECT_GT(evidence, before) << sigma;
+    before = evidence;
+  }
+  // No more than the tolerance allows: six numbers, each ten times better than the prior.
+  EXPECT_LT(before, 6.0 * std::log(10.1));
+}
+
+TEST(EvidenceForFile, IsTheRatioOfTwoNormalDensities) {
+  const double seen = 0.4, variance = 0.04, blur = kFileTolerance * kFileTolerance;
+  const auto density = [](double x, double v) { return std::exp(-0.5 * x * x / v) / std::sqrt(v); };
+  EXPECT_NEAR(
+      evidenceForFile(Eigen::VectorXd::Constant(1, seen), Eigen::MatrixXd::Constant(1, 1, variance), 1.0),
+      std::log(density(seen, variance + blur) / density(0.0, 1.0 + blur)), 1e-12);
+}
+
+TEST(EvidenceForFile, TurnsAgainstAFileThatIsOff) {
+  Eigen::VectorXd seen = Eigen::VectorXd::Zero(6);
+  seen[2] = 0.7;
+  EXPECT_LT(evidenceForFile(seen, 0.01 * Eigen::MatrixXd::Identity(6, 6), 1.0), 0.0);
+}
+
+/// What the estimator makes of a lively scene seen through lenses whose file says `focal_length` (relative)
+/// and `centre_px` more than is true, in all cameras.
+FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust) {
+  TestSceneOptions options;
+  options.cameras = cameras;
+  options.duration_s = 40.0;
+  options.liveliness = 0.5;
+  options.points.frame_rate_hz = 10.0;
+  options.points.pixel_sigma_px = 0.2;
+  TestScene scene(options);
+  Rig rig = scene.rig();
+  for (CameraCalibration& camera : rig.cameras) {
+    camera.fx_px *= 1.0 + focal_length;
+    camera.fy_px *= 1.0 + focal_length;
+    camera.cx_px += centre_px;
+    camera.cy_px -= centre_px;
+  }
+  std::vector<std::shared_ptr<const Camera>> by_truth, by_file;
+  for (size_t i = 0; i < rig.cameras.size(); ++i) {
+    by_truth.push_back(makeCamera(scene.rig().cameras[i]));
+    by_file.push_back(makeCamera(rig.cameras[i]));
+  }
+  EstimatorOptions estimator_options = honestOptions(options);
+  estimator_options.camera_calibration = CameraCalibrationOptions();
+  estimator_options.camera_calibration.trust_confirmed_files = trust;
+  Diagnostics diagnostics;
+  Estimator estimator(rig, estimator_options, &diagnostics);
+  FrameEstimate last;
+  while (auto frame = scene.next()) {
+    for (Observation& observation : frame->tracks.observations) {
+      const auto pixel = by_truth[observation.camera]->project(observation.bearing_C);
+      observation.bearing_C = by_file[observation.camera]->unproject(*pixel)->normalized();
+    }
+    last = estimator.add(frame->tracks, frame->imu);
+  }
+  return last;
+}
+
+TEST(LensTrust, HoldsFilesThatAreRight) {
+  for (const int cameras : {1, 2}) {
+    const FrameEstimate seen = see(cameras, 0.0, 0.0, true);
+    ASSERT_TRUE(seen.camera_corrections.has_value());
+    EXPECT_TRUE(seen.camera_corrections->are_files_held) << cameras;
+    for (const auto& lens : seen.camera_corrections->intrinsics) {
+      EXPECT_LT(lens.head<2>().norm(), 1e-4);
+      EXPECT_LT(lens.segment<2>(2).norm(), 0.02);
+    }
+  }
+}
+
+TEST(LensTrust, ClaimsNoMoreOfThemThanTheirTolerance) {
+  const FrameEstimate held = see(2, 0.0, 0.0, true), free = see(2, 0.0, 0.0, false);
+  EXPECT_FALSE(free.camera_corrections->are_files_held);
+  const double held_sigma = std::sqrt(held.covariance.topLeftCorner<3, 3>().trace());
+  const double free_sigma = std::sqrt(free.covariance.topLeftCorner<3, 3>().trace());
+  EXPECT_LT(held_sigma, 1.05 * free_sigma);
+  EXPECT_GT(held_sigma, 0.3 * free_sigma);
+}
+
+TEST(LensTrust, LetsFilesBeThatAreOff) {
+  for (const int cameras : {1, 2}) {
+    const FrameEstimate seen = see(cameras, 0.004, 1.5, true);
+    ASSERT_TRUE(seen.camera_corrections.has_value());
+    EXPECT_FALSE(seen.camera_corrections->are_files_held) << cameras;
+    const auto& lens = seen.camera_corrections->intrinsics.front();
+    EXPECT_NEAR(lens[2], -1.5, 0.5);
+    EXPECT_NEAR(lens[3], 1.5, 0.5);
+  }
+}
+
+}  // namespace
+}  // namespace lodeline
