@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "lodeline/estimator/camera_states.h"
@@ -16,6 +17,8 @@ namespace {
 constexpr double kHeld = 1e-3;
 /// Logarithms of the odds at which files are held, and let go.
 constexpr double kBegin = 4.0, kEnd = 0.0;
+/// The same of every single number.
+constexpr double kLeastBegin = -0.5, kLeastEnd = -1.5;
 
 using StatesWithSigmas = std::vector<std::pair<GlobalState*, Eigen::VectorXd>>;
 
@@ -71,15 +74,34 @@ Deviations withoutBelief(const Deviations& believed) {
           inAllDirections(information.inverse())};
 }
 
-double evidenceForFiles(const Deviations& deviations, Eigen::Index lenses) {
+/// Of the mean of all lenses, which stand last.
+double evidenceForLenses(const Deviations& deviations, Eigen::Index lenses) {
   const double share = 1.0 / static_cast<double>(lenses);
   const Eigen::Index size = deviations.seen.size();
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(kIntrinsicsSize, size);
   for (Eigen::Index k = 1; k <= lenses; ++k)
     mean.middleCols<kIntrinsicsSize>(size - kIntrinsicsSize * k).diagonal().setConstant(share);
-  return std::min(
-      evidenceForFile(mean * deviations.seen, mean * deviations.covariance * mean.transpose(), share),
-      evidenceForFile(deviations.seen, deviations.covariance, 1.0));
+  return evidenceForFile(mean * deviations.seen, mean * deviations.covariance * mean.transpose(), share);
+}
+
+/// The least of every single number, and of how each lens differs from the first: not of many together, where
+/// those that are right would outvote one that is wrong.
+double leastEvidence(const Deviations& deviations, Eigen::Index lenses) {
+  const Eigen::Index size = deviations.seen.size();
+  const Eigen::Index first_lens = size - kIntrinsicsSize * lenses;
+  double least = std::numeric_limits<double>::infinity();
+  const auto ask = [&](const Eigen::RowVectorXd& of) {
+    least = std::min(least, evidenceForFile(of * deviations.seen, of * deviations.covariance * of.transpose(),
+                                            of.squaredNorm()));
+  };
+  for (Eigen::Index i = 0; i < size; ++i) {
+    Eigen::RowVectorXd of = Eigen::RowVectorXd::Unit(size, i);
+    ask(of);
+    if (i < first_lens + kIntrinsicsSize) continue;
+    of[first_lens + (i - first_lens) % kIntrinsicsSize] = -1.0;
+    ask(of);
+  }
+  return least;
 }
 
 }  // namespace
@@ -103,8 +125,10 @@ void LensTrust::remember(const JointCovariance& covariance, Window& window) {
   std::optional<Deviations> deviations = deviationsOf(judged, covariance);
   if (!deviations) return;
   if (trusts_) deviations = withoutBelief(*deviations);
-  const auto lenses = static_cast<Eigen::Index>(cameraStates(window).intrinsics.size());
-  trusts_ = evidenceForFiles(*deviations, lenses) > (trusts_ ? kEnd : kBegin);
+  const auto count = static_cast<Eigen::Index>(cameraStates(window).intrinsics.size());
+  const double lenses = evidenceForLenses(*deviations, count);
+  const double least = leastEvidence(*deviations, count);
+  trusts_ = trusts_ ? lenses > kEnd && least > kLeastEnd : lenses > kBegin && least > kLeastBegin;
   believeInFiles(window, options_, trusts_);
 }
 

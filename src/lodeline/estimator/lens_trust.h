@@ -24,9 +24,10 @@ double evidenceForFile(const Eigen::VectorXd& seen, const Eigen::MatrixXd& covar
 /// A stereo rig measures distance by fiftieths of a pixel, and what a tracker is off by in the mean is as
 /// much. Left free, lenses and placement make up for that, by scale. But most files are either right or off
 /// by far more, in several numbers that images soon tell. So they are held while evidenceForFile() is clearly
-/// for it, and let go when it is not. Both of the mean of all lenses and of everything together: cameras that
-/// agree with one another confirm no file, since one target or one port in front of them all makes the same
-/// error, but where they disagree, files are wrong.
+/// for it, and let go when it is not. Asked is the mean of all lenses: cameras that agree with one another
+/// confirm no file, since one target or one port in front of them all makes the same error. But no single
+/// number may speak against it, nor any difference between lenses. Of a baseline that is off, which is an
+/// error of scale, images say nothing: it stays as the file says it.
 class LensTrust {
  public:
   explicit LensTrust(const CameraCalibrationOptions& options) : options_(options) {}

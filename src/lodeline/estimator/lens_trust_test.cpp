@@ -45,8 +45,8 @@ TEST(EvidenceForFile, TurnsAgainstAFileThatIsOff) {
 }
 
 /// What the estimator makes of a lively scene seen through lenses whose file says `focal_length` (relative)
-/// and `centre_px` more than is true, in all cameras.
-FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust) {
+/// and `centre_px` more than is true, in all cameras from `first_wrong` on.
+FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust, size_t first_wrong = 0) {
   TestSceneOptions options;
   options.cameras = cameras;
   options.duration_s = 40.0;
@@ -55,7 +55,8 @@ FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust
   options.points.pixel_sigma_px = 0.2;
   TestScene scene(options);
   Rig rig = scene.rig();
-  for (CameraCalibration& camera : rig.cameras) {
+  for (size_t i = first_wrong; i < rig.cameras.size(); ++i) {
+    CameraCalibration& camera = rig.cameras[i];
     camera.fx_px *= 1.0 + focal_length;
     camera.fy_px *= 1.0 + focal_length;
     camera.cx_px += centre_px;
@@ -112,6 +113,10 @@ TEST(LensTrust, LetsFilesBeThatAreOff) {
     EXPECT_NEAR(lens[2], -1.5, 0.5);
     EXPECT_NEAR(lens[3], 1.5, 0.5);
   }
+}
+
+TEST(LensTrust, IsNotOutvotedByWhatIsRight) {
+  EXPECT_FALSE(see(2, 0.003, 0.0, true, 1).camera_corrections->are_files_held);
 }
 
 }  // namespace
