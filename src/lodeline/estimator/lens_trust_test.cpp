@@ -97,6 +97,7 @@ TEST(LensTrust, HoldsFilesThatAreRight) {
 
 TEST(LensTrust, ClaimsNoMoreOfThemThanTheirTolerance) {
   const FrameEstimate held = see(2, 0.0, 0.0, true), free = see(2, 0.0, 0.0, false);
+  EXPECT_TRUE(held.camera_corrections->are_files_held);
   EXPECT_FALSE(free.camera_corrections->are_files_held);
   const double held_sigma = std::sqrt(held.covariance.topLeftCorner<3, 3>().trace());
   const double free_sigma = std::sqrt(free.covariance.topLeftCorner<3, 3>().trace());

@@ -208,7 +208,7 @@ TEST(MagnetometerFusion, DoubtsAMagnetThatItPasses) {
   HeadingTrialOptions options = trialOptions(480.0);
   options.seed = 2;
   options.trouble = FieldTrouble::Dipole;
-  // Of a calibration that images confirm vision's heading is too good for the field to matter much.
+  // With lens files that images confirm the two are 1.27 apart on this dive: what is compared is the field.
   options.estimator.camera_calibration.trust_confirmed_files = false;
   const HeadingTrial doubted = runHeadingTrial(options);
   options.estimator.magnetometer.floor_freedom = 1e6;
