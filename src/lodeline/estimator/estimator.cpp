@@ -7,6 +7,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/estimator/camera_states.h"
+#include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/keyframe_policy.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/inertial_states.h"
-#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/robust_loss.h"
 #include "lodeline/refinement/batch_structure.h"
 
@@ -123,12 +123,8 @@ void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
   const int first_motion = rowOf(state(0).motion.data());
   hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
       unclaimedBiasInformation(options_);
-  for (const auto& [lens, unclaimed] : unclaimedFileInformation(window_, options_.camera_calibration))
-    hessian->block(rowOf(lens), rowOf(lens)) -= unclaimed;
-  const auto unclaimed = unclaimedInformation(window_, factors_, options_.imu_axes);
-  if (!unclaimed) return;
-  const int row = rowOf(gyroscopeAxesState(window_)->value.data());
-  hessian->block(row, row) -= *unclaimed;
+  for (const auto& [state, unclaimed] : unclaimedInformation(window_, factors_, options_))
+    hessian->block(rowOf(state), rowOf(state)) -= unclaimed;
 }
 
 void BatchProblem::step(const Eigen::VectorXd& step) {

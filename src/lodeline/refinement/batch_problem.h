@@ -41,7 +41,7 @@ class BatchProblem {
   double cost();
   /// The Gauss-Newton system H d = -g, landmarks eliminated.
   void linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient);
-  /// Takes from the Hessian what is known and not claimed (estimator/inertial_states.h), before it is
+  /// Takes from the Hessian what is known and not claimed (estimator/claimed_covariance.h), before it is
   /// inverted for covariances.
   void subtractUnclaimed(SkylineMatrix* hessian) const;
   /// Moves everything by a step of the system linearised last; no value may have moved since.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/depth_states.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/magnetometer_states.h"
