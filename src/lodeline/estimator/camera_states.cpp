@@ -34,10 +34,18 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
+/// Of a further camera's position only that it is somewhere on the rig: FactorMaker::placement() has the
+/// rest.
+Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
+  constexpr double kSomewhere_m = 0.05;
+  return extrinsicsSigmas(options.stereo_rotation_sigma_rad,
+                          options.stereo_position_sigma_m > 0.0 ? kSomewhere_m : 0.0);
+}
+
 }  // namespace
 
-Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
-  return extrinsicsSigmas(options.stereo_rotation_sigma_rad, options.stereo_position_sigma_m).cwiseMax(kHeld);
+Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options) {
+  return Vec3::Constant(std::max(options.stereo_rotation_sigma_rad, kHeld));
 }
 
 Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options) {

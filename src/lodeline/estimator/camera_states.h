@@ -30,8 +30,8 @@ void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibr
 
 CameraStates cameraStates(const Window& window);
 
-/// Prior sigmas of each coordinate of a further camera's placement and of a lens.
-Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options);
+/// Prior sigmas of each coordinate of a further camera's rotation (the first of its placement) and of a lens.
+Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options);
 Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options);
 
 /// The ray of a sighting (its camera's frame) by the lens that the states say, by the file's where they are

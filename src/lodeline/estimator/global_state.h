@@ -32,8 +32,8 @@ struct GlobalState {
   /// Of a change that has happened all at once, each coordinate, [unit of the block]^2: joins the walk when
   /// the next frame is marginalised.
   double sudden_variance = 0.0;
-  /// What is known of each coordinate beside all that the window was told; empty: nothing. May change from
-  /// frame to frame, so it never becomes part of the prior.
+  /// What is known of each coordinate beside all that the window was told (an infinite sigma: nothing);
+  /// empty: of none. May change from frame to frame, so it never becomes part of the prior.
   std::vector<Belief> beliefs = {};
 
   bool isPose() const { return value.size() == kPoseSize; }

@@ -22,12 +22,13 @@ constexpr double kLeastBegin = -0.5, kLeastEnd = -1.5;
 
 using StatesWithSigmas = std::vector<std::pair<GlobalState*, Eigen::VectorXd>>;
 
-/// Further cameras first, then all lenses; empty where the lenses are not estimated.
+/// Further cameras first (their rotations, which lead their states), then all lenses; empty where the lenses
+/// are not estimated.
 StatesWithSigmas judgedStates(const Window& window, const CameraCalibrationOptions& options) {
   StatesWithSigmas judged;
   const CameraStates states = cameraStates(window);
   if (!options.trust_confirmed_files || states.intrinsics.empty()) return judged;
-  for (GlobalState* further : states.further) judged.emplace_back(further, stereoSigmas(options));
+  for (GlobalState* further : states.further) judged.emplace_back(further, stereoRotationSigmas(options));
   for (GlobalState* lens : states.intrinsics) judged.emplace_back(lens, lensSigmas(options));
   return judged;
 }
@@ -53,7 +54,9 @@ std::optional<Deviations> deviationsOf(const StatesWithSigmas& judged, const Joi
     Eigen::Index column = 0;
     for (const auto& [other, other_sigmas] : judged) {
       deviations.covariance.block(row, column, sigmas.size(), other_sigmas.size()) =
-          covariance.between(value, other->value.data()).cwiseQuotient(sigmas * other_sigmas.transpose());
+          covariance.between(value, other->value.data())
+              .topLeftCorner(sigmas.size(), other_sigmas.size())
+              .cwiseQuotient(sigmas * other_sigmas.transpose());
       column += other_sigmas.size();
     }
     row += sigmas.size();
@@ -136,7 +139,9 @@ void believeInFiles(const Window& window, const CameraCalibrationOptions& option
   for (const auto& [state, sigmas] : judgedStates(window, options)) {
     state->beliefs.clear();
     if (!is_believed) continue;
-    for (const double sigma : sigmas) state->beliefs.push_back({0.0, kHeld * sigma});
+    state->beliefs.assign(state->value.size(), {0.0, std::numeric_limits<double>::infinity()});
+    for (Eigen::Index i = 0; i < sigmas.size(); ++i)
+      state->beliefs[static_cast<size_t>(i)].sigma = kHeld * sigmas[i];
   }
 }
 
@@ -146,7 +151,8 @@ std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimedFileInformation(
   std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimed;
   for (const auto& [state, sigmas] : judgedStates(window, options)) {
     if (state->beliefs.empty()) continue;
-    const Eigen::VectorXd information = kUnclaimed * sigmas.cwiseAbs2().cwiseInverse();
+    Eigen::VectorXd information = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(state->value.size()));
+    information.head(sigmas.size()) = kUnclaimed * sigmas.cwiseAbs2().cwiseInverse();
     unclaimed.emplace_back(state->value.data(), Eigen::MatrixXd(information.asDiagonal()));
   }
   return unclaimed;

@@ -44,9 +44,16 @@ TEST(EvidenceForFile, TurnsAgainstAFileThatIsOff) {
   EXPECT_LT(evidenceForFile(seen, 0.01 * Eigen::MatrixXd::Identity(6, 6), 1.0), 0.0);
 }
 
-/// What the estimator makes of a lively scene seen through lenses whose file says `focal_length` (relative)
-/// and `centre_px` more than is true, in all cameras from `first_wrong` on.
-FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust, size_t first_wrong = 0) {
+/// How much more than is true the files say, of the lenses in all cameras from `first_wrong` on.
+struct FileErrors {
+  double focal_length = 0.0;  ///< relative
+  double centre_px = 0.0;
+  size_t first_wrong = 0;
+  double baseline_m = 0.0;
+};
+
+/// What the estimator makes of a lively scene.
+FrameEstimate see(int cameras, const FileErrors& errors, bool trust = true) {
   TestSceneOptions options;
   options.cameras = cameras;
   options.duration_s = 40.0;
@@ -55,13 +62,17 @@ FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust
   options.points.pixel_sigma_px = 0.2;
   TestScene scene(options);
   Rig rig = scene.rig();
-  for (size_t i = first_wrong; i < rig.cameras.size(); ++i) {
+  for (size_t i = errors.first_wrong; i < rig.cameras.size(); ++i) {
     CameraCalibration& camera = rig.cameras[i];
-    camera.fx_px *= 1.0 + focal_length;
-    camera.fy_px *= 1.0 + focal_length;
-    camera.cx_px += centre_px;
-    camera.cy_px -= centre_px;
+    camera.fx_px *= 1.0 + errors.focal_length;
+    camera.fy_px *= 1.0 + errors.focal_length;
+    camera.cx_px += errors.centre_px;
+    camera.cy_px -= errors.centre_px;
   }
+  const Vec3 baseline =
+      rig.cameras.back().body_from_camera.translation - rig.cameras.front().body_from_camera.translation;
+  if (cameras > 1)
+    rig.cameras.back().body_from_camera.translation += errors.baseline_m * baseline.normalized();
   std::vector<std::shared_ptr<const Camera>> by_truth, by_file;
   for (size_t i = 0; i < rig.cameras.size(); ++i) {
     by_truth.push_back(makeCamera(scene.rig().cameras[i]));
@@ -85,7 +96,7 @@ FrameEstimate see(int cameras, double focal_length, double centre_px, bool trust
 
 TEST(LensTrust, HoldsFilesThatAreRight) {
   for (const int cameras : {1, 2}) {
-    const FrameEstimate seen = see(cameras, 0.0, 0.0, true);
+    const FrameEstimate seen = see(cameras, {});
     ASSERT_TRUE(seen.camera_corrections.has_value());
     EXPECT_TRUE(seen.camera_corrections->are_files_held) << cameras;
     for (const auto& lens : seen.camera_corrections->intrinsics) {
@@ -96,7 +107,7 @@ TEST(LensTrust, HoldsFilesThatAreRight) {
 }
 
 TEST(LensTrust, ClaimsNoMoreOfThemThanTheirTolerance) {
-  const FrameEstimate held = see(2, 0.0, 0.0, true), free = see(2, 0.0, 0.0, false);
+  const FrameEstimate held = see(2, {}), free = see(2, {}, false);
   EXPECT_TRUE(held.camera_corrections->are_files_held);
   EXPECT_FALSE(free.camera_corrections->are_files_held);
   const double held_sigma = std::sqrt(held.covariance.topLeftCorner<3, 3>().trace());
@@ -107,7 +118,7 @@ TEST(LensTrust, ClaimsNoMoreOfThemThanTheirTolerance) {
 
 TEST(LensTrust, LetsFilesBeThatAreOff) {
   for (const int cameras : {1, 2}) {
-    const FrameEstimate seen = see(cameras, 0.004, 1.5, true);
+    const FrameEstimate seen = see(cameras, {.focal_length = 0.004, .centre_px = 1.5});
     ASSERT_TRUE(seen.camera_corrections.has_value());
     EXPECT_FALSE(seen.camera_corrections->are_files_held) << cameras;
     const auto& lens = seen.camera_corrections->intrinsics.front();
@@ -117,7 +128,21 @@ TEST(LensTrust, LetsFilesBeThatAreOff) {
 }
 
 TEST(LensTrust, IsNotOutvotedByWhatIsRight) {
-  EXPECT_FALSE(see(2, 0.003, 0.0, true, 1).camera_corrections->are_files_held);
+  const FrameEstimate seen = see(2, {.focal_length = 0.003, .first_wrong = 1});
+  EXPECT_FALSE(seen.camera_corrections->are_files_held);
+}
+
+TEST(Placement, IsFoundWhereTheFileIsFarOff) {
+  for (const double error_m : {-0.02, 0.005}) {
+    const FrameEstimate seen = see(2, {.baseline_m = error_m});
+    const Vec3 found = seen.camera_corrections->extrinsics.back().tail<3>();
+    EXPECT_NEAR(found.norm(), std::abs(error_m), 0.002);
+  }
+}
+
+TEST(Placement, StaysWhereTheFileIsRight) {
+  const FrameEstimate seen = see(2, {});
+  EXPECT_LT(seen.camera_corrections->extrinsics.back().tail<3>().norm(), 3e-4);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* 
       estimator_(rig, options.estimator, diagnostics),
       fixed_structure_reported_(rig.cameras.size(), false),
       turn_reported_(rig.cameras.size() - 1, false),
+      baseline_watch_(rig),
       diagnostics_(diagnostics) {}
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
@@ -42,6 +43,8 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   times_.front_end_s += tracked_s - start_s;
   times_.estimator_s += threadSeconds() - tracked_s;
   if (estimate.status != Status::Waiting) gyroscope_bias_B_ = estimate.state.gyroscope_bias_B;
+  if (estimate.camera_corrections)
+    baseline_watch_.add(packet.time, *estimate.camera_corrections, diagnostics_);
   first_ = false;
   return estimate;
 }

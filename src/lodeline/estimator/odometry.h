@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "lodeline/data/frame_packet.h"
+#include "lodeline/estimator/baseline_watch.h"
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/features/front_end.h"
 
@@ -56,6 +57,7 @@ class Odometry {
   bool first_ = true;
   std::vector<bool> fixed_structure_reported_;
   std::vector<bool> turn_reported_;  ///< of camera 1, 2, ...
+  BaselineWatch baseline_watch_;
   Diagnostics* diagnostics_;
   StageTimes times_;
 };

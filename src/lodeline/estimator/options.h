@@ -102,7 +102,8 @@ struct CameraCalibrationOptions {
   double rotation_sigma_rad = 0.01;  ///< camera 0 to the IMU, each axis
   double position_sigma_m = 0.01;
   double time_offset_sigma_s = 0.005;
-  /// Further cameras to camera 0. Their distance is the only ruler a stereo rig has; files state it well.
+  /// Further cameras to camera 0. Their distance is the first ruler of a stereo rig, and files state it well,
+  /// or as wrong as the length of the calibration target was (see FactorMaker::placement).
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
   /// The lens as well (factors/intrinsics_factor.h), as soon as the window has settled: the start of one
@@ -111,7 +112,8 @@ struct CameraCalibrationOptions {
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
   double radial_sigma = 0.005;  ///< of the first two coefficients
-  /// Whether lenses and further cameras are held at their files while images confirm these, see LensTrust.
+  /// Whether lenses and how further cameras are turned are held at their files while images confirm these,
+  /// see LensTrust.
   bool trust_confirmed_files = true;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/robust_loss.h"
@@ -55,6 +56,9 @@ std::vector<Factor> BatchProblem::motionFactors() {
   std::vector<Factor> terms;
   for (const Prior& prior : priors_) terms.push_back(factors_.prior(prior));
   if (auto axes = factors_.gyroscopeAxes(window_)) terms.push_back(std::move(*axes));
+  for (GlobalState* further : cameraStates(window_).further) {
+    if (auto placement = factors_.placement(*further)) terms.push_back(std::move(*placement));
+  }
   for (const auto& state : window_.globals()) {
     if (auto belief = factors_.belief(*state)) terms.push_back(std::move(*belief));
   }

@@ -36,15 +36,15 @@ nlohmann::ordered_json toJson(const RunDescription& run) {
 
 std::string describe(const CameraCorrections& corrections) {
   std::string text = fmt::format("images {:+.1f} ms", 1e3 * corrections.time_offset_s);
-  const size_t placed = corrections.are_files_held ? 1 : corrections.extrinsics.size();
-  for (size_t i = 0; i < placed; ++i) {
+  for (size_t i = 0; i < corrections.extrinsics.size(); ++i) {
     const auto& extrinsics = corrections.extrinsics[i];
     text += fmt::format(", camera {}{} {:.2f} deg {:.1f} mm", i, i > 0 ? " to camera 0" : "",
                         extrinsics.head<3>().norm() * 180.0 / M_PI, 1e3 * extrinsics.tail<3>().norm());
   }
   if (corrections.are_files_held)
-    return text + (corrections.extrinsics.size() > 1 ? " off the files; lenses and camera 1 as the files say"
-                                                     : " off the files; lens as the file says");
+    return text + (corrections.extrinsics.size() > 1
+                       ? " off the files; lenses and camera 1's turn as they say"
+                       : " off the files; lens as they say");
   for (size_t i = 0; i < corrections.intrinsics.size(); ++i) {
     const auto& lens = corrections.intrinsics[i];
     text += fmt::format(", lens {} focal length {:+.2f} % {:+.2f} %, centre {:+.1f} {:+.1f} px", i,
