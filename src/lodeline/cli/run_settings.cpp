@@ -139,7 +139,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("camera_calibration.radial_sigma", &cameras->radial_sigma,
                  "of the first two radial coefficients of the lens' model; 0 holds them");
   settings->bind("camera_calibration.trust_confirmed_files", &cameras->trust_confirmed_files,
-                 "hold lenses and further cameras at their files while images confirm these");
+                 "hold lenses and how further cameras are turned at their files while images confirm these");
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame", 1);
   settings->bind("solver.function_tolerance", &options->solver.function_tolerance,
                  "relative gain below which a frame's iterations end");
