@@ -92,6 +92,8 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
     return estimate;
   }
   report(tracks, &estimate);
+  dead_reckoning_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
+                         estimate.magnetometer.field_W.has_value(), &estimate.covariance);
   reportImplausibleBias(estimate, options_, diagnostics_);
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;

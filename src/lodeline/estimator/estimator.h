@@ -6,6 +6,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/camera_states.h"
+#include "lodeline/estimator/dead_reckoning.h"
 #include "lodeline/estimator/depth_fusion.h"
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/lens_trust.h"
@@ -116,6 +117,7 @@ class Estimator {
   ScaleBudget scale_;
   RestWatch rest_;
   bool rests_ = false;  ///< at the newest frame
+  DeadReckoning dead_reckoning_;
   UnmodelledErrors unmodelled_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
