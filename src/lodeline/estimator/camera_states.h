@@ -44,7 +44,7 @@ struct CameraCorrections {
   double time_offset_s = 0.0;                           ///< to add to the images' stamps
   /// Of each camera as in factors/intrinsics_factor.h; empty where the lenses are not estimated.
   std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
-  bool are_files_held = false;  ///< those of lenses and further cameras, see LensTrust
+  bool are_files_held = false;  ///< of lenses and further cameras' rotations, see LensTrust
 };
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 

@@ -10,23 +10,8 @@ namespace {
 
 using Matrix15 = Eigen::Matrix<double, 15, 15>;
 
-}  // namespace
-
-void DeadReckoning::follow(Window& window, const FactorMaker& factors, bool is_blind, bool is_heading_told,
-                           Matrix15* claimed) {
-  if (!is_blind || !carried_ || !window.newest().from_previous) {
-    carried_ = *claimed;
-    return;
-  }
-  carried_ = carriedByInertialReadings(window, factors, *carried_);
-  if (!claimed->allFinite()) *claimed = *carried_;
-  constexpr int kHeading = 5;
-  for (const int i : {0, 1, kHeading, 6, 7}) {
-    if (i == kHeading && is_heading_told) continue;
-    (*claimed)(i, i) = std::max((*claimed)(i, i), (*carried_)(i, i));
-  }
-}
-
+/// The covariance of the newest frame's state when that of the frame before is `known` and inertial readings
+/// lead from the one to the other.
 Matrix15 carriedByInertialReadings(Window& window, const FactorMaker& factors, const Matrix15& known) {
   Frame& newest = window.newest();
   Frame& before = *window.frames()[window.frames().size() - 2];
@@ -53,6 +38,23 @@ Matrix15 carriedByInertialReadings(Window& window, const FactorMaker& factors, c
   const Eigen::LLT<Matrix15> of_newest(coupling(newest, newest));
   const Matrix15 transition = -of_newest.solve(coupling(newest, before));
   return transition * known * transition.transpose() + of_newest.solve(Matrix15::Identity());
+}
+
+}  // namespace
+
+void DeadReckoning::follow(Window& window, const FactorMaker& factors, bool is_blind, bool is_heading_told,
+                           Matrix15* claimed) {
+  if (!is_blind || !carried_ || !window.newest().from_previous) {
+    carried_ = *claimed;
+    return;
+  }
+  carried_ = carriedByInertialReadings(window, factors, *carried_);
+  if (!claimed->allFinite()) *claimed = *carried_;
+  constexpr int kHeading = 5;
+  for (const int i : {0, 1, kHeading, 6, 7}) {
+    if (i == kHeading && is_heading_told) continue;
+    (*claimed)(i, i) = std::max((*claimed)(i, i), (*carried_)(i, i));
+  }
 }
 
 }  // namespace lodeline

@@ -26,9 +26,4 @@ class DeadReckoning {
   std::optional<Eigen::Matrix<double, 15, 15>> carried_;
 };
 
-/// The covariance of the newest frame's state when that of the frame before is `known` and inertial readings
-/// lead from the one to the other.
-Eigen::Matrix<double, 15, 15> carriedByInertialReadings(Window& window, const FactorMaker& factors,
-                                                        const Eigen::Matrix<double, 15, 15>& known);
-
 }  // namespace lodeline

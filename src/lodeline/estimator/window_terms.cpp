@@ -13,7 +13,7 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 
 }  // namespace
 
-std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
+std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors) {
   std::vector<Factor> terms;
   if (auto axes = factors.gyroscopeAxes(window)) terms.push_back(std::move(*axes));
   for (GlobalState* further : cameraStates(window).further) {
@@ -22,6 +22,11 @@ std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factor
   for (const auto& state : window.globals()) {
     if (auto belief = factors.belief(*state)) terms.push_back(std::move(*belief));
   }
+  return terms;
+}
+
+std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
+  std::vector<Factor> terms = collectGlobalTerms(window, factors);
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
     frame->updateImageMotion();

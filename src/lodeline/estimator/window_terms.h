@@ -13,6 +13,10 @@ struct WindowTerms {
   std::vector<LandmarkFactors> landmarks;
 };
 
+/// What is known of global states beside all measurements and the prior, whose shape a prior cannot hold or
+/// which may change: axes of the gyroscope, places of further cameras, beliefs.
+std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors);
+
 /// Those of them that are no landmarks', without the prior. Inertial terms whose biases moved too far are
 /// integrated again first.
 std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors);

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/claimed_covariance.h"
-#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/robust_loss.h"
+#include "lodeline/estimator/window_terms.h"
 #include "lodeline/refinement/batch_structure.h"
 
 namespace lodeline {
@@ -55,13 +54,7 @@ double* BatchProblem::nodeOf(const Chain& chain, size_t state) {
 std::vector<Factor> BatchProblem::motionFactors() {
   std::vector<Factor> terms;
   for (const Prior& prior : priors_) terms.push_back(factors_.prior(prior));
-  if (auto axes = factors_.gyroscopeAxes(window_)) terms.push_back(std::move(*axes));
-  for (GlobalState* further : cameraStates(window_).further) {
-    if (auto placement = factors_.placement(*further)) terms.push_back(std::move(*placement));
-  }
-  for (const auto& state : window_.globals()) {
-    if (auto belief = factors_.belief(*state)) terms.push_back(std::move(*belief));
-  }
+  for (Factor& term : collectGlobalTerms(window_, factors_)) terms.push_back(std::move(term));
   for (size_t k = 0; k < states(); ++k) {
     Frame& frame = *window_.frames()[k];
     if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));
