@@ -97,6 +97,8 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("window.recent_frames", &options->window.recent_frames,
                  "newest frames, with velocity and biases", 2);
   settings->bind("window.keyframes", &options->window.keyframes, "older keyframes");
+  settings->bind("window.keyframes_after_cut", &options->window.keyframes_after_cut,
+                 "of these, whose sightings a landmark goes on with that outlives the oldest one");
   settings->bind("window.interpolated_spacing_s", &options->window.interpolated_spacing_s,
                  "at least, of frames between keyframes whose sightings are kept");
   settings->bind("window.interpolated_gap_s", &options->window.interpolated_gap_s,

@@ -11,6 +11,7 @@
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/keyframe_policy.h"
+#include "lodeline/estimator/landmark_host.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/robust_loss.h"
 #include "lodeline/estimator/start.h"
@@ -49,6 +50,12 @@ void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions
           "be trusted where this is found. Start with more motion and clearer images, or check the "
           "calibration",
           estimate.time.nanoseconds(), bias_m_per_s2, limit_m_per_s2));
+}
+
+/// Where the scale is not known yet, what landmarks were seen by is not worth keeping for good.
+WindowOptions withoutCut(WindowOptions window) {
+  window.keyframes_after_cut = window.keyframes;
+  return window;
 }
 
 }  // namespace
@@ -151,14 +158,22 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
 }
 
 void Estimator::shortenWindow(const FrameEstimate& estimate) {
-  const bool was_settled = is_settled_;
+  const bool was_starting_up = starting_up_, was_settled = is_settled_;
   is_settled_ = is_settled_ || isSettled(estimate.covariance);
-  starting_up_ = starting_up_ && !is_settled_ && frames_since_start_ < options_.window.startup_max_frames;
-  if (starting_up_) return;
-  if (!was_settled) marginalizer_.relinearise(window_);
-  marginalizer_.shorten(window_, options_.window);
-  if (!is_settled_) marginalizer_.relinearise(window_);
+  frames_since_settled_ = was_settled ? frames_since_settled_ + 1 : 0;
+  // What is marginalised keeps the lens that it has then.
   if (is_settled_) freeLenses();
+  starting_up_ = starting_up_ &&
+                 (is_settled_ ? lossesAdapt() : frames_since_start_ < options_.window.startup_max_frames);
+  if (starting_up_) return;
+  if (was_starting_up || !was_settled) marginalizer_.relinearise(window_);
+  marginalizer_.shorten(window_, is_settled_ ? options_.window : withoutCut(options_.window));
+  if (!is_settled_) marginalizer_.relinearise(window_);
+}
+
+bool Estimator::lossesAdapt() const {
+  constexpr int kFramesToAdapt = 3;
+  return !scale_is_given_ && frames_since_settled_ < kFramesToAdapt;
 }
 
 void Estimator::freeLenses() {

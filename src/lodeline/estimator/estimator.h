@@ -97,6 +97,8 @@ class Estimator {
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   /// Lets the lenses, which are held at first, be estimated.
   void freeLenses();
+  /// One camera's start is solved with losses as wide as they come, whose weights are not to be kept.
+  bool lossesAdapt() const;
   /// Turns a window that has just started to north.
   void startMagnetometer();
   void rememberCovariance(JointCovariance covariance, FrameEstimate* estimate);
@@ -124,8 +126,9 @@ class Estimator {
   std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
-  bool starting_up_ = true;          ///< nothing is marginalised
-  bool is_settled_ = false;          ///< the scale is known: first estimates are kept
+  bool starting_up_ = true;  ///< nothing is marginalised
+  bool is_settled_ = false;  ///< the scale is known: first estimates are kept
+  int frames_since_settled_ = 0;
   bool scale_is_given_ = false;      ///< by a stereo start
   std::optional<Time> blind_since_;  ///< the newest frames see nothing known
   bool lost_scale_ = false;          ///< at some time since the start

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/landmark_host.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/geometry/so3.h"
 
@@ -64,6 +64,69 @@ TEST_F(MoveToNewHostTest, GivesUpALandmarkWithoutAHost) {
   frame(1).setState(past);
   move(2, 0);
   EXPECT_FALSE(test_.window.tracks().at(2).landmark.has_value());
+}
+
+class TakeOlderPartTest : public testing::Test {
+ protected:
+  static constexpr TrackId kTrack = 1;
+  static constexpr FrameId kLast = 4;
+  TakeOlderPartTest() {
+    for (int i = 0; i < 8; ++i)
+      test_.add(Rigid3(so3::exp(Vec3(0.01, 0.02, 0.02 * i)), Vec3(0.1 * i, -0.1 * i, 0.0)), i % 2 == 0);
+  }
+  void seeFrom(int first, int end) {
+    for (int i = first; i < end; ++i)
+      test_.see(kTrack, kPoint_W, *test_.window.frames()[static_cast<size_t>(i)]);
+  }
+  TrackHistory& track() { return test_.window.tracks().at(kTrack); }
+  std::optional<TrackHistory> take() { return takeOlderPart(test_.window, track(), kLast, test_.factors); }
+  Vec3 position(const TrackHistory& track) {
+    return mapPointOf(test_.window, kTrack, track, test_.factors)->position_W;
+  }
+
+  const Vec3 kPoint_W{4.0, 0.3, 0.5};
+  TestWindow test_{1};
+};
+
+TEST_F(TakeOlderPartTest, SharesOutSightingsAndKeepsThePoint) {
+  seeFrom(0, 8);
+  for (const int host : {0, 6}) {
+    SCOPED_TRACE(host);
+    track().sightings.clear();
+    seeFrom(0, 8);
+    test_.place(kTrack, kPoint_W, *test_.window.frames()[static_cast<size_t>(host)]);
+    const std::optional<TrackHistory> older = take();
+    ASSERT_TRUE(older.has_value());
+    EXPECT_EQ(older->sightings.size(), 5u);
+    EXPECT_EQ(older->sightings.back().frame, kLast);
+    EXPECT_EQ(track().sightings.size(), 3u);
+    EXPECT_EQ(track().sightings.front().frame, kLast + 1);
+    EXPECT_EQ(older->landmark->host, host == 0 ? 0 : kLast);
+    EXPECT_EQ(track().landmark->host, 6);
+    EXPECT_LT((position(*older) - kPoint_W).norm(), 1e-12);
+    EXPECT_LT((position(track()) - kPoint_W).norm(), 1e-12);
+  }
+}
+
+TEST_F(TakeOlderPartTest, LeavesATrackAloneThatIsTooShortOnEitherSide) {
+  const auto expectWhole = [&](size_t sightings) {
+    const FrameId host = track().landmark->host;
+    EXPECT_FALSE(take().has_value());
+    EXPECT_EQ(track().sightings.size(), sightings);
+    EXPECT_EQ(track().landmark->host, host);
+  };
+  seeFrom(2, 8);  // three before the cut
+  test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
+  expectWhole(6);
+  track().sightings.clear();
+  seeFrom(0, 6);  // one after it, in no keyframe
+  test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
+  expectWhole(6);
+  track().sightings.clear();
+  seeFrom(0, 6);  // two after it, neither in a keyframe
+  seeFrom(7, 8);
+  test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
+  expectWhole(7);
 }
 
 TEST_F(MoveToNewHostTest, PointsTooFarAwayHaveNoPositionOnTheMap) {

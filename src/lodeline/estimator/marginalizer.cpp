@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/estimator/keyframe_policy.h"
+#include "lodeline/estimator/landmark_host.h"
 #include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/estimator/prior_terms.h"
 
@@ -104,6 +105,16 @@ Eigen::VectorXd turnAboutGravity(const Window& window, const Prior& prior) {
   return turn;
 }
 
+/// The newest of the old keyframes but `after`; of those with motion none, since they have just come.
+FrameId lastBeforeCut(const Window& window, int after) {
+  std::vector<FrameId> old;
+  for (const auto& frame : window.frames()) {
+    if (frame->is_keyframe && !frame->has_motion) old.push_back(frame->id);
+  }
+  const auto last = static_cast<std::ptrdiff_t>(old.size()) - 1 - after;
+  return old[static_cast<size_t>(std::max<std::ptrdiff_t>(last, 0))];
+}
+
 /// The share of each yaw in a turn of all poses: s with s . turnAboutGravity() = 1.
 Eigen::VectorXd yawShares(const Prior& prior) {
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(prior.tangentSize());
@@ -117,41 +128,9 @@ Eigen::VectorXd yawShares(const Prior& prior) {
 
 }  // namespace
 
-std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
-                                   const FactorMaker& factors) {
-  constexpr double kMinInverseDistance = 1e-3;
-  const Landmark& landmark = *track.landmark;
-  if (landmark.inverseDistance() < kMinInverseDistance) return std::nullopt;
-  const Vec3 point_C = landmark.base.direction(landmark.parameters.data()) / landmark.inverseDistance();
-  const Rigid3 world_from_camera = factors.worldFromCamera(window, *window.find(landmark.host), 0);
-  return MapPoint{id, world_from_camera * point_C, static_cast<int>(track.sightings.size())};
-}
-
-void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded, const FactorMaker& factors) {
-  Landmark& landmark = *track.landmark;
-  const Rigid3 world_from_old = factors.worldFromCamera(window, *window.find(landmark.host), 0);
-  for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
-    const Frame* frame = window.find(sighting->frame);
-    if (sighting->camera != 0 || !frame->is_keyframe || frame->id == excluded) continue;
-    const Rigid3 new_from_old = factors.worldFromCamera(window, *frame, 0).inverse() * world_from_old;
-    // Homogeneous, so that points at infinity move too.
-    const Vec3 point_new = new_from_old.rotation * landmark.base.direction(landmark.parameters.data()) +
-                           landmark.inverseDistance() * new_from_old.translation;
-    const LandmarkBase base(sighting->measurement.bearing_C);
-    const double depth = base.bearing_C.dot(point_new);
-    if (depth < 0.1 * point_new.norm()) break;
-    const Vec2 ab = base.tangent_C.transpose() * point_new / depth;
-    landmark.host = frame->id;
-    landmark.base = base;
-    landmark.parameters = {ab.x(), ab.y(), landmark.inverseDistance() / depth};
-    return;
-  }
-  track.landmark.reset();
-}
-
 void Marginalizer::shorten(Window& window, const WindowOptions& wanted) {
   while (window.recentCount() > wanted.recent_frames) retireOldestRecent(window, wanted);
-  while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window);
+  while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window, wanted.keyframes_after_cut);
 }
 
 void Marginalizer::relinearise(Window& window) {
@@ -230,15 +209,18 @@ void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
   oldest.rest_sigma_m_per_s.reset();
 }
 
-void Marginalizer::removeOldestKeyframe(Window& window) {
+void Marginalizer::removeOldestKeyframe(Window& window, int keyframes_after_cut) {
   Frame& oldest = *window.frames().front();
   const Frame* newest_keyframe = window.newestKeyframe();
+  const FrameId cut = lastBeforeCut(window, keyframes_after_cut);
   NormalEquations system;
   PriorTerms(prior_).addTo(&system);
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark || !track.seenIn(oldest.id)) continue;
     if (track.seenIn(newest_keyframe->id)) {
-      if (track.landmark->host == oldest.id) {
+      if (std::optional<TrackHistory> older = takeOlderPart(window, track, cut, factors_)) {
+        system.addEliminated(factors_.landmark(window, *older));
+      } else if (track.landmark->host == oldest.id) {
         moveToNewHost(window, track, oldest.id, factors_);
       }
     } else {

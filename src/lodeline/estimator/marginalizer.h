@@ -51,8 +51,9 @@ class Marginalizer {
   /// prior.
   void addSensors(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
   /// Oldest keyframe: landmarks that the newest keyframe does not see are marginalised with all their
-  /// sightings; the others lose only their sightings there, and move to another host.
-  void removeOldestKeyframe(Window& window);
+  /// sightings, the others with those before a cut (WindowOptions); where that would leave too few on
+  /// either side they lose their sightings in the oldest keyframe, and move to another host.
+  void removeOldestKeyframe(Window& window, int keyframes_after_cut);
 
   /// New prior from `system`, which holds the old prior and all terms of the eliminated blocks. Global states
   /// walk for `elapsed_s`.
@@ -63,13 +64,5 @@ class Marginalizer {
   Prior prior_;
   std::vector<MapPoint> map_points_;
 };
-
-/// Where a track's landmark is now; nothing for points too far away to have a position (beyond 1 km).
-std::optional<MapPoint> mapPointOf(const Window& window, TrackId id, const TrackHistory& track,
-                                   const FactorMaker& factors);
-
-/// Moves a landmark to the newest keyframe that sees it, other than `excluded`, keeping its position. Without
-/// such a keyframe, or when the point would lie behind it, the track loses its landmark.
-void moveToNewHost(Window& window, TrackHistory& track, FrameId excluded, const FactorMaker& factors);
 
 }  // namespace lodeline

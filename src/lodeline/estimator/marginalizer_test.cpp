@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/landmark_host.h"
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/prior_terms.h"
 #include "lodeline/estimator/start.h"
@@ -34,17 +35,20 @@ struct StartedWindow : TestWindow {
   Prior start;
 };
 
-// Eight keyframes at the batch solution. What frame 0 sees, the newest frame does not: then all its
-// landmarks go with it, and marginalisation drops nothing.
+enum class OldTracks { End, LiveOn };
+
+// Eight keyframes at the batch solution. Where old tracks end, the newest frame sees nothing that frame 0
+// does: then all its landmarks go with it, and marginalisation drops nothing.
 class LosslessMarginalizationTest : public testing::Test {
  protected:
   static constexpr int kFrames = 8;
 
-  void fill(StartedWindow& test) {
+  void fill(StartedWindow& test, OldTracks old_tracks = OldTracks::End) {
     TestScene scene(sceneOptions(1.0 + (kFrames - 1) * 0.2 + 0.01, 5.0));
     std::vector<SimulatedFrame> frames = scene.all();
     ASSERT_EQ(frames.size(), static_cast<size_t>(kFrames));
     std::erase_if(frames.back().tracks.observations, [&](const Observation& o) {
+      if (old_tracks == OldTracks::LiveOn) return false;
       const auto& first = frames.front().tracks.observations;
       return std::any_of(first.begin(), first.end(),
                          [&](const Observation& other) { return other.track == o.track; });
@@ -97,6 +101,40 @@ TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
             0.01);
 }
 
+// What a landmark that lives on was seen by before the cut counts as another track would that ends there.
+TEST_F(LosslessMarginalizationTest, CutTracksCountAsTwo) {
+  constexpr FrameId kLastBeforeCut = 3;
+  constexpr TrackId kOlder = 1000;
+  fill(batch_, OldTracks::LiveOn);
+  fill(shortened_, OldTracks::LiveOn);
+  std::vector<std::pair<TrackId, TrackHistory>> older;
+  for (auto& [id, track] : batch_.window.tracks()) {
+    if (!track.landmark || !track.seenIn(0) || !track.seenIn(kFrames - 1)) continue;
+    if (auto part = takeOlderPart(batch_.window, track, kLastBeforeCut, batch_.factors))
+      older.emplace_back(kOlder + id, std::move(*part));
+  }
+  ASSERT_GT(older.size(), 10u);
+  for (auto& [id, track] : older) batch_.window.tracks()[id] = track;
+  WindowOptions wanted{.recent_frames = 3, .keyframes = 4, .keyframes_after_cut = 4};
+  Marginalizer two(batch_.factors), cut(shortened_.factors);
+  two.start(batch_.start);
+  cut.start(shortened_.start);
+  two.shorten(batch_.window, wanted);
+  wanted.keyframes_after_cut = 1;
+  cut.shorten(shortened_.window, wanted);
+  EXPECT_EQ(two.takeMapPoints().size(), cut.takeMapPoints().size() + older.size());
+
+  const auto expected = newestCovariance(batch_.window, two.prior(), batch_.factors);
+  const auto covariance = newestCovariance(shortened_.window, cut.prior(), shortened_.factors);
+  EXPECT_LT((covariance - expected).norm(), 1e-6 * expected.norm());
+  ASSERT_TRUE(solveWindow(batch_.window, two.prior(), batch_.factors, kToTheEnd).usable);
+  ASSERT_TRUE(solveWindow(shortened_.window, cut.prior(), shortened_.factors, kToTheEnd).usable);
+  for (const auto& frame : shortened_.window.frames()) {
+    const Frame& other = *batch_.window.find(frame->id);
+    EXPECT_LT(perturbationBetween(other.worldFromBody(), frame->worldFromBody()).norm(), 1e-8);
+  }
+}
+
 // The four directions that neither camera nor IMU can see: translations, and rotation about gravity.
 Eigen::Vector4d unobservableInformation(const Prior& prior) {
   Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(prior.tangentSize(), 4);
@@ -127,7 +165,7 @@ InitialStateOptions nearlyNothing() {
 enum class FirstEstimates { Kept, Forgotten, Relinearised };
 enum class OtherFrames { Dropped, Interpolated };
 Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
-                                 OtherFrames other_frames = OtherFrames::Dropped) {
+                                 OtherFrames other_frames = OtherFrames::Dropped, int keyframes = 3) {
   EstimatorOptions options;
   // A poor IMU: estimates then move far enough from their first values for the difference to show.
   options.preintegration.noise_inflation = 10.0;
@@ -136,7 +174,7 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
   TestWindow test(2, options);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
-  WindowOptions wanted{.recent_frames = 3, .keyframes = 3};
+  WindowOptions wanted{.recent_frames = 3, .keyframes = keyframes, .keyframes_after_cut = 1};
   const bool interpolates = other_frames == OtherFrames::Interpolated;
   if (interpolates) wanted.interpolated_spacing_s = 0.05;
   int interpolated = 0;
@@ -160,7 +198,7 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
       frame->first_motion.reset();
     }
   }
-  EXPECT_EQ(test.window.poseOnlyCount(), 3);
+  EXPECT_EQ(test.window.poseOnlyCount(), keyframes);
   EXPECT_EQ(interpolated > frames, interpolates);
   return unobservableInformation(marginalizer.prior());
 }
@@ -173,12 +211,15 @@ TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
     EXPECT_LT(information[1], 1e-2);
     EXPECT_LT(information[2], 1e-2);
     EXPECT_LT(information[3], 1e2);
-    // No more than was said at the start.
-    const Eigen::Vector4d interpolated = informationAfter(30, first_estimates, OtherFrames::Interpolated);
+    // No more than was said at the start, with short windows and with those that cut tracks.
     const InitialStateOptions known = nearlyNothing();
-    for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(interpolated[i], std::pow(known.position_sigma_m, -2), 1e-4) << "100 m, from rounding";
-    EXPECT_NEAR(interpolated[3] * std::pow(known.yaw_sigma_rad, 2), 1.0, 0.01);
+    for (const int keyframes : {3, 6}) {
+      const Eigen::Vector4d interpolated =
+          informationAfter(30, first_estimates, OtherFrames::Interpolated, keyframes);
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(interpolated[i], std::pow(known.position_sigma_m, -2), 1e-4) << "100 m, from rounding";
+      EXPECT_NEAR(interpolated[3] * std::pow(known.yaw_sigma_rad, 2), 1.0, 0.01);
+    }
   }
 }
 
@@ -321,6 +362,25 @@ TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
   // Three times the sightings: 0.58 if they were all there is.
   EXPECT_LT(kept, 0.85 * dropped);
   EXPECT_GT(kept, 0.5 * dropped);
+}
+
+// Nor do those of a landmark that outlives the window: all of them, but for what ties both sides of a cut.
+TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
+  const auto yawSigma = [](int keyframes_after_cut) {
+    TestWindow test(2, quadraticOptions());
+    Marginalizer marginalizer(test.factors);
+    TestScene scene(sceneOptions(9.0, 10.0));
+    for (int k = 0; k < 80; ++k) {
+      addNext(test, scene, 2, &marginalizer);
+      updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
+      marginalizer.shorten(test.window,
+                           {.recent_frames = 5, .keyframes = 6, .keyframes_after_cut = keyframes_after_cut});
+    }
+    return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
+  };
+  const double dropped = yawSigma(6), kept = yawSigma(2);
+  EXPECT_LT(kept, 0.9 * dropped);
+  EXPECT_GT(kept, 0.2 * dropped);
 }
 
 }  // namespace

@@ -44,6 +44,9 @@ struct MonoInitializationOptions {
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
   int keyframes = 12;     ///< older keyframes, kept as poses
+  /// When a landmark outlives the oldest keyframe, its sightings before the newest so many of the older
+  /// keyframes go into the prior, and it goes on as another point with the rest.
+  int keyframes_after_cut = 2;
   /// Between keyframes of at most this distance in time the sightings of other frames are kept, so far apart
   /// in time.
   double interpolated_gap_s = 1.6;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/camera_states.h"
-#include "lodeline/estimator/marginalizer.h"
+#include "lodeline/estimator/landmark_host.h"
 #include "lodeline/features/triangulation.h"
 
 namespace lodeline {

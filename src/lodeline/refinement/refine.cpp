@@ -9,7 +9,7 @@
 
 #include "lodeline/base/thread_clock.h"
 #include "lodeline/estimator/inertial_states.h"
-#include "lodeline/estimator/marginalizer.h"
+#include "lodeline/estimator/landmark_host.h"
 #include "lodeline/refinement/batch_problem.h"
 #include "lodeline/refinement/refined_frames.h"
 
