@@ -203,7 +203,7 @@ TEST(DepthFusion, WeighsKnownWatersAgainstWhatCrookedCamerasAreWorth) {
             }).depth.gauge;
   };
   const DepthEstimate::Gauge known = descend(true), seen = descend(false);
-  EXPECT_GT(std::abs(seen.density_ratio - 1.0), 0.007) << "too easy a scene";
+  EXPECT_GT(std::abs(seen.density_ratio - 1.0), 0.006) << "too easy a scene";
   EXPECT_LT(std::abs(known.density_ratio - 1.0), 0.7 * std::abs(seen.density_ratio - 1.0));
 }
 

@@ -52,7 +52,7 @@ void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions
           estimate.time.nanoseconds(), bias_m_per_s2, limit_m_per_s2));
 }
 
-/// Where the scale is not known yet, what landmarks were seen by is not worth keeping for good.
+/// The newest keyframe's landmarks then drop what the oldest saw of them.
 WindowOptions withoutCut(WindowOptions window) {
   window.keyframes_after_cut = window.keyframes;
   return window;
@@ -161,14 +161,21 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
   const bool was_starting_up = starting_up_, was_settled = is_settled_;
   is_settled_ = is_settled_ || isSettled(estimate.covariance);
   frames_since_settled_ = was_settled ? frames_since_settled_ + 1 : 0;
+  if (!was_settled) settled_at_ = estimate.time;
   // What is marginalised keeps the lens that it has then.
   if (is_settled_) freeLenses();
   starting_up_ = starting_up_ &&
                  (is_settled_ ? lossesAdapt() : frames_since_start_ < options_.window.startup_max_frames);
   if (starting_up_) return;
   if (was_starting_up || !was_settled) marginalizer_.relinearise(window_);
-  marginalizer_.shorten(window_, is_settled_ ? options_.window : withoutCut(options_.window));
+  marginalizer_.shorten(window_,
+                        isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
   if (!is_settled_) marginalizer_.relinearise(window_);
+}
+
+bool Estimator::isWorthKeeping(Time now) const {
+  constexpr double kToFindLenses_s = 5.0;
+  return is_settled_ && (!scale_is_given_ || (now - settled_at_).seconds() >= kToFindLenses_s);
 }
 
 bool Estimator::lossesAdapt() const {

@@ -97,6 +97,10 @@ class Estimator {
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   /// Lets the lenses, which are held at first, be estimated.
   void freeLenses();
+  /// Whether what landmarks were seen by is to be kept for good when they outlive the window: not while the
+  /// scale is unknown, nor in the first seconds of two cameras, which tell lenses that are off by images that
+  /// then count as outliers. One camera's start tells its speed and biases, which are worth more.
+  bool isWorthKeeping(Time now) const;
   /// One camera's start is solved with losses as wide as they come, whose weights are not to be kept.
   bool lossesAdapt() const;
   /// Turns a window that has just started to north.
@@ -129,6 +133,7 @@ class Estimator {
   bool starting_up_ = true;  ///< nothing is marginalised
   bool is_settled_ = false;  ///< the scale is known: first estimates are kept
   int frames_since_settled_ = 0;
+  Time settled_at_;
   bool scale_is_given_ = false;      ///< by a stereo start
   std::optional<Time> blind_since_;  ///< the newest frames see nothing known
   bool lost_scale_ = false;          ///< at some time since the start
