@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "lodeline/base/error.h"
@@ -52,9 +53,9 @@ void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions
           estimate.time.nanoseconds(), bias_m_per_s2, limit_m_per_s2));
 }
 
-/// The newest keyframe's landmarks then drop what the oldest saw of them.
+/// The newest keyframe's landmarks then drop what the oldest saw of them, however long the window still is.
 WindowOptions withoutCut(WindowOptions window) {
-  window.keyframes_after_cut = window.keyframes;
+  window.keyframes_after_cut = std::numeric_limits<int>::max();
   return window;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/landmark_host.h"
@@ -381,6 +382,35 @@ TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
   const double dropped = yawSigma(6), kept = yawSigma(2);
   EXPECT_LT(kept, 0.9 * dropped);
   EXPECT_GT(kept, 0.2 * dropped);
+}
+
+// However many keyframes go at once.
+TEST(Marginalizer, CutsNothingWhereNothingIsAskedToBeCut) {
+  constexpr int kKeyframes = 6, kNever = std::numeric_limits<int>::max();
+  const auto informationAfter = [](const auto& shorten) {
+    TestWindow test(2, quadraticOptions());
+    Marginalizer marginalizer(test.factors);
+    TestScene scene(sceneOptions(9.0, 10.0));
+    for (int k = 0; k < 60; ++k) addNext(test, scene, 2, &marginalizer);
+    updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
+    marginalizer.shorten(test.window, {.recent_frames = 5, .keyframes = 60});
+    EXPECT_GT(test.window.poseOnlyCount(), 3 * kKeyframes);
+    shorten(marginalizer, test.window);
+    return marginalizer.prior().sqrt_information;
+  };
+  const auto atOnce = [&](int keyframes_after_cut) {
+    return informationAfter([&](Marginalizer& marginalizer, Window& window) {
+      marginalizer.shorten(
+          window, {.recent_frames = 5, .keyframes = kKeyframes, .keyframes_after_cut = keyframes_after_cut});
+    });
+  };
+  const auto one_by_one = informationAfter([](Marginalizer& marginalizer, Window& window) {
+    for (int left = window.poseOnlyCount() - 1; left >= kKeyframes; --left) {
+      marginalizer.shorten(window, {.recent_frames = 5, .keyframes = left, .keyframes_after_cut = left});
+    }
+  });
+  EXPECT_EQ(atOnce(kNever), one_by_one);
+  EXPECT_NE(atOnce(kKeyframes), one_by_one);
 }
 
 }  // namespace
