@@ -344,20 +344,26 @@ TEST_P(MarginalizersBooks, AreInOrder) {
 
 INSTANTIATE_TEST_SUITE_P(SpacingOfInterpolatedFrames, MarginalizersBooks, testing::Values(0.05, 0.15));
 
+/// One sigma of the newest frame's yaw after so many frames, every nth of them a keyframe.
+double yawSigmaAfter(int frames, int keyframe_every, const WindowOptions& wanted, TestWindow& test) {
+  Marginalizer marginalizer(test.factors);
+  TestScene scene(sceneOptions(0.1 * frames + 1.0, 10.0));
+  for (int k = 0; k < frames; ++k) {
+    addNext(test, scene, keyframe_every, &marginalizer);
+    updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
+    marginalizer.shorten(test.window, wanted);
+  }
+  return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
+}
+
 // What the sightings of an interpolated frame say of the keyframes beside it outlives them.
 TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
   const auto yawSigma = [](double spacing_s) {
     TestWindow test(2, quadraticOptions());
-    Marginalizer marginalizer(test.factors);
-    TestScene scene(sceneOptions(7.0, 10.0));
-    for (int k = 0; k < 60; ++k) {
-      addNext(test, scene, 3, &marginalizer);
-      updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
-      marginalizer.shorten(test.window,
-                           {.recent_frames = 5, .keyframes = 4, .interpolated_spacing_s = spacing_s});
-    }
+    const double sigma =
+        yawSigmaAfter(60, 3, {.recent_frames = 5, .keyframes = 4, .interpolated_spacing_s = spacing_s}, test);
     EXPECT_EQ(test.window.frames().size() > 9u, spacing_s < 0.1);
-    return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
+    return sigma;
   };
   const double dropped = yawSigma(1.0), kept = yawSigma(0.05);
   // Three times the sightings: 0.58 if they were all there is.
@@ -369,15 +375,8 @@ TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
 TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
   const auto yawSigma = [](int keyframes_after_cut) {
     TestWindow test(2, quadraticOptions());
-    Marginalizer marginalizer(test.factors);
-    TestScene scene(sceneOptions(9.0, 10.0));
-    for (int k = 0; k < 80; ++k) {
-      addNext(test, scene, 2, &marginalizer);
-      updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
-      marginalizer.shorten(test.window,
-                           {.recent_frames = 5, .keyframes = 6, .keyframes_after_cut = keyframes_after_cut});
-    }
-    return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
+    return yawSigmaAfter(
+        80, 2, {.recent_frames = 5, .keyframes = 6, .keyframes_after_cut = keyframes_after_cut}, test);
   };
   const double dropped = yawSigma(6), kept = yawSigma(2);
   EXPECT_LT(kept, 0.9 * dropped);
