@@ -121,6 +121,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--parallax", dive.estimator.keyframe.min_parallax_rad, "of a new keyframe, rad")
       ->capture_default_str();
+  app.add_option("--gap", dive.estimator.window.interpolated_gap_s,
+                 "between keyframes beside which other frames' sightings are kept, s")
+      ->capture_default_str();
+  app.add_option("--spacing", dive.estimator.window.interpolated_spacing_s, "of such frames, s")
+      ->capture_default_str();
   app.add_flag("--absolute", absolute, "with magnetometer");
   CLI11_PARSE(app, argc, argv);
   dive.duration_s = 60.0 * minutes;
