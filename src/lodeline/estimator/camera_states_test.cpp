@@ -34,9 +34,7 @@ FrameEstimate lastEstimate(TestScene& scene, const Rig& files, const EstimatorOp
 
 /// How far the estimate of camera 0's place ends from the truth, with both cameras' files moved by that.
 Rigid3 errorOfExtrinsics(const Rigid3& moved, uint64_t seed) {
-  TestSceneOptions options = sceneOptions(seed);
-  options.duration_s = 60.0;
-  TestScene scene(options);
+  TestScene scene(sceneOptions(seed));
   Rig files = scene.rig();
   for (CameraCalibration& camera : files.cameras) {
     camera.body_from_camera.rotation = moved.rotation * camera.body_from_camera.rotation;
@@ -46,7 +44,7 @@ Rigid3 errorOfExtrinsics(const Rigid3& moved, uint64_t seed) {
   files.cameras[1].body_from_camera =
       files.cameras[0].body_from_camera *
       (scene.rig().cameras[0].body_from_camera.inverse() * scene.rig().cameras[1].body_from_camera);
-  const FrameEstimate last = lastEstimate(scene, files, honestOptions(options));
+  const FrameEstimate last = lastEstimate(scene, files, honestOptions(sceneOptions(seed)));
   const CameraCorrections& corrections = last.camera_corrections.value();
   EXPECT_LT(std::abs(corrections.time_offset_s), 1e-3);
   const Rigid3 found =

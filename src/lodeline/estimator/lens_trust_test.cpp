@@ -53,9 +53,8 @@ struct FileErrors {
 };
 
 /// What the estimator makes of a lively scene.
-FrameEstimate see(int cameras, const FileErrors& errors, bool trust = true, uint64_t seed = 1) {
+FrameEstimate see(int cameras, const FileErrors& errors, bool trust = true) {
   TestSceneOptions options;
-  options.seed = seed;
   options.cameras = cameras;
   options.duration_s = 40.0;
   options.liveliness = 0.5;
@@ -96,15 +95,10 @@ FrameEstimate see(int cameras, const FileErrors& errors, bool trust = true, uint
 }
 
 TEST(LensTrust, HoldsFilesThatAreRight) {
-  constexpr int kMayFail = 1;  // of all: evidence is chance as well
-  int not_held = 0;
-  for (const auto& [cameras, seed] : {std::pair(1, 1), {1, 2}, {1, 3}, {2, 1}, {2, 2}, {2, 3}, {2, 4}}) {
-    const FrameEstimate seen = see(cameras, {}, true, static_cast<uint64_t>(seed));
+  for (const int cameras : {1, 2}) {
+    const FrameEstimate seen = see(cameras, {});
     ASSERT_TRUE(seen.camera_corrections.has_value());
-    if (!seen.camera_corrections->are_files_held) {
-      EXPECT_LE(++not_held, kMayFail) << cameras << " cameras, seed " << seed;
-      continue;
-    }
+    EXPECT_TRUE(seen.camera_corrections->are_files_held) << cameras;
     for (const auto& lens : seen.camera_corrections->intrinsics) {
       EXPECT_LT(lens.head<2>().norm(), 1e-4);
       EXPECT_LT(lens.segment<2>(2).norm(), 0.02);
@@ -113,8 +107,7 @@ TEST(LensTrust, HoldsFilesThatAreRight) {
 }
 
 TEST(LensTrust, ClaimsNoMoreOfThemThanTheirTolerance) {
-  constexpr uint64_t kHeldSeed = 2;
-  const FrameEstimate held = see(2, {}, true, kHeldSeed), free = see(2, {}, false, kHeldSeed);
+  const FrameEstimate held = see(2, {}), free = see(2, {}, false);
   EXPECT_TRUE(held.camera_corrections->are_files_held);
   EXPECT_FALSE(free.camera_corrections->are_files_held);
   const double held_sigma = std::sqrt(held.covariance.topLeftCorner<3, 3>().trace());

@@ -55,7 +55,7 @@ struct CalibratedFirstEstimates {
 /// body, the target camera at R_r, p_r in camera 0,
 ///   m   = R_t^T (R_h (R_0 d + rho p_0) + rho (p_h - p_t)) - rho p_0
 ///   q_0 = R_0^T m,   q = R_r^T (q_0 - rho p_r)
-///   e   = sqrt_information * B^T q / (z^T q).
+///   e   = directionResidual(q).
 class CalibratedReprojectionFactor final : public ceres::CostFunction {
  public:
   CalibratedReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,

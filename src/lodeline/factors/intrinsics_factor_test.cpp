@@ -16,14 +16,6 @@ Intrinsics intrinsics(double focal_u, double focal_v, double centre_u_px, double
 
 const Intrinsics kWrongLens = intrinsics(0.006, -0.004, 2.5, -1.5, 0.008, -0.01);
 
-CameraCalibration withModel(DistortionModel model) {
-  CameraCalibration file = ReprojectionScene::calibration();
-  file.distortion_model = model;
-  if (model == DistortionModel::None) file.distortion.clear();
-  if (model == DistortionModel::Equidistant) file.distortion = {-0.02, 0.01, -0.003, 0.001};
-  return file;
-}
-
 /// What a camera with `lens` beyond its file sees of the scene's landmark, read with the file.
 DirectionMeasurement seenThrough(const CameraCalibration& file, const Intrinsics& lens, const Vec3& point_C,
                                  double sigma_px) {

@@ -1,76 +1,17 @@
 #include "lodeline/factors/reprojection_factor.h"
 
-#include <Eigen/LU>
-#include <cmath>
-
 #include "lodeline/factors/parameters.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
 
-// Cosine of the angle to the measured ray below which a point counts as a gross outlier (about 84 degrees
-// off), and the error that it then has, in standard deviations.
-constexpr double kMinCosine = 0.1;
-constexpr double kOutlierResidual = 1e4;
-
 template <int Cols>
 using RowMajor2 = Eigen::Matrix<double, 2, Cols, Eigen::RowMajor>;
 
-/// DirectionMeasurement::in_plane of a unit ray, with its derivative.
-Vec2 placeInPlane(DistortionModel model, const Vec3& ray, Mat23* by_ray) {
-  constexpr double kOnAxis = 1e-6;
-  const double sine = ray.head<2>().norm();
-  if (model != DistortionModel::Equidistant || sine < kOnAxis) {
-    const Vec2 place = ray.head<2>() / ray.z();
-    *by_ray << Mat2::Identity() / ray.z(), -place / ray.z();
-    return place;
-  }
-  const Vec2 outwards = ray.head<2>() / sine;
-  const double angle = std::atan2(sine, ray.z());
-  by_ray->leftCols<2>() =
-      angle / sine * Mat2::Identity() + (ray.z() - angle / sine) * outwards * outwards.transpose();
-  by_ray->col(2) = -sine * outwards;
-  return angle * outwards;
-}
-
 }  // namespace
 
-DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, const Vec3& bearing_C,
-                                                       double sigma_px) {
-  DirectionMeasurement measurement;
-  measurement.bearing_C = bearing_C;
-  measurement.tangent_C = tangentBasis(bearing_C);
-  Mat23 pixel_by_point;
-  const auto pixel = camera.project(bearing_C, &pixel_by_point);
-  measurement.sqrt_information = pixel_by_point * measurement.tangent_C / sigma_px;
-  const CameraCalibration& calibration = camera.calibration();
-  Mat23 in_plane_by_ray;
-  measurement.in_plane = placeInPlane(calibration.distortion_model, bearing_C, &in_plane_by_ray);
-  measurement.in_plane_by_sigmas =
-      in_plane_by_ray * measurement.tangent_C * measurement.sqrt_information.inverse();
-  measurement.focal_lengths_sigmas = Vec2(calibration.fx_px, calibration.fy_px) / sigma_px;
-  measurement.sigmas_per_px = 1.0 / sigma_px;
-  if (const auto centre = camera.project(Vec3::UnitZ()); pixel && centre)
-    measurement.from_centre_sigmas = (*pixel - *centre) / sigma_px;
-  return measurement;
-}
-
 LandmarkBase::LandmarkBase(const Vec3& bearing) : bearing_C(bearing), tangent_C(tangentBasis(bearing)) {}
-
-Vec2 directionResidual(const DirectionMeasurement& measurement, const Vec3& point_C, Mat23* by_point) {
-  const double depth = measurement.bearing_C.dot(point_C);
-  if (depth < kMinCosine * point_C.norm()) {
-    if (by_point) by_point->setZero();
-    return Vec2::Constant(kOutlierResidual);
-  }
-  const Vec2 offset = measurement.tangent_C.transpose() * point_C / depth;
-  if (by_point) {
-    *by_point = measurement.sqrt_information *
-                (measurement.tangent_C.transpose() - offset * measurement.bearing_C.transpose()) / depth;
-  }
-  return measurement.sqrt_information * offset;
-}
 
 /// The chain from landmark to target camera at one pair of poses, with all that the Jacobians need.
 struct ReprojectionFactor::Chain {

@@ -2,32 +2,10 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "lodeline/cameras/camera.h"
+#include "lodeline/factors/direction_measurement.h"
 #include "lodeline/geometry/rigid3.h"
 
 namespace lodeline {
-
-/// What one image says about the direction of a point: the unit ray z of the pixel, a basis B (3x2) of the
-/// plane normal to it, and the weight that turns an offset in that plane into pixels over their standard
-/// deviation,
-///   sqrt_information = d(pixel) / d(tangent offset) / sigma_px      (2x2).
-/// To first order a residual whitened this way is the pixel error over sigma, for every camera model and
-/// without evaluating the distortion again.
-struct DirectionMeasurement {
-  Vec3 bearing_C = Vec3::UnitZ();
-  Mat32 tangent_C = Mat32::Identity();
-  Mat2 sqrt_information = Mat2::Identity();
-  Vec2 from_centre_sigmas = Vec2::Zero();    ///< pixel minus principal point, over sigma_px
-  double sigmas_per_px = 1.0;                ///< 1 / sigma_px
-  Vec2 focal_lengths_sigmas = Vec2::Ones();  ///< over sigma_px
-  /// Where the ray lies in the plane in which the lens' model counts its radius: as far from the centre as
-  /// the tangent of the angle off the axis, of an equidistant lens the angle.
-  Vec2 in_plane = Vec2::Zero();
-  Mat2 in_plane_by_sigmas = Mat2::Zero();  ///< d(in_plane) / d(pixel over sigma_px)
-
-  /// From a pixel's ray. The camera must be able to project that ray.
-  static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
-};
 
 /// A point as seen from its host camera: the direction d = base + tangent * (a, b), not normalised, and the
 /// inverse distance rho (1/m) along `base`, so that the point lies at d / rho. The parameter block is (a, b,
@@ -51,7 +29,7 @@ constexpr int kLandmarkSize = 3;
 /// R_t, p_t and extrinsics R_BC, p_BC of host and target camera,
 ///   P = R_h (R_BC d + rho p_BC) + rho p_h                  (rho times the point in the world)
 ///   q = R_BC'^T (R_t^T (P - rho p_t) - rho p_BC')          (rho times the point in the target camera)
-///   e = sqrt_information * B^T q / (z^T q).
+///   e = directionResidual(q).
 /// A point that falls behind the target's image plane is a gross outlier: constant error, zero Jacobian.
 class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandmarkSize> {
  public:
@@ -87,9 +65,5 @@ class HostReprojectionFactor final : public ceres::SizedCostFunction<2, kLandmar
   Mat3 target_rotation_host_;
   Vec3 target_translation_host_;
 };
-
-/// Residual of a DirectionMeasurement for the homogeneous point q (target camera frame, any positive scale),
-/// with the derivative d(residual)/dq where asked for.
-Vec2 directionResidual(const DirectionMeasurement& measurement, const Vec3& point_C, Mat23* by_point);
 
 }  // namespace lodeline

@@ -49,7 +49,7 @@ TEST(ReprojectionFactor, ResidualIsThePixelErrorOverSigma) {
   const Vec2 noise_px(0.31, -0.22);
   const Vec3 seen = *scene.camera->unproject(pixel + noise_px);
   const Vec2 residual = evaluate(scene.factor(scene.measurement(seen, 0.5)), scene.parameters());
-  EXPECT_LT((residual + noise_px / 0.5).norm(), 2e-3);
+  EXPECT_LT((residual + noise_px / 0.5).norm(), 2e-6);
 }
 
 TEST(ReprojectionFactor, IsWhitened) {

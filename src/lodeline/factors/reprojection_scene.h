@@ -50,6 +50,15 @@ struct ReprojectionScene {
   }
 };
 
+/// The same camera with another lens.
+inline CameraCalibration withModel(DistortionModel model) {
+  CameraCalibration file = ReprojectionScene::calibration();
+  file.distortion_model = model;
+  if (model == DistortionModel::None) file.distortion.clear();
+  if (model == DistortionModel::Equidistant) file.distortion = {-0.02, 0.01, -0.003, 0.001};
+  return file;
+}
+
 /// The residual of a factor of two rows.
 inline Vec2 evaluate(const ceres::CostFunction& factor, const std::vector<Eigen::VectorXd>& parameters) {
   std::vector<const double*> pointers;
