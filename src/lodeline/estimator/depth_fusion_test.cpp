@@ -163,10 +163,8 @@ TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
 }
 
 /// A descent of 8 m.
-FrameEstimate endOfDescent(double density_ratio, const std::function<void(EstimatorOptions*)>& change,
-                           double pixel_sigma_px = PointSimulationOptions().pixel_sigma_px) {
+FrameEstimate endOfDescent(double density_ratio, const std::function<void(EstimatorOptions*)>& change) {
   TestSceneOptions options = sceneOptions(40.0);
-  options.points.pixel_sigma_px = pixel_sigma_px;
   options.points.frame_rate_hz = 5.0;
   options.drift_m_per_s = Vec3(0.0, 0.0, -0.2);
   EstimatorOptions estimator = honestOptions(options);
@@ -197,14 +195,12 @@ TEST(DepthFusion, KnowsFreshWaterAndSalt) {
 // Images claim the ratio to less than half a per cent here, and are not worth more than 0.7: with a
 // calibration that they have not confirmed, so the right one of this scene is not to be.
 TEST(DepthFusion, WeighsKnownWatersAgainstWhatCrookedCamerasAreWorth) {
-  constexpr double kNoise_px = 0.7;
   const auto descend = [](bool known_waters) {
-    const auto change = [known_waters](EstimatorOptions* options) {
-      options->camera_calibration.enabled = true;
-      options->camera_calibration.trust_confirmed_files = false;
-      options->depth.known_waters = known_waters;
-    };
-    return *endOfDescent(1.0, change, kNoise_px).depth.gauge;
+    return *endOfDescent(1.0, [known_waters](EstimatorOptions* options) {
+              options->camera_calibration.enabled = true;
+              options->camera_calibration.trust_confirmed_files = false;
+              options->depth.known_waters = known_waters;
+            }).depth.gauge;
   };
   const DepthEstimate::Gauge known = descend(true), seen = descend(false);
   EXPECT_GT(std::abs(seen.density_ratio - 1.0), 0.007) << "too easy a scene";

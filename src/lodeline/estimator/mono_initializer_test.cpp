@@ -152,7 +152,7 @@ TEST(MonoInitializer, StartsWellWhereTheRigHasRested) {
   constexpr int kSeeds = 6;
   for (const bool is_watched : {true, false}) {
     const AfterRest mean = afterRest(kSeeds, is_watched);
-    EXPECT_LT(std::sqrt(mean.squared_error_m2), 0.02) << is_watched;
+    EXPECT_LT(std::sqrt(mean.squared_error_m2), 0.012) << is_watched;
     EXPECT_LT(mean.nees, neesBounds(6, kSeeds).high) << is_watched;
   }
 }

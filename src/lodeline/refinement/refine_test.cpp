@@ -200,8 +200,10 @@ TEST(Refine, LosesTheStrayingSightingsAlone) {
 }
 
 TEST(Refine, LeavesLensesAsTheRunFoundThem) {
-  const ForwardRun run(smallScene(2), 0.5, {},
-                       [](EstimatorOptions& options) { options.camera_calibration.enabled = true; });
+  const ForwardRun run(smallScene(2), 0.5, {}, [](EstimatorOptions& options) {
+    options.camera_calibration.enabled = true;
+    options.camera_calibration.trust_confirmed_files = false;
+  });
   BatchProblem problem(run.scene.rig(), run.options, run.record);
   SkylineMatrix hessian = problem.emptyMatrix();
   Eigen::VectorXd gradient;
