@@ -47,17 +47,21 @@ Mat23 imageCurvature(const Camera& camera, const Vec3& ray, const Mat32& tangent
 
 /// The quadratic part of a residual, damped far off, where it describes no lens.
 struct Quadratic {
+  static constexpr double kFar_rad = 0.1;
+  double damping;
   Vec2 value;
-  Mat2 by_offset;
 
-  Quadratic(const Mat23& curvature, const Vec2& offset) {
-    constexpr double kFar = 0.1;
+  Quadratic(const Mat23& curvature, const Vec2& offset)
+      : damping(1.0 / std::sqrt(1.0 + offset.squaredNorm() / (kFar_rad * kFar_rad))) {
     const double a = offset.x(), b = offset.y();
-    const double damping = 1.0 / std::sqrt(1.0 + offset.squaredNorm() / (kFar * kFar));
     value = curvature * (damping * Vec3(0.5 * a * a, a * b, 0.5 * b * b));
-    by_offset.col(0) = damping * (a * curvature.col(0) + b * curvature.col(1));
-    by_offset.col(1) = damping * (a * curvature.col(1) + b * curvature.col(2));
-    by_offset -= value * (damping * damping / (kFar * kFar) * offset).transpose();
+  }
+  Mat2 byOffset(const Mat23& curvature, const Vec2& offset) const {
+    Mat2 by_offset;
+    by_offset.col(0) = damping * (offset.x() * curvature.col(0) + offset.y() * curvature.col(1));
+    by_offset.col(1) = damping * (offset.x() * curvature.col(1) + offset.y() * curvature.col(2));
+    by_offset -= value * (damping * damping / (kFar_rad * kFar_rad) * offset).transpose();
+    return by_offset;
   }
 };
 
@@ -94,7 +98,7 @@ Vec2 directionResidual(const DirectionMeasurement& measurement, const Vec3& poin
   const Vec2 offset = measurement.tangent_C.transpose() * point_C / depth;
   const Quadratic quadratic(measurement.curvature, offset);
   if (by_point) {
-    *by_point = (measurement.sqrt_information + quadratic.by_offset) *
+    *by_point = (measurement.sqrt_information + quadratic.byOffset(measurement.curvature, offset)) *
                 (measurement.tangent_C.transpose() - offset * measurement.bearing_C.transpose()) / depth;
   }
   return measurement.sqrt_information * offset + quadratic.value;

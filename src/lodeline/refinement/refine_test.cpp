@@ -202,7 +202,7 @@ TEST(Refine, LosesTheStrayingSightingsAlone) {
 TEST(Refine, LeavesLensesAsTheRunFoundThem) {
   const ForwardRun run(smallScene(2), 0.5, {}, [](EstimatorOptions& options) {
     options.camera_calibration.enabled = true;
-    options.camera_calibration.trust_confirmed_files = false;
+    options.camera_calibration.trust_confirmed_files = false;  // or these, which are right, would be held
   });
   BatchProblem problem(run.scene.rig(), run.options, run.record);
   SkylineMatrix hessian = problem.emptyMatrix();
