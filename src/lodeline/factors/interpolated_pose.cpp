@@ -12,24 +12,8 @@ PoseInterpolation::PoseInterpolation(const Rigid3& before, const Rigid3& pose, c
     : share_(share),
       bow_B_(before.rotation.conjugate() *
              Vec3(pose.translation - (1.0 - share) * before.translation - share * after.translation)),
-      chord_B_(chord_B(before, after)),
       before_from_this_(before.rotation.conjugate() * pose.rotation),
-      before_from_after_(before.rotation.conjugate() * after.rotation) {
-  // A bow that is much longer than its chord, of a sway that ends where it began, would grow with the chord's
-  // noise rather than with the scale.
-  constexpr double kShortChord = 0.3;  // of the bow
-  const double squared_m2 = chord_B_.squaredNorm() + kShortChord * kShortChord * bow_B_.squaredNorm();
-  growth_per_m_ = squared_m2 > 0.0 ? Vec3(chord_B_ / squared_m2) : Vec3::Zero();
-}
-
-Vec3 PoseInterpolation::chord_B(const Rigid3& before, const Rigid3& after) {
-  return before.rotation.conjugate() * Vec3(after.translation - before.translation);
-}
-
-Vec3 PoseInterpolation::bow_W(const Rigid3& before, const Rigid3& after) const {
-  const double growth = growth_per_m_.dot(chord_B(before, after) - chord_B_);
-  return before.rotation * Vec3((1.0 + growth) * bow_B_);
-}
+      before_from_after_(before.rotation.conjugate() * after.rotation) {}
 
 Vec3 PoseInterpolation::closing_W(const Rigid3& before, const Rigid3& after) const {
   return so3::log(after.rotation * (before.rotation * before_from_after_).conjugate());
@@ -38,7 +22,7 @@ Vec3 PoseInterpolation::closing_W(const Rigid3& before, const Rigid3& after) con
 Rigid3 PoseInterpolation::pose(const Rigid3& before, const Rigid3& after) const {
   const Quat rotation = so3::exp(share_ * closing_W(before, after)) * before.rotation * before_from_this_;
   return Rigid3(rotation.normalized(),
-                (1.0 - share_) * before.translation + share_ * after.translation + bow_W(before, after));
+                (1.0 - share_) * before.translation + share_ * after.translation + before.rotation * bow_B_);
 }
 
 PoseInterpolation::Derivatives PoseInterpolation::derivatives(const Rigid3& before,
@@ -47,15 +31,13 @@ PoseInterpolation::Derivatives PoseInterpolation::derivatives(const Rigid3& befo
   // log(exp(d) exp(v)) = v + J_l^-1(v) d, with J_l^-1(v) = J_r^-1(-v).
   const Mat3 by_closing =
       share_ * so3::leftJacobian(share_ * closing_W) * so3::rightJacobianInverse(-closing_W);
-  const Mat3 bow_by_chord = (before.rotation * bow_B_) * (before.rotation * growth_per_m_).transpose();
   Derivatives by;
   by.by_after.setZero();
-  by.by_after.topLeftCorner<3, 3>() = share_ * Mat3::Identity() + bow_by_chord;
+  by.by_after.topLeftCorner<3, 3>() = share_ * Mat3::Identity();
   by.by_after.bottomRightCorner<3, 3>() = by_closing;
   by.by_before.setZero();
-  by.by_before.topLeftCorner<3, 3>() = (1.0 - share_) * Mat3::Identity() - bow_by_chord;
-  by.by_before.topRightCorner<3, 3>() =
-      bow_by_chord * so3::skew(after.translation - before.translation) - so3::skew(bow_W(before, after));
+  by.by_before.topLeftCorner<3, 3>() = (1.0 - share_) * Mat3::Identity();
+  by.by_before.topRightCorner<3, 3>() = -so3::skew(before.rotation * bow_B_);
   by.by_before.bottomRightCorner<3, 3>() =
       so3::exp(share_ * closing_W).toRotationMatrix() - by_closing * so3::exp(closing_W).toRotationMatrix();
   return by;

@@ -11,11 +11,8 @@ namespace lodeline {
 /// Where a body was at a moment between two others, as a function of its poses then. With share s of the time
 /// between them,
 ///   p = (1 - s) p_b + s p_a + R_b w,   R = exp(s log(R_a D_a^T R_b^T)) R_b D,
-/// where D and D_a (this and the later attitude, seen from the earlier) are as they were when the poses were
-/// known best, and so is the shape of w, the bow over the chord: it grows with the chord. A rigid motion of
-/// both takes the moment along, and so does a change of scale. (A bow of as many metres as it once had would
-/// tell images the scale that it was estimated with: dives of points whose baseline was given 2 % too long
-/// took what the accelerometer said against that for a third of what it was.)
+/// where w (the bow over the chord), D and D_a (this and the later attitude, seen from the earlier) are as
+/// they were when the poses were known best. A rigid motion of both takes the moment along.
 class PoseInterpolation {
  public:
   /// `share` lies between 0 and 1.
@@ -33,12 +30,8 @@ class PoseInterpolation {
   /// What the later attitude has turned by since, against the earlier; world axes.
   Vec3 closing_W(const Rigid3& before, const Rigid3& after) const;
 
-  static Vec3 chord_B(const Rigid3& before, const Rigid3& after);
-  Vec3 bow_W(const Rigid3& before, const Rigid3& after) const;
-
   double share_;
-  Vec3 bow_B_, chord_B_;  ///< over and along the way between the poses, as they were
-  Vec3 growth_per_m_;     ///< of the bow, relative, with the chord
+  Vec3 bow_B_;
   Quat before_from_this_, before_from_after_;
 };
 
