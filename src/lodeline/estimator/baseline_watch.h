@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Says when a further camera turns out to sit elsewhere than its calibration says (BaselineBelief):
+/// Says when a further camera turns out to sit elsewhere than its calibration says (FactorMaker::placement):
 /// by as much of its distance from the first camera, every length was wrong until it was found.
 class BaselineWatch {
  public:

@@ -1,7 +1,6 @@
 #include "lodeline/estimator/camera_states.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
@@ -19,15 +18,14 @@ std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera
 
 std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
 
-GlobalState& addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
-                      const Vec3& start = Vec3::Zero()) {
+void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
+              const Vec3& start = Vec3::Zero()) {
   GlobalState state;
   state.name = name;
   state.value.assign(static_cast<size_t>(sigmas.size()), 0.0);
   if (!start.isZero()) std::copy_n(start.data(), 3, state.value.begin());
   GlobalState& added = window.add(std::move(state));
   prior.append(added.value.data(), static_cast<int>(sigmas.size()), sigmas.cwiseMax(kHeld));
-  return added;
 }
 
 Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
@@ -36,8 +34,8 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
-/// Of a further camera's position only that it is somewhere on the rig: its belief has the rest
-/// (BaselineBelief).
+/// Of a further camera's position only that it is somewhere on the rig: FactorMaker::placement() has the
+/// rest.
 Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
   constexpr double kSomewhere_m = 0.05;
   return extrinsicsSigmas(options.stereo_rotation_sigma_rad,
@@ -64,10 +62,8 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
            extrinsicsSigmas(options.rotation_sigma_rad, options.position_sigma_m));
   addState(window, prior, kTimeOffset, Eigen::VectorXd::Constant(1, options.time_offset_sigma_s));
   for (size_t camera = 1; camera < static_cast<size_t>(cameras); ++camera) {
-    GlobalState& further = addState(window, prior, extrinsicsName(camera), stereoSigmas(options),
-                                    camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
-    if (options.stereo_position_sigma_m > 0.0)
-      further.believe(kPlace, std::vector<Belief>(3, {0.0, options.stereo_position_sigma_m}));
+    addState(window, prior, extrinsicsName(camera), stereoSigmas(options),
+             camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
   }
 }
 
@@ -101,15 +97,12 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   if (!states) return std::nullopt;
   CameraCorrections corrections;
   corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(states.camera0->value.data()));
-  for (const GlobalState* further : states.further) {
+  for (const GlobalState* further : states.further)
     corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(further->value.data()));
-    corrections.place_sigmas_m.push_back(further->belief(kPlace).sigma);
-  }
   corrections.time_offset_s = states.timeOffset_s();
   for (const GlobalState* lens : states.intrinsics)
     corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));
-  corrections.are_files_held =
-      !states.intrinsics.empty() && std::isfinite(states.intrinsics.front()->belief(0).sigma);
+  corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->beliefs.empty();
   return corrections;
 }
 

@@ -9,9 +9,6 @@
 
 namespace lodeline {
 
-/// Where the coordinates of a camera's position begin in the state of its placement.
-constexpr size_t kPlace = 3;
-
 /// The global states of the camera calibration, see factors/calibrated_reprojection_factor.h; null and empty
 /// where it is not estimated.
 struct CameraStates {
@@ -48,9 +45,6 @@ struct CameraCorrections {
   /// Of each camera as in factors/intrinsics_factor.h; empty where the lenses are not estimated.
   std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
   bool are_files_held = false;  ///< of lenses and further cameras' rotations, see LensTrust
-  /// How well camera 1, 2, ... are believed to be where their files say, m; infinite: not. See
-  /// BaselineBelief.
-  std::vector<double> place_sigmas_m;
 };
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 

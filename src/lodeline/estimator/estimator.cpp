@@ -71,7 +71,6 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       magnetometer_(rig_, options_, diagnostics),
       depth_(rig_, options_, diagnostics),
       lens_trust_(options_.camera_calibration),
-      baseline_belief_(rig_, options_),
       scale_(rig_, options_),
       rest_(rig_, options_.rest),
       unmodelled_(options_) {
@@ -173,7 +172,6 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
   marginalizer_.shorten(window_,
                         isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
   if (!is_settled_) marginalizer_.relinearise(window_);
-  if (baseline_belief_.isMoving()) marginalizer_.relinearise(window_, cameraStates(window_).further);
 }
 
 bool Estimator::isWorthKeeping(Time now) const {
@@ -309,7 +307,6 @@ void Estimator::startMagnetometer() {
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
   estimate->covariance = claimedCovariance(covariance, window_, factors_, options_);
   lens_trust_.remember(covariance, window_);
-  baseline_belief_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
 }

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "lodeline/base/diagnostics.h"
-#include "lodeline/estimator/baseline_belief.h"
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/dead_reckoning.h"
 #include "lodeline/estimator/depth_fusion.h"
@@ -121,7 +120,6 @@ class Estimator {
   MagnetometerFusion magnetometer_;
   DepthFusion depth_;
   LensTrust lens_trust_;
-  BaselineBelief baseline_belief_;
   ScaleBudget scale_;
   RestWatch rest_;
   bool rests_ = false;  ///< at the newest frame

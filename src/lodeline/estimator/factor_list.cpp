@@ -45,6 +45,7 @@ double costOf(const Factor& factor, std::vector<double>& residual) {
 FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
     : gravity_W_(options.gravity_W),
       gyroscope_axes_sigma_(options.imu_axes.gyroscope_sigma),
+      placement_sigma_m_(options.camera_calibration.stereo_position_sigma_m),
       robust_scale_(options.solver.robust_scale_sigmas) {
   if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
   for (const CameraCalibration& camera : rig.cameras) {
@@ -129,6 +130,18 @@ std::optional<Factor> FactorMaker::belief(GlobalState& state) const {
   Factor factor;
   factor.function = std::make_unique<ceres::NormalPrior>(ceres::Matrix(information_root.asDiagonal()), value);
   factor.blocks = {state.value.data()};
+  return factor;
+}
+
+std::optional<Factor> FactorMaker::placement(GlobalState& further) const {
+  constexpr double kUsualNorm = 1.0, kUsualNormOfHeld = 0.5;  // of three sigmas
+  if (placement_sigma_m_ <= 0.0) return std::nullopt;
+  ceres::Matrix whitening = ceres::Matrix::Zero(3, kExtrinsicsSize);
+  whitening.rightCols<3>().diagonal().setConstant(1.0 / placement_sigma_m_);
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Zero(kExtrinsicsSize));
+  factor.loss = std::make_shared<ceres::CauchyLoss>(further.beliefs.empty() ? kUsualNorm : kUsualNormOfHeld);
+  factor.blocks = {further.value.data()};
   return factor;
 }
 

@@ -49,6 +49,10 @@ class FactorMaker {
   std::optional<Factor> depth(const Window& window, Frame& frame) const;
   /// What is believed of a state beside all measurements (GlobalState::beliefs), if anything.
   std::optional<Factor> belief(GlobalState& state) const;
+  /// What is known beforehand of where a further camera sits, where that is estimated: as its file says, or
+  /// else anywhere. A Cauchy loss, narrower where lenses are held at their files (LensTrust): who measured
+  /// those well is off by a wrong length of the target or by nothing. Outside of the marginalisation prior.
+  std::optional<Factor> placement(GlobalState& further) const;
   /// That its velocity is zero, where the rig rests at that frame.
   std::optional<Factor> rest(Frame& frame) const;
   Factor prior(const Prior& prior) const;
@@ -73,6 +77,7 @@ class FactorMaker {
   Vec3 port_B_ = Vec3::Zero();  ///< pressure port, m
   Vec3 gravity_W_;
   double gyroscope_axes_sigma_;
+  double placement_sigma_m_;
   double robust_scale_;
 };
 

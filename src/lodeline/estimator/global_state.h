@@ -1,15 +1,17 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/belief.h"
 #include "lodeline/factors/parameters.h"
 
 namespace lodeline {
+
+/// A number as it is believed to be: a normal distribution.
+struct Belief {
+  double value = 0.0, sigma = 0.0;
+};
 
 /// A quantity that the window estimates but that belongs to no frame: a field vector, a sensor's offset, an
 /// extrinsic calibration, a time offset. Factors name its block like that of a frame; solver, normal
@@ -37,13 +39,6 @@ struct GlobalState {
   bool isPose() const { return value.size() == kPoseSize; }
   int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(value.size()); }
   const double* firstEstimate() const { return first ? first->data() : nullptr; }
-  /// Believes `told` of the coordinates from `begin` on, and of all others what it did before.
-  void believe(size_t begin, const std::vector<Belief>& told) {
-    beliefs.resize(value.size(), kNothingKnown);
-    std::copy(told.begin(), told.end(), beliefs.begin() + static_cast<std::ptrdiff_t>(begin));
-  }
-  /// Of one coordinate, kNothingKnown where there is none.
-  Belief belief(size_t coordinate) const { return beliefs.empty() ? kNothingKnown : beliefs[coordinate]; }
 };
 
 }  // namespace lodeline

@@ -17,6 +17,24 @@ constexpr std::array<Water, 3> kWaters{
 constexpr double kShareOfTheRest = 0.2;
 constexpr double kRangeOfTheRest = 0.08;
 
+double informationOf(const Belief& ratio) { return 1.0 / (ratio.sigma * ratio.sigma); }
+
+/// Of two normal distributions that both hold.
+Belief product(const Belief& a, const Belief& b) {
+  const double information = informationOf(a) + informationOf(b);
+  return {(a.value * informationOf(a) + b.value * informationOf(b)) / information,
+          1.0 / std::sqrt(information)};
+}
+
+/// The normal distribution that times `part` gives `whole`, where there is one.
+std::optional<Belief> quotient(const Belief& whole, const Belief& part) {
+  constexpr double kLeast = 1e-3;  // of the whole's information: less is rounding
+  const double information = informationOf(whole) - informationOf(part);
+  if (!(information > kLeast * informationOf(whole))) return std::nullopt;
+  return Belief{(whole.value * informationOf(whole) - part.value * informationOf(part)) / information,
+                1.0 / std::sqrt(information)};
+}
+
 }  // namespace
 
 Belief amongKnownWaters(const Belief& seen) {
@@ -37,6 +55,14 @@ Belief amongKnownWaters(const Belief& seen) {
   }
   const double moved = first / sum;
   return {seen.value + moved, std::sqrt(second / sum - moved * moved)};
+}
+
+std::optional<Belief> likelihoodBetween(const Belief& seen, const Belief& known) {
+  return quotient(known, seen);
+}
+
+std::optional<Belief> without(const Belief& likelihood, const Belief& known) {
+  return quotient(known, likelihood);
 }
 
 }  // namespace lodeline

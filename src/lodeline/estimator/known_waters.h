@@ -1,6 +1,8 @@
 #pragma once
 
-#include "lodeline/estimator/belief.h"
+#include <optional>
+
+#include "lodeline/estimator/global_state.h"
 
 namespace lodeline {
 
@@ -13,5 +15,12 @@ constexpr double kOneWaterSigma = 0.004;
 /// halocline on the way and a gauge with a scale of its own are the rest, which may be anything near. The
 /// posterior of a mixture of normals and a constant; `seen.sigma` must be positive.
 Belief amongKnownWaters(const Belief& seen);
+
+/// The normal likelihood that turns what was `seen` into what is `known` (moment matching, as in expectation
+/// propagation: Minka 2001). Nothing where no more is known than was seen, as between two waters.
+std::optional<Belief> likelihoodBetween(const Belief& seen, const Belief& known);
+
+/// What was seen before `likelihood` turned it into `known`; nothing where the likelihood is all there is.
+std::optional<Belief> without(const Belief& likelihood, const Belief& known);
 
 }  // namespace lodeline

@@ -137,23 +137,20 @@ void LensTrust::remember(const JointCovariance& covariance, Window& window) {
 
 void believeInFiles(const Window& window, const CameraCalibrationOptions& options, bool is_believed) {
   for (const auto& [state, sigmas] : judgedStates(window, options)) {
-    std::vector<Belief> told(static_cast<size_t>(sigmas.size()), kNothingKnown);
-    if (is_believed)
-      std::transform(sigmas.begin(), sigmas.end(), told.begin(), [](double s) {
-        return Belief{0.0, kHeld * s};
-      });
-    state->believe(0, told);
+    state->beliefs.clear();
+    if (!is_believed) continue;
+    state->beliefs.assign(state->value.size(), {0.0, std::numeric_limits<double>::infinity()});
+    for (Eigen::Index i = 0; i < sigmas.size(); ++i)
+      state->beliefs[static_cast<size_t>(i)].sigma = kHeld * sigmas[i];
   }
 }
-
-bool isHeldAtFile(const GlobalState& state) { return std::isfinite(state.belief(0).sigma); }
 
 std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimedFileInformation(
     const Window& window, const CameraCalibrationOptions& options) {
   constexpr double kUnclaimed = 1.0 / (kHeld * kHeld) - 1.0 / (kFileTolerance * kFileTolerance);
   std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimed;
   for (const auto& [state, sigmas] : judgedStates(window, options)) {
-    if (!isHeldAtFile(*state)) continue;
+    if (state->beliefs.empty()) continue;
     Eigen::VectorXd information = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(state->value.size()));
     information.head(sigmas.size()) = kUnclaimed * sigmas.cwiseAbs2().cwiseInverse();
     unclaimed.emplace_back(state->value.data(), Eigen::MatrixXd(information.asDiagonal()));

@@ -27,7 +27,7 @@ double evidenceForFile(const Eigen::VectorXd& seen, const Eigen::MatrixXd& covar
 /// for it, and let go when it is not. Asked is the mean of all lenses: cameras that agree with one another
 /// confirm no file, since one target or one port in front of them all makes the same error. But no single
 /// number may speak against it, nor any difference between lenses. Of a baseline that is off, which is an
-/// error of scale, images say nothing, but the accelerometer does: that is for BaselineBelief.
+/// error of scale, images say nothing, but the accelerometer does: it stays free (FactorMaker::placement).
 class LensTrust {
  public:
   explicit LensTrust(const CameraCalibrationOptions& options) : options_(options) {}
@@ -43,9 +43,6 @@ class LensTrust {
 /// Holds lenses and further cameras' rotations at their files (GlobalState::beliefs), or frees them; nothing
 /// where the lenses are not estimated.
 void believeInFiles(const Window& window, const CameraCalibrationOptions& options, bool is_believed);
-
-/// Whether a state of those is so held.
-bool isHeldAtFile(const GlobalState& state);
 
 /// Of each state that is so held, the information that is used and not to be claimed.
 std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimedFileInformation(

@@ -133,7 +133,7 @@ void Marginalizer::shorten(Window& window, const WindowOptions& wanted) {
   while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window, wanted.keyframes_after_cut);
 }
 
-void Marginalizer::relinearise(Window& window, const std::vector<GlobalState*>& globals) {
+void Marginalizer::relinearise(Window& window) {
   if (prior_.empty()) return;
   const auto difference = [&] {
     std::vector<const double*> values;
@@ -147,13 +147,6 @@ void Marginalizer::relinearise(Window& window, const std::vector<GlobalState*>& 
     frame->first_motion.reset();
     for (Prior::Block& block : prior_.blocks) {
       if (block.value == frame->pose.data() || block.value == frame->motion.data())
-        block.first_estimate = Eigen::Map<const Eigen::VectorXd>(block.value, block.first_estimate.size());
-    }
-  }
-  for (GlobalState* state : globals) {
-    state->first.reset();
-    for (Prior::Block& block : prior_.blocks) {
-      if (block.value == state->value.data())
         block.first_estimate = Eigen::Map<const Eigen::VectorXd>(block.value, block.first_estimate.size());
     }
   }

@@ -24,13 +24,12 @@ class Marginalizer {
 
   const Prior& prior() const { return prior_; }
 
-  /// Takes the first estimates of the frames, and of those `globals`, back: the prior is expressed about
-  /// their present values, and every factor is linearised where the frames are until the prior touches them
-  /// again. Neither translations nor a turn of everything about gravity become known by it. For frames that
-  /// may still move by as much as the baselines between them: a landmark's derivative would be taken along
-  /// the baseline from one frame's first estimate to another frame's present value, which then points
-  /// anywhere.
-  void relinearise(Window& window, const std::vector<GlobalState*>& globals = {});
+  /// Takes the frames' first estimates back: the prior is expressed about their present values, and every
+  /// factor is linearised where the frames are until the prior touches them again. Neither translations nor a
+  /// turn of everything about gravity become known by it. For frames that may still move by as much as the
+  /// baselines between them: a landmark's derivative would be taken along the baseline from one frame's first
+  /// estimate to another frame's present value, which then points anywhere.
+  void relinearise(Window& window);
 
   /// Adds what is known of a global state from elsewhere: `sigmas` about its present value.
   void addKnowledge(GlobalState& state, const Eigen::VectorXd& sigmas) {

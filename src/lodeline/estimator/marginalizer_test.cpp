@@ -217,26 +217,6 @@ TEST(Marginalizer, WithoutFirstEstimatesWouldInventAHeading) {
   EXPECT_GT(without[3], 1e3 * with[3]);
 }
 
-TEST(Marginalizer, RelinearisesTheGlobalStatesItIsTold) {
-  TestWindow test(2);
-  Marginalizer marginalizer(test.factors);
-  GlobalState& told = test.window.add({"told", {0.0, 0.0}, std::nullopt, 0.0, false});
-  GlobalState& other = test.window.add({"other", {0.0}, std::nullopt, 0.0, false});
-  marginalizer.addKnowledge(told, Eigen::Vector2d(0.1, 0.2));
-  marginalizer.addKnowledge(other, Eigen::VectorXd::Constant(1, 0.1));
-  told.first = told.value;
-  other.first = other.value;
-  told.value = {0.3, -0.1};
-  other.value = {0.2};
-  const double cost = PriorTerms(marginalizer.prior()).cost();
-  marginalizer.relinearise(test.window, {&told});
-  EXPECT_FALSE(told.first);
-  EXPECT_TRUE(other.first);
-  EXPECT_EQ(marginalizer.prior().blocks[0].first_estimate[0], 0.3);
-  EXPECT_EQ(marginalizer.prior().blocks[1].first_estimate[0], 0.0);
-  EXPECT_NEAR(PriorTerms(marginalizer.prior()).cost(), cost, 1e-9 * cost);
-}
-
 TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
   TestWindow test(2);
   Marginalizer marginalizer(test.factors);

@@ -106,7 +106,7 @@ struct CameraCalibrationOptions {
   double position_sigma_m = 0.01;
   double time_offset_sigma_s = 0.005;
   /// Further cameras to camera 0. Their distance is the first ruler of a stereo rig, and files state it well,
-  /// or as wrong as the length of the calibration target was (see BaselineBelief).
+  /// or as wrong as the length of the calibration target was (see FactorMaker::placement).
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
   /// The lens as well (factors/intrinsics_factor.h), as soon as the window has settled: the start of one

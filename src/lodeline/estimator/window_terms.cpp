@@ -1,5 +1,7 @@
 #include "lodeline/estimator/window_terms.h"
 
+#include "lodeline/estimator/camera_states.h"
+
 namespace lodeline {
 namespace {
 
@@ -14,6 +16,9 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors) {
   std::vector<Factor> terms;
   if (auto axes = factors.gyroscopeAxes(window)) terms.push_back(std::move(*axes));
+  for (GlobalState* further : cameraStates(window).further) {
+    if (auto placement = factors.placement(*further)) terms.push_back(std::move(*placement));
+  }
   for (const auto& state : window.globals()) {
     if (auto belief = factors.belief(*state)) terms.push_back(std::move(*belief));
   }

@@ -14,7 +14,7 @@ struct WindowTerms {
 };
 
 /// What is known of global states beside all measurements and the prior, whose shape a prior cannot hold or
-/// which may change: axes of the gyroscope, beliefs.
+/// which may change: axes of the gyroscope, places of further cameras, beliefs.
 std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors);
 
 /// Those of them that are no landmarks', without the prior. Inertial terms whose biases moved too far are

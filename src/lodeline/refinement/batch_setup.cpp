@@ -189,11 +189,7 @@ void BatchProblem::holdLenses(const GlobalValues& globals) {
 
 void BatchProblem::believeInFilesAsBefore(const ForwardRecord& record) {
   const auto& corrections = record.frames().back().camera_corrections;
-  if (!corrections) return;
-  believeInFiles(window_, options_.camera_calibration, corrections->are_files_held);
-  const std::vector<GlobalState*> further = cameraStates(window_).further;
-  for (size_t i = 0; i < further.size(); ++i)
-    further[i]->believe(kPlace, std::vector<Belief>(3, {0.0, corrections->place_sigmas_m[i]}));
+  if (corrections) believeInFiles(window_, options_.camera_calibration, corrections->are_files_held);
 }
 
 void BatchProblem::addGyroscopeAxes(const GlobalValues& globals) {
