@@ -48,6 +48,8 @@ Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options) {
   return Vec3::Constant(std::max(options.stereo_rotation_sigma_rad, kHeld));
 }
 
+double placementLossWidth(const GlobalState& further) { return further.beliefs.empty() ? 1.0 : 0.5; }
+
 Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options) {
   Eigen::VectorXd sigmas(kIntrinsicsSize);
   sigmas << Vec2::Constant(options.focal_length_sigma), Vec2::Constant(options.principal_point_sigma_px),

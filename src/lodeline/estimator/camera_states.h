@@ -30,6 +30,11 @@ void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibr
 
 CameraStates cameraStates(const Window& window);
 
+/// Width of the Cauchy loss on where a further camera sits, in sigmas of what its file says
+/// (FactorMaker::placement): half as wide where its file is held, which is then wrong in lengths or not at
+/// all.
+double placementLossWidth(const GlobalState& further);
+
 /// Prior sigmas of each coordinate of a further camera's rotation (the first of its placement) and of a lens.
 Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options);
 Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options);

@@ -134,13 +134,12 @@ std::optional<Factor> FactorMaker::belief(GlobalState& state) const {
 }
 
 std::optional<Factor> FactorMaker::placement(GlobalState& further) const {
-  constexpr double kUsualNorm = 1.0, kUsualNormOfHeld = 0.5;  // of three sigmas
   if (placement_sigma_m_ <= 0.0) return std::nullopt;
   ceres::Matrix whitening = ceres::Matrix::Zero(3, kExtrinsicsSize);
   whitening.rightCols<3>().diagonal().setConstant(1.0 / placement_sigma_m_);
   Factor factor;
   factor.function = std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Zero(kExtrinsicsSize));
-  factor.loss = std::make_shared<ceres::CauchyLoss>(further.beliefs.empty() ? kUsualNorm : kUsualNormOfHeld);
+  factor.loss = std::make_shared<ceres::CauchyLoss>(placementLossWidth(further));
   factor.blocks = {further.value.data()};
   return factor;
 }

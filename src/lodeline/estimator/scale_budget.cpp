@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/lens_trust.h"
 
 namespace lodeline {
 namespace {
@@ -72,9 +74,19 @@ double ScaleBudget::stereoInformation(const Window& window) const {
   if (!baseline_m_) return 0.0;
   const std::optional<double> distance_m = meanLandmarkDistance_m(window, window.newest().id, 1);
   if (!distance_m) return 0.0;
-  const double by_position = calibration_.enabled ? calibration_.stereo_position_sigma_m / *baseline_m_ : 0.0;
-  const double by_rotation =
-      calibration_.enabled ? calibration_.stereo_rotation_sigma_rad * *distance_m / *baseline_m_ : 0.0;
+  double position_sigma_m = calibration_.enabled ? calibration_.stereo_position_sigma_m : 0.0;
+  double rotation_sigma_rad = calibration_.enabled ? calibration_.stereo_rotation_sigma_rad : 0.0;
+  const CameraStates states = cameraStates(window);
+  if (!states.further.empty()) {
+    const GlobalState& further = *states.further.front();
+    if (!further.beliefs.empty()) rotation_sigma_rad *= kFileTolerance;
+    const double found_m = Eigen::Map<const Vec3>(further.value.data() + 3).norm();
+    // The weight that the loss leaves is 1 / (1 + (x / width)^2).
+    if (position_sigma_m > 0.0)
+      position_sigma_m = std::hypot(position_sigma_m, found_m / placementLossWidth(further));
+  }
+  const double by_position = position_sigma_m / *baseline_m_;
+  const double by_rotation = rotation_sigma_rad * *distance_m / *baseline_m_;
   return 1.0 / (by_position * by_position + by_rotation * by_rotation + kUnstated * kUnstated);
 }
 

@@ -21,7 +21,8 @@ struct ScaleInformation {
 /// taken by itself, over the half-minute for which images hand a scale on:
 /// - stereo: the baseline b, known as the calibration is, sigma^2 = (sigma_b / b)^2 +
 ///   (sigma_rotation d / b)^2 at the mean distance d of what both cameras see (a turn of one camera moves all
-///   points);
+///   points). A rotation that images confirm is known to a tenth of its sigma (LensTrust); of a baseline that
+///   was found to be off, its file says as little as the robust loss has left of it;
 /// - accelerometer: changes of the acceleration against the noise of its integral; what is constant counts as
 ///   bias and tilt; never better than the 0.1 % that files leave open, nor than uncalibrated_sigma of an IMU
 ///   that was perhaps never calibrated (estimator/inertial_states.h);

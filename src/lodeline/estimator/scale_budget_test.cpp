@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/landmarks.h"
+#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/test_window.h"
+#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 namespace {
@@ -72,6 +75,38 @@ TEST(ScaleBudget, StereoIsAsGoodAsItsCalibration) {
   EXPECT_NEAR(by_fine / by_coarse, 4.0, 0.2);
   // Walls 4 m away, 11 cm apart: 0.002 * 4 / 0.11.
   EXPECT_NEAR(1.0 / std::sqrt(by_fine), 0.07, 0.03);
+}
+
+/// Sigma of the scale by two cameras whose baseline was found to be longer than its file says.
+double stereoSigma(double found_m, bool is_file_held, const CameraCalibrationOptions& calibration) {
+  EstimatorOptions options;
+  options.camera_calibration = calibration;
+  TestWindow test(2);
+  test.fill();
+  test.calibrate(std::vector<double>(kIntrinsicsSize, 0.0));
+  believeInFiles(test.window, calibration, is_file_held);
+  cameraStates(test.window).further.front()->value[3] = found_m;
+  return 1.0 / std::sqrt(ScaleBudget(test.rig, options).add(test.window, 1.0).stereo);
+}
+
+TEST(ScaleBudget, FileOfABaselineThatIsOffSaysLittle) {
+  CameraCalibrationOptions calibration;
+  calibration.stereo_rotation_sigma_rad = 0.0;
+  const double baseline_m = (TestWindow(2).rig.cameras[1].body_from_camera.translation -
+                             TestWindow(2).rig.cameras[0].body_from_camera.translation)
+                                .norm();
+  const double stated = std::hypot(calibration.stereo_position_sigma_m / baseline_m, 1e-3);
+  EXPECT_NEAR(stereoSigma(0.0, false, calibration), stated, 1e-9);
+  EXPECT_NEAR(stereoSigma(0.0, true, calibration), stated, 1e-9);
+  EXPECT_NEAR(stereoSigma(0.02, false, calibration), 0.02 / baseline_m, 1e-3);
+  EXPECT_NEAR(stereoSigma(0.02, true, calibration), 0.04 / baseline_m, 1e-3);
+}
+
+TEST(ScaleBudget, RotationThatImagesConfirmIsKnownTenTimesAsWell) {
+  CameraCalibrationOptions calibration;
+  calibration.stereo_position_sigma_m = 0.0;
+  const double free = stereoSigma(0.0, false, calibration), held = stereoSigma(0.0, true, calibration);
+  EXPECT_NEAR(held, std::hypot(free * kFileTolerance, 1e-3), 1e-4);
 }
 
 TEST(ScaleBudget, DepthCountsWhereTheRigSinksAndNeverBeyondTheWater) {
