@@ -98,6 +98,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--steps", magnetometer.step.enabled, "correct the field by its steps")
       ->capture_default_str();
+  app.add_option("--steps-from", magnetometer.step.settling_s, "s, when steps begin to be looked for")
+      ->capture_default_str();
+  app.add_option("--lamp-from", options.lamp_earliest_s, "s, the earliest that it is switched")
+      ->capture_default_str();
   app.add_option("--floor", magnetometer.floor_T, "T")->capture_default_str();
   app.add_option("--floor-correlation", magnetometer.floor_correlation_s, "s")->capture_default_str();
   app.add_option("--floor-freedom", magnetometer.floor_freedom, "degrees of it, of the floor's distribution")

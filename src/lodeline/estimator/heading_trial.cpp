@@ -39,7 +39,7 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
       drawn.passing.clear();
       return drawn;
     case FieldTrouble::Lamp:
-      drawn.switched = drawLampSwitching(options.duration_s, options.seed);
+      drawn.switched = drawLampSwitching(options.duration_s, options.seed, options.lamp_earliest_s);
       return drawn;
     default:
       return drawn;

@@ -38,6 +38,7 @@ struct HeadingTrialOptions {
   int cameras = 2;
   std::string imu_grade = "gx5-25";  ///< of simulation/imu_model.h, with its magnetometer
   FieldTrouble trouble = FieldTrouble::None;
+  double lamp_earliest_s = 30.0;  ///< it is first switched within 90 s from then on
   EstimatorOptions estimator;
   bool honest_imu = true;  ///< the estimator takes the IMU's noise for what it is (noise_inflation 1)
   /// Flicker noise of the biases, which the estimator's model has as a random walk.

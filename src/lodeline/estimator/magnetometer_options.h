@@ -62,7 +62,7 @@ struct FieldStepOptions {
   double max_slope = 0.4;
   /// Least share of a step that is not along the direction in which an error of heading shows.
   double min_besides_heading = 0.3;
-  double settling_s = 30.0;     ///< at the start, while tilt and heading become known
+  double settling_s = 12.0;     ///< at the start, while tilt and heading become known
   double relative_sigma = 0.1;  ///< of a step's size, as it is measured
   /// The first level is back when less than this share of the step is left of it for `return_s`.
   double returned_share = 0.3;

@@ -134,11 +134,11 @@ WanderingField drawWanderingField(double duration_s, double sigma_T, double corr
   return field;
 }
 
-std::vector<SwitchedCurrent> drawLampSwitching(double duration_s, uint64_t seed) {
+std::vector<SwitchedCurrent> drawLampSwitching(double duration_s, uint64_t seed, double earliest_s) {
   Random random(seed, "magnetic/lamp");
   std::vector<SwitchedCurrent> switched;
   const Vec3 cable_B = random.direction();
-  double t = random.uniform(30.0, 120.0);
+  double t = random.uniform(earliest_s, earliest_s + 90.0);
   while (t < duration_s) {
     const double on_s = random.uniform(20.0, 200.0);
     switched.push_back({t, on_s, random.uniform(0.1e-6, 0.4e-6) * cable_B});

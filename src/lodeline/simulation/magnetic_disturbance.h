@@ -69,8 +69,9 @@ struct DisturbanceOptions {
 MagneticDisturbances drawDisturbances(const Motion& motion, const Vec3& field_W,
                                       const DisturbanceOptions& options);
 
-/// The lamp switched off and on again (or dimmed) every few minutes, with 0.1 to 0.4 uT at the sensor.
-std::vector<SwitchedCurrent> drawLampSwitching(double duration_s, uint64_t seed);
+/// The lamp switched off and on again (or dimmed) every few minutes, with 0.1 to 0.4 uT at the sensor; first
+/// within 90 s from `earliest_s` on.
+std::vector<SwitchedCurrent> drawLampSwitching(double duration_s, uint64_t seed, double earliest_s = 30.0);
 
 /// A stationary Gauss-Markov process of this sigma an axis, whose correlation falls to 1/e within
 /// `correlation_s`.
