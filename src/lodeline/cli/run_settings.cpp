@@ -55,11 +55,13 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options, int* max_tracks)
 void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOptions* calibration) {
   settings->bind("inertial.gyroscope_axes_sigma", &calibration->gyroscope_sigma,
                  "relative scale errors and misalignment of a calibrated gyroscope's axes; 0: not estimated");
+  settings->bind("inertial.accelerometer_axes_sigma", &calibration->accelerometer_sigma,
+                 "the same of a calibrated accelerometer's");
   settings->bind("inertial.calibrated_below_rad_per_s_sqrtHz",
                  &calibration->calibrated_below_rad_per_s_sqrtHz,
                  "white noise of a gyroscope below which its maker is taken to have calibrated the IMU");
   settings->bind("inertial.uncalibrated_sigma", &calibration->uncalibrated_sigma,
-                 "of the axes of an IMU above that, which was perhaps never calibrated; in what is claimed");
+                 "of the axes of an IMU above that, which was perhaps never calibrated");
   settings->bind("inertial.uncalibrated_bias_sigma_m_per_s2", &calibration->uncalibrated_bias_sigma_m_per_s2,
                  "of the accelerometer's bias of such an IMU at the start, likewise");
   settings->bind("inertial.noise_inflation", &options->noise_inflation,

@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/lens_trust.h"
 
 namespace lodeline {
@@ -20,30 +19,7 @@ Eigen::MatrixXd biasInformation(const Mat3& known, double unclaimed, double sigm
   return information;
 }
 
-/// Of the gyroscope's axes (9 x 9); none where they are not doubted.
-std::optional<Eigen::MatrixXd> unclaimedOfAxes(const Window& window, const FactorMaker& factors,
-                                               const ImuAxesOptions& options) {
-  const auto belief = factors.gyroscopeAxes(window);
-  if (!belief || !options.areDoubted()) return std::nullopt;
-  NormalEquations believed;
-  believed.add(*belief);
-  Eigen::MatrixXd information = believed.hessian();
-  information.diagonal().array() -= 1.0 / (options.uncalibrated_sigma * options.uncalibrated_sigma);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(information);
-  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         parts.eigenvectors().transpose();
-}
-
 }  // namespace
-
-std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimedInformation(const Window& window,
-                                                                            const FactorMaker& factors,
-                                                                            const EstimatorOptions& options) {
-  auto unclaimed = unclaimedFileInformation(window, options.camera_calibration);
-  if (auto of_axes = unclaimedOfAxes(window, factors, options.imu_axes))
-    unclaimed.emplace_back(gyroscopeAxesState(window)->value.data(), std::move(*of_axes));
-  return unclaimed;
-}
 
 double unclaimedBiasInformation(const EstimatorOptions& options) {
   if (!options.imu_axes.areDoubted()) return 0.0;
@@ -57,10 +33,10 @@ void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15
 }
 
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
-                                                const FactorMaker& factors, const EstimatorOptions& options) {
+                                                const EstimatorOptions& options) {
   const ImuAxesOptions& axes = options.imu_axes;
   JointCovariance claimed = known;
-  for (const auto& [state, unclaimed] : unclaimedInformation(window, factors, options)) {
+  for (const auto& [state, unclaimed] : unclaimedFileInformation(window, options.camera_calibration)) {
     if (claimed.knows(state)) claimed = claimed.without(state, unclaimed);
   }
   if (const double unclaimed = unclaimedBiasInformation(options); unclaimed > 0.0) {

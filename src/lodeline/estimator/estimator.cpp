@@ -305,7 +305,7 @@ void Estimator::startMagnetometer() {
 }
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
-  estimate->covariance = claimedCovariance(covariance, window_, factors_, options_);
+  estimate->covariance = claimedCovariance(covariance, window_, options_);
   lens_trust_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
@@ -336,6 +336,7 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->state = newest.state();
   estimate->camera_corrections = cameraCorrections(window_);
   estimate->gyroscope_axes = gyroscopeAxes(window_);
+  estimate->accelerometer_axes = accelerometerAxes(window_);
   estimate->magnetometer = magnetometer_.estimate(window_);
   estimate->depth = depth_.estimate(window_);
   const auto& gauge = estimate->depth.gauge;

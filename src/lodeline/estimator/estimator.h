@@ -45,7 +45,8 @@ struct FrameEstimate {
   int solver_iterations = 0;
   /// Nothing where the calibration is taken as the files give it.
   std::optional<CameraCorrections> camera_corrections;
-  std::optional<GyroscopeAxes> gyroscope_axes;  ///< the same
+  std::optional<SensorAxes> gyroscope_axes;      ///< the same
+  std::optional<SensorAxes> accelerometer_axes;  ///< the same
   MagnetometerEstimate magnetometer;
   DepthEstimate depth;
   ScaleInformation scale;  ///< what carries it at present

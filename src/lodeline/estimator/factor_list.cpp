@@ -30,6 +30,16 @@ void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor)
   factor->blocks.push_back(after.pose.data());
 }
 
+/// That a state is zero, with so much on each of its entries.
+Factor zeroBelief(GlobalState& state, double sigma) {
+  const auto size = static_cast<Eigen::Index>(state.value.size());
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(ceres::Matrix::Identity(size, size) / sigma,
+                                                         ceres::Vector::Zero(size));
+  factor.blocks = {state.value.data()};
+  return factor;
+}
+
 }  // namespace
 
 double costOf(const Factor& factor, std::vector<double>& residual) {
@@ -44,7 +54,7 @@ double costOf(const Factor& factor, std::vector<double>& residual) {
 
 FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
     : gravity_W_(options.gravity_W),
-      gyroscope_axes_sigma_(options.imu_axes.gyroscope_sigma),
+      imu_axes_(options.imu_axes),
       placement_sigma_m_(options.camera_calibration.stereo_position_sigma_m),
       robust_scale_(options.solver.robust_scale_sigmas) {
   if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
@@ -56,29 +66,36 @@ FactorMaker::FactorMaker(const Rig& rig, const EstimatorOptions& options)
 
 Factor FactorMaker::inertial(const Window& window, Frame& before, Frame& frame) const {
   Factor factor;
-  GlobalState* axes = gyroscopeAxesState(window);
-  const InertialFirstEstimates first_estimates{before.firstPose(), before.firstMotion(), frame.firstPose(),
-                                               frame.firstMotion(), axes ? axes->firstEstimate() : nullptr};
-  factor.function =
-      std::make_unique<InertialFactor>(frame.from_previous.get(), gravity_W_, first_estimates,
-                                       axes ? AxesOfGyroscope::Estimated : AxesOfGyroscope::Calibrated);
+  const ImuAxesStates axes(window);
+  const InertialFirstEstimates first_estimates{
+      before.firstPose(),
+      before.firstMotion(),
+      frame.firstPose(),
+      frame.firstMotion(),
+      axes.gyroscope ? axes.gyroscope->firstEstimate() : nullptr,
+      axes.accelerometer ? axes.accelerometer->firstEstimate() : nullptr};
+  factor.function = std::make_unique<InertialFactor>(
+      frame.from_previous.get(), gravity_W_, first_estimates,
+      EstimatedAxes{axes.gyroscope != nullptr, axes.accelerometer != nullptr});
   factor.blocks = {before.pose.data(), before.motion.data(), frame.pose.data(), frame.motion.data()};
-  if (axes) factor.blocks.push_back(axes->value.data());
+  if (axes.gyroscope) factor.blocks.push_back(axes.gyroscope->value.data());
+  if (axes.accelerometer) factor.blocks.push_back(axes.accelerometer->value.data());
   return factor;
 }
 
-std::optional<Factor> FactorMaker::gyroscopeAxes(const Window& window) const {
+std::vector<Factor> FactorMaker::imuAxes(const Window& window) const {
   constexpr double kUsualNorm = 3.0;  // of nine sigmas
-  GlobalState* axes = gyroscopeAxesState(window);
-  if (!axes) return std::nullopt;
-  const ceres::Vector calibrated = ceres::Vector::Zero(kGyroscopeAxesSize);
-  const ceres::Matrix whitening =
-      ceres::Matrix::Identity(kGyroscopeAxesSize, kGyroscopeAxesSize) / gyroscope_axes_sigma_;
-  Factor factor;
-  factor.function = std::make_unique<ceres::NormalPrior>(whitening, calibrated);
-  factor.loss = std::make_shared<ceres::CauchyLoss>(kUsualNorm);
-  factor.blocks = {axes->value.data()};
-  return factor;
+  std::vector<Factor> beliefs;
+  const auto add = [&](GlobalState* axes, double sigma) {
+    if (!axes) return;
+    beliefs.push_back(zeroBelief(*axes, sigma));
+    beliefs.back().loss = std::make_shared<ceres::CauchyLoss>(kUsualNorm);
+    beliefs.push_back(zeroBelief(*axes, imu_axes_.worst_sigma));
+  };
+  const ImuAxesStates axes(window);
+  add(axes.gyroscope, imu_axes_.gyroscope_sigma);
+  add(axes.accelerometer, imu_axes_.accelerometer_sigma);
+  return beliefs;
 }
 
 std::optional<Factor> FactorMaker::magnetometer(const Window& window, Frame* before, Frame& frame) const {

@@ -39,10 +39,10 @@ class FactorMaker {
 
   /// Inertial term between `frame` and the frame before it.
   Factor inertial(const Window& window, Frame& before, Frame& frame) const;
-  /// What is known beforehand of the gyroscope's axes, where they are estimated: as good as those of a
-  /// calibrated one, or else anything (a Cauchy loss on all nine together). Stays outside of the
-  /// marginalisation prior, which could not hold its shape.
-  std::optional<Factor> gyroscopeAxes(const Window& window) const;
+  /// What is known beforehand of the axes of gyroscope and accelerometer, as far as they are estimated: as
+  /// good as those of a calibrated one, or else anything (a Cauchy loss on all nine together) that is still
+  /// sold. Stays outside of the marginalisation prior, which could not hold its shape.
+  std::vector<Factor> imuAxes(const Window& window) const;
   /// Term of the frame's magnetometer, if it has one; `before` is the frame before (null for the first).
   std::optional<Factor> magnetometer(const Window& window, Frame* before, Frame& frame) const;
   /// Term of the frame's depth readings, if it has any.
@@ -76,7 +76,7 @@ class FactorMaker {
   std::vector<Rigid3> camera0_from_camera_;
   Vec3 port_B_ = Vec3::Zero();  ///< pressure port, m
   Vec3 gravity_W_;
-  double gyroscope_axes_sigma_;
+  ImuAxesOptions imu_axes_;
   double placement_sigma_m_;
   double robust_scale_;
 };

@@ -124,7 +124,7 @@ EstimatorOptions estimatorOptions(const HeadingTrialOptions& options) {
   const ImuGrade& grade = imuGrade(options.imu_grade);
   estimator.preintegration.noise_inflation = 1.0;
   estimator.preintegration.motion_noise = MotionNoiseOptions::none();
-  estimator.imu_axes.gyroscope_sigma = 0.0;
+  estimator.imu_axes.gyroscope_sigma = estimator.imu_axes.accelerometer_sigma = 0.0;
   estimator.initial_state.gyroscope_bias_sigma_rad_per_s = std::max(1e-3, grade.gyroscope_turn_on_rad_per_s);
   estimator.initial_state.accelerometer_bias_sigma_m_per_s2 =
       std::max(1e-2, grade.accelerometer_turn_on_m_per_s2);

@@ -123,23 +123,28 @@ struct CameraCalibrationOptions {
 /// How far the calibration of the IMU may be off, one sigma.
 struct ImuAxesOptions {
   /// Scale errors and misalignment of the axes of a gyroscope that its maker has calibrated, relative
-  /// (GyroscopeAxes); 0 holds them. Some are, to less than a thousandth, and some never were and are off by
-  /// one or two per cent: no Gaussian describes both, see FactorMaker::gyroscopeAxes().
+  /// (SensorAxes); 0 holds them. Some are, to less than a thousandth, and some never were and are off by
+  /// one or two per cent: no Gaussian describes both, see FactorMaker::imuAxes().
   double gyroscope_sigma = imu_axes::kCalibratedSigma;
   /// Makers calibrate the axes of their better sensors: of an IMU whose gyroscope has less white noise than
-  /// this, no more than `gyroscope_sigma` is doubted in what is claimed, of either sensor.
+  /// this, no more than `gyroscope_sigma` is doubted.
   double calibrated_below_rad_per_s_sqrtHz = imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
-  /// What is claimed of the axes of an IMU above that, which may never have been calibrated: of the
-  /// gyroscope's for as long as turns have not told more, of the accelerometer's throughout; 0: no more than
-  /// of others. Relative, and rad.
+  /// Of the axes of an IMU above that, which may never have been calibrated; 0: no more than of others. It is
+  /// also claimed of what the accelerometer takes for up throughout. Relative, and rad.
   double uncalibrated_sigma = imu_axes::kUncalibratedSigma;
   /// What is claimed of such an IMU's accelerometer bias at the start. Data sheets allow of 0.6 to 0.8 m/s^2
   /// (60 to 80 mg, e.g. InvenSense MPU-9250, PS-MPU-9250A-01 rev. 1.1), here two sigmas; most parts are far
   /// better, and a start is estimated by InitialStateOptions.
   double uncalibrated_bias_sigma_m_per_s2 = 0.4;
+  /// Of the worst sensors that are sold: sensitivities that are 3 % off and axes that are 2 % aside
+  /// (InvenSense MPU-9250, PS-MPU-9250A-01 rev. 1.1). Bounds what readings make of axes while no image
+  /// contradicts.
+  double worst_sigma = 0.03;
+  /// As gyroscope_sigma, of the accelerometer.
+  double accelerometer_sigma = imu_axes::kCalibratedSigma;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
-  /// Of the accelerometer's axes, for which no state stands: makers calibrate both sensors or none.
+  /// Of what an accelerometer takes for up beside its states: makers calibrate both sensors or none.
   double accelerometerSigma() const { return std::max(gyroscope_sigma, uncalibrated_sigma); }
 };
 

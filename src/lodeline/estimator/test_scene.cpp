@@ -120,7 +120,7 @@ EstimatorOptions honestOptions(const TestSceneOptions& scene) {
   EstimatorOptions options;
   options.preintegration.noise_inflation = 1.0;
   options.preintegration.motion_noise = MotionNoiseOptions::none();
-  options.imu_axes.gyroscope_sigma = 0.0;
+  options.imu_axes.gyroscope_sigma = options.imu_axes.accelerometer_sigma = 0.0;
   options.initial_state.gyroscope_bias_sigma_rad_per_s = scene.gyroscope_bias_sigma_rad_per_s;
   options.initial_state.accelerometer_bias_sigma_m_per_s2 = scene.accelerometer_bias_sigma_m_per_s2;
   return options;

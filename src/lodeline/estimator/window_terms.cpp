@@ -14,8 +14,7 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 }  // namespace
 
 std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors) {
-  std::vector<Factor> terms;
-  if (auto axes = factors.gyroscopeAxes(window)) terms.push_back(std::move(*axes));
+  std::vector<Factor> terms = factors.imuAxes(window);
   for (GlobalState* further : cameraStates(window).further) {
     if (auto placement = factors.placement(*further)) terms.push_back(std::move(*placement));
   }

@@ -16,16 +16,17 @@ constexpr int kAccelerometerBiasAt = 6;
 struct States {
   Rigid3 pose_k, pose_k1;
   Eigen::Matrix<double, kMotionSize, 1> motion_k, motion_k1;
-  GyroscopeAxes axes = GyroscopeAxes::Zero();
+  ImuAxes axes;
 
-  /// `axes_in` may be null.
+  /// Axes may be null.
   States(const double* pose_k_in, const double* motion_k_in, const double* pose_k1_in,
-         const double* motion_k1_in, const double* axes_in)
+         const double* motion_k1_in, const double* gyroscope_axes_in, const double* accelerometer_axes_in)
       : pose_k(poseFromBlock(pose_k_in)),
         pose_k1(poseFromBlock(pose_k1_in)),
         motion_k(motion_k_in),
         motion_k1(motion_k1_in) {
-    if (axes_in != nullptr) axes = GyroscopeAxes(axes_in);
+    if (gyroscope_axes_in != nullptr) axes.gyroscope = SensorAxes(gyroscope_axes_in);
+    if (accelerometer_axes_in != nullptr) axes.accelerometer = SensorAxes(accelerometer_axes_in);
   }
 
   Vec3 velocity_k() const { return motion_k.segment<3>(kVelocityAt); }
@@ -61,7 +62,8 @@ struct InertialJacobians {
   Eigen::Matrix<double, kSize, 9> motion_k = Eigen::Matrix<double, kSize, 9>::Zero();
   Eigen::Matrix<double, kSize, 6> pose_k1 = Eigen::Matrix<double, kSize, 6>::Zero();
   Eigen::Matrix<double, kSize, 9> motion_k1 = Eigen::Matrix<double, kSize, 9>::Zero();
-  Eigen::Matrix<double, kSize, 9> axes = Eigen::Matrix<double, kSize, 9>::Zero();
+  Eigen::Matrix<double, kSize, 9> gyroscope_axes = Eigen::Matrix<double, kSize, 9>::Zero();
+  Eigen::Matrix<double, kSize, 9> accelerometer_axes = Eigen::Matrix<double, kSize, 9>::Zero();
 
   InertialJacobians(const States& s, const Preintegration& preintegration, const Vec3& gravity_W) {
     const double dt = preintegration.dt_s();
@@ -83,8 +85,10 @@ struct InertialJacobians {
     const Mat3 theta_by_correction = thetaByCorrection(s, preintegration, theta);
     motion_k.block<3, 3>(kTheta, kGyroscopeBiasAt) =
         theta_by_correction * preintegration.biasJacobian().block<3, 3>(kTheta, 0);
-    axes.topRows<6>() = -preintegration.axesJacobian().topRows<6>();
-    axes.middleRows<3>(kTheta) = theta_by_correction * preintegration.axesJacobian().middleRows<3>(kTheta);
+    gyroscope_axes.topRows<6>() = -preintegration.gyroscopeAxesJacobian().topRows<6>();
+    gyroscope_axes.middleRows<3>(kTheta) =
+        theta_by_correction * preintegration.gyroscopeAxesJacobian().middleRows<3>(kTheta);
+    accelerometer_axes.topRows<6>() = -preintegration.accelerometerAxesJacobian().topRows<6>();
     motion_k.block<6, 6>(kGyroscopeBias, kGyroscopeBiasAt).diagonal().setConstant(-1.0);
     motion_k1.block<3, 3>(kBeta, kVelocityAt) = body_k_from_world;
     motion_k1.block<6, 6>(kGyroscopeBias, kGyroscopeBiasAt).setIdentity();
@@ -96,7 +100,7 @@ struct InertialJacobians {
   static Mat3 thetaByCorrection(const States& s, const Preintegration& preintegration, const Vec3& theta) {
     const Vec3 correction = preintegration.biasJacobian().block<3, 3>(kTheta, 0) *
                                 (s.gyroscopeBias_k() - preintegration.gyroscopeBias()) +
-                            preintegration.axesJacobian().middleRows<3>(kTheta) * s.axes;
+                            preintegration.gyroscopeAxesJacobian().middleRows<3>(kTheta) * s.axes.gyroscope;
     return -so3::rightJacobianInverse(theta) * so3::leftJacobian(correction);
   }
 };
@@ -121,17 +125,20 @@ void writeNine(const Preintegration::Mat15& whitening, const Eigen::Matrix<doubl
 }  // namespace
 
 InertialFactor::InertialFactor(const Preintegration* preintegration, const Vec3& gravity_W,
-                               const InertialFirstEstimates& first_estimates, AxesOfGyroscope axes)
+                               const InertialFirstEstimates& first_estimates, EstimatedAxes axes)
     : preintegration_(preintegration), gravity_W_(gravity_W), first_estimates_(first_estimates), axes_(axes) {
   set_num_residuals(kSize);
   *mutable_parameter_block_sizes() = {kPoseSize, kMotionSize, kPoseSize, kMotionSize};
-  if (axes == AxesOfGyroscope::Estimated) mutable_parameter_block_sizes()->push_back(kGyroscopeAxesSize);
+  if (axes.gyroscope) mutable_parameter_block_sizes()->push_back(kSensorAxesSize);
+  if (axes.accelerometer) mutable_parameter_block_sizes()->push_back(kSensorAxesSize);
 }
 
 bool InertialFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const bool has_axes = axes_ == AxesOfGyroscope::Estimated;
-  const double* axes = has_axes ? parameters[4] : nullptr;
-  const States current(parameters[0], parameters[1], parameters[2], parameters[3], axes);
+  const int accelerometer_at = axes_.gyroscope ? 5 : 4;
+  const double* gyroscope_axes = axes_.gyroscope ? parameters[4] : nullptr;
+  const double* accelerometer_axes = axes_.accelerometer ? parameters[accelerometer_at] : nullptr;
+  const States current(parameters[0], parameters[1], parameters[2], parameters[3], gyroscope_axes,
+                       accelerometer_axes);
   const Preintegration::Mat15& whitening = preintegration_->whitening();
   Eigen::Map<Vec15>(residuals).noalias() = whitening * InertialError(current, *preintegration_, gravity_W_).e;
   if (jacobians == nullptr) return true;
@@ -140,13 +147,15 @@ bool InertialFactor::Evaluate(double const* const* parameters, double* residuals
   const States linearised(
       firstOr(first_estimates_.pose_k, parameters[0]), firstOr(first_estimates_.motion_k, parameters[1]),
       firstOr(first_estimates_.pose_k1, parameters[2]), firstOr(first_estimates_.motion_k1, parameters[3]),
-      firstOr(first_estimates_.axes, axes));
+      firstOr(first_estimates_.gyroscope_axes, gyroscope_axes),
+      firstOr(first_estimates_.accelerometer_axes, accelerometer_axes));
   const InertialJacobians by(linearised, *preintegration_, gravity_W_);
   writePose(whitening, by.pose_k, jacobians[0]);
   writeNine(whitening, by.motion_k, jacobians[1]);
   writePose(whitening, by.pose_k1, jacobians[2]);
   writeNine(whitening, by.motion_k1, jacobians[3]);
-  if (has_axes) writeNine(whitening, by.axes, jacobians[4]);
+  if (axes_.gyroscope) writeNine(whitening, by.gyroscope_axes, jacobians[4]);
+  if (axes_.accelerometer) writeNine(whitening, by.accelerometer_axes, jacobians[accelerometer_at]);
   return true;
 }
 

@@ -7,7 +7,7 @@
 
 namespace lodeline {
 
-constexpr int kGyroscopeAxesSize = 9;
+constexpr int kSensorAxesSize = 9;
 
 /// Where the inertial factor takes its Jacobian. Null: linearise that block at its current value.
 struct InertialFirstEstimates {
@@ -15,15 +15,19 @@ struct InertialFirstEstimates {
   const double* motion_k = nullptr;
   const double* pose_k1 = nullptr;
   const double* motion_k1 = nullptr;
-  const double* axes = nullptr;
+  const double* gyroscope_axes = nullptr;
+  const double* accelerometer_axes = nullptr;
 };
 
-/// Whether the gyroscope's axes are a block of the inertial factor, or as calibrated.
-enum class AxesOfGyroscope { Calibrated, Estimated };
+/// Which sensors' axes are blocks of the inertial factor; the others' are as calibrated.
+struct EstimatedAxes {
+  bool gyroscope = false;
+  bool accelerometer = false;
+};
 
 /// The IMU between two states, 15 residuals on the blocks pose k, motion k, pose k+1, motion k+1 (layout,
-/// axes of the perturbation and first estimates as in factors/parameters.h), and the gyroscope's axes d (see
-/// GyroscopeAxes) where these are estimated.
+/// axes of the perturbation and first estimates as in factors/parameters.h), then the axes d of the gyroscope
+/// and of the accelerometer (SensorAxes) where these are estimated.
 ///
 ///   e = [ R_B_W^k (p^{k+1} - p^k - v^k dt - g dt^2 / 2) - alpha(b^k, d)]   m
 ///       [ R_B_W^k (v^{k+1} - v^k - g dt) - beta(b^k, d)                ]   m/s
@@ -38,8 +42,7 @@ class InertialFactor final : public ceres::CostFunction {
  public:
   /// `preintegration` must outlive the factor and may be repropagated between evaluations, not during one.
   InertialFactor(const Preintegration* preintegration, const Vec3& gravity_W,
-                 const InertialFirstEstimates& first_estimates = {},
-                 AxesOfGyroscope axes = AxesOfGyroscope::Calibrated);
+                 const InertialFirstEstimates& first_estimates = {}, EstimatedAxes axes = {});
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
@@ -47,7 +50,7 @@ class InertialFactor final : public ceres::CostFunction {
   const Preintegration* preintegration_;
   Vec3 gravity_W_;
   InertialFirstEstimates first_estimates_;
-  AxesOfGyroscope axes_;
+  EstimatedAxes axes_;
 };
 
 }  // namespace lodeline

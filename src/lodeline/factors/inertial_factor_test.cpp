@@ -77,8 +77,7 @@ Evaluation evaluate(const InertialFactor& factor, const Blocks& blocks) {
 // The factor without its whitening, so that no row hides behind another's weight.
 class Unwhitened final : public ceres::CostFunction {
  public:
-  Unwhitened(const Preintegration& preintegration, const Vec3& gravity_W,
-             AxesOfGyroscope axes = AxesOfGyroscope::Calibrated)
+  Unwhitened(const Preintegration& preintegration, const Vec3& gravity_W, EstimatedAxes axes = {})
       : factor_(&preintegration, gravity_W, {}, axes), unwhiten_(preintegration.whitening().inverse()) {
     set_num_residuals(15);
     *mutable_parameter_block_sizes() = factor_.parameter_block_sizes();
@@ -133,22 +132,24 @@ TEST(InertialFactor, JacobiansAgreeWithNumericDifferentiation) {
   }
 }
 
-/// Blocks with axes that are off by some per cent.
+/// Blocks with the axes of one more sensor, off by some per cent.
 Blocks withAxes(Blocks blocks, double sigma, Gaussian& gaussian) {
-  GyroscopeAxes axes;
+  SensorAxes axes;
   axes << gaussian(sigma), gaussian(sigma), gaussian(sigma);
   blocks.push_back(axes);
   return blocks;
 }
 
-TEST(InertialFactor, JacobiansByTheGyroscopesAxesAgreeWithNumericDifferentiation) {
+TEST(InertialFactor, JacobiansByTheSensorsAxesAgreeWithNumericDifferentiation) {
   Gaussian gaussian;
   const Preintegration p = preintegrate(0.2);
-  for (const double sigma : {1e-3, 0.1}) {
-    const Blocks blocks = withAxes(moved(trueBlocks(p), sigma, gaussian), 0.02, gaussian);
-    const AxesOfGyroscope axes = AxesOfGyroscope::Estimated;
-    expectJacobiansMatch(InertialFactor(&p, standardGravity_W(), {}, axes), blocks, 1e-6);
-    expectJacobiansMatch(Unwhitened(p, standardGravity_W(), axes), blocks, 1e-6);
+  for (const EstimatedAxes axes : {EstimatedAxes{true, false}, {false, true}, {true, true}}) {
+    for (const double sigma : {1e-3, 0.1}) {
+      Blocks blocks = withAxes(moved(trueBlocks(p), sigma, gaussian), 0.02, gaussian);
+      if (axes.gyroscope && axes.accelerometer) blocks = withAxes(blocks, 0.02, gaussian);
+      expectJacobiansMatch(InertialFactor(&p, standardGravity_W(), {}, axes), blocks, 1e-6);
+      expectJacobiansMatch(Unwhitened(p, standardGravity_W(), axes), blocks, 1e-6);
+    }
   }
 }
 
@@ -157,12 +158,11 @@ TEST(InertialFactor, WithAxesAsCalibratedIsTheOneWithout) {
   const Preintegration p = preintegrate(0.2);
   Blocks blocks = moved(trueBlocks(p), 0.01, gaussian);
   const Evaluation without = evaluate(InertialFactor(&p, standardGravity_W()), blocks);
-  blocks.push_back(GyroscopeAxes::Zero());
-  const Evaluation with =
-      evaluate(InertialFactor(&p, standardGravity_W(), {}, AxesOfGyroscope::Estimated), blocks);
+  for (int sensor = 0; sensor < 2; ++sensor) blocks.push_back(SensorAxes::Zero());
+  const Evaluation with = evaluate(InertialFactor(&p, standardGravity_W(), {}, {true, true}), blocks);
   EXPECT_EQ(with.residual, without.residual);
   for (size_t b = 0; b < 4; ++b) EXPECT_EQ(with.jacobians[b], without.jacobians[b]) << b;
-  EXPECT_GT(with.jacobians[4].norm(), 1.0);
+  for (const size_t axes : {4, 5}) EXPECT_GT(with.jacobians[axes].norm(), 1.0) << axes;
 }
 
 TEST(InertialFactor, WritesOnlyTheJacobiansAskedFor) {
@@ -248,11 +248,12 @@ TEST(InertialFactor, TakesJacobiansAtFirstEstimatesAndTheResidualAtTheValue) {
   EXPECT_NE(evaluate(anchored, now).jacobians, evaluate(plain, now).jacobians);
 
   // The axes have theirs like the other blocks.
-  const Blocks first_axes = withAxes(first, 0.01, gaussian), now_axes = withAxes(first, 0.01, gaussian);
-  const InertialFactor anchored_axes(&p, standardGravity_W(),
-                                     {nullptr, nullptr, nullptr, nullptr, first_axes[4].data()},
-                                     AxesOfGyroscope::Estimated);
-  const InertialFactor plain_axes(&p, standardGravity_W(), {}, AxesOfGyroscope::Estimated);
+  const auto withBoth = [&] { return withAxes(withAxes(first, 0.01, gaussian), 0.01, gaussian); };
+  const Blocks first_axes = withBoth(), now_axes = withBoth();
+  const InertialFactor anchored_axes(
+      &p, standardGravity_W(),
+      {nullptr, nullptr, nullptr, nullptr, first_axes[4].data(), first_axes[5].data()}, {true, true});
+  const InertialFactor plain_axes(&p, standardGravity_W(), {}, {true, true});
   EXPECT_EQ(evaluate(anchored_axes, now_axes).residual, evaluate(plain_axes, now_axes).residual);
   EXPECT_EQ(evaluate(anchored_axes, now_axes).jacobians, evaluate(plain_axes, first_axes).jacobians);
 

@@ -109,10 +109,12 @@ bool Preintegration::needsRepropagation(const Vec3& gyroscope_bias_B,
 }
 
 RelativeMotion Preintegration::correctedFor(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B,
-                                            const GyroscopeAxes& axes) const {
+                                            const ImuAxes& axes) const {
   Eigen::Matrix<double, 6, 1> change;
   change << gyroscope_bias_B - gyroscope_bias_, accelerometer_bias_B - accelerometer_bias_;
-  const Eigen::Matrix<double, 9, 1> correction = bias_jacobian_ * change + axes_jacobian_ * axes;
+  const Eigen::Matrix<double, 9, 1> correction = bias_jacobian_ * change +
+                                                 gyroscope_axes_jacobian_ * axes.gyroscope +
+                                                 accelerometer_axes_jacobian_ * axes.accelerometer;
   RelativeMotion corrected;
   corrected.alpha = motion_.alpha + correction.segment<3>(kAlpha);
   corrected.beta = motion_.beta + correction.segment<3>(kBeta);
@@ -123,7 +125,8 @@ RelativeMotion Preintegration::correctedFor(const Vec3& gyroscope_bias_B, const 
 void Preintegration::integrate() {
   motion_ = {};
   bias_jacobian_.setZero();
-  axes_jacobian_.setZero();
+  gyroscope_axes_jacobian_.setZero();
+  accelerometer_axes_jacobian_.setZero();
   covariance_.setZero();
   rotations_.assign(1, IntermediateRotation());
   for (size_t i = 0; i + 1 < samples_.size(); ++i) advance(i);
@@ -162,9 +165,17 @@ void Preintegration::advance(size_t i) {
   bias_jacobian_ =
       (transition.topLeftCorner<9, 9>() * bias_jacobian_ + transition.topRightCorner<9, 6>()).eval();
   const Eigen::Matrix<double, 9, 3> motion_by_rate = -transition.block<9, 3>(kAlpha, kGyroscopeBias);
-  axes_jacobian_ = (transition.topLeftCorner<9, 9>() * axes_jacobian_).eval();
-  for (int column = 0; column < 3; ++column)
-    axes_jacobian_.middleCols<3>(3 * column) += increment.mean_rate_rad_per_s[column] * motion_by_rate;
+  gyroscope_axes_jacobian_ = (transition.topLeftCorner<9, 9>() * gyroscope_axes_jacobian_).eval();
+  accelerometer_axes_jacobian_ = (transition.topLeftCorner<9, 9>() * accelerometer_axes_jacobian_).eval();
+  for (int column = 0; column < 3; ++column) {
+    gyroscope_axes_jacobian_.middleCols<3>(3 * column) +=
+        increment.mean_rate_rad_per_s[column] * motion_by_rate;
+    const Mat3 by_0 = (from.specific_force_B - accelerometer_bias_)[column] * step.rotation_0;
+    const Mat3 by_1 = (to.specific_force_B - accelerometer_bias_)[column] * step.rotation_1;
+    auto by_column = accelerometer_axes_jacobian_.middleCols<3>(3 * column);
+    by_column.middleRows<3>(kAlpha) += step.h * step.h * (by_0 / 3.0 + by_1 / 6.0);
+    by_column.middleRows<3>(kBeta) += 0.5 * step.h * (by_0 + by_1);
+  }
   covariance_ = (transition * covariance_ * transition.transpose() +
                  processNoise(from, to, transition.block<9, 3>(kAlpha, kGyroscopeBias)))
                     .eval();

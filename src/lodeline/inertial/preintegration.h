@@ -61,10 +61,15 @@ struct IntermediateRotation {
   Quat correctedFor(const Vec3& gyroscope_bias_change) const;
 };
 
-/// How a gyroscope's axes are longer and point elsewhere than its calibration says: the true rate is
-/// (I + D) (reading - b_g). D column by column; 0 for a sensor as calibrated. (D_w in Yang et al., "Online
-/// IMU intrinsic calibration: is it necessary?", RSS 2020.)
-using GyroscopeAxes = Eigen::Matrix<double, 9, 1>;
+/// How a sensor's axes are longer and point elsewhere than its calibration says: the true value is
+/// (I + D) (reading - bias). D column by column; 0 for a sensor as calibrated. (D_w and D_a in Yang et al.,
+/// "Online IMU intrinsic calibration: is it necessary?", RSS 2020.)
+using SensorAxes = Eigen::Matrix<double, 9, 1>;
+
+struct ImuAxes {
+  SensorAxes gyroscope = SensorAxes::Zero();
+  SensorAxes accelerometer = SensorAxes::Zero();
+};
 
 /// IMU readings between two moments, integrated once so that the optimiser need not.
 ///
@@ -105,11 +110,12 @@ class Preintegration {
   const RelativeMotion& motion() const { return motion_; }
   /// To first order at other biases and axes.
   RelativeMotion correctedFor(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B,
-                              const GyroscopeAxes& axes = GyroscopeAxes::Zero()) const;
+                              const ImuAxes& axes = {}) const;
   /// d[alpha, beta, theta] / d[b_g, b_a], theta as in IntermediateRotation.
   const Mat96& biasJacobian() const { return bias_jacobian_; }
-  /// The same by the gyroscope's axes.
-  const Mat99& axesJacobian() const { return axes_jacobian_; }
+  /// The same by the gyroscope's and by the accelerometer's axes.
+  const Mat99& gyroscopeAxesJacobian() const { return gyroscope_axes_jacobian_; }
+  const Mat99& accelerometerAxesJacobian() const { return accelerometer_axes_jacobian_; }
 
   /// Covariance of the error, SI units.
   const Mat15& covariance() const { return covariance_; }
@@ -141,7 +147,8 @@ class Preintegration {
 
   RelativeMotion motion_;
   Mat96 bias_jacobian_;
-  Mat99 axes_jacobian_;
+  Mat99 gyroscope_axes_jacobian_;
+  Mat99 accelerometer_axes_jacobian_;
   Mat15 covariance_;
   Mat15 whitening_;
   std::vector<IntermediateRotation> rotations_;  // at each sample

@@ -47,7 +47,7 @@ TEST(Preintegration, ErrorFallsWithTheSquareOfTheStepAndThatOfRotationWithItsCub
 
 // A gyroscope whose axes are off by up to 2 %, and what the integration over its readings makes of that.
 TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
-  GyroscopeAxes axes;
+  SensorAxes axes;
   axes << 0.012, -0.006, 0.009, 0.004, -0.015, -0.007, 0.003, 0.011, 0.02;
   const Mat3 true_from_reading = Mat3::Identity() + axes.reshaped(3, 3);
   const auto samples = kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
@@ -59,12 +59,33 @@ TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
   const RelativeMotion truth = integrate(samples, kGyroscopeBias, kAccelerometerBias).motion();
   const Preintegration p = integrate(readings, kGyroscopeBias, kAccelerometerBias);
   const auto off = [&](double share) {
-    const RelativeMotion motion = p.correctedFor(kGyroscopeBias, kAccelerometerBias, share * axes);
+    const RelativeMotion motion =
+        p.correctedFor(kGyroscopeBias, kAccelerometerBias, {.gyroscope = share * axes});
     return Vec3((motion.alpha - truth.alpha).norm(), (motion.beta - truth.beta).norm(),
                 so3::log(motion.gamma * truth.gamma.conjugate()).norm());
   };
   EXPECT_GT(off(0.0)[2], 1e-3);  // so that there is something to correct
   for (int part = 0; part < 3; ++part) EXPECT_LT(off(1.0)[part], 0.02 * off(0.0)[part]) << part;
+}
+
+// The same of an accelerometer; forces are linear in them.
+TEST(Preintegration, CorrectsForTheAxesOfTheAccelerometer) {
+  SensorAxes axes;
+  axes << 0.012, -0.006, 0.009, 0.004, -0.015, -0.007, 0.003, 0.011, 0.02;
+  const Mat3 true_from_reading = Mat3::Identity() + axes.reshaped(3, 3);
+  const auto samples = kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
+  auto readings = samples;
+  for (ImuSample& reading : readings) {
+    reading.specific_force_B =
+        true_from_reading.inverse() * (reading.specific_force_B - kAccelerometerBias) + kAccelerometerBias;
+  }
+  const RelativeMotion truth = integrate(samples, kGyroscopeBias, kAccelerometerBias).motion();
+  const Preintegration p = integrate(readings, kGyroscopeBias, kAccelerometerBias);
+  EXPECT_GT((p.motion().beta - truth.beta).norm(), 1e-3);  // so that there is something to correct
+  const RelativeMotion motion = p.correctedFor(kGyroscopeBias, kAccelerometerBias, {.accelerometer = axes});
+  EXPECT_LT((motion.alpha - truth.alpha).norm(), 1e-12);
+  EXPECT_LT((motion.beta - truth.beta).norm(), 1e-12);
+  EXPECT_EQ(motion.gamma.coeffs(), p.motion().gamma.coeffs());
 }
 
 // Two axes turned out of phase: what the mean rates leave out adds up.

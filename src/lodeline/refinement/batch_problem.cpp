@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/claimed_covariance.h"
+#include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/robust_loss.h"
 #include "lodeline/estimator/window_terms.h"
 #include "lodeline/refinement/batch_structure.h"
@@ -27,7 +28,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addStartPrior(record.startPrior(), record.globals());
   holdLenses(record.globals());
   believeInFilesAsBefore(record);
-  addGyroscopeAxes(record.globals());
+  addImuAxes(record.globals());
   orderBlocks();
   relinearise();
   renewLandmarks();
@@ -120,7 +121,7 @@ void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
   const int first_motion = rowOf(state(0).motion.data());
   hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
       unclaimedBiasInformation(options_);
-  for (const auto& [state, unclaimed] : unclaimedInformation(window_, factors_, options_))
+  for (const auto& [state, unclaimed] : unclaimedFileInformation(window_, options_.camera_calibration))
     hessian->block(rowOf(state), rowOf(state)) -= unclaimed;
 }
 

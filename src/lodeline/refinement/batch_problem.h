@@ -81,7 +81,7 @@ class BatchProblem {
   void holdLenses(const GlobalValues& globals);
   /// Or does not, as the run did in the end.
   void believeInFilesAsBefore(const ForwardRecord& record);
-  void addGyroscopeAxes(const GlobalValues& globals);
+  void addImuAxes(const GlobalValues& globals);
   GlobalState* addGlobal(const ForwardRecord& record, const std::string& name, const std::string& as);
   void addKnowledge(GlobalState* state, double sigma);
   void orderBlocks();

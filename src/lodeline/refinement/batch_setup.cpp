@@ -192,12 +192,14 @@ void BatchProblem::believeInFilesAsBefore(const ForwardRecord& record) {
   if (corrections) believeInFiles(window_, options_.camera_calibration, corrections->are_files_held);
 }
 
-void BatchProblem::addGyroscopeAxes(const GlobalValues& globals) {
+void BatchProblem::addImuAxes(const GlobalValues& globals) {
   addInertialStates(window_, options_.imu_axes);
-  GlobalState* axes = gyroscopeAxesState(window_);
-  if (!axes) return;
-  const auto end = globals.find(axes->name);
-  if (end != globals.end()) axes->value = end->second;
+  const ImuAxesStates axes(window_);
+  for (GlobalState* state : {axes.gyroscope, axes.accelerometer}) {
+    if (!state) continue;
+    const auto end = globals.find(state->name);
+    if (end != globals.end()) state->value = end->second;
+  }
 }
 
 void BatchProblem::appendBlock(double* value, int tangent_size, int first) {

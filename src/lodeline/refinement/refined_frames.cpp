@@ -37,6 +37,7 @@ class FrameMaker {
     addDoubtAboutUp(options_.imu_axes, &refined.covariance);
     refined.camera_corrections = cameraCorrections(problem_.window());
     refined.gyroscope_axes = gyroscopeAxes(problem_.window());
+    refined.accelerometer_axes = accelerometerAxes(problem_.window());
     describeMagnetometer(&refined);
     describeDepth(&refined);
     unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);

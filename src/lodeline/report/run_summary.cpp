@@ -70,17 +70,16 @@ nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
   return json;
 }
 
-std::string describe(const GyroscopeAxes& axes) {
+std::string describe(const char* sensor, const SensorAxes& axes) {
   const Mat3 errors = axes.reshaped(3, 3);
   const Mat3 aside = errors - Mat3(errors.diagonal().asDiagonal());
-  return fmt::format(
-      "axes of the gyroscope {:+.2f} {:+.2f} {:+.2f} %, aside by up to {:.2f} deg off the files",
-      100.0 * errors(0, 0), 100.0 * errors(1, 1), 100.0 * errors(2, 2),
-      aside.cwiseAbs().maxCoeff() * 180.0 / M_PI);
+  return fmt::format("axes of the {} {:+.2f} {:+.2f} {:+.2f} %, aside by up to {:.2f} deg off the files",
+                     sensor, 100.0 * errors(0, 0), 100.0 * errors(1, 1), 100.0 * errors(2, 2),
+                     aside.cwiseAbs().maxCoeff() * 180.0 / M_PI);
 }
 
 /// I + D, row by row.
-nlohmann::ordered_json toJson(const GyroscopeAxes& axes) {
+nlohmann::ordered_json toJson(const SensorAxes& axes) {
   const Mat3 matrix = Mat3::Identity() + axes.reshaped(3, 3);
   nlohmann::ordered_json rows;
   for (int row = 0; row < 3; ++row) rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
@@ -252,7 +251,8 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
                                         sigma[5] * 180.0 / M_PI));
   }
   if (last_.camera_corrections) line("calibration", describe(*last_.camera_corrections));
-  if (last_.gyroscope_axes) line("inertial", describe(*last_.gyroscope_axes));
+  if (last_.gyroscope_axes) line("inertial", describe("gyroscope", *last_.gyroscope_axes));
+  if (last_.accelerometer_axes) line("inertial", describe("accelerometer", *last_.accelerometer_axes));
   line("time",
        fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (files {:.1f}, front end {:.1f}, "
                    "estimator {:.1f}, pictures {:.1f})",
@@ -292,6 +292,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["mean_reprojection_rms_sigmas"] = meanReprojection_sigmas();
   if (last_.camera_corrections) json["camera_corrections"] = toJson(*last_.camera_corrections);
   if (last_.gyroscope_axes) json["gyroscope_true_from_reading"] = toJson(*last_.gyroscope_axes);
+  if (last_.accelerometer_axes) json["accelerometer_true_from_reading"] = toJson(*last_.accelerometer_axes);
   json["wall_s"] = wall_s;
   json["real_time_factor"] = realTimeFactor();
   json["core_ms_per_frame"] = {{"total", coreMillisecondsPerFrame(process_s)},
