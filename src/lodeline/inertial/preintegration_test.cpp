@@ -45,18 +45,29 @@ TEST(Preintegration, ErrorFallsWithTheSquareOfTheStepAndThatOfRotationWithItsCub
   EXPECT_NEAR(ratio(kTheta), 8.0, 0.4);
 }
 
-// A gyroscope whose axes are off by up to 2 %, and what the integration over its readings makes of that.
-TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
+/// Axes that are off by up to 2 %.
+SensorAxes wrongAxes() {
   SensorAxes axes;
   axes << 0.012, -0.006, 0.009, 0.004, -0.015, -0.007, 0.003, 0.011, 0.02;
-  const Mat3 true_from_reading = Mat3::Identity() + axes.reshaped(3, 3);
-  const auto samples = kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
-  auto readings = samples;
-  for (ImuSample& reading : readings) {
-    reading.angular_velocity_B =
-        true_from_reading.inverse() * (reading.angular_velocity_B - kGyroscopeBias) + kGyroscopeBias;
-  }
-  const RelativeMotion truth = integrate(samples, kGyroscopeBias, kAccelerometerBias).motion();
+  return axes;
+}
+
+std::vector<ImuSample> trueReadings() {
+  return kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
+}
+
+/// What a sensor with these axes reads instead.
+Vec3 readBy(const SensorAxes& axes, const Vec3& reading, const Vec3& bias) {
+  return (Mat3::Identity() + axes.reshaped(3, 3)).inverse() * (reading - bias) + bias;
+}
+
+// What the integration over such a gyroscope's readings makes of them.
+TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
+  const SensorAxes axes = wrongAxes();
+  auto readings = trueReadings();
+  for (ImuSample& reading : readings)
+    reading.angular_velocity_B = readBy(axes, reading.angular_velocity_B, kGyroscopeBias);
+  const RelativeMotion truth = integrate(trueReadings(), kGyroscopeBias, kAccelerometerBias).motion();
   const Preintegration p = integrate(readings, kGyroscopeBias, kAccelerometerBias);
   const auto off = [&](double share) {
     const RelativeMotion motion =
@@ -70,16 +81,11 @@ TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
 
 // The same of an accelerometer; forces are linear in them.
 TEST(Preintegration, CorrectsForTheAxesOfTheAccelerometer) {
-  SensorAxes axes;
-  axes << 0.012, -0.006, 0.009, 0.004, -0.015, -0.007, 0.003, 0.011, 0.02;
-  const Mat3 true_from_reading = Mat3::Identity() + axes.reshaped(3, 3);
-  const auto samples = kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
-  auto readings = samples;
-  for (ImuSample& reading : readings) {
-    reading.specific_force_B =
-        true_from_reading.inverse() * (reading.specific_force_B - kAccelerometerBias) + kAccelerometerBias;
-  }
-  const RelativeMotion truth = integrate(samples, kGyroscopeBias, kAccelerometerBias).motion();
+  const SensorAxes axes = wrongAxes();
+  auto readings = trueReadings();
+  for (ImuSample& reading : readings)
+    reading.specific_force_B = readBy(axes, reading.specific_force_B, kAccelerometerBias);
+  const RelativeMotion truth = integrate(trueReadings(), kGyroscopeBias, kAccelerometerBias).motion();
   const Preintegration p = integrate(readings, kGyroscopeBias, kAccelerometerBias);
   EXPECT_GT((p.motion().beta - truth.beta).norm(), 1e-3);  // so that there is something to correct
   const RelativeMotion motion = p.correctedFor(kGyroscopeBias, kAccelerometerBias, {.accelerometer = axes});
