@@ -169,6 +169,8 @@ void Estimator::shortenWindow(const FrameEstimate& estimate) {
                  (is_settled_ ? lossesAdapt() : frames_since_start_ < options_.window.startup_max_frames);
   if (starting_up_) return;
   if (was_starting_up || !was_settled) marginalizer_.relinearise(window_);
+  if (estimate.status == Status::Inertial)
+    keepLastView(window_, options_.window.recent_frames, options_.min_landmarks_for_vision);
   marginalizer_.shorten(window_,
                         isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
   if (!is_settled_) marginalizer_.relinearise(window_);

@@ -167,6 +167,28 @@ TEST_P(HardScene, DeadReckoningIsMadeGoodWhenImagesReturn) {
   expectWithinItsSigmas();
 }
 
+// Its window has one keyframe, and what images tell of the gyroscope's bias is in later frames.
+TEST(HardSceneOfTwoCameras, DarknessAfterRestLeavesWhatRestTold) {
+  for (const uint64_t seed : {1, 2, 3, 4}) {
+    TestSceneOptions options;
+    options.seed = seed;
+    options.duration_s = 13.0;
+    options.still = {{-10.0, 1e9}};
+    options.points.tracks = 40;
+    options.points.frame_rate_hz = 10.0;
+    TestScene scene(options);
+    ComparedEstimator estimator(scene, honestOptions(options));
+    while (auto frame = scene.next()) {
+      if (scene.secondsOf(frame->truth.time) > 3.0) frame->tracks.observations.clear();
+      const Comparison c = estimator.add(*frame);
+      ASSERT_TRUE(c.initialized());
+      const double claimed_yaw_rad = std::sqrt(c.estimate.covariance(5, 5));
+      EXPECT_LT(claimed_yaw_rad, 0.02) << "seed " << seed << " at " << c.time_s << " s";
+      EXPECT_LT(std::abs(c.error[5]), 4.0 * claimed_yaw_rad) << "seed " << seed << " at " << c.time_s << " s";
+    }
+  }
+}
+
 /// Silt full of particles, or darkness full of the blocks of a compressed video: no point is the same in two
 /// images, but a tracker finds it again all the same, where the turn of the rig takes it, and in the other
 /// camera's image at some distance.

@@ -33,7 +33,6 @@ void addInertialStates(Window& window, const ImuAxesOptions& options) {
     GlobalState state;
     state.name = name;
     state.value.assign(kSensorAxesSize, 0.0);
-    state.is_correlation_wanted = true;
     window.add(std::move(state));
   };
   add(kGyroscopeAxes, options.gyroscope_sigma);

@@ -77,4 +77,17 @@ bool wantsKeyframe(const Window& window, const FactorMaker& factors, const Keyfr
   return sees_little && fresh_tracks > options.min_fresh_share * tracks_now;
 }
 
+void keepLastView(Window& window, int recent_frames, int least_landmarks) {
+  int later = 0;
+  for (auto frame = window.frames().rbegin(); frame != window.frames().rend(); ++frame, ++later) {
+    if (!(*frame)->has_motion) return;
+    const auto seen = std::count_if(window.tracks().begin(), window.tracks().end(), [&](const auto& entry) {
+      return entry.second.landmark && entry.second.seenIn((*frame)->id);
+    });
+    if (seen < least_landmarks) continue;
+    if (later >= recent_frames) (*frame)->is_keyframe = true;
+    return;
+  }
+}
+
 }  // namespace lodeline

@@ -11,6 +11,11 @@ namespace lodeline {
 /// so that its window keeps what it knows.
 bool wantsKeyframe(const Window& window, const FactorMaker& factors, const KeyframeOptions& options);
 
+/// Where images have ended: the last frame that saw at least so many landmarks becomes a keyframe when it is
+/// about to leave the `recent_frames`. Any other frame's sightings would be dropped with it, and with them
+/// all that images said of the motion since the last keyframe: of a rig that has rested so far, everything.
+void keepLastView(Window& window, int recent_frames, int least_landmarks);
+
 /// The keyframes before and after a frame that is neither and leaves the window's recent ones, where it is
 /// worth being interpolated between them: when it saw landmarks, and far enough from other frames in time for
 /// what it saw to tell something that they do not (their errors are alike otherwise). Nothing where the next

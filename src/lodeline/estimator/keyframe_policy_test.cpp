@@ -91,6 +91,34 @@ TEST_F(KeyframePolicyTest, ADarkImageMakesNone) {
   EXPECT_FALSE(wanted());
 }
 
+TEST_F(KeyframePolicyTest, TheLastFrameToSeeBecomesOneBeforeItLeaves) {
+  constexpr int kRecent = 3, kLeast = 10;
+  Frame& early = test_.add(Rigid3(), false);
+  see(early, 0, 60);
+  Frame& last_to_see = test_.add(Rigid3(), false);
+  see(last_to_see, 0, kLeast);
+  const auto isKept = [&] {
+    keepLastView(test_.window, kRecent, kLeast);
+    EXPECT_FALSE(early.is_keyframe);
+    return last_to_see.is_keyframe;
+  };
+  see(test_.add(Rigid3(), false), 0, kLeast - 1);
+  for (int later = 2; later <= kRecent; ++later) {
+    EXPECT_FALSE(isKept()) << "images may return, while it is among the recent frames";
+    test_.add(Rigid3(), false);
+  }
+  EXPECT_TRUE(isKept());
+  EXPECT_FALSE(test_.window.newest().is_keyframe);
+}
+
+TEST_F(KeyframePolicyTest, FramesBeforeTheLastToSeeAreLeftAlone) {
+  Frame& early = test_.add(Rigid3(), false);
+  see(early, 0, 60);
+  for (int i = 0; i < 5; ++i) see(test_.add(Rigid3(), false), 0, 60);
+  keepLastView(test_.window, 3, 10);
+  EXPECT_FALSE(early.is_keyframe);
+}
+
 TEST_F(KeyframePolicyTest, ParallaxIsTheAngleWithoutRotation) {
   const double step_m = 0.4;
   const Frame& moved = test_.add(Rigid3(so3::exp(Vec3(0.1, 0.05, 0.1)), Vec3(0.0, step_m, 0.0)), false);
