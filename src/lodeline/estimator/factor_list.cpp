@@ -24,16 +24,10 @@ void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor)
   constexpr size_t kTarget = 1;  // of the blocks of such factors
   const auto& [before_id, after_id, between] = *target.interpolated;
   Frame &before = *window.find(before_id), &after = *window.find(after_id);
-  Frame& bias = window.biasOfBows();
-  GlobalState* axes = ImuAxesStates(window).accelerometer;
-  const InterpolationFirstEstimates first{before.firstPose(), after.firstPose(), bias.firstMotion(),
-                                          axes ? axes->firstEstimate() : nullptr};
   factor->function = std::make_unique<InterpolatedPoseFactor>(std::move(factor->function), kTarget, between,
-                                                              axes != nullptr, first);
+                                                              before.firstPose(), after.firstPose());
   factor->blocks[kTarget] = before.pose.data();
   factor->blocks.push_back(after.pose.data());
-  factor->blocks.push_back(bias.motion.data());
-  if (axes) factor->blocks.push_back(axes->value.data());
 }
 
 /// That a state is zero, with so much on each of its entries.

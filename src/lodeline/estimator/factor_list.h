@@ -63,7 +63,6 @@ class FactorMaker {
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
   const Rigid3& camera0FromCamera(int camera) const { return camera0_from_camera_[camera]; }
   int cameraCount() const { return static_cast<int>(body_from_camera_.size()); }
-  const Vec3& gravity_W() const { return gravity_W_; }  ///< m/s^2
   /// Of the Cauchy loss on the reprojection errors in a frame's images, in standard deviations.
   double robustScale(const Frame& frame) const { return frame.robust_scale_sigmas.value_or(robust_scale_); }
   /// At the true time of a frame's images, with the calibration as estimated so far.

@@ -131,7 +131,6 @@ Eigen::VectorXd yawShares(const Prior& prior) {
 void Marginalizer::shorten(Window& window, const WindowOptions& wanted) {
   while (window.recentCount() > wanted.recent_frames) retireOldestRecent(window, wanted);
   while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window, wanted.keyframes_after_cut);
-  window.placeInterpolated();  // their bows follow another frame's bias now
 }
 
 void Marginalizer::relinearise(Window& window) {
@@ -185,7 +184,7 @@ void Marginalizer::retireOldestRecent(Window& window, const WindowOptions& wante
   } else {
     eliminate(window, system, {oldest.motion.data(), oldest.pose.data()}, elapsed_s);
     if (const auto between = keyframesAbout(window, oldest, wanted)) {
-      window.interpolate(oldest, *between->before, *between->after, factors_.gravity_W());
+      window.interpolate(oldest, *between->before, *between->after);
     } else {
       window.remove(oldest.id);
     }

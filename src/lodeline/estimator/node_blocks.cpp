@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/wide_products.h"
-#include "lodeline/factors/inertial_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
@@ -19,17 +17,6 @@ NodeBlocks::NodeBlocks(const Window& window, const CameraStates& states, const C
     if (frame->interpolated) continue;
     append(frame->pose.data(), kPoseSize);
     poses_ += kPoseTangentSize;
-  }
-  const auto is_interpolated = [](const auto& frame) { return frame->interpolated.has_value(); };
-  if (std::any_of(window.frames().begin(), window.frames().end(), is_interpolated)) {
-    append(window.biasOfBows().motion.data(), kMotionSize);
-    poses_ += kMotionSize;
-    bias_ = poses_ - 6;
-    if (GlobalState* axes = ImuAxesStates(window).accelerometer) {
-      append(axes->value.data(), kSensorAxesSize);
-      axes_ = poses_;
-      poses_ += kSensorAxesSize;
-    }
   }
   if (!states_) return;
   for (GlobalState* state : states_.further) append(state->value.data(), kExtrinsicsSize);
@@ -56,21 +43,9 @@ NodeBlocks::Follows NodeBlocks::posesOf(int frame) const {
   if (!target.interpolated) return {{Part{columnOf(target), by_body}}, 1};
   const auto& [before_id, after_id, between] = *target.interpolated;
   const Frame &before = *window_.find(before_id), &after = *window_.find(after_id);
-  const auto [by_before, by_after, by_bias, by_axes] = between.derivatives(
-      before.firstWorldFromBody(), after.firstWorldFromBody(), window_.firstAccelerometer());
-  const auto by_position = by_body.leftCols<3>();
-  Mat6 by_biases = Mat6::Zero();
-  by_biases.rightCols<3>() = by_position * by_bias;
-  Follows follows{{Part{columnOf(before), by_body * by_before}, Part{columnOf(after), by_body * by_after},
-                   Part{bias_, by_biases}},
-                  3};
-  if (!axes_) return follows;
-  Mat6 by_last_column = Mat6::Zero();
-  by_last_column.rightCols<3>() = by_position * by_axes.rightCols<3>();
-  follows.parts[3] = Part{*axes_, by_position * by_axes.leftCols<6>()};
-  follows.parts[4] = Part{*axes_ + kSensorAxesSize - 6, by_last_column};
-  follows.count = 5;
-  return follows;
+  const auto [by_before, by_after] =
+      between.derivatives(before.firstWorldFromBody(), after.firstWorldFromBody());
+  return {{Part{columnOf(before), by_body * by_before}, Part{columnOf(after), by_body * by_after}}, 2};
 }
 
 void NodeBlocks::update() {
@@ -86,7 +61,7 @@ void NodeBlocks::transform(const Eigen::MatrixXd& h_nodes, const Eigen::VectorXd
   Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
   for (int i = 0; i < frames_; ++i) {
     for (const Part& part : follows_[static_cast<size_t>(i)])
-      subtractProduct(of_nodes.middleCols<6>(6 * i), part.by_columns.transpose(),
+      subtractProduct(of_nodes.middleCols<6>(6 * i), part.by_pose.transpose(),
                       half.middleCols<6>(part.column));
     if (calibration_ > 0) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
   }
@@ -96,8 +71,8 @@ void NodeBlocks::transform(const Eigen::MatrixXd& h_nodes, const Eigen::VectorXd
   g->setZero(columns);
   for (int i = 0; i < frames_; ++i) {
     for (const Part& part : follows_[static_cast<size_t>(i)]) {
-      h->middleRows<6>(part.column).noalias() -= part.by_columns.transpose() * half.middleRows<6>(6 * i);
-      g->segment<6>(part.column).noalias() += part.by_columns.transpose() * g_nodes.segment<6>(6 * i);
+      h->middleRows<6>(part.column).noalias() -= part.by_pose.transpose() * half.middleRows<6>(6 * i);
+      g->segment<6>(part.column).noalias() += part.by_pose.transpose() * g_nodes.segment<6>(6 * i);
     }
   }
   h->middleRows(poses_, others_) = -half.middleRows(6 * frames_, others_);
@@ -118,7 +93,7 @@ Eigen::VectorXd NodeBlocks::stepOfNodes(const NormalEquations& system, const Eig
     if (calibration_ > 0)
       of_frame = first_.placement(i).by_calibration * of_blocks.tail<kExtrinsicsSize + kTimeOffsetSize>();
     for (const Part& part : follows_[static_cast<size_t>(i)])
-      of_frame += part.by_columns * of_blocks.segment<6>(part.column);
+      of_frame += part.by_pose * of_blocks.segment<6>(part.column);
   }
   steps.segment(6 * frames_, others_) = of_blocks.segment(poses_, others_);
   return steps;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "lodeline/estimator/camera_states.h"
@@ -33,13 +32,12 @@ class NodeBlocks {
   const std::vector<NormalEquations::Block>& blocks() const { return blocks_; }
 
  private:
-  /// What a node follows: six coordinates of a pose or of the accelerometer's calibration.
   struct Part {
-    int column = 0;
-    Mat6 by_columns = Mat6::Zero();
+    int column = 0;  ///< of the pose
+    Mat6 by_pose;
   };
   struct Follows {
-    std::array<Part, 5> parts;
+    std::array<Part, 2> parts;
     int count = 1;
     auto begin() const { return parts.begin(); }
     auto end() const { return parts.begin() + count; }
@@ -52,11 +50,9 @@ class NodeBlocks {
   const CameraStates& states_;
   const CameraViews& first_;
   int frames_, nodes_;
-  int bias_ = 0;             ///< first column of the bias that interpolated poses follow, less three
-  std::optional<int> axes_;  ///< first column of the accelerometer's axes, where they follow those
-  int poses_ = 0;            ///< columns of the bodies' poses and of these, which come first...
-  int others_ = 0;           ///< ...then those of nodes that are blocks themselves...
-  int calibration_ = 0;      ///< ...and last those of the calibration that moves all frames' nodes
+  int poses_ = 0;        ///< columns of the bodies' poses, which come first...
+  int others_ = 0;       ///< ...then those of nodes that are blocks themselves...
+  int calibration_ = 0;  ///< ...and last those of the calibration that moves all frames' nodes
   std::vector<NormalEquations::Block> blocks_;
   std::vector<Follows> follows_;  ///< by frame
 };

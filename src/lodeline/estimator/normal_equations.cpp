@@ -124,23 +124,21 @@ void NormalEquations::add(const std::vector<Block>& blocks, const Eigen::MatrixX
 /// One factor of a landmark, linearised: the residual, its derivative by the landmark and by every other
 /// block, all scaled by the loss.
 struct NormalEquations::LandmarkTerm {
-  // Three poses, a motion, the accelerometer's axes, landmark, extrinsics twice, time offset, lens.
-  static constexpr int kMaxBlocks = 10;
-  static constexpr int kMaxParts = kMaxBlocks + 2;  // blocks of nine are two
+  static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, lens
   struct Part {
     int offset, size;
     Eigen::Matrix<double, 2, 6> jacobian;  // columns beyond `size` are zero
   };
   Vec2 residual;
   Eigen::Matrix<double, 2, kLandmarkSize, Eigen::RowMajor> by_landmark;
-  Part parts[kMaxParts];
+  Part parts[kMaxBlocks];
   int part_count = 0;
 };
 
 NormalEquations::LandmarkTerm NormalEquations::linearised(const Factor& factor, const double* landmark) {
   const std::vector<int>& sizes = factor.function->parameter_block_sizes();
   LandmarkTerm term;
-  Eigen::Matrix<double, 2, kMotionSize, Eigen::RowMajor> by_block[LandmarkTerm::kMaxBlocks];
+  Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor> by_block[LandmarkTerm::kMaxBlocks];
   double* pointers[LandmarkTerm::kMaxBlocks];
   for (size_t b = 0; b < sizes.size(); ++b)
     pointers[b] = factor.blocks[b] == landmark ? term.by_landmark.data() : by_block[b].data();
@@ -150,18 +148,15 @@ NormalEquations::LandmarkTerm NormalEquations::linearised(const Factor& factor, 
   term.by_landmark *= scale;
   for (size_t b = 0; b < sizes.size(); ++b) {
     if (factor.blocks[b] == landmark) continue;
-    const int offset = offsetOf(factor.blocks[b], sizes[b]), size = find(factor.blocks[b])->tangentSize();
+    LandmarkTerm::Part& part = term.parts[term.part_count++];
+    part.offset = offsetOf(factor.blocks[b], sizes[b]);
+    part.size = std::min(sizes[b], kPoseTangentSize);
+    part.jacobian.setZero();
     const Eigen::Map<RowMajor> given(pointers[b], 2, sizes[b]);
-    for (int start = 0; start < size; start += kPoseTangentSize) {
-      LandmarkTerm::Part& part = term.parts[term.part_count++];
-      part.offset = offset + start;
-      part.size = std::min(size - start, kPoseTangentSize);
-      part.jacobian.setZero();
-      if (part.size == kPoseTangentSize) {
-        part.jacobian = scale * given.middleCols<kPoseTangentSize>(start);
-      } else {
-        part.jacobian.leftCols(part.size) = scale * given.middleCols(start, part.size);
-      }
+    if (part.size == kPoseTangentSize) {
+      part.jacobian = scale * given.leftCols<kPoseTangentSize>();
+    } else {
+      part.jacobian.leftCols(part.size) = scale * given.leftCols(part.size);
     }
   }
   return term;

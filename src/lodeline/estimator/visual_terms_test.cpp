@@ -33,10 +33,7 @@ class VisualTermsTest : public testing::TestWithParam<std::tuple<int, Calibrated
     for (auto& [id, track] : test_.window.tracks()) {
       if (track.landmark && track.landmark->host == frames[index]->id) track.landmark.reset();
     }
-    test_.window.interpolate(*frames[index], *frames[index - 1], *frames[index + 1], test_.options.gravity_W);
-    Frame& bias = test_.window.biasOfBows();
-    bias.first_motion = bias.motion;
-    bias.motion[kAccelerometerBiasInMotion] += 0.2;
+    test_.window.interpolate(*frames[index], *frames[index - 1], *frames[index + 1]);
     frames[index - 1]->first_pose = frames[index - 1]->pose;
     const Eigen::Matrix<double, 6, 1> moved = Eigen::Matrix<double, 6, 1>::Constant(0.01);
     for (const size_t i : {index - 1, index + 1})

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "lodeline/estimator/inertial_states.h"
-
 namespace lodeline {
 
 NavigationState Frame::state() const {
@@ -107,46 +105,24 @@ GlobalState* Window::findGlobal(std::string_view name) const {
   return found == globals_.end() ? nullptr : found->get();
 }
 
-void Window::interpolate(Frame& frame, const Frame& before, const Frame& after, const Vec3& gravity_W) {
-  const double elapsed_s = (after.time - before.time).seconds();
-  const double share = (frame.time - before.time).seconds() / elapsed_s;
-  frame.has_motion = false;
-  frame.first_motion.reset();
+void Window::interpolate(Frame& frame, const Frame& before, const Frame& after) {
+  const double share = (frame.time - before.time).seconds() / (after.time - before.time).seconds();
   frame.interpolated = {
       before.id, after.id,
-      PoseInterpolation(before.worldFromBody(), frame.worldFromBody(), after.worldFromBody(), share,
-                        {gravity_W, elapsed_s, accelerometer()})};
+      PoseInterpolation(before.worldFromBody(), frame.worldFromBody(), after.worldFromBody(), share)};
+  frame.has_motion = false;
+  frame.first_motion.reset();
   placeInterpolated();
 }
 
-Frame& Window::biasOfBows() const {
-  Frame* oldest = oldestRecent();
-  return oldest ? *oldest : newest();
-}
-
-AccelerometerCalibration Window::accelerometer() const {
-  return {biasOfBows().accelerometerBias(), accelerometerAxes(*this).value_or(SensorAxes::Zero())};
-}
-
-AccelerometerCalibration Window::firstAccelerometer() const {
-  AccelerometerCalibration first = accelerometer();
-  if (const double* motion = biasOfBows().firstMotion())
-    first.bias_B = Vec3(motion + kAccelerometerBiasInMotion);
-  const GlobalState* axes = ImuAxesStates(*this).accelerometer;
-  if (axes && axes->first) first.axes = SensorAxes(axes->first->data());
-  return first;
-}
-
 void Window::placeInterpolated() {
-  if (frames_.empty()) return;
-  const AccelerometerCalibration now = accelerometer(), first = firstAccelerometer();
   for (const auto& frame : frames_) {
     if (!frame->interpolated) continue;
     const auto& [before_id, after_id, between] = *frame->interpolated;
     const Frame &before = *find(before_id), &after = *find(after_id);
-    poseToBlock(between.pose(before.worldFromBody(), after.worldFromBody(), now), frame->pose.data());
+    poseToBlock(between.pose(before.worldFromBody(), after.worldFromBody()), frame->pose.data());
     frame->first_pose.emplace();
-    poseToBlock(between.pose(before.firstWorldFromBody(), after.firstWorldFromBody(), first),
+    poseToBlock(between.pose(before.firstWorldFromBody(), after.firstWorldFromBody()),
                 frame->first_pose->data());
   }
 }

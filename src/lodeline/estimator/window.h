@@ -42,8 +42,7 @@ struct DepthMeasurement {
   double sigma_m = 0.0;
 };
 
-/// A frame without a state of its own: the keyframes that its pose hangs between. It hangs on the
-/// accelerometer's calibration as well, see Window::biasOfBows().
+/// A frame without a state of its own: the keyframes that its pose hangs between.
 struct Interpolated {
   FrameId before = 0, after = 0;
   PoseInterpolation between;
@@ -78,7 +77,7 @@ struct Frame {
   Rigid3 worldFromBody() const { return poseFromBlock(pose.data()); }
   Vec3 velocity_W() const { return Vec3(motion.data()); }
   Vec3 gyroscopeBias() const { return Vec3(motion.data() + 3); }
-  Vec3 accelerometerBias() const { return Vec3(motion.data() + kAccelerometerBiasInMotion); }
+  Vec3 accelerometerBias() const { return Vec3(motion.data() + 6); }
   NavigationState state() const;
   void setState(const NavigationState& state);
   /// Brings `image_motion` up to date, which old keyframes keep.
@@ -161,14 +160,7 @@ class Window {
 
   /// Lets the pose of a frame, which loses its motion, follow from those of two keyframes from now on. Its
   /// sightings stay.
-  void interpolate(Frame& frame, const Frame& before, const Frame& after, const Vec3& gravity_W);
-  /// The frame whose accelerometer bias interpolated poses follow: the oldest with motion, for the prior
-  /// knows that already. Biases walk by less in the time that a window spans than a bow could show.
-  Frame& biasOfBows() const;
-  /// That bias and, where they are estimated, the accelerometer's axes; and where Jacobians of them are
-  /// taken.
-  AccelerometerCalibration accelerometer() const;
-  AccelerometerCalibration firstAccelerometer() const;
+  void interpolate(Frame& frame, const Frame& before, const Frame& after);
   /// Brings poses and first estimates of interpolated frames up to date, after keyframes have moved.
   void placeInterpolated();
 

@@ -75,7 +75,7 @@ TEST_F(WindowTest, ForgetsAFrameWithItsSightings) {
 TEST_F(WindowTest, TakesAnInterpolatedFrameAlongWithItsKeyframes) {
   Frame &before = *window_.find(0), &frame = *window_.find(1), &after = *window_.find(2);
   poseToBlock(Rigid3(Quat::Identity(), Vec3(0.0, 0.1, 0.0)), frame.pose.data());
-  window_.interpolate(frame, before, after, Vec3::Zero());
+  window_.interpolate(frame, before, after);
   EXPECT_EQ(window_.poseOnlyCount(), 1);
   EXPECT_EQ(window_.recentCount(), 3);
   EXPECT_LT((frame.worldFromBody().translation - Vec3(0.0, 0.1, 0.0)).norm(), 1e-15);
@@ -89,24 +89,8 @@ TEST_F(WindowTest, TakesAnInterpolatedFrameAlongWithItsKeyframes) {
   EXPECT_LT((frame.firstWorldFromBody().translation - Vec3(0.5, 0.1, 0.0)).norm(), 1e-15);
 }
 
-// A second between the keyframes: of an acceleration of 0.8 m/s^2 that the bias turns out to be, an eighth of
-// a square second makes the bow.
-TEST_F(WindowTest, BendsTheWayOfAnInterpolatedFrameByTheOldestKnownBias) {
-  Frame &before = *window_.find(0), &frame = *window_.find(1), &after = *window_.find(2);
-  after.time = before.time + Duration::fromSeconds(1.0);
-  frame.time = before.time + Duration::fromSeconds(0.5);
-  before.has_motion = false;
-  window_.interpolate(frame, before, after, standardGravity_W());
-  EXPECT_EQ(&window_.biasOfBows(), &after);
-  after.first_motion = after.motion;
-  after.motion[kAccelerometerBiasInMotion] += 0.8;
-  window_.placeInterpolated();
-  EXPECT_LT((frame.worldFromBody().translation - Vec3(0.1, 0.0, 0.0)).norm(), 1e-12);
-  EXPECT_LT(frame.firstWorldFromBody().translation.norm(), 1e-12);
-}
-
 TEST_F(WindowTest, ForgetsAKeyframeWithWhatHangsOnIt) {
-  window_.interpolate(*window_.find(1), *window_.find(0), *window_.find(2), Vec3::Zero());
+  window_.interpolate(*window_.find(1), *window_.find(0), *window_.find(2));
   window_.remove(0);
   EXPECT_EQ(window_.find(1), nullptr);
   EXPECT_EQ(window_.frames().size(), 3u);

@@ -28,7 +28,6 @@ namespace lodeline {
 constexpr int kPoseSize = 7;
 constexpr int kPoseTangentSize = 6;
 constexpr int kMotionSize = 9;
-constexpr int kAccelerometerBiasInMotion = 6;  // its first entry
 
 Rigid3 poseFromBlock(const double* block);
 void poseToBlock(const Rigid3& world_from_body, double* block);
