@@ -29,7 +29,7 @@ double unclaimedBiasInformation(const EstimatorOptions& options) {
 }
 
 void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15>* covariance) {
-  covariance->diagonal().segment<2>(3).array() += options.upSigma() * options.upSigma();
+  covariance->diagonal().segment<2>(3).array() += options.accelerometerSigma() * options.accelerometerSigma();
 }
 
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,

@@ -144,8 +144,8 @@ struct ImuAxesOptions {
   double accelerometer_sigma = imu_axes::kCalibratedSigma;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
-  /// Of what an accelerometer takes for up beside its states.
-  double upSigma() const { return std::max(accelerometer_sigma, uncalibrated_sigma); }
+  /// Of what an accelerometer takes for up beside its states: makers calibrate both sensors or none.
+  double accelerometerSigma() const { return std::max(gyroscope_sigma, uncalibrated_sigma); }
 };
 
 /// When a rig counts as resting, see RestWatch.
