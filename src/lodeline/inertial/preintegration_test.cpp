@@ -56,19 +56,21 @@ std::vector<ImuSample> trueReadings() {
   return kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
 }
 
-/// What a sensor with these axes reads instead.
-Vec3 readBy(const SensorAxes& axes, const Vec3& reading, const Vec3& bias) {
-  return (Mat3::Identity() + axes.reshaped(3, 3)).inverse() * (reading - bias) + bias;
+/// What a sensor with the wrong axes reads instead.
+std::vector<ImuSample> readingsBy(Vec3 ImuSample::*sensor, const Vec3& bias) {
+  const Mat3 true_from_reading = Mat3::Identity() + wrongAxes().reshaped(3, 3);
+  std::vector<ImuSample> readings = trueReadings();
+  for (ImuSample& reading : readings)
+    reading.*sensor = true_from_reading.inverse() * (reading.*sensor - bias) + bias;
+  return readings;
 }
 
 // What the integration over such a gyroscope's readings makes of them.
 TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
   const SensorAxes axes = wrongAxes();
-  auto readings = trueReadings();
-  for (ImuSample& reading : readings)
-    reading.angular_velocity_B = readBy(axes, reading.angular_velocity_B, kGyroscopeBias);
   const RelativeMotion truth = integrate(trueReadings(), kGyroscopeBias, kAccelerometerBias).motion();
-  const Preintegration p = integrate(readings, kGyroscopeBias, kAccelerometerBias);
+  const Preintegration p = integrate(readingsBy(&ImuSample::angular_velocity_B, kGyroscopeBias),
+                                     kGyroscopeBias, kAccelerometerBias);
   const auto off = [&](double share) {
     const RelativeMotion motion =
         p.correctedFor(kGyroscopeBias, kAccelerometerBias, {.gyroscope = share * axes});
@@ -82,11 +84,9 @@ TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
 // The same of an accelerometer; forces are linear in them.
 TEST(Preintegration, CorrectsForTheAxesOfTheAccelerometer) {
   const SensorAxes axes = wrongAxes();
-  auto readings = trueReadings();
-  for (ImuSample& reading : readings)
-    reading.specific_force_B = readBy(axes, reading.specific_force_B, kAccelerometerBias);
   const RelativeMotion truth = integrate(trueReadings(), kGyroscopeBias, kAccelerometerBias).motion();
-  const Preintegration p = integrate(readings, kGyroscopeBias, kAccelerometerBias);
+  const Preintegration p = integrate(readingsBy(&ImuSample::specific_force_B, kAccelerometerBias),
+                                     kGyroscopeBias, kAccelerometerBias);
   EXPECT_GT((p.motion().beta - truth.beta).norm(), 1e-3);  // so that there is something to correct
   const RelativeMotion motion = p.correctedFor(kGyroscopeBias, kAccelerometerBias, {.accelerometer = axes});
   EXPECT_LT((motion.alpha - truth.alpha).norm(), 1e-12);
