@@ -7,8 +7,8 @@
 namespace lodeline {
 namespace {
 
-/// Rows and columns of c that are summed in registers.
-constexpr Eigen::Index kTileRows = 4, kTileColumns = 6;
+/// Rows and columns of c that are summed in registers, rows in pieces of four.
+constexpr Eigen::Index kPiece = 4, kTileColumns = 6;
 
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 
@@ -25,21 +25,46 @@ struct Strided {
 using StridedInput = Strided<const double>;
 using StridedOutput = Strided<double>;
 
-/// The last rows of a tile whose first `skipped` rows belong to another one.
-template <int kColumns>
-inline __attribute__((always_inline)) void subtractTile(StridedInput a, StridedInput b, Eigen::Index depth,
-                                                        Eigen::Index skipped, StridedOutput c) {
-  Four sums[kColumns] = {};
+template <int kPieces, int kColumns>
+struct TileSums {
+  Four of[kPieces][kColumns] = {};
+};
+
+template <int kPieces, int kColumns>
+inline __attribute__((always_inline)) TileSums<kPieces, kColumns> sumTile(StridedInput a, StridedInput b,
+                                                                          Eigen::Index depth) {
+  TileSums<kPieces, kColumns> sums;
   for (Eigen::Index k = 0; k < depth; ++k) {
-    const Four rows = *reinterpret_cast<const Four*>(a.data + k * a.stride);
-    for (int j = 0; j < kColumns; ++j) sums[j] += rows * b.data[k * b.stride + j];
+    const Four* rows = reinterpret_cast<const Four*>(a.data + k * a.stride);
+    for (int j = 0; j < kColumns; ++j) {
+      const double column = b.data[k * b.stride + j];
+      for (int piece = 0; piece < kPieces; ++piece) sums.of[piece][j] += rows[piece] * column;
+    }
   }
+  return sums;
+}
+
+template <int kPieces, int kColumns>
+inline __attribute__((always_inline)) void subtractTile(StridedInput a, StridedInput b, Eigen::Index depth,
+                                                        StridedOutput c) {
+  const auto sums = sumTile<kPieces, kColumns>(a, b, depth);
   for (int j = 0; j < kColumns; ++j) {
-    for (Eigen::Index i = skipped; i < kTileRows; ++i) c.data[j * c.stride + i] -= sums[j][i];
+    Four* rows = reinterpret_cast<Four*>(c.data + j * c.stride);
+    for (int piece = 0; piece < kPieces; ++piece) rows[piece] -= sums.of[piece][j];
   }
 }
 
-/// For fewer rows than a tile has.
+/// The last rows of a piece whose first `skipped` rows belong to another one.
+template <int kColumns>
+inline __attribute__((always_inline)) void subtractRest(StridedInput a, StridedInput b, Eigen::Index depth,
+                                                        Eigen::Index skipped, StridedOutput c) {
+  const auto sums = sumTile<1, kColumns>(a, b, depth);
+  for (int j = 0; j < kColumns; ++j) {
+    for (Eigen::Index i = skipped; i < kPiece; ++i) c.data[j * c.stride + i] -= sums.of[0][j][i];
+  }
+}
+
+/// For fewer rows than a piece has.
 inline __attribute__((always_inline)) void subtractFew(StridedInput a, StridedInput b, Eigen::Index rows,
                                                        Eigen::Index columns, Eigen::Index depth,
                                                        StridedOutput c) {
@@ -56,17 +81,18 @@ template <int kColumns>
 inline __attribute__((always_inline)) void subtractColumns(StridedInput a, StridedInput b, Eigen::Index rows,
                                                            Eigen::Index depth, StridedOutput c) {
   Eigen::Index row = 0;
-  for (; row + kTileRows <= rows; row += kTileRows)
-    subtractTile<kColumns>(a.from(row), b, depth, 0, c.from(row));
+  for (; row + 2 * kPiece <= rows; row += 2 * kPiece)
+    subtractTile<2, kColumns>(a.from(row), b, depth, c.from(row));
+  for (; row + kPiece <= rows; row += kPiece) subtractTile<1, kColumns>(a.from(row), b, depth, c.from(row));
   if (row == rows) return;
-  const Eigen::Index last = rows - kTileRows;
-  subtractTile<kColumns>(a.from(last), b, depth, row - last, c.from(last));
+  const Eigen::Index last = rows - kPiece;
+  subtractRest<kColumns>(a.from(last), b, depth, row - last, c.from(last));
 }
 
 LODELINE_WIDE_VECTORS
 void subtract(StridedInput a, StridedInput b, Eigen::Index rows, Eigen::Index columns, Eigen::Index depth,
               StridedOutput c) {
-  if (rows < kTileRows) return subtractFew(a, b, rows, columns, depth, c);
+  if (rows < kPiece) return subtractFew(a, b, rows, columns, depth, c);
   Eigen::Index column = 0;
   for (; column + kTileColumns <= columns; column += kTileColumns)
     subtractColumns<kTileColumns>(a, b.from(column), rows, depth, c.from(0, column));
