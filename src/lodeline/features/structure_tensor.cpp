@@ -1,67 +1,67 @@
 #include "lodeline/features/structure_tensor.h"
 
-#include <algorithm>
-#include <cmath>
+#include <Eigen/Core>
+
+#include "lodeline/base/wide_vectors.h"
 
 namespace lodeline {
 namespace {
 
 constexpr int kSide = 2 * StructureTensor::kWindowRadius + 1;
 
+/// Products of the differences at `width` pixels of a row.
+LODELINE_WIDE_VECTORS
+void multiplyGradients(const float* __restrict above, const float* __restrict here,
+                       const float* __restrict below, int width, float* __restrict xx, float* __restrict xy,
+                       float* __restrict yy) {
+  for (int i = 0; i < width; ++i) {
+    const float gx = here[i + 1] - here[i - 1];
+    const float gy = below[i] - above[i];
+    xx[i] = gx * gx;
+    xy[i] = gx * gy;
+    yy[i] = gy * gy;
+  }
+}
+
+/// Sums over kSide rows that begin `stride` apart.
+LODELINE_WIDE_VECTORS
+void sumRows(const float* __restrict rows, int stride, int width, float* __restrict sums) {
+  for (int i = 0; i < width; ++i) {
+    float sum = 0.0F;
+    for (int k = 0; k < kSide; ++k) sum += rows[k * stride + i];
+    sums[i] = sum;
+  }
+}
+
 }  // namespace
 
 StructureTensor::StructureTensor(const cv::Mat& image, const cv::Rect& cell)
-    : width_(cell.width),
-      height_(cell.height),
-      wide_(cell.width + 2 * kWindowRadius),
-      high_(cell.height + 2 * kWindowRadius) {
-  const size_t count = static_cast<size_t>(wide_) * static_cast<size_t>(high_);
-  xx_.resize(count);
-  xy_.resize(count);
-  yy_.resize(count);
-  for (int row = 0; row < high_; ++row) {
-    const int y = cell.y + row - kWindowRadius;
-    const auto* above = image.ptr<float>(y - 1) + cell.x - kWindowRadius;
-    const auto* here = image.ptr<float>(y) + cell.x - kWindowRadius;
-    const auto* below = image.ptr<float>(y + 1) + cell.x - kWindowRadius;
-    const size_t start = static_cast<size_t>(row) * static_cast<size_t>(wide_);
-    for (int column = 0; column < wide_; ++column) {
-      const float gx = here[column + 1] - here[column - 1];
-      const float gy = below[column] - above[column];
-      const size_t i = start + static_cast<size_t>(column);
-      xx_[i] = gx * gx;
-      xy_[i] = gx * gy;
-      yy_[i] = gy * gy;
-    }
+    : width_(cell.width), weaker_(static_cast<size_t>(cell.area())) {
+  using Row = Eigen::Map<Eigen::ArrayXf>;
+  const int wide = cell.width + 2 * kWindowRadius, high = cell.height + 2 * kWindowRadius;
+  const auto size = static_cast<size_t>(wide) * static_cast<size_t>(high);
+  std::vector<float> products(3 * size), columns(static_cast<size_t>(wide));
+  std::vector<float> windows(3 * static_cast<size_t>(width_));
+  for (int row = 0; row < high; ++row) {
+    const int y = cell.y + row - kWindowRadius, x = cell.x - kWindowRadius;
+    float* line = products.data() + static_cast<ptrdiff_t>(row) * wide;
+    multiplyGradients(image.ptr<float>(y - 1) + x, image.ptr<float>(y) + x, image.ptr<float>(y + 1) + x, wide,
+                      line, line + size, line + 2 * size);
   }
-  for (std::vector<float>* products : {&xx_, &xy_, &yy_}) sumWindows(*products);
-}
-
-float StructureTensor::weakerGradientGreyPerPx(int column, int row) const {
   // Differences span two pixels.
   constexpr float kSpan = 2.0F;
   constexpr float kScale = 1.0F / (static_cast<float>(kSide * kSide) * kSpan * kSpan);
-  const size_t i = static_cast<size_t>(row) * static_cast<size_t>(wide_) + static_cast<size_t>(column);
-  const float mean = 0.5F * (xx_[i] + yy_[i]), difference = 0.5F * (xx_[i] - yy_[i]);
-  return std::sqrt(std::max(0.0F, kScale * (mean - std::sqrt(difference * difference + xy_[i] * xy_[i]))));
-}
-
-/// Entry (column, row) becomes the sum over the window whose upper left corner it is.
-void StructureTensor::sumWindows(std::vector<float>& values) const {
-  for (int row = 0; row < high_; ++row) {
-    float* line = values.data() + static_cast<ptrdiff_t>(row) * wide_;
-    for (int column = 0; column < width_; ++column) {
-      float sum = 0.0F;
-      for (int k = 0; k < kSide; ++k) sum += line[column + k];
-      line[column] = sum;
+  for (int row = 0; row < cell.height; ++row) {
+    for (size_t kind = 0; kind < 3; ++kind) {
+      sumRows(products.data() + kind * size + static_cast<ptrdiff_t>(row) * wide, wide, wide, columns.data());
+      sumRows(columns.data(), 1, width_, windows.data() + kind * static_cast<size_t>(width_));
     }
-  }
-  for (int row = 0; row < height_; ++row) {
-    float* line = values.data() + static_cast<ptrdiff_t>(row) * wide_;
-    for (int k = 1; k < kSide; ++k) {
-      const float* other = line + static_cast<ptrdiff_t>(k) * wide_;
-      for (int column = 0; column < width_; ++column) line[column] += other[column];
-    }
+    const Row xx(windows.data(), width_);
+    const Row xy(windows.data() + width_, width_);
+    const Row yy(windows.data() + static_cast<ptrdiff_t>(2) * width_, width_);
+    const auto difference = 0.5F * (xx - yy);
+    Row(weaker_.data() + static_cast<ptrdiff_t>(row) * width_, width_) =
+        (kScale * (0.5F * (xx + yy) - (difference.square() + xy.square()).sqrt())).max(0.0F).sqrt();
   }
 }
 

@@ -17,14 +17,13 @@ class StructureTensor {
 
   /// Root-mean-square gradient across the direction in which there is less of it, at a pixel of the cell;
   /// root of the smaller eigenvalue.
-  float weakerGradientGreyPerPx(int column, int row) const;
+  float weakerGradientGreyPerPx(int column, int row) const {
+    return weaker_[static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column)];
+  }
 
  private:
-  void sumWindows(std::vector<float>& values) const;
-
-  int width_, height_;
-  int wide_, high_;  ///< with the windows' margin
-  std::vector<float> xx_, xy_, yy_;
+  int width_;
+  std::vector<float> weaker_;
 };
 
 }  // namespace lodeline
