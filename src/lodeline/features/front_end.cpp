@@ -62,6 +62,7 @@ void FrontEnd::check(Time time, const std::vector<cv::Mat>& images) const {
 FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
                               const Quat& previous_from_current_B) {
   check(time, images);
+  constexpr double kGap = 1.5;  // in usual intervals
   statistics_ = {};
   previous_from_current_B_ = (previous_from_current_B_ * previous_from_current_B).normalized();
   if (images.front().empty()) {
@@ -74,9 +75,14 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   updateQuality(current);
   if (faint_ != was_faint) current = pyramid(images.front());
   fixed_structures_.front().add(time, current);
-  if ((time - previous_time_).seconds() > options_.max_gap_s) {
+  const double interval_s = (time - previous_time_).seconds();
+  if (interval_s > options_.max_gap_s) {
     statistics_.lost = static_cast<int>(tracks_.size());
     tracks_.clear();
+  }
+  // After a gap nothing is where the images before let it be expected.
+  if (interval_s > kGap * previous_interval_s_) {
+    for (Track& track : tracks_) track.prediction_error_px.reset();
   }
   const Quat current_from_previous_C =
       body_from_camera_.conjugate() * previous_from_current_B_.conjugate() * body_from_camera_;
@@ -86,6 +92,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
 
   previous_ = std::move(current);
   previous_time_ = time;
+  previous_interval_s_ = interval_s;
   previous_from_current_B_ = Quat::Identity();
   return observations(time);
 }
@@ -164,6 +171,12 @@ bool FrontEnd::isHidden(size_t camera, const Eigen::Vector2f& pixel) const {
 }
 
 void FrontEnd::detect(const ImagePyramid& current) {
+  // A few more or less tell no more; looking for them costs as much as following all the others.
+  constexpr double kEnough = 0.9;
+  const auto tracks = static_cast<double>(tracks_.size()),
+             wanted = static_cast<double>(options_.detector.max_tracks);
+  looks_for_points_ = !looks_for_points_ || tracks < kEnough * wanted;
+  if (!looks_for_points_ || tracks >= wanted) return;
   std::vector<Eigen::Vector2f> occupied;
   for (const Track& track : tracks_) occupied.push_back(track.warp.position);
   cv::Mat visible = masks_.front();

@@ -82,6 +82,18 @@ bool StereoMatcher::returns(const ImagePyramid& first, const ImagePyramid& secon
          (back.position - track.warp.position).norm() <= options_.max_left_right_px;
 }
 
+std::optional<PatchWarp> StereoMatcher::align(const ImagePyramid& second, const PatchTemplate& looks,
+                                              const PatchWarp& expected, bool is_near, int coarsest) const {
+  constexpr int kNearLevel = 1;
+  const auto from = [&](int level) -> std::optional<PatchWarp> {
+    PatchWarp warp = expected;
+    const auto found = looks.align(second, level, PatchMotion::Deformation, warp);
+    return found && options_.quality.accepts(*found) ? std::optional(warp) : std::nullopt;
+  };
+  const auto near = is_near ? from(kNearLevel) : std::nullopt;
+  return near ? near : from(coarsest);
+}
+
 std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, const ImagePyramid& second,
                                                    const std::optional<PatchWarp>& hint,
                                                    const Track& track) const {
@@ -90,19 +102,21 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
 
   std::optional<PatchWarp> warp;
   int coarsest = options_.coarsest_level;
+  bool is_near = false;
   // A point that is not seen in the other camera would be searched for in vain in every frame.
   const bool search_again = !hint && (track.id + track.sightings) % kFramesBetweenSearches == 0;
   if (track.inverse_depth_per_m && !search_again) {
     const auto expected = projectAt(*first_bearing, *track.inverse_depth_per_m);
     if (expected) warp = PatchWarp{expected->cast<float>(), Eigen::Matrix2f::Identity()};
     if (warp && hint) warp->linear = hint->linear;
+    is_near = hint.has_value();
   } else if (track.sightings == 1 || search_again) {
     warp = search(second, *first_bearing, track.current);
     coarsest = kSearchLevel;
   }
   if (!warp) return std::nullopt;
-  const auto found = track.current.align(second, coarsest, PatchMotion::Deformation, *warp);
-  if (!found || !options_.quality.accepts(*found)) return std::nullopt;
+  warp = align(second, track.current, *warp, is_near, coarsest);
+  if (!warp) return std::nullopt;
   if (!second_->contains(warp->position.cast<double>(), options_.border_px)) return std::nullopt;
 
   const auto second_bearing = second_->unproject(warp->position.cast<double>());

@@ -57,6 +57,10 @@ class StereoMatcher {
   std::optional<Vec2> projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const;
   std::optional<PatchWarp> search(const ImagePyramid& second, const Vec3& first_bearing,
                                   const PatchTemplate& looks) const;
+  /// Finds `looks` from the fine levels where it `is_near` what is expected, and from level `coarsest` where
+  /// that fails.
+  std::optional<PatchWarp> align(const ImagePyramid& second, const PatchTemplate& looks,
+                                 const PatchWarp& expected, bool is_near, int coarsest) const;
   std::optional<double> inverseDepth(const RayPair& rays) const;
   bool returns(const ImagePyramid& first, const ImagePyramid& second, const PatchWarp& match,
                const Track& track) const;

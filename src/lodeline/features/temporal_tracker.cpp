@@ -21,15 +21,26 @@ std::optional<PatchWarp> TemporalTracker::predict(const Mat3& current_from_previ
 }
 
 bool TemporalTracker::find(const ImagePyramid& current, const PatchWarp& predicted, Track& track) const {
+  // What was where it was expected will be again, within reach of the fine levels.
+  constexpr float kNear_px = 1.0F;
+  constexpr int kNearLevel = 1;
+  if (track.prediction_error_px && *track.prediction_error_px < kNear_px &&
+      findFrom(kNearLevel, current, predicted, track))
+    return true;
+  return findFrom(options_.coarsest_level, current, predicted, track);
+}
+
+bool TemporalTracker::findFrom(int coarsest, const ImagePyramid& current, const PatchWarp& predicted,
+                               Track& track) const {
   PatchWarp warp = predicted;
-  auto match = track.reference.align(current, options_.coarsest_level, PatchMotion::Deformation, warp);
+  auto match = track.reference.align(current, coarsest, PatchMotion::Deformation, warp);
   if (match && options_.reference_quality.accepts(*match)) {
     track.warp = warp;
     return true;
   }
   // The point no longer looks as it first did: carry on from the image before, which costs one step of drift.
   warp = {predicted.position, predicted.linear * track.warp.linear.inverse()};
-  match = track.current.align(current, options_.coarsest_level, PatchMotion::Deformation, warp);
+  match = track.current.align(current, coarsest, PatchMotion::Deformation, warp);
   if (!match || !options_.quality.accepts(*match)) return false;
   track.reference = track.current;
   track.warp = warp;
@@ -63,6 +74,7 @@ bool TemporalTracker::follow(const ImagePyramid& previous, const ImagePyramid& c
   if (!looks) return false;
   track.current = std::move(*looks);
   if (!returns(previous, predicted, previous_position, track)) return false;
+  track.prediction_error_px = (track.warp.position - predicted.position).norm();
   track.parallax_px = track.warp.position - rotated->position;
   ++track.sightings;
   return true;

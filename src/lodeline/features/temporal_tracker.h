@@ -34,6 +34,7 @@ class TemporalTracker {
 
  private:
   bool find(const ImagePyramid& current, const PatchWarp& predicted, Track& track) const;
+  bool findFrom(int coarsest, const ImagePyramid& current, const PatchWarp& predicted, Track& track) const;
   bool returns(const ImagePyramid& previous, const PatchWarp& predicted,
                const Eigen::Vector2f& previous_position, const Track& track) const;
 

@@ -18,6 +18,8 @@ struct Track {
   PatchWarp warp;  ///< where `reference` lies in the last image of camera 0
   /// How far it moved between the last two images beyond what the rotation explains.
   Eigen::Vector2f parallax_px = Eigen::Vector2f::Zero();
+  /// How far it lay from where it was expected in the last image; nothing before there was such an image.
+  std::optional<float> prediction_error_px;
   /// Its looks in the last image of camera 0, to be found in the images taken at the same time.
   PatchTemplate current;
   /// 1/m along the ray of camera 0, from the last match in another camera.
