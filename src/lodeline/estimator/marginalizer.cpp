@@ -37,6 +37,7 @@ void factorise(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior)
   }
   prior->sqrt_information = Eigen::MatrixXd(llt.matrixU()) * scale.asDiagonal();
   prior->offset = llt.matrixL().solve(scale.cwiseInverse().asDiagonal() * g);
+  prior->information = h;
 }
 
 /// The information (h, g) after the coordinates `row` to `row + size` have moved by an unknown step of
@@ -158,6 +159,7 @@ void Marginalizer::relinearise(Window& window) {
                                                              yawShares(prior_).transpose();
   const Eigen::HouseholderQR<Eigen::MatrixXd> triangular(root);
   prior_.sqrt_information = triangular.matrixQR().triangularView<Eigen::Upper>();
+  prior_.information.resize(0, 0);
   prior_.offset = triangular.householderQ().transpose() * (residual - root * difference());
   window.placeInterpolated();
 }

@@ -17,7 +17,10 @@ class Marginalizer {
   explicit Marginalizer(const FactorMaker& factors) : factors_(factors) {}
 
   /// Starts from a prior on the first frame. It freezes no first estimate: nothing has been eliminated yet.
-  void start(Prior prior) { prior_ = std::move(prior); }
+  void start(Prior prior) {
+    prior_ = std::move(prior);
+    prior_.information.resize(0, 0);
+  }
 
   /// Shortens the window to the wanted sizes.
   void shorten(Window& window, const WindowOptions& wanted);

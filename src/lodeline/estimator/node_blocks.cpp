@@ -55,29 +55,63 @@ void NodeBlocks::update() {
 
 void NodeBlocks::transform(const Eigen::MatrixXd& h_nodes, const Eigen::VectorXd& g_nodes, Eigen::MatrixXd* h,
                            Eigen::VectorXd* g) const {
-  const int columns = poses_ + others_ + calibration_;
+  const int columns = poses_ + others_ + calibration_, of_frames = 6 * frames_;
   const Eigen::MatrixXd of_nodes = h_nodes.selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * nodes_, columns);  // -h_nodes T
-  Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
-  for (int i = 0; i < frames_; ++i) {
-    for (const Part& part : follows_[static_cast<size_t>(i)])
-      subtractProduct(of_nodes.middleCols<6>(6 * i), part.by_pose.transpose(),
-                      half.middleCols<6>(part.column));
-    if (calibration_ > 0) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
-  }
-  half.middleCols(poses_, others_) = -of_nodes.middleCols(6 * frames_, others_);
-  subtractProduct(of_nodes, by_calibration.transpose(), half.rightCols(calibration_));
   h->setZero(columns, columns);
   g->setZero(columns);
+  addPoses(of_nodes, h);
   for (int i = 0; i < frames_; ++i) {
     for (const Part& part : follows_[static_cast<size_t>(i)]) {
-      h->middleRows<6>(part.column).noalias() -= part.by_pose.transpose() * half.middleRows<6>(6 * i);
+      h->block(poses_, part.column, others_, 6).noalias() +=
+          of_nodes.block(of_frames, 6 * i, others_, 6) * part.by_pose;
       g->segment<6>(part.column).noalias() += part.by_pose.transpose() * g_nodes.segment<6>(6 * i);
     }
   }
-  h->middleRows(poses_, others_) = -half.middleRows(6 * frames_, others_);
-  g->segment(poses_, others_) = g_nodes.segment(6 * frames_, others_);
-  h->bottomRows(calibration_).noalias() = -by_calibration.transpose() * half;
+  h->block(poses_, poses_, others_, others_) = of_nodes.bottomRightCorner(others_, others_);
+  g->segment(poses_, others_) = g_nodes.segment(of_frames, others_);
+  if (calibration_ > 0) addCalibration(of_nodes, g_nodes, h, g);
+}
+
+void NodeBlocks::addPoses(const Eigen::MatrixXd& of_nodes, Eigen::MatrixXd* h) const {
+  // -h_nodes T, of which the lower triangle of T^T h_nodes T needs the rows of later frames only.
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * frames_, poses_);
+  for (int i = 0; i < frames_; ++i) {
+    for (const Part& part : follows_[static_cast<size_t>(i)]) {
+      const int first = 6 * firstTouching(part.column), rows = 6 * frames_ - first;
+      subtractProduct(of_nodes.block(first, 6 * i, rows, 6), part.by_pose.transpose(),
+                      half.block(first, part.column, rows, 6));
+    }
+  }
+  for (int i = 0; i < frames_; ++i) {
+    for (const Part& part : follows_[static_cast<size_t>(i)]) {
+      h->block(part.column, 0, 6, part.column + 6).noalias() -=
+          part.by_pose.transpose() * half.block(6 * i, 0, 6, part.column + 6);
+    }
+  }
+}
+
+int NodeBlocks::firstTouching(int column) const {
+  const auto touches = [column](const Follows& follows) {
+    return std::any_of(follows.begin(), follows.end(),
+                       [column](const Part& part) { return part.column >= column; });
+  };
+  return static_cast<int>(std::find_if(follows_.begin(), follows_.end(), touches) - follows_.begin());
+}
+
+void NodeBlocks::addCalibration(const Eigen::MatrixXd& of_nodes, const Eigen::VectorXd& g_nodes,
+                                Eigen::MatrixXd* h, Eigen::VectorXd* g) const {
+  Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
+  for (int i = 0; i < frames_; ++i) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
+  subtractProduct(of_nodes, by_calibration.transpose(), half);
+  half = -half;
+  auto rows = h->bottomRows(calibration_);
+  for (int i = 0; i < frames_; ++i) {
+    for (const Part& part : follows_[static_cast<size_t>(i)])
+      rows.middleCols<6>(part.column).noalias() += half.middleRows<6>(6 * i).transpose() * part.by_pose;
+  }
+  rows.middleCols(poses_, others_) = half.bottomRows(others_).transpose();
+  rows.rightCols(calibration_).noalias() = by_calibration.transpose() * half;
   g->tail(calibration_).noalias() = by_calibration.transpose() * g_nodes;
 }
 

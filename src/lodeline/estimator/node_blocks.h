@@ -45,6 +45,11 @@ class NodeBlocks {
   void append(double* value, int size);
   int columnOf(const Frame& frame) const;
   Follows posesOf(int frame) const;
+  /// The first frame that follows the pose at `column` or a later one.
+  int firstTouching(int column) const;
+  void addPoses(const Eigen::MatrixXd& of_nodes, Eigen::MatrixXd* h) const;
+  void addCalibration(const Eigen::MatrixXd& of_nodes, const Eigen::VectorXd& g_nodes, Eigen::MatrixXd* h,
+                      Eigen::VectorXd* g) const;
 
   const Window& window_;
   const CameraStates& states_;

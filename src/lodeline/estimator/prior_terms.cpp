@@ -12,6 +12,7 @@ PriorTerms::PriorTerms(const Prior& prior) : prior_(prior) {
     blocks_.push_back({block.value, static_cast<int>(block.first_estimate.size()), offset});
     offset += block.tangentSize();
   }
+  if (prior.information.size() > 0) return;
   // J^T J, a few rows of J at a time: they are zero left of the diagonal.
   constexpr int kRows = 24;
   const Eigen::MatrixXd transposed = prior.sqrt_information.transpose();
@@ -32,7 +33,7 @@ Eigen::VectorXd PriorTerms::residual() const {
 
 void PriorTerms::addTo(NormalEquations* system) const {
   if (prior_.empty()) return;
-  system->add(blocks_, hessian_,
+  system->add(blocks_, prior_.information.size() > 0 ? prior_.information : hessian_,
               prior_.sqrt_information.triangularView<Eigen::Upper>().transpose() * residual());
 }
 

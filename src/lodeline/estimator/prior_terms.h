@@ -21,7 +21,7 @@ class PriorTerms {
 
   const Prior& prior_;
   std::vector<NormalEquations::Block> blocks_;
-  Eigen::MatrixXd hessian_;  ///< lower triangle
+  Eigen::MatrixXd hessian_;  ///< lower triangle; empty where the prior has it
 };
 
 }  // namespace lodeline

@@ -16,6 +16,7 @@ void Prior::append(double* value, int size, const Eigen::VectorXd& sigmas) {
   grown.topLeftCorner(before, before) = sqrt_information;
   grown.diagonal().tail(after - before) = sigmas.cwiseInverse();
   sqrt_information = std::move(grown);
+  information.resize(0, 0);
   offset.conservativeResizeLike(Eigen::VectorXd::Zero(after));
 }
 

@@ -25,6 +25,7 @@ struct Prior {
   std::vector<Block> blocks;
   Eigen::MatrixXd sqrt_information;  ///< J
   Eigen::VectorXd offset;            ///< e
+  Eigen::MatrixXd information;       ///< J^T J where it is at hand, else empty
 
   /// Adds a block that is known to `sigmas` (one per tangent coordinate) about its present value,
   /// independently of the others.
