@@ -105,6 +105,8 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "at least, of frames between keyframes whose sightings are kept");
   settings->bind("window.interpolated_gap_s", &options->window.interpolated_gap_s,
                  "at most, of the keyframes on both sides of them");
+  settings->bind("window.dormant_frames", &options->window.dormant_frames,
+                 "after which landmarks that no recent frame sees are evaluated anew; 0: in each");
   settings->bind("window.startup_frames", &options->window.startup_frames, "nothing is marginalised before");
   settings->bind("window.startup_frames_mono", &options->window.startup_frames_mono,
                  "the same with one camera");

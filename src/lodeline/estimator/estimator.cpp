@@ -72,6 +72,7 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       depth_(rig_, options_, diagnostics),
       lens_trust_(options_.camera_calibration),
       scale_(rig_, options_),
+      dormant_(options_.window.dormant_frames),
       rest_(rig_, options_.rest),
       unmodelled_(options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
@@ -110,6 +111,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   startAgainAfterDarkness(estimate);
   // Not at the start: whoever records it needs the prior of the first frame as it was.
   if (carries_on) shortenWindow(estimate);
+  if (is_settled_ && !starting_up_) dormant_.putToSleep(window_, factors_);
   unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
   unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
                      estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
@@ -314,8 +316,10 @@ void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* es
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  WindowUpdate update = updateWindow(window_, marginalizer_.prior(), factors_,
-                                     {options_.solver.max_iterations, options_.solver.function_tolerance});
+  dormant_.wakeIfDue(window_);
+  WindowUpdate update =
+      updateWindow(window_, marginalizer_.prior(), factors_,
+                   {options_.solver.max_iterations, options_.solver.function_tolerance}, dormant_);
   const SolveSummary summary = update.summary;
   rememberCovariance(std::move(update.covariance), estimate);
   estimate->solver_iterations = summary.iterations;
@@ -328,6 +332,7 @@ void Estimator::optimize(FrameEstimate* estimate) {
   }
   std::vector<SightingError> errors;
   removeOutliers(window_, update.errors_sigmas, options_.landmark, &errors);
+  errors.insert(errors.end(), dormant_.errors().begin(), dormant_.errors().end());
   // As long as the scale is unknown, small errors do not mean that the poses are right.
   if (is_settled_ || scale_is_given_) adaptRobustLosses(window_, errors, options_.solver);
 }

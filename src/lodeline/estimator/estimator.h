@@ -8,6 +8,7 @@
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/dead_reckoning.h"
 #include "lodeline/estimator/depth_fusion.h"
+#include "lodeline/estimator/dormant_landmarks.h"
 #include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/lens_trust.h"
 #include "lodeline/estimator/magnetometer_fusion.h"
@@ -122,6 +123,7 @@ class Estimator {
   DepthFusion depth_;
   LensTrust lens_trust_;
   ScaleBudget scale_;
+  DormantLandmarks dormant_;
   RestWatch rest_;
   bool rests_ = false;  ///< at the newest frame
   DeadReckoning dead_reckoning_;

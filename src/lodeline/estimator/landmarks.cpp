@@ -134,13 +134,13 @@ int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, con
   int removed = 0;
   auto next = errors_sigmas.begin();
   for (auto& [id, track] : window.tracks()) {
-    if (!track.landmark) continue;
+    if (!track.landmark || track.is_dormant) continue;
     bool host_kept = false;
     bool other_kept = false;
     auto kept = track.sightings.begin();
     for (const Sighting& sighting : track.sightings) {
       const double sigmas = *next++;
-      const bool is_host = sighting.frame == track.landmark->host && sighting.camera == 0;
+      const bool is_host = track.isHosted(sighting);
       if (errors && !is_host) errors->push_back({id, sighting.frame, sigmas});
       if (sigmas > options.max_error_sigmas) continue;
       (is_host ? host_kept : other_kept) = true;
@@ -161,7 +161,7 @@ int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, con
 }
 
 int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
-  return removeOutliers(window, VisualTerms(window, factors).errors(), options);
+  return removeOutliers(window, VisualTerms(window, factors, VisualTerms::Of::kAwake).errors(), options);
 }
 
 ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame) {
@@ -170,7 +170,7 @@ ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker&
     if (track.landmark) statistics.landmarks += track.seenIn(frame);
   }
   double squared = 0.0;
-  for (const double sigmas : VisualTerms(window, factors, frame).errors()) {
+  for (const double sigmas : VisualTerms(window, factors, VisualTerms::Of::kAll, frame).errors()) {
     squared += sigmas * sigmas;
     ++statistics.sightings;
   }

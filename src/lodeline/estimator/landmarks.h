@@ -16,9 +16,9 @@ namespace lodeline {
 int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options);
 
 /// Removes sightings that contradict the window by more than `max_error_sigmas`, and the landmarks that are
-/// then seen too little or lie behind their host. Returns the number of sightings removed. `errors_sigmas`
-/// are those of the same tracks and sightings, as from VisualTerms::errors(); `errors`, where given, receives
-/// them with what they belong to.
+/// then seen too little or lie behind their host, but leaves DormantLandmarks as they are. Returns the number
+/// of sightings removed. `errors_sigmas` are those of the same tracks and sightings, as from
+/// VisualTerms::errors(); `errors`, where given, receives them with what they belong to.
 int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, const LandmarkOptions& options,
                    std::vector<SightingError>* errors = nullptr);
 /// The same for a window whose errors are not at hand.

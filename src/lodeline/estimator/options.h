@@ -51,6 +51,8 @@ struct WindowOptions {
   /// in time.
   double interpolated_gap_s = 1.6;
   double interpolated_spacing_s = 0.18;
+  /// Landmarks that no recent frame sees are evaluated anew after so many frames; 0: in every frame.
+  int dormant_frames = 8;
   /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen. One
   /// camera, whose scale settles slowly, waits longer, and until the scale is known to `startup_scale_sigma`
   /// (relative). After `startup_max_frames` frames go all the same, but no linearisation is kept until it is.

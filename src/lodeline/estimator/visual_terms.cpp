@@ -33,12 +33,17 @@ int placeOf(FrameId id, const std::vector<FrameId>& ids) {
   return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
 }
 
+bool isAmong(const TrackHistory& track, VisualTerms::Of which) {
+  return track.landmark &&
+         (which == VisualTerms::Of::kAll || track.is_dormant == (which == VisualTerms::Of::kDormant));
+}
+
 /// The frames that a landmark has for its host, counted from the oldest.
-std::vector<int> hostsOf(const Window& window) {
+std::vector<int> hostsOf(const Window& window, VisualTerms::Of which) {
   const std::vector<FrameId> ids = idsOf(window);
   std::vector<bool> is_host(ids.size(), false);
   for (const auto& [id, track] : window.tracks()) {
-    if (track.landmark) is_host[static_cast<size_t>(placeOf(track.landmark->host, ids))] = true;
+    if (isAmong(track, which)) is_host[static_cast<size_t>(placeOf(track.landmark->host, ids))] = true;
   }
   std::vector<int> hosts;
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -68,9 +73,9 @@ struct VisualTerms::Linearised {
   auto by(int column) { return by_nodes.middleCols<6>(column); }
 };
 
-VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only)
+VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, Of which, std::optional<FrameId> only)
     : states_(cameraStates(window)),
-      values_(window, states_, factors, CameraViews::At::kValues, hostsOf(window)),
+      values_(window, states_, factors, CameraViews::At::kValues, hostsOf(window, which)),
       first_(window, states_, factors, CameraViews::At::kFirstEstimates, values_.hosts()),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
@@ -80,28 +85,34 @@ VisualTerms::VisualTerms(Window& window, const FactorMaker& factors, std::option
   std::vector<double> scales;
   for (const auto& frame : window.frames()) scales.push_back(factors.robustScale(*frame));
   for (auto& [id, track] : window.tracks()) {
-    if (!track.landmark) continue;
-    Landmark landmark{};
-    landmark.value = track.landmark->parameters.data();
-    landmark.host = placeOf(track.landmark->host, ids);
-    landmark.base = track.landmark->base;
-    landmark.weight = track.weight;
-    landmark.first_frame = landmark.host;
-    landmark.end_frame = landmark.host + 1;
-    landmark.first_sighting = sightings_.size();
-    const std::span<const lodeline::Sighting> all(track.sightings);
-    for (const lodeline::Sighting& sighting : only ? track.in(*only) : all) {
-      const int frame = placeOf(sighting.frame, ids);
-      landmark.first_frame = std::min(landmark.first_frame, frame);
-      landmark.end_frame = std::max(landmark.end_frame, frame + 1);
-      const double scale = scales[static_cast<size_t>(frame)];
-      sightings_.push_back({frame, sighting.camera, &sighting.measurement, scale * scale});
-    }
-    landmark.end_sighting = sightings_.size();
-    landmarks_.push_back(landmark);
+    if (isAmong(track, which)) add(track, only, ids, scales);
   }
   arrangeColumns();
   update();
+}
+
+void VisualTerms::add(TrackHistory& track, std::optional<FrameId> only, const std::vector<FrameId>& ids,
+                      const std::vector<double>& scales) {
+  Landmark landmark{};
+  landmark.value = track.landmark->parameters.data();
+  landmark.host = placeOf(track.landmark->host, ids);
+  landmark.base = track.landmark->base;
+  landmark.weight = track.weight;
+  landmark.first_frame = landmark.host;
+  landmark.end_frame = landmark.host + 1;
+  landmark.first_sighting = sightings_.size();
+  const std::span<const lodeline::Sighting> all(track.sightings);
+  int frame = 0;
+  for (const lodeline::Sighting& sighting : only ? track.in(*only) : all) {
+    // They come in order of time.
+    while (ids[static_cast<size_t>(frame)] < sighting.frame) ++frame;
+    landmark.first_frame = std::min(landmark.first_frame, frame);
+    landmark.end_frame = std::max(landmark.end_frame, frame + 1);
+    const double scale = scales[static_cast<size_t>(frame)];
+    sightings_.push_back({frame, sighting.camera, &sighting.measurement, scale * scale});
+  }
+  landmark.end_sighting = sightings_.size();
+  landmarks_.push_back(landmark);
 }
 
 /// Most landmarks are seen by some frames of the window only. With columns in the order of the time that
@@ -117,8 +128,9 @@ void VisualTerms::arrangeColumns() {
     Landmark& landmark = *by_time[i];
     landmark.column = kLandmarkSize * static_cast<Eigen::Index>(i);
     if (i % kStretch == 0)
-      stretches_.push_back({landmark.column, 0, landmark.first_frame, landmark.end_frame});
+      stretches_.push_back({{}, landmark.column, 0, landmark.first_frame, landmark.end_frame});
     Stretch& stretch = stretches_.back();
+    stretch.landmarks.push_back(&landmark);
     stretch.columns += kLandmarkSize;
     stretch.first_frame = std::min(stretch.first_frame, landmark.first_frame);
     stretch.end_frame = std::max(stretch.end_frame, landmark.end_frame);
@@ -298,43 +310,38 @@ void VisualTerms::addTo(NormalEquations* system) {
   by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
   hessian_.setZero(rows, rows);
   gradient_.setZero(rows);
-  clearCouplings();
+  couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
   rooted_gradients_.resize(kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
-  for (Landmark& landmark : landmarks_) eliminate(&landmark);
+  // While a stretch's couplings are at hand.
+  for (const Stretch& stretch : stretches_) {
+    couplingsOfFrames(stretch).setZero();
+    couplingsOfCalibration(stretch).setZero();
+    for (Landmark* landmark : stretch.landmarks) eliminate(landmark);
+    subtractEliminated(stretch);
+  }
   for (const int host : first_.hosts()) {
     for (int target = 0; target < frames_; ++target) {
       if (target != host) addPair(host, target);
     }
   }
   for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
-  subtractEliminated();
   Eigen::MatrixXd h;
   Eigen::VectorXd g;
   blocks_.transform(hessian_, gradient_, &h, &g);
   system->add(blocks_.blocks(), h, g);
 }
 
-void VisualTerms::clearCouplings() {
-  couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
-  for (const Stretch& stretch : stretches_) {
-    couplingsOfFrames(stretch).setZero();
-    couplingsOfCalibration(stretch).setZero();
-  }
-}
-
-void VisualTerms::subtractEliminated() {
+void VisualTerms::subtractEliminated(const Stretch& stretch) {
   const int calibration = 6 * (nodes_ - frames_);
-  for (const Stretch& stretch : stretches_) {
-    const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
-    const auto by_frames = couplingsOfFrames(stretch);
-    const auto by_calibration = couplingsOfCalibration(stretch);
-    const auto rooted = rooted_gradients_.segment(stretch.column, stretch.columns);
-    gradient_.segment(first, rows).noalias() -= by_frames * rooted;
-    gradient_.tail(calibration).noalias() -= by_calibration * rooted;
-    subtractSquare(by_frames, hessian_.block(first, first, rows, rows));
-    subtractProduct(by_calibration, by_frames, hessian_.block(6 * frames_, first, calibration, rows));
-    subtractSquare(by_calibration, hessian_.bottomRightCorner(calibration, calibration));
-  }
+  const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
+  const auto by_frames = couplingsOfFrames(stretch);
+  const auto by_calibration = couplingsOfCalibration(stretch);
+  const auto rooted = rooted_gradients_.segment(stretch.column, stretch.columns);
+  gradient_.segment(first, rows).noalias() -= by_frames * rooted;
+  gradient_.tail(calibration).noalias() -= by_calibration * rooted;
+  subtractSquare(by_frames, hessian_.block(first, first, rows, rows));
+  subtractProduct(by_calibration, by_frames, hessian_.block(6 * frames_, first, calibration, rows));
+  subtractSquare(by_calibration, hessian_.bottomRightCorner(calibration, calibration));
 }
 
 void VisualTerms::stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step) {

@@ -17,9 +17,15 @@ namespace lodeline {
 /// the bodies and for the calibration is worked out once for the sum, not for every sighting.
 class VisualTerms {
  public:
+  /// All landmarks of the window, or apart those that DormantLandmarks stand for and the others.
+  enum class Of { kAll, kAwake, kDormant };
+
   /// Window and factors must outlive the terms, and tracks must stay as they are. With `only`, of the
   /// sightings in that frame alone.
-  VisualTerms(Window& window, const FactorMaker& factors, std::optional<FrameId> only = {});
+  VisualTerms(Window& window, const FactorMaker& factors, Of which = Of::kAll,
+              std::optional<FrameId> only = {});
+  VisualTerms(const VisualTerms&) = delete;
+  VisualTerms& operator=(const VisualTerms&) = delete;
 
   /// Takes the blocks' present values: to be called after they have moved. All of the following is at the
   /// values taken last, at first those of the construction.
@@ -58,6 +64,7 @@ class VisualTerms {
   };
   /// Landmarks whose couplings are side by side, and the frames that any of them touches.
   struct Stretch {
+    std::vector<Landmark*> landmarks;
     Eigen::Index column, columns;
     int first_frame, end_frame;
   };
@@ -68,10 +75,11 @@ class VisualTerms {
   struct Linearised;
 
   Linearised linearise(const Landmark& landmark, const Sighting& sighting, const Residual& residual) const;
+  void add(TrackHistory& track, std::optional<FrameId> only, const std::vector<FrameId>& ids,
+           const std::vector<double>& scales);
   void arrangeColumns();
   void eliminate(Landmark* landmark);
-  void clearCouplings();
-  void subtractEliminated();
+  void subtractEliminated(const Stretch& stretch);
   void addPair(int host, int target);
   void addCalibration(int camera);
   size_t indexOf(int host, int target, int camera) const {

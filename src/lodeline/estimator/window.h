@@ -115,12 +115,17 @@ struct MapPoint {
 struct TrackHistory {
   std::vector<Sighting> sightings;  ///< in order of time, then camera
   std::optional<Landmark> landmark;
-  double weight = 1.0;  ///< of its reprojection errors, squared (robust_loss.h)
+  double weight = 1.0;      ///< of its reprojection errors, squared (robust_loss.h)
+  bool is_dormant = false;  ///< its terms are among DormantLandmarks
 
   std::span<const Sighting> in(FrameId frame) const;
   const Sighting* find(FrameId frame, int camera) const;  ///< null where there is none
   bool seenIn(FrameId frame) const { return !in(frame).empty(); }
   int frameCount() const;  ///< frames that see it, with whatever camera
+  /// Whether it is the one that its landmark is hosted at.
+  bool isHosted(const Sighting& sighting) const {
+    return landmark && sighting.frame == landmark->host && sighting.camera == 0;
+  }
 };
 
 /// By their numbers, side by side in memory: a frame walks through them many times over. New ones come last.

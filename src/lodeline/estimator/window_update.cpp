@@ -54,17 +54,18 @@ int tangentSizeOf(const Window& window) {
 /// All terms of a window, in a form that is quick to evaluate again and again.
 class QuickTerms {
  public:
-  QuickTerms(Window& window, const Prior& prior, const FactorMaker& factors)
+  QuickTerms(Window& window, const Prior& prior, const FactorMaker& factors, const DormantLandmarks& dormant)
       : prior_(prior),
         motion_(collectMotionTerms(window, factors)),
-        visual_(window, factors),
+        visual_(window, factors, VisualTerms::Of::kAwake),
+        dormant_(dormant),
         size_(tangentSizeOf(window)) {}
 
   /// After blocks have moved.
   void update() { visual_.update(); }
 
   double cost() {
-    double cost = prior_.cost() + visual_.cost();
+    double cost = prior_.cost() + visual_.cost() + dormant_.cost();
     for (const Factor& factor : motion_) cost += costOf(factor, residual_);
     return cost;
   }
@@ -79,6 +80,7 @@ class QuickTerms {
     prior_.addTo(&system);
     for (const Factor& factor : motion_) system.add(factor);
     visual_.addTo(&system);
+    dormant_.addTo(&system);
     return system;
   }
 
@@ -100,6 +102,7 @@ class QuickTerms {
   PriorTerms prior_;
   std::vector<Factor> motion_;
   VisualTerms visual_;
+  const DormantLandmarks& dormant_;
   int size_;
   std::vector<double> residual_;
 };
@@ -107,13 +110,13 @@ class QuickTerms {
 }  // namespace
 
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker& factors,
-                          const SolveLimits& limits) {
+                          const SolveLimits& limits, const DormantLandmarks& dormant) {
   // None at first. After darkness the window is known to metres as a whole and its frames among one another
   // to micrometres: however little damping there is beside the latter, it holds the whole where dead
   // reckoning left it.
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e-1;
-  QuickTerms terms(window, prior, factors);
+  QuickTerms terms(window, prior, factors, dormant);
   WindowUpdate update;
   double cost = terms.cost();
   update.summary.initial_cost = cost;
