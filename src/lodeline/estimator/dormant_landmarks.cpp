@@ -5,12 +5,24 @@
 #include "lodeline/estimator/visual_terms.h"
 
 namespace lodeline {
+namespace {
+
+/// The newest keyframe that has no motion any more. Frames interpolated after it hang on a recent one.
+const Frame* newestOldKeyframe(const Window& window) {
+  const Frame* newest = nullptr;
+  for (const auto& frame : window.frames()) {
+    if (!frame->has_motion && !frame->interpolated) newest = frame.get();
+  }
+  return newest;
+}
+
+}  // namespace
 
 void DormantLandmarks::putToSleep(Window& window, const FactorMaker& factors) {
-  const Frame* recent = window.oldestRecent();
-  if (!tracks_.empty() || most_frames_ == 0 || !recent) return;
+  const Frame* newest_old = newestOldKeyframe(window);
+  if (!tracks_.empty() || most_frames_ == 0 || !newest_old) return;
   for (auto& [id, track] : window.tracks()) {
-    track.is_dormant = track.landmark && track.sightings.back().frame < recent->id;
+    track.is_dormant = track.landmark && track.sightings.back().frame <= newest_old->id;
     if (track.is_dormant) tracks_.emplace_back(id, track.sightings.size());
   }
   if (tracks_.empty()) return;
@@ -44,11 +56,15 @@ void DormantLandmarks::keep(const NormalEquations& system, const Window& window)
     };
     if (std::any_of(window.frames().begin(), window.frames().end(), is_recent)) continue;
     blocks_.push_back({block.value, block.ambient_size, static_cast<int>(rows.size())});
-    then_.blocks.push_back({block.value, Eigen::Map<const Eigen::VectorXd>(block.value, block.ambient_size)});
     for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
   }
   hessian_ = system.hessian()(rows, rows);
   gradient_ = system.gradient()(rows);
+  const Frame& reference = *newestOldKeyframe(window);
+  reference_ = reference.pose.data();
+  first_reference_ = reference.firstWorldFromBody();
+  for (Eigen::VectorXd& value : values())
+    then_.blocks.push_back({blocks_[then_.blocks.size()].value, std::move(value)});
 }
 
 void DormantLandmarks::wakeIfDue(Window& window) {
@@ -88,10 +104,22 @@ bool DormantLandmarks::haveMoved() const {
   return false;
 }
 
+std::vector<Eigen::VectorXd> DormantLandmarks::values() const {
+  const Rigid3 first_from_now = first_reference_ * poseFromBlock(reference_).inverse();
+  std::vector<Eigen::VectorXd> values;
+  for (const NormalEquations::Block& block : blocks_) {
+    values.emplace_back(Eigen::Map<const Eigen::VectorXd>(block.value, block.ambient_size));
+    if (block.ambient_size == kPoseSize)
+      poseToBlock(first_from_now * poseFromBlock(block.value), values.back().data());
+  }
+  return values;
+}
+
 Eigen::VectorXd DormantLandmarks::step() const {
-  std::vector<const double*> values;
-  for (const NormalEquations::Block& block : blocks_) values.push_back(block.value);
-  return then_.difference(values.data());
+  const std::vector<Eigen::VectorXd> now = values();
+  std::vector<const double*> pointers;
+  for (const Eigen::VectorXd& value : now) pointers.push_back(value.data());
+  return then_.difference(pointers.data());
 }
 
 double DormantLandmarks::cost() const {

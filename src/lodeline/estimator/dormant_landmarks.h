@@ -13,17 +13,18 @@
 
 namespace lodeline {
 
-/// What landmarks that no recent frame sees any more say of poses and calibration. They make half of a
-/// window's sightings, lie between keyframes that hardly move, and have their Jacobians taken at first
-/// estimates anyway: for some frames their terms, landmarks eliminated, stand as the quadratic cost that they
-/// are about the values of one frame. Then all of them are evaluated again.
+/// What landmarks that no recent frame sees any more, nor one that hangs on a recent one, say of poses and
+/// calibration. They make half of a window's sightings, lie between keyframes that hardly move, and have
+/// their Jacobians taken at first estimates anyway: for some frames their terms, landmarks eliminated, stand
+/// as the quadratic cost that they are about the values of one frame. Then all of them are evaluated again.
 class DormantLandmarks {
  public:
   /// They hold for `most_frames` frames at most; 0: never.
   explicit DormantLandmarks(int most_frames) : most_frames_(most_frames) {}
 
-  /// At the end of a frame that evaluated all landmarks: puts those that no recent frame sees to sleep
-  /// (TrackHistory::is_dormant) at their present values. Does nothing while some are asleep.
+  /// At the end of a frame that evaluated all landmarks: puts those that were last seen by the old keyframes
+  /// or between them to sleep (TrackHistory::is_dormant) at their present values. Does nothing while some are
+  /// asleep.
   void putToSleep(Window& window, const FactorMaker& factors);
 
   /// Before a frame is solved: wakes them all where they have slept for long enough, where what they hang on
@@ -45,12 +46,18 @@ class DormantLandmarks {
   bool hold(const Window& window) const;
   bool haveMoved() const;
   void keep(const NormalEquations& system, const Window& window);
+  /// Of the blocks, with poses as seen from the newest of the keyframes and that one put where it was first
+  /// estimated. Where all of them lie makes no difference to what landmarks say, but it would to a quadratic
+  /// cost that was linearised elsewhere: one that resists every turn of what has turned since then.
+  std::vector<Eigen::VectorXd> values() const;
   Eigen::VectorXd step() const;
 
   int most_frames_;
   int frames_ = 0;  ///< that they have slept for
-  Prior then_;      ///< blocks and their values when they were put to sleep; nothing else of it is used
+  Prior then_;      ///< blocks and their values() when they were put to sleep; nothing else of it is used
   std::vector<NormalEquations::Block> blocks_;
+  const double* reference_ = nullptr;  ///< the pose of that keyframe
+  Rigid3 first_reference_;
   Eigen::MatrixXd hessian_;
   Eigen::VectorXd gradient_;
   double cost_ = 0.0;

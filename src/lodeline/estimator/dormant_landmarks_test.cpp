@@ -6,13 +6,16 @@
 #include "lodeline/estimator/landmarks.h"
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/estimator/visual_terms.h"
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
 
 using Step = Eigen::Matrix<double, 6, 1>;
 
-// A window whose older half are keyframes without motion. Half of the tracks end there.
+// A window of three keyframes without motion, a frame that hangs between the last of them and the first of
+// the recent frames, and these. A third of the tracks ends with the keyframes, a third with the frame
+// between.
 class DormantLandmarksTest : public testing::Test {
  protected:
   DormantLandmarksTest() {
@@ -23,14 +26,15 @@ class DormantLandmarksTest : public testing::Test {
       frames[i]->has_motion = false;
       frames[i]->first_pose = frames[i]->pose;
     }
-    const FrameId first_recent = frames[kOld]->id;
+    frames[kOld]->is_keyframe = false;
     for (auto& [id, track] : test_.window.tracks()) {
-      if (id % 2 == 0 || !track.landmark) continue;
-      std::erase_if(track.sightings,
-                    [&](const Sighting& sighting) { return sighting.frame >= first_recent; });
-      if (track.landmark->host >= first_recent) moveToNewHost(test_.window, track, -1, test_.factors);
+      if (id % 3 == 0 || !track.landmark) continue;
+      const FrameId end = frames[id % 3 == 1 ? kOld : kOld + 1]->id;
+      std::erase_if(track.sightings, [&](const Sighting& sighting) { return sighting.frame >= end; });
+      if (track.landmark->host >= end) moveToNewHost(test_.window, track, -1, test_.factors);
     }
     test_.window.removeEmptyTracks();
+    test_.window.interpolate(*frames[kOld], *frames[kOld - 1], *frames[kOld + 1]);
   }
 
   void move(size_t frame, double step) {
@@ -69,11 +73,11 @@ class DormantLandmarksTest : public testing::Test {
   DormantLandmarks dormant_{3};
 };
 
-TEST_F(DormantLandmarksTest, AreThoseThatNoRecentFrameSees) {
+TEST_F(DormantLandmarksTest, AreThoseLastSeenByOldKeyframes) {
   dormant_.putToSleep(test_.window, test_.factors);
   int ended = 0;
   for (const auto& [id, track] : test_.window.tracks()) {
-    const bool has_ended = track.landmark && track.sightings.back().frame < test_.window.oldestRecent()->id;
+    const bool has_ended = track.landmark && track.sightings.back().frame < test_.window.frames()[kOld]->id;
     EXPECT_EQ(track.is_dormant, has_ended);
     ended += has_ended;
   }
@@ -127,6 +131,20 @@ TEST_F(DormantLandmarksTest, SayNothingOfPositionAndHeadingOfAll) {
   }
   const Eigen::MatrixXd told = all.transpose() * system.hessian() * all;
   EXPECT_LT(told.diagonal().maxCoeff(), 1e-9 * system.hessian().diagonal().maxCoeff());
+}
+
+TEST_F(DormantLandmarksTest, DoNotMindWhereAllOfThemAre) {
+  dormant_.putToSleep(test_.window, test_.factors);
+  move(1, 1e-3);
+  const Eigen::VectorXd before = remembered();
+  const double cost = dormant_.cost();
+  const Rigid3 elsewhere{so3::exp(Vec3(0.3, -0.2, 1.0)), Vec3(20.0, -30.0, 10.0)};
+  for (const auto& frame : test_.window.frames())
+    poseToBlock(elsewhere * frame->worldFromBody(), frame->pose.data());
+  EXPECT_NEAR(dormant_.cost(), cost, 1e-9 * cost);
+  EXPECT_LT((remembered() - before).norm(), 1e-9 * before.norm());
+  dormant_.wakeIfDue(test_.window);
+  EXPECT_GT(asleep(), 0);
 }
 
 TEST_F(DormantLandmarksTest, KeepTheirSightingsAndErrors) {

@@ -31,13 +31,15 @@ void factorise(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior)
   const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt();
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * h * scale.cwiseInverse().asDiagonal();
   Eigen::LLT<Eigen::MatrixXd> llt;
-  for (double jitter = 1e-14; jitter < 1.0; jitter *= 10.0) {
+  double jitter = 1e-14;
+  for (; jitter < 1.0; jitter *= 10.0) {
     llt.compute(scaled + jitter * Eigen::MatrixXd::Identity(h.rows(), h.cols()));
     if (llt.info() == Eigen::Success) break;
   }
   prior->sqrt_information = Eigen::MatrixXd(llt.matrixU()) * scale.asDiagonal();
   prior->offset = llt.matrixL().solve(scale.cwiseInverse().asDiagonal() * g);
   prior->information = h;
+  prior->information.diagonal() += jitter * scale.cwiseAbs2();
 }
 
 /// The information (h, g) after the coordinates `row` to `row + size` have moved by an unknown step of
