@@ -171,12 +171,7 @@ bool FrontEnd::isHidden(size_t camera, const Eigen::Vector2f& pixel) const {
 }
 
 void FrontEnd::detect(const ImagePyramid& current) {
-  // A few more or less tell no more; looking for them costs as much as following all the others.
-  constexpr double kEnough = 0.9;
-  const auto tracks = static_cast<double>(tracks_.size()),
-             wanted = static_cast<double>(options_.detector.max_tracks);
-  looks_for_points_ = !looks_for_points_ || tracks < kEnough * wanted;
-  if (!looks_for_points_ || tracks >= wanted) return;
+  if (static_cast<int>(tracks_.size()) >= options_.detector.max_tracks) return;
   std::vector<Eigen::Vector2f> occupied;
   for (const Track& track : tracks_) occupied.push_back(track.warp.position);
   cv::Mat visible = masks_.front();

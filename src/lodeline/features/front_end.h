@@ -94,8 +94,7 @@ class FrontEnd {
   ImagePyramid previous_;
   bool faint_ = false;  ///< the last image was faint or noisy
   Time previous_time_;
-  double previous_interval_s_ = 0.0;  ///< that led there
-  bool looks_for_points_ = false;     ///< in this image; in every other one while tracks are enough
+  double previous_interval_s_ = 0.0;                 ///< that led there
   Quat previous_from_current_B_ = Quat::Identity();  ///< since the last image of camera 0
   TrackId next_id_ = 0;
   FrontEndStatistics statistics_;
