@@ -31,8 +31,9 @@ class DormantLandmarks {
   /// has been removed or linearised anew, or where it has moved by more than a quadratic cost is good for.
   void wakeIfDue(Window& window);
 
-  /// What VisualTerms would say of them at the blocks' present values: to first order of the change since they
-  /// were put to sleep in the gradient, to second order in the cost. 0 and no terms where none is asleep.
+  /// What VisualTerms would say of them at the blocks' present values: to first order of the change since
+  /// they were put to sleep in the gradient, to second order in the cost. 0 and no terms where none is
+  /// asleep.
   double cost() const;
   void addTo(NormalEquations* system) const;
 
