@@ -69,7 +69,9 @@ void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOpt
   settings->bind("inertial.unresolved_share", &options->motion_noise.unresolved_share,
                  "of the change between two readings that counts as unknown");
   settings->bind("inertial.axis_error", &options->motion_noise.axis_error,
-                 "relative scale errors and misalignment of the IMU's axes");
+                 "relative scale errors and misalignment of the IMU's axes as noise");
+  settings->bind("inertial.error_beside_axes", &calibration->error_beside_states,
+                 "of that at most, where a calibrated IMU's axes are estimated");
   settings->bind("inertial.axis_error_time_s", &options->motion_noise.axis_error_time_s,
                  "for which an axis error keeps its effect");
   settings->bind("inertial.max_gap_s", &options->max_gap_s, "readings further apart count as lost data");

@@ -24,6 +24,10 @@ EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options) {
   if (is_calibrated || axes.gyroscope_sigma <= 0.0) axes.uncalibrated_sigma = 0.0;
   for (double* sigma : {&axes.gyroscope_sigma, &axes.accelerometer_sigma})
     if (*sigma > 0.0) *sigma = std::max(*sigma, axes.uncalibrated_sigma);
+  if (is_calibrated && axes.gyroscope_sigma > 0.0 && axes.accelerometer_sigma > 0.0) {
+    double& beside = options.preintegration.motion_noise.axis_error;
+    beside = std::min(beside, axes.error_beside_states);
+  }
   return options;
 }
 

@@ -129,6 +129,26 @@ TEST(InertialStates, AreDoubtedOfALoudGyroscopeThatIsNotHeld) {
   EXPECT_FALSE(optionsFor(rig, options).imu_axes.areDoubted());
 }
 
+// What is a state need not be noise as well.
+TEST(InertialStates, LeaveLittleToTheMotionNoiseOfACalibratedImu) {
+  Rig rig;
+  EstimatorOptions options;
+  const double doubted = options.preintegration.motion_noise.axis_error;
+  const double beside = options.imu_axes.error_beside_states;
+  const auto axisError = [&] { return optionsFor(rig, options).preintegration.motion_noise.axis_error; };
+  ASSERT_LT(beside, doubted);
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * options.imu_axes.calibrated_below_rad_per_s_sqrtHz;
+  EXPECT_EQ(axisError(), beside);
+  options.imu_axes.accelerometer_sigma = 0.0;
+  EXPECT_EQ(axisError(), doubted) << "these axes are no states";
+  options.imu_axes.accelerometer_sigma = options.imu_axes.gyroscope_sigma;
+  options.preintegration.motion_noise.axis_error = 0.5 * beside;
+  EXPECT_EQ(axisError(), 0.5 * beside) << "less was asked for";
+  options.preintegration.motion_noise.axis_error = doubted;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * options.imu_axes.calibrated_below_rad_per_s_sqrtHz;
+  EXPECT_EQ(axisError(), doubted) << "perhaps never calibrated";
+}
+
 TEST(InertialStates, AreNoneWhereTheAxesAreHeld) {
   Window held, estimated;
   addInertialStates(held, {.gyroscope_sigma = 0.0, .accelerometer_sigma = 0.0});

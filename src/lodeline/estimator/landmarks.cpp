@@ -82,8 +82,28 @@ InverseDistance solveInverseDistance(const Window& window, const TrackHistory& t
   return result;
 }
 
-bool isUsable(const InverseDistance& rho, const LandmarkOptions& options) {
-  const bool known = rho.sigma < options.max_relative_sigma * std::abs(rho.value) ||
+/// The inverse distance that points have here, 1/m: median of the landmarks in view, of all where few are.
+/// Nothing where the window has hardly any.
+std::optional<double> usualInverseDistance(const Window& window) {
+  constexpr size_t kEnough = 8;
+  std::vector<double> in_view, all;
+  for (const auto& [id, track] : window.tracks()) {
+    if (!track.landmark) continue;
+    all.push_back(std::max(0.0, track.landmark->inverseDistance()));
+    if (track.seenIn(window.newest().id)) in_view.push_back(all.back());
+  }
+  std::vector<double>& known = in_view.size() >= kEnough ? in_view : all;
+  if (known.size() < kEnough) return std::nullopt;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  return *middle;
+}
+
+/// Whether a point becomes a landmark must not depend on what noise makes of its distance: where the rig
+/// hardly moves, points that seem to be near are those that move by themselves, such as flakes in the water,
+/// and those with the largest errors. So its sigma is compared with the `usual` inverse distance.
+bool isUsable(const InverseDistance& rho, std::optional<double> usual, const LandmarkOptions& options) {
+  const bool known = rho.sigma < options.max_relative_sigma * usual.value_or(std::abs(rho.value)) ||
                      rho.sigma < options.max_inverse_distance_sigma_per_m;
   // A far point's inverse distance may come out a little below zero.
   const bool in_front = rho.value > -2.0 * rho.sigma && rho.value < 1.0 / options.min_distance_m;
@@ -110,6 +130,7 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
     return a->sightings.size() > b->sightings.size();
   });
   const CameraStates cameras = cameraStates(window);
+  const std::optional<double> usual = usualInverseDistance(window);
   const int wanted = std::max(options.max_landmarks - landmarks,
                               std::min(options.least_in_view, options.max_landmarks) - in_view);
   int created = 0;
@@ -118,7 +139,7 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
     const Sighting* host = hostSighting(window, *track);
     if (!host) continue;
     const InverseDistance rho = solveInverseDistance(window, *track, *host, factors, cameras);
-    if (!isUsable(rho, options)) continue;
+    if (!isUsable(rho, usual, options)) continue;
     Landmark landmark;
     landmark.host = host->frame;
     landmark.base = LandmarkBase(rayOf(*host, cameras));

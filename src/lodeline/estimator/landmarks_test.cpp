@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lodeline/estimator/test_window.h"
 #include "lodeline/geometry/so3.h"
 
@@ -121,6 +123,78 @@ TEST_F(LandmarksTest, FarAwayKeepTheirDirection) {
   EXPECT_LT(track(1).landmark->inverseDistance(), 1e-3);
   EXPECT_LT(reprojectionStatistics(test_.window, test_.factors, 3).rms_sigmas, 0.1);
   EXPECT_EQ(clean(), 0);
+}
+
+// One camera that hardly moves, among landmarks that are known, looks at 100 new points as far away.
+class SlowLandmarksTest : public testing::Test {
+ protected:
+  static constexpr double kDistance_m = 3.0;
+  static constexpr int kPoints = 100;
+
+  explicit SlowLandmarksTest(int known = 10) {
+    for (TrackId id = kPoints; id < kPoints + known; ++id) known_.push_back(id);
+  }
+
+  /// How many of them become landmarks with frames `step_m` apart.
+  int create(double step_m) {
+    for (int i = 0; i < 4; ++i) test_.add(Rigid3(Quat::Identity(), Vec3(0.0, -step_m * i, 0.0)), i < 3);
+    Random noise(5, "slow landmarks");
+    const auto& frames = test_.window.frames();
+    for (TrackId id = 0; id < kPoints; ++id) {
+      for (const auto& frame : frames)
+        test_.see(id, pointOf(id), *frame, 0, Vec2(noise.normal(), noise.normal()));
+    }
+    for (const TrackId id : known_) {
+      for (const auto& frame : frames) test_.see(id, pointOf(id), *frame);
+      test_.place(id, pointOf(id), *frames[2]);
+    }
+    return createLandmarks(test_.window, test_.factors, LandmarkOptions());
+  }
+  double meanInverseDistance() const {
+    double sum = 0.0;
+    int count = 0;
+    for (const auto& [id, track] : test_.window.tracks()) {
+      if (id >= kPoints || !track.landmark) continue;
+      sum += track.landmark->inverseDistance();
+      ++count;
+    }
+    return sum / count;
+  }
+
+  // Sigma of the inverse distance, host in the middle: 1 / (458 px * sqrt(6) * step).
+  static double stepFor(double relative_sigma) {
+    return kDistance_m / (relative_sigma * 458.0 * std::sqrt(6.0));
+  }
+
+  TestWindow test_{1};
+
+ private:
+  static Vec3 pointOf(TrackId id) {
+    const double i = static_cast<double>(id % 10), j = static_cast<double>(id / 10 % 10);
+    return Vec3(kDistance_m, -0.9 + 0.2 * i, -0.9 + 0.2 * j);
+  }
+
+  std::vector<TrackId> known_;
+};
+
+// Those whose noise makes them seem near would be known well enough, and a rig that does not move would.
+TEST_F(SlowLandmarksTest, DoNotOweTheirPlaceToNoise) { EXPECT_EQ(create(stepFor(0.5)), 0); }
+
+TEST_F(SlowLandmarksTest, LieWhereTheirPointsLieInTheMean) {
+  ASSERT_GT(create(stepFor(0.3)), kPoints * 9 / 10);
+  // 0.3 / sqrt(100) of it is one sigma.
+  EXPECT_NEAR(meanInverseDistance() * kDistance_m, 1.0, 0.09);
+}
+
+class FirstLandmarksTest : public SlowLandmarksTest {
+ protected:
+  FirstLandmarksTest() : SlowLandmarksTest(0) {}
+};
+
+TEST_F(FirstLandmarksTest, AreMeasuredByThemselves) {
+  const int created = create(stepFor(0.5));
+  EXPECT_GT(created, 0);
+  EXPECT_LT(created, kPoints / 2);
 }
 
 TEST_F(LandmarksTest, WhoseViewsContradictEachOtherAreRefused) {

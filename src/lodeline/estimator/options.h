@@ -84,7 +84,8 @@ struct LandmarkOptions {
   /// rig back.
   int min_frames = 3;
   double min_distance_m = 0.05;
-  /// Largest sigma of the inverse distance, relative to it, at which a point becomes a landmark...
+  /// Largest sigma of the inverse distance at which a point becomes a landmark, relative to the usual one of
+  /// the landmarks in view (of a window with hardly any: to the point's own)...
   double max_relative_sigma = 0.4;
   /// ...or absolute, for points that are far away.
   double max_inverse_distance_sigma_per_m = 0.02;
@@ -144,6 +145,9 @@ struct ImuAxesOptions {
   double worst_sigma = 0.03;
   /// As gyroscope_sigma, of the accelerometer.
   double accelerometer_sigma = imu_axes::kCalibratedSigma;
+  /// Where the axes of a calibrated IMU are states, motion_noise.axis_error counts for no more than this: what
+  /// no matrix describes, such as sensitivities that change with the rate or with the force. Relative.
+  double error_beside_states = 1e-3;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
   /// Of what an accelerometer takes for up beside its states: makers calibrate both sensors or none.
