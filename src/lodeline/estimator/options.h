@@ -145,8 +145,8 @@ struct ImuAxesOptions {
   double worst_sigma = 0.03;
   /// As gyroscope_sigma, of the accelerometer.
   double accelerometer_sigma = imu_axes::kCalibratedSigma;
-  /// Where the axes of a calibrated IMU are states, motion_noise.axis_error counts for no more than this: what
-  /// no matrix describes, such as sensitivities that change with the rate or with the force. Relative.
+  /// Where the axes of a calibrated IMU are states, motion_noise.axis_error counts for no more than this:
+  /// what no matrix describes, such as sensitivities that change with the rate or with the force. Relative.
   double error_beside_states = 1e-3;
 
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
