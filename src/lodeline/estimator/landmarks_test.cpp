@@ -177,7 +177,7 @@ class SlowLandmarksTest : public testing::Test {
   std::vector<TrackId> known_;
 };
 
-// Those whose noise makes them seem near would be known well enough, and a rig that does not move would.
+// Measured by their own distance, those that noise makes seem near would be known well enough.
 TEST_F(SlowLandmarksTest, DoNotOweTheirPlaceToNoise) { EXPECT_EQ(create(stepFor(0.5)), 0); }
 
 TEST_F(SlowLandmarksTest, LieWhereTheirPointsLieInTheMean) {
