@@ -9,7 +9,8 @@
 namespace lodeline {
 
 /// The options for a rig's IMU: of one that its maker has calibrated, or whose axes are held, nothing is
-/// doubted beyond what is estimated. Everything below takes options that have been through this.
+/// doubted beyond what is estimated, and what is estimated of it is not counted as motion noise as well.
+/// Everything below takes options that have been through this.
 EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options);
 
 /// Adds the axes of gyroscope and accelerometer (factors/inertial_factor.h), unless they are to be held.
