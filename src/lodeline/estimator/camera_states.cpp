@@ -66,6 +66,7 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
   for (size_t camera = 1; camera < static_cast<size_t>(cameras); ++camera) {
     addState(window, prior, extrinsicsName(camera), stereoSigmas(options),
              camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
+    window.findGlobal(extrinsicsName(camera))->is_correlation_wanted = true;  // claimedCovariance()
   }
 }
 

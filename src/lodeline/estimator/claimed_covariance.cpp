@@ -1,7 +1,9 @@
 #include "lodeline/estimator/claimed_covariance.h"
 
 #include <Eigen/Eigenvalues>
+#include <optional>
 
+#include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/lens_trust.h"
 
 namespace lodeline {
@@ -19,6 +21,17 @@ Eigen::MatrixXd biasInformation(const Mat3& known, double unclaimed, double sigm
   return information;
 }
 
+/// What is used is what the loss leaves of it: a camera that was found elsewhere has little.
+Eigen::MatrixXd unclaimedPlacement(const Factor& placement, double baseline_m) {
+  const double claimed_sigma_m = kBaselineTolerance * baseline_m;
+  NormalEquations used;
+  used.add(placement);
+  Eigen::MatrixXd information = used.hessian();
+  auto of_position = information.diagonal().tail<3>().array();
+  of_position = (of_position - 1.0 / (claimed_sigma_m * claimed_sigma_m)).max(0.0);
+  return information;
+}
+
 }  // namespace
 
 double unclaimedBiasInformation(const EstimatorOptions& options) {
@@ -32,11 +45,26 @@ void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15
   covariance->diagonal().segment<2>(3).array() += options.accelerometerSigma() * options.accelerometerSigma();
 }
 
+std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimedCalibration(const Window& window,
+                                                                            const EstimatorOptions& options,
+                                                                            const FactorMaker& factors) {
+  auto unclaimed = unclaimedFileInformation(window, options.camera_calibration);
+  const CameraStates states = cameraStates(window);
+  for (size_t i = 0; i < states.further.size(); ++i) {
+    GlobalState& further = *states.further[i];
+    const std::optional<Factor> placement = factors.placement(further);
+    const double baseline_m = factors.camera0FromCamera(static_cast<int>(i) + 1).translation.norm();
+    if (placement && baseline_m > 0.0)
+      unclaimed.emplace_back(further.value.data(), unclaimedPlacement(*placement, baseline_m));
+  }
+  return unclaimed;
+}
+
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
-                                                const EstimatorOptions& options) {
+                                                const EstimatorOptions& options, const FactorMaker& factors) {
   const ImuAxesOptions& axes = options.imu_axes;
   JointCovariance claimed = known;
-  for (const auto& [state, unclaimed] : unclaimedFileInformation(window, options.camera_calibration)) {
+  for (const auto& [state, unclaimed] : unclaimedCalibration(window, options, factors)) {
     if (claimed.knows(state)) claimed = claimed.without(state, unclaimed);
   }
   if (const double unclaimed = unclaimedBiasInformation(options); unclaimed > 0.0) {

@@ -1,14 +1,22 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/factor_list.h"
 #include "lodeline/estimator/options.h"
 #include "lodeline/estimator/window.h"
 
 namespace lodeline {
 
 // Not all that the estimate uses is to be claimed. Files that images confirm (LensTrust) are held more firmly
-// than images can confirm them, and the accelerometers of some IMUs start with more of a bias than is good to
-// suppose (ImuAxesOptions::areDoubted()).
+// than images can confirm them, the accelerometers of some IMUs start with more of a bias than is good to
+// suppose (ImuAxesOptions::areDoubted()), and how far apart cameras sit is wrong in some files by more than
+// the best guess is to allow for.
+
+/// How far off a file's baselines may be, of their length (one sigma), for all that is claimed.
+constexpr double kBaselineTolerance = 0.01;
 
 /// Of every axis of the first frame's accelerometer bias, the information that is used and not claimed,
 /// (m/s^2)^-2; 0 where it is not doubted.
@@ -17,8 +25,14 @@ double unclaimedBiasInformation(const EstimatorOptions& options);
 /// its bias walks, and what it takes for up is as wrong as that. Counted as large as its axes may be off.
 void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15>* covariance);
 
+/// Of each state of the cameras' calibration, the information of its file that is used and not claimed: of
+/// what is held (unclaimedFileInformation()), and of where further cameras sit (FactorMaker::placement()).
+std::vector<std::pair<const double*, Eigen::MatrixXd>> unclaimedCalibration(const Window& window,
+                                                                            const EstimatorOptions& options,
+                                                                            const FactorMaker& factors);
+
 /// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows.
 Eigen::Matrix<double, 15, 15> claimedCovariance(const JointCovariance& known, const Window& window,
-                                                const EstimatorOptions& options);
+                                                const EstimatorOptions& options, const FactorMaker& factors);
 
 }  // namespace lodeline

@@ -309,7 +309,7 @@ void Estimator::startMagnetometer() {
 }
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
-  estimate->covariance = claimedCovariance(covariance, window_, options_);
+  estimate->covariance = claimedCovariance(covariance, window_, options_, factors_);
   lens_trust_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));

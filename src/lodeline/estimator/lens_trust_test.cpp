@@ -6,6 +6,7 @@
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/estimator/camera_states.h"
+#include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/estimator/test_scene.h"
 
@@ -151,6 +152,80 @@ TEST(Placement, IsFoundWhereTheFileIsFarOff) {
     const Vec3 found = seen.camera_corrections->extrinsics.back().tail<3>();
     EXPECT_NEAR(found.norm(), std::abs(error_m), 0.002);
   }
+}
+
+/// Information about a further camera's place that is used and not claimed, where it was found `off_m` from
+/// where its file puts it; one row and column for each of its six numbers.
+Eigen::MatrixXd unclaimedWhereFound(double off_m, Rig* rig) {
+  TestSceneOptions scene;
+  scene.cameras = 2;
+  *rig = TestScene(scene).rig();
+  const EstimatorOptions options;
+  Window window;
+  Prior prior;
+  addCameraStates(window, prior, 2, options.camera_calibration, {});
+  double* found = cameraStates(window).further.front()->value.data();
+  found[3] = off_m;
+  const auto unclaimed = unclaimedCalibration(window, options, FactorMaker(*rig, options));
+  if (unclaimed.size() != 1 || unclaimed.front().first != found) return {};
+  return unclaimed.front().second;
+}
+
+TEST(Placement, IsClaimedToAPerCentOfTheBaseline) {
+  Rig rig;
+  const Eigen::MatrixXd unclaimed = unclaimedWhereFound(0.0, &rig);
+  ASSERT_EQ(unclaimed.rows(), 6);
+  const double baseline_m =
+      (rig.cameras[0].body_from_camera.inverse() * rig.cameras[1].body_from_camera).translation.norm();
+  const double used = 1.0 / std::pow(EstimatorOptions().camera_calibration.stereo_position_sigma_m, 2);
+  const double claimed = 1.0 / std::pow(0.01 * baseline_m, 2);
+  EXPECT_NEAR(unclaimed(3, 3), used - claimed, 1e-9 * used);
+  EXPECT_NEAR(unclaimed.trace(), 3.0 * (used - claimed), 1e-9 * used);
+}
+
+TEST(Placement, FoundElsewhereHasNothingToUnclaim) {
+  Rig rig;
+  const Eigen::MatrixXd unclaimed = unclaimedWhereFound(0.02, &rig);
+  ASSERT_EQ(unclaimed.rows(), 6);
+  EXPECT_EQ(unclaimed.norm(), 0.0);
+}
+
+// Two per cent too long, and too little time for the accelerometer to find it.
+TEST(Placement, IsNotClaimedWhereTheFileIsOff) {
+  TestSceneOptions options;
+  options.duration_s = 6.0;
+  options.liveliness = 0.05;
+  options.drift_m_per_s = Vec3(0.3, 0.0, 0.0);
+  TestScene scene(options);
+  Rig rig = scene.rig();
+  Vec3& further = rig.cameras[1].body_from_camera.translation;
+  further += 0.02 * (further - rig.cameras[0].body_from_camera.translation);
+  EstimatorOptions estimator_options = honestOptions(options);
+  estimator_options.camera_calibration = CameraCalibrationOptions();
+  // Nothing else makes the scale uncertain.
+  estimator_options.camera_calibration.intrinsics = false;
+  estimator_options.camera_calibration.stereo_rotation_sigma_rad = 0.0;
+  Diagnostics diagnostics;
+  Estimator estimator(rig, estimator_options, &diagnostics);
+  std::optional<Vec3> from, true_from;
+  double way_m = 0.0, error_m = 0.0, sigma_m = 0.0;
+  while (auto frame = scene.next()) {
+    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
+    const Vec3 position = estimate.state.world_from_body.translation;
+    const Vec3 true_position = frame->truth.motion.world_from_body.translation;
+    const Vec3 way = position - from.value_or(position);
+    way_m = (true_position - true_from.value_or(true_position)).norm();
+    if (!from) {
+      from = position;
+      true_from = true_position;
+      continue;
+    }
+    error_m = way.norm() - way_m;
+    const Vec3 along = way.normalized();
+    sigma_m = std::sqrt(along.dot(estimate.covariance.topLeftCorner<3, 3>() * along));
+  }
+  EXPECT_GT(error_m, 0.01 * way_m) << "the file's error was found: too easy a scene";
+  EXPECT_LT(error_m, 3.0 * sigma_m);
 }
 
 TEST(Placement, StaysWhereTheFileIsRight) {

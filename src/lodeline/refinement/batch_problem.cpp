@@ -121,7 +121,7 @@ void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
   const int first_motion = rowOf(state(0).motion.data());
   hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
       unclaimedBiasInformation(options_);
-  for (const auto& [state, unclaimed] : unclaimedFileInformation(window_, options_.camera_calibration))
+  for (const auto& [state, unclaimed] : unclaimedCalibration(window_, options_, factors_))
     hessian->block(rowOf(state), rowOf(state)) -= unclaimed;
 }
 
