@@ -15,6 +15,7 @@
 #include "lodeline/data/ordered_stream.h"
 #include "lodeline/data/plain_csv.h"
 #include "lodeline/evaluation/text_table.h"
+#include "lodeline/streams/inertial_screen.h"
 
 namespace lodeline {
 namespace {
@@ -244,6 +245,7 @@ MagnetometerRecord settled(Reading reading, const std::string& name, const Recor
     throw InputError(name + ": holds no magnetometer reading that can be used");
   }
   cut(options, &reading.record);
+  reading.record.imu = screened(reading.record.imu, {}, diagnostics);
   settleUnit(name, options, reading.unit, &reading.record, diagnostics);
   return std::move(reading.record);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/base/error.h"
+#include "lodeline/data/inertial_stream.h"
 
 namespace lodeline {
 namespace {
@@ -32,9 +33,7 @@ Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions&
     : source_(source),
       options_(options),
       diagnostics_(diagnostics),
-      imu_({expectation("imu", "IMU", source->rig().imu.rate_hz), [source] { return source->nextImu(); },
-            diagnostics},
-           options.history_s),
+      imu_(inertialReadings(), options.history_s),
       magnetometer_(
           magnetometerExpectation(), [source] { return source->nextMagnetometer(); }, diagnostics),
       depth_(
@@ -62,6 +61,18 @@ StreamExpectation Synchronizer::expectation(const char* kind, const std::string&
   expected.rate_hz = rate_hz;
   expected.max_gap_s = rate_hz > 0.0 ? options_.max_gap_periods / rate_hz : 0.0;
   return expected;
+}
+
+ImuIntervals::Pull Synchronizer::inertialReadings() const {
+  OrderedStream<ImuSample> ordered(
+      expectation("imu", "IMU", source_->rig().imu.rate_hz), [source = source_] { return source->nextImu(); },
+      diagnostics_);
+  const auto screen =
+      std::make_shared<InertialScreen>(inertialStream(std::move(ordered), options_.inertial, diagnostics_));
+  return [screen]() -> std::optional<ImuSample> {
+    if (screen->peek() == nullptr) return std::nullopt;
+    return screen->pop();
+  };
 }
 
 StreamExpectation Synchronizer::magnetometerExpectation() const {
