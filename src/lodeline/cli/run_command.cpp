@@ -11,6 +11,7 @@
 #include "lodeline/cli/interruption.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_recording.h"
+#include "lodeline/inspection/start_check.h"
 #include "lodeline/page/page_template.h"
 
 namespace lodeline {
@@ -24,9 +25,15 @@ bool isNumber(const std::string& text) {
 }
 
 /// Turns a run without a result into the error that explains it.
-void requireResult(const RunRequest& request, const RunSummary& summary) {
+void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
-  if (summary.posed() > 0) return;
+  if (summary.posed() > 0) {
+    if (diagnostics.count(kSensorsContradict) == 0) return;
+    throw EstimationError(
+        fmt::format("{}: the sensors contradict each other; the result in {} is not to be trusted. "
+                    "`lodeline inspect {}` says what is wrong",
+                    request.data, request.output, request.data));
+  }
   if (summary.images == 0) {
     throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",
                                  request.data,
@@ -48,7 +55,7 @@ void executeRun(RunRequest request) {
     const std::string remark = writeRunReport(request);
     if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);
   }
-  requireResult(request, summary);
+  requireResult(request, summary, diagnostics);
 }
 
 void addRunOptions(RunRequest* arguments, CLI::App* command) {

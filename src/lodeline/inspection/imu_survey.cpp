@@ -5,6 +5,7 @@
 
 #include "lodeline/inspection/median.h"
 #include "lodeline/inspection/signed_axes.h"
+#include "lodeline/streams/inertial_screen.h"
 
 namespace lodeline {
 namespace {
@@ -173,6 +174,9 @@ ImuSurvey surveyImu(MeasurementSource* source) {
   survey.stream = stream.summarize(kGapPeriods);
   std::vector<ImuSample>& samples = survey.samples;
   if (samples.empty()) return survey;
+  std::erase_if(samples, [](const ImuSample& sample) {
+    return !sample.angular_velocity_B.allFinite() || !sample.specific_force_B.allFinite();
+  });
   survey.gyroscope = surveyTriad(samples, &ImuSample::angular_velocity_B);
   survey.accelerometer = surveyTriad(samples, &ImuSample::specific_force_B);
   survey.median_force = median(forces);
@@ -182,11 +186,12 @@ ImuSurvey surveyImu(MeasurementSource* source) {
   samples.erase(std::unique(samples.begin(), samples.end(),
                             [](const ImuSample& a, const ImuSample& b) { return a.time == b.time; }),
                 samples.end());
+  for (ImuSample& sample : samples) sample.specific_force_B *= survey.force_to_SI;
+  InertialScreenOptions options;
+  options.knows_rate_unit = false;
+  samples = screened(samples, options, &survey.screening);
   Vec3 mean_force = Vec3::Zero();
-  for (ImuSample& sample : samples) {
-    sample.specific_force_B *= survey.force_to_SI;
-    mean_force += sample.specific_force_B;
-  }
+  for (const ImuSample& sample : samples) mean_force += sample.specific_force_B;
   survey.up_B = mean_force.normalized();
   const std::vector<Block> blocks = blocksOf(samples);
   surveyRest(blocks, &survey);

@@ -8,6 +8,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
+#include "lodeline/inertial/imu_noise_check.h"
 #include "lodeline/inspection/camera_survey.h"
 #include "lodeline/inspection/imu_survey.h"
 #include "lodeline/inspection/magnetometer_survey.h"
@@ -43,6 +44,7 @@ struct Inspection {
   Rig rig;
   ImuSurvey imu;
   double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be told; pi/180 where it is in deg/s
+  WhiteNoise shown_noise;   ///< of the IMU, by its readings
   std::vector<CameraInspection> cameras;
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
