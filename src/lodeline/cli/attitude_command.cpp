@@ -13,6 +13,7 @@
 #include "lodeline/data/inertial_stream.h"
 #include "lodeline/data/ordered_stream.h"
 #include "lodeline/data/plain_source.h"
+#include "lodeline/inspection/start_check.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/attitude_writer.h"
 #include "lodeline/report/findings.h"
@@ -78,12 +79,20 @@ StreamExpectation expectation(const std::string& name, double rate_hz, double of
   return {name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
 }
 
-void filterAll(MeasurementSource& source, double rate_hz, AttitudeFilter* filter, AttitudeWriter* writer,
-               Diagnostics* diagnostics) {
+/// Without images, the turning of gravity tells the gyroscope's unit.
+InertialScreenOptions screenOptions(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
+  InertialScreenOptions options;
+  const SourceFactory open = [&](Diagnostics* unheard) { return openSource(arguments, unheard); };
+  options.rate_to_SI = checkStart(open, arguments.data, {}, diagnostics).rate_to_SI;
+  return options;
+}
+
+void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOptions& screen,
+               AttitudeFilter* filter, AttitudeWriter* writer, Diagnostics* diagnostics) {
   const std::optional<MagnetometerCalibration>& magnetometer = source.rig().magnetometer;
   InertialScreen imu = inertialStream(
-      {expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics}, {},
-      diagnostics);
+      {expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics},
+      screen, diagnostics);
   OrderedStream<MagnetometerSample> field(
       expectation("magnetometer", magnetometer ? magnetometer->rate_hz : 1.0,
                   magnetometer ? magnetometer->time_offset_to_imu_s : 0.0),
@@ -116,7 +125,8 @@ void attitude(const AttitudeArguments& arguments) {
   createOutputFolder(folder);
   AttitudeWriter writer(folder);
   AttitudeFilter filter(options, magnetometer, &diagnostics);
-  filterAll(*source, arguments.rate_hz, &filter, &writer, &diagnostics);
+  filterAll(*source, arguments.rate_hz, screenOptions(arguments, &diagnostics), &filter, &writer,
+            &diagnostics);
   writer.finish();
   const std::string north = northOf(arguments, magnetometer.has_value());
   nlohmann::ordered_json json = writer.json(north);

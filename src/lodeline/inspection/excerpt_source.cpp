@@ -7,6 +7,8 @@ namespace lodeline {
 ExcerptSource::ExcerptSource(std::unique_ptr<MeasurementSource> source, double begin_s, double length_s)
     : source_(std::move(source)) {
   if (!source_->rig().cameras.empty()) first_image_ = source_->nextImage(0);
+  if (!first_image_) first_imu_ = source_->nextImu();
+  if (first_imu_) begin_ = first_imu_->time + Duration::fromSeconds(begin_s);
   if (first_image_) begin_ = first_image_->time + Duration::fromSeconds(begin_s);
   end_ = begin_ + Duration::fromSeconds(length_s);
 }
@@ -20,7 +22,8 @@ auto ExcerptSource::within(Time begin, const Next& next) -> decltype(next()) {
 }
 
 std::optional<ImuSample> ExcerptSource::nextImu() {
-  return within(begin_ - Duration::fromSeconds(1.0), [&] { return source_->nextImu(); });
+  return within(begin_ - Duration::fromSeconds(1.0),
+                [&] { return first_imu_ ? std::exchange(first_imu_, std::nullopt) : source_->nextImu(); });
 }
 
 std::optional<PendingImage> ExcerptSource::nextImage(size_t camera) {

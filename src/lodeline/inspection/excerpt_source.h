@@ -7,8 +7,9 @@
 namespace lodeline {
 
 /// A part of a recording: the readings whose stamps lie from `begin_s` after the first image of the first
-/// camera on, for `length_s`. Inertial readings begin a second earlier. Every stream ends at its first
-/// reading beyond the part, so that the rest of the recording is not read.
+/// camera on (without cameras, after the first inertial reading), for `length_s`. Inertial readings begin a
+/// second earlier. Every stream ends at its first reading beyond the part, so that the rest of the recording
+/// is not read.
 class ExcerptSource : public MeasurementSource {
  public:
   ExcerptSource(std::unique_ptr<MeasurementSource> source, double begin_s, double length_s);
@@ -26,6 +27,7 @@ class ExcerptSource : public MeasurementSource {
 
   std::unique_ptr<MeasurementSource> source_;
   std::optional<PendingImage> first_image_;  ///< pulled, not yet given out
+  std::optional<ImuSample> first_imu_;       ///< likewise
   Time begin_, end_;
 };
 

@@ -160,9 +160,10 @@ void InertialScreen::leaveOut(const std::string& kind, const ImuSample& sample) 
   stretch_.last = sample.time;
   if (kind == kHeld) {
     // A single repetition is worth no word; many mean that the sensor measures more slowly than it says.
-    constexpr double kWorthSaying = 0.02;
+    constexpr double kWorthSaying = 0.05;
+    constexpr int64_t kLeast = 50;
     ++held_;
-    if (static_cast<double>(held_) < kWorthSaying * static_cast<double>(readings_) || held_ < 20) return;
+    if (static_cast<double>(held_) < kWorthSaying * static_cast<double>(readings_) || held_ < kLeast) return;
     diagnostics_->report(
         Severity::Warning, kind,
         fmt::format(

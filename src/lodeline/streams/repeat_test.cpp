@@ -5,7 +5,7 @@
 namespace lodeline {
 
 void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3& other, Time time) {
-  constexpr double kOf = 1.0 / 12.0;  // readings that the running mean holds
+  constexpr double kOf = 0.25;  // the newest share counts
   const auto same = (before.array() == reading.array()).count();
   repeats_ = same == 3;
   if (repeats_) {
@@ -13,6 +13,7 @@ void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3&
     other_greatest_ = other_greatest_.cwiseMax(other);
     return;
   }
+  has_changed_ |= before.allFinite();
   share_ += kOf * (static_cast<double>(same) / 3.0 - share_);
   since_ = time;
   other_least_ = other_greatest_ = other;
@@ -20,7 +21,7 @@ void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3&
 
 bool RepeatTest::Triad::isStuck(Time now, double moving) const {
   constexpr double kLong_s = 0.1;
-  return repeats_ && resolvesFinely() && (now - since_).seconds() > kLong_s &&
+  return repeats_ && (resolvesFinely() || !has_changed_) && (now - since_).seconds() > kLong_s &&
          (other_greatest_ - other_least_).maxCoeff() > moving;
 }
 

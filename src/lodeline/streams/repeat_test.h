@@ -32,7 +32,8 @@ class RepeatTest {
     bool isStuck(Time now, double moving) const;
 
    private:
-    double share_ = 0.0;  ///< of axes that repeat, in readings of which not all do: running mean
+    bool has_changed_ = false;
+    double share_ = 1.0;  ///< of axes that repeat, in readings of which not all do: running mean
     bool repeats_ = false;
     Time since_;
     Vec3 other_least_ = Vec3::Zero(), other_greatest_ = Vec3::Zero();

@@ -25,7 +25,7 @@ bool SaturationTest::End::add(double before, double reading, const Axis& axis) {
     ++plateaus;
     away = 0.0;
   }
-  if (stay == kLongStay && axis.repeating < kSeldom) plateaus = kPlateaus;
+  if (stay >= kLongStay && axis.repeating < kSeldom) plateaus = kPlateaus;
   return plateaus >= kPlateaus;
 }
 
@@ -37,7 +37,7 @@ bool SaturationTest::Axis::add(double reading) {
   if (reading != before) resolution = std::min(resolution, std::abs(reading - before));
   least = std::min(least, reading);
   greatest = std::max(greatest, reading);
-  constexpr double kOf = 0.01;
+  constexpr double kOf = 0.03;
   if (reading != least && reading != greatest)
     repeating += kOf * ((reading == before ? 1.0 : 0.0) - repeating);
   const bool at_upper = upper.add(before, reading, *this);
