@@ -245,7 +245,9 @@ MagnetometerRecord settled(Reading reading, const std::string& name, const Recor
     throw InputError(name + ": holds no magnetometer reading that can be used");
   }
   cut(options, &reading.record);
-  reading.record.imu = screened(reading.record.imu, {}, diagnostics);
+  InertialScreenOptions screen;
+  screen.knows_rate_unit = false;
+  reading.record.imu = screened(reading.record.imu, screen, diagnostics);
   settleUnit(name, options, reading.unit, &reading.record, diagnostics);
   return std::move(reading.record);
 }

@@ -2,6 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "lodeline/base/angles.h"
 #include "lodeline/inspection/excerpt_source.h"
 
 namespace lodeline {
@@ -12,15 +17,54 @@ constexpr int kMostTurns = 36;
 constexpr int kMostSamples = 6;
 constexpr double kStep_s = 0.12;
 
-/// Findings that harm so much leave nothing to estimate from: axes that are exchanged, dead sensors.
-constexpr double kHopeless = 85.0;
+using Kinds = std::array<std::string_view, 3>;
+constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
+/// Harmful findings that leave something to estimate from, or end a run by themselves.
+constexpr Kinds kOfOtherEnds = {"stream_empty", "image_size", "no_imu"};
 
-/// What the run does about it, beside the finding's own advice.
-std::string remedy(const InspectionFinding& finding) {
-  if (finding.kind == "gyroscope_unit" || finding.kind == "accelerometer_unit") {
-    return "this run converts the readings";
-  }
-  return {};
+bool isOneOf(const Kinds& kinds, const std::string& kind) {
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+/// Whether the run converts the readings of which the finding speaks.
+bool isConverted(const InspectionFinding& finding, const Inspection& inspection) {
+  return (finding.kind == "gyroscope_unit" && inspection.rate_to_SI != 1.0) ||
+         (finding.kind == "accelerometer_unit" && inspection.imu.force_to_SI != 1.0);
+}
+
+/// A camera's rotation that is so wrong that a run does not find it by itself.
+bool isFarOff(const InspectionFinding& finding, const Inspection& inspection) {
+  constexpr double kFar_rad = 20.0 * kDegree;
+  return finding.kind == "extrinsics_rotation" &&
+         std::any_of(inspection.cameras.begin(), inspection.cameras.end(),
+                     [&](const CameraInspection& camera) {
+                       return camera.survey.name == finding.sensor && camera.turning &&
+                              camera.turning->misalignment_rad > kFar_rad;
+                     });
+}
+
+/// Findings that leave nothing to estimate from: axes that are exchanged, dead sensors.
+bool isHopeless(const InspectionFinding& finding, const Inspection& inspection) {
+  constexpr double kHopeless = 85.0;
+  if (isConverted(finding, inspection) || isOneOf(kOfOtherEnds, finding.kind)) return false;
+  return finding.harm >= kHopeless || isFarOff(finding, inspection);
+}
+
+const char* contradiction(const InspectionFinding& finding) {
+  if (isOneOf(kOfImagesAndGyroscope, finding.kind)) return "images and gyroscope contradict each other";
+  return finding.sensor.starts_with("cam") ? "images and calibration contradict each other"
+                                           : "the inertial readings contradict each other";
+}
+
+void report(const InspectionFinding& finding, const Inspection& inspection, const std::string& hint,
+            Diagnostics* diagnostics) {
+  const char* remedy = isConverted(finding, inspection) ? "; this run converts them" : "";
+  diagnostics->report(finding.severity, finding.kind,
+                      fmt::format("{}: {}{} ({})", finding.sensor, finding.message, remedy, hint));
+  if (!isHopeless(finding, inspection)) return;
+  diagnostics->report(Severity::Serious, kSensorsContradict,
+                      fmt::format("{} ({}, {}): the result is not to be trusted ({})", contradiction(finding),
+                                  finding.sensor, finding.kind, hint));
 }
 
 }  // namespace
@@ -35,24 +79,11 @@ StartCheck checkStart(const SourceFactory& open, const std::string& data, const 
       },
       looking);
   const std::string hint =
-      fmt::format("found in the first {:g} s; `lodeline inspect {}` tells more", options.length_s, data);
+      fmt::format("found in the first {:g} s; `lodeline inspect {}` says more", options.length_s, data);
   for (const InspectionFinding& finding : inspection.findings) {
-    if (finding.severity != Severity::Serious) continue;
-    const std::string done = remedy(finding);
-    if (!done.empty()) {
-      diagnostics->report(finding.severity, finding.kind,
-                          fmt::format("{}: {}; {} ({})", finding.sensor, finding.message, done, hint));
-    } else if (finding.harm < kHopeless) {
-      diagnostics->report(finding.severity, finding.kind,
-                          fmt::format("{}: {} ({})", finding.sensor, finding.message, hint));
-    } else {
-      const bool is_camera = finding.sensor.starts_with("cam");
-      diagnostics->report(finding.severity, kSensorsContradict,
-                          fmt::format("{}: {}: {}; the result is not to be trusted ({})",
-                                      is_camera ? "images and gyroscope contradict each other"
-                                                : "the inertial readings cannot be used",
-                                      finding.sensor, finding.message, hint));
-    }
+    // The run screens its readings itself.
+    if (inspection.imu.screening.count(finding.kind) > 0) continue;
+    if (finding.severity == Severity::Serious) report(finding, inspection, hint, diagnostics);
   }
   return {inspection.rate_to_SI, inspection.shown_noise};
 }

@@ -22,10 +22,10 @@ struct StartCheck {
 };
 
 /// The quick check before a run: inspects the first seconds of a recording with a few dozen of its images,
-/// and reports to `diagnostics` every serious finding of inspect(). Where axes or units are so wrong that no
-/// estimate can be right, it reports them as kSensorsContradict. Says nothing of a rig that rests. `data` is
-/// the recording's name, for the messages. Readings in another unit, which the run converts, are reported as
-/// "gyroscope_unit" and "accelerometer_unit".
+/// and reports to `diagnostics` every serious finding of inspect() under its kind. Where axes, units or
+/// extrinsics are so wrong that no estimate can be right, kSensorsContradict comes with it. Says nothing of a
+/// rig that rests. `data` is the recording's name, for the messages. Readings in another unit, which the run
+/// converts, are reported as "gyroscope_unit" and "accelerometer_unit".
 StartCheck checkStart(const SourceFactory& open, const std::string& data, const StartCheckOptions& options,
                       Diagnostics* diagnostics);
 

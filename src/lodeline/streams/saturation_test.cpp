@@ -38,8 +38,9 @@ bool SaturationTest::Axis::add(double reading) {
   least = std::min(least, reading);
   greatest = std::max(greatest, reading);
   constexpr double kOf = 0.03;
-  if (reading != least && reading != greatest)
-    repeating += kOf * ((reading == before ? 1.0 : 0.0) - repeating);
+  const bool repeats = reading == before;
+  if (!repeats || (reading != least && reading != greatest))
+    repeating += kOf * ((repeats ? 1.0 : 0.0) - repeating);
   const bool at_upper = upper.add(before, reading, *this);
   const bool at_lower = lower.add(-before, -reading, *this);
   before = reading;
