@@ -51,6 +51,21 @@ TEST(ImuIntervals, InterpolatesBothBorders) {
   EXPECT_NEAR(second.back().angular_velocity_B.x(), 0.037, 1e-15);
 }
 
+TEST(ImuIntervals, KeepTheLengthOfAGapThatImagesDivide) {
+  Diagnostics diagnostics;
+  ImuIntervals intervals = intervalsOf({0, 10, 110, 120}, 1.0, &diagnostics);
+  double gap_s = 0.0;
+  for (const int64_t time_ms : {50, 100}) {
+    ASSERT_EQ(intervals.readUntil(ms(time_ms)), Coverage::Covered);
+    EXPECT_NEAR(intervals.cut(ms(time_ms), &gap_s).back().gap_s, 0.1, 1e-12);
+  }
+  ASSERT_EQ(intervals.readUntil(ms(115)), Coverage::Covered);
+  const std::vector<ImuSample> last = intervals.cut(ms(115), &gap_s);
+  ASSERT_EQ(last.size(), 3u);
+  EXPECT_NEAR(last[1].gap_s, 0.1, 1e-12);
+  EXPECT_NEAR(last[2].gap_s, 0.01, 1e-12);
+}
+
 TEST(ImuIntervals, TakesAReadingAtTheBorderAsItIs) {
   Diagnostics diagnostics;
   ImuIntervals intervals = intervalsOf({0, 10, 20, 30}, 1.0, &diagnostics);

@@ -89,7 +89,9 @@ class Judge {
                  sensor_, stated, unit_, shown));
       return shown;
     }
-    if (shown > 0.0 && stated > kTooLarge * shown) {
+    // Readings of less noise than any MEMS sensor's are simulated.
+    constexpr double kSimulated = 30.0;
+    if (shown > kSimulated * least_ && stated > kTooLarge * shown) {
       report(Severity::Notice, "imu_noise_too_large",
              fmt::format(
                  "the {0}'s noise density of {1:.3g} {2}/sqrt(Hz) is {3:.0f} times what its readings show "

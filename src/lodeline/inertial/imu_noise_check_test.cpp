@@ -98,5 +98,11 @@ TEST(PlausibleNoise, TellsOfFiguresThatAreTooLargeAndKeepsThem) {
   EXPECT_EQ(diagnostics.ranked().front().severity, Severity::Notice);
 }
 
+TEST(PlausibleNoise, SaysNothingOfSimulatedReadingsWithoutNoise) {
+  Diagnostics diagnostics;
+  plausibleNoise(ImuNoise(), {1e-7, 1e-6}, &diagnostics);
+  EXPECT_TRUE(diagnostics.ranked().empty());
+}
+
 }  // namespace
 }  // namespace lodeline

@@ -12,14 +12,18 @@ namespace {
 
 constexpr double kGravity_m_per_s2 = 9.80665;
 
-double medianForce(std::span<const ImuSample> samples) {
+/// Size of the specific force that a share of the readings does not exceed.
+double forceQuantile(std::span<const ImuSample> samples, double share) {
   std::vector<double> sizes;
   for (const ImuSample& sample : samples) sizes.push_back(sample.specific_force_B.norm());
   if (sizes.empty()) return 0.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  const auto place =
+      sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), place, sizes.end());
+  return *place;
 }
+
+double medianForce(std::span<const ImuSample> samples) { return forceQuantile(samples, 0.5); }
 
 bool isBetween(double value, double least, double greatest) { return value > least && value < greatest; }
 
@@ -101,6 +105,9 @@ std::optional<ReadingFactors> changeOfUnit(const ReadingHistory& before,
 }
 
 double forceToSI(std::span<const ImuSample> samples) {
+  // An accelerometer that has gravity taken off may read 1 m/s^2 as well, but not steadily.
+  constexpr double kSteady = 1.6;
+  if (forceQuantile(samples, 0.8) > kSteady * forceQuantile(samples, 0.2)) return 1.0;
   const double size = medianForce(samples);
   for (const double unit : {kGravity_m_per_s2, 1e-3 * kGravity_m_per_s2}) {
     if (isBetween(size * unit / kGravity_m_per_s2, 0.75, 1.3)) return unit;
