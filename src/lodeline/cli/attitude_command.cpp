@@ -10,11 +10,11 @@
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/open_recording.h"
-#include "lodeline/data/ordered_stream.h"
 #include "lodeline/data/plain_source.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/attitude_writer.h"
 #include "lodeline/report/findings.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {
@@ -74,7 +74,9 @@ std::string northOf(const AttitudeArguments& arguments, bool has_magnetometer) {
 }
 
 StreamExpectation expectation(const std::string& name, double rate_hz, double offset_s) {
-  return {name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
+  StreamExpectation expected{name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
+  expected.spreads_bursts = true;
+  return expected;
 }
 
 void filterAll(MeasurementSource& source, double rate_hz, AttitudeFilter* filter, AttitudeWriter* writer,

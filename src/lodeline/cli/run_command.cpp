@@ -24,16 +24,19 @@ bool isNumber(const std::string& text) {
 }
 
 /// Turns a run without a result into the error that explains it.
-void requireResult(const RunRequest& request, const RunSummary& summary) {
+void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
   if (summary.posed() > 0) return;
   if (summary.images == 0) {
-    throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",
-                                 request.data,
-                                 (std::filesystem::path(request.output) / "run.json").string()));
+    const std::vector<Finding> findings = diagnostics.ranked();
+    throw InputError(fmt::format("{}: no image of the recording could be used{}", request.data,
+                                 findings.empty() ? "" : ": " + findings.front().first_message));
   }
-  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}", request.data,
-                                    summary.frames(), summary.last().waiting_for));
+  const std::vector<Finding> findings = diagnostics.ranked();
+  const bool is_explained = !findings.empty() && findings.front().severity == Severity::Serious;
+  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}{}", request.data,
+                                    summary.frames(), summary.last().waiting_for,
+                                    is_explained ? ". " + findings.front().first_message : ""));
 }
 
 }  // namespace
@@ -48,7 +51,7 @@ void executeRun(RunRequest request) {
     const std::string remark = writeRunReport(request);
     if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);
   }
-  requireResult(request, summary);
+  requireResult(request, summary, diagnostics);
 }
 
 void addRunOptions(RunRequest* arguments, CLI::App* command) {

@@ -9,7 +9,7 @@
 #include "lodeline/data/frame_packet.h"
 #include "lodeline/data/imu_interval.h"
 #include "lodeline/data/measurement_source.h"
-#include "lodeline/data/ordered_stream.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 
@@ -46,6 +46,10 @@ class Synchronizer {
   /// calibration says.
   std::optional<FramePacket> next();
 
+  /// Images of the first camera that the recording holds within the part that is used, so far; also those
+  /// that could not be used.
+  int64_t recordedImages() const { return recorded_images_; }
+
   /// Readings and images held at present, for tests of its boundedness.
   size_t bufferedReadings() const;
 
@@ -59,7 +63,13 @@ class Synchronizer {
 
   StreamExpectation expectation(const char* kind, const std::string& name, double rate_hz) const;
   StreamExpectation magnetometerExpectation() const;
+  OrderedStream<PendingImage> imageStream(size_t camera);
   std::optional<Draft> draftNext();
+  void followClocks(PendingImage* reference);
+  bool followImageClock(Duration step, PendingImage* reference);
+  bool followCommonClock(const ImuIntervals::Gap& gap, Duration step, PendingImage* reference);
+  bool followImuClock(const ImuIntervals::Gap& gap, const PendingImage& reference);
+  void reportApart();
   bool coveredByImu(const PendingImage& image);
   std::optional<PendingImage> partnerOf(const PendingImage& reference, size_t camera);
   void startDecoding(Draft* draft) const;
@@ -75,6 +85,8 @@ class Synchronizer {
   OrderedStream<DepthSample> depth_;
   OrderedStream<SonarSample> sonar_;
   std::optional<Time> first_image_time_;
+  std::optional<Time> last_image_time_;
+  int64_t recorded_images_ = 0;
   std::optional<Time> last_packet_time_;
   std::optional<Draft> prefetched_;
   bool started_ = false;

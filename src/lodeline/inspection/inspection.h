@@ -36,6 +36,7 @@ struct PlainSurvey {
 struct CameraInspection {
   CameraSurvey survey;
   std::optional<TurnComparison> turning;
+  std::optional<TurnComparison> turning_early, turning_late;  ///< of the first and second half of the turns
 };
 
 /// All that was found out about a recording.
