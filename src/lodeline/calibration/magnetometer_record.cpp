@@ -14,6 +14,7 @@
 #include "lodeline/data/kalibr_calibration.h"
 #include "lodeline/data/plain_csv.h"
 #include "lodeline/evaluation/text_table.h"
+#include "lodeline/streams/inertial_screen.h"
 #include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
@@ -246,6 +247,7 @@ MagnetometerRecord settled(Reading reading, const std::string& name, const Recor
     throw InputError(name + ": holds no magnetometer reading that can be used");
   }
   cut(options, &reading.record);
+  reading.record.imu = screened(reading.record.imu, {}, diagnostics);
   settleUnit(name, options, reading.unit, &reading.record, diagnostics);
   return std::move(reading.record);
 }

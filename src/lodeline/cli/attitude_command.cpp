@@ -10,6 +10,7 @@
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/open_recording.h"
+#include "lodeline/data/inertial_stream.h"
 #include "lodeline/data/plain_source.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/attitude_writer.h"
@@ -82,8 +83,9 @@ StreamExpectation expectation(const std::string& name, double rate_hz, double of
 void filterAll(MeasurementSource& source, double rate_hz, AttitudeFilter* filter, AttitudeWriter* writer,
                Diagnostics* diagnostics) {
   const std::optional<MagnetometerCalibration>& magnetometer = source.rig().magnetometer;
-  OrderedStream<ImuSample> imu(
-      expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics);
+  InertialScreen imu = inertialStream(
+      {expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics}, {},
+      diagnostics);
   OrderedStream<MagnetometerSample> field(
       expectation("magnetometer", magnetometer ? magnetometer->rate_hz : 1.0,
                   magnetometer ? magnetometer->time_offset_to_imu_s : 0.0),

@@ -11,6 +11,7 @@
 #include "lodeline/cli/interruption.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_recording.h"
+#include "lodeline/inspection/start_check.h"
 #include "lodeline/page/page_template.h"
 
 namespace lodeline {
@@ -26,7 +27,13 @@ bool isNumber(const std::string& text) {
 /// Turns a run without a result into the error that explains it.
 void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
-  if (summary.posed() > 0) return;
+  if (summary.posed() > 0) {
+    if (diagnostics.count(kSensorsContradict) == 0) return;
+    throw EstimationError(
+        fmt::format("{}: the sensors contradict each other; the result in {} is not to be trusted. "
+                    "`lodeline inspect {}` says what is wrong",
+                    request.data, request.output, request.data));
+  }
   if (summary.images == 0) {
     const std::vector<Finding> findings = diagnostics.ranked();
     throw InputError(fmt::format("{}: no image of the recording could be used{}", request.data,

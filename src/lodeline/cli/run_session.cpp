@@ -11,8 +11,11 @@
 namespace lodeline {
 namespace {
 
-/// The source with the magnetometer's calibration in it, for all who are made from it.
-RecordedSource* calibrated(const std::string& file, RecordedSource* source) {
+/// The source with the magnetometer's calibration and plausible noise densities in it, for all who are made
+/// from it.
+RecordedSource* calibrated(const RunSettings& options, RecordedSource* source, Diagnostics* diagnostics) {
+  source->setImuNoise(plausibleNoise(source->rig().imu.noise, options.shown_noise, diagnostics));
+  const std::string& file = options.magnetometer_calibration;
   if (file.empty()) return source;
   Rig rig = source->rig();
   applyCalibration(readCalibrationFile(file), file, &rig);
@@ -56,7 +59,7 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
                        RecordedSource* source, Diagnostics* diagnostics)
     : folder_(request.output),
       diagnostics_(diagnostics),
-      synchronizer_(calibrated(options.magnetometer_calibration, source), options.synchronizer, diagnostics),
+      synchronizer_(calibrated(options, source, diagnostics), options.synchronizer, diagnostics),
       odometry_(source->rig(), options.odometry, diagnostics),
       attitude_(source->rig(), attitudeOptions(options), &unheard_),
       summary_(describe(request, options, source->rig())),

@@ -67,6 +67,8 @@ class RecordedSource : public MeasurementSource {
   const Rig& rig() const override { return rig_; }
   /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
   void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
+  /// The same of the IMU's noise.
+  void setImuNoise(const ImuNoise& noise) { rig_.imu.noise = noise; }
 
  protected:
   explicit RecordedSource(Rig rig) : rig_(std::move(rig)) {}

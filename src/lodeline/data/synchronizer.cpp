@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/base/error.h"
+#include "lodeline/data/inertial_stream.h"
 
 namespace lodeline {
 namespace {
@@ -32,9 +33,7 @@ Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions&
     : source_(source),
       options_(options),
       diagnostics_(diagnostics),
-      imu_({expectation("imu", "IMU", source->rig().imu.rate_hz), [source] { return source->nextImu(); },
-            diagnostics},
-           options.history_s),
+      imu_(inertialReadings(), options.history_s),
       magnetometer_(
           magnetometerExpectation(), [source] { return source->nextMagnetometer(); }, diagnostics),
       depth_(
@@ -52,7 +51,8 @@ OrderedStream<PendingImage> Synchronizer::imageStream(size_t camera) {
   constexpr size_t kImagesAhead = 8;
   const CameraCalibration& calibration = source_->rig().cameras[camera];
   StreamExpectation expected = expectation("image", calibration.name, calibration.rate_hz);
-  expected.offset_to_imu_clock = Duration::fromSeconds(calibration.time_offset_to_imu_s);
+  const double found_s = camera < options_.image_offset_s.size() ? options_.image_offset_s[camera] : 0.0;
+  expected.offset_to_imu_clock = Duration::fromSeconds(calibration.time_offset_to_imu_s + found_s);
   expected.spreads_bursts = false;
   expected.look_ahead = std::min(expected.look_ahead, kImagesAhead);
   // A gap of another camera shows, packet by packet, as a missing partner.
@@ -75,6 +75,18 @@ StreamExpectation Synchronizer::expectation(const char* kind, const std::string&
   const bool has_even_rate = expected.kind == "imu" || expected.kind == "magnetometer";
   expected.spreads_bursts = has_even_rate && !source_->isLive();
   return expected;
+}
+
+ImuIntervals::Pull Synchronizer::inertialReadings() const {
+  OrderedStream<ImuSample> ordered(
+      expectation("imu", "IMU", source_->rig().imu.rate_hz), [source = source_] { return source->nextImu(); },
+      diagnostics_);
+  const auto screen =
+      std::make_shared<InertialScreen>(inertialStream(std::move(ordered), options_.inertial, diagnostics_));
+  return [screen]() -> std::optional<ImuSample> {
+    if (screen->peek() == nullptr) return std::nullopt;
+    return screen->pop();
+  };
 }
 
 StreamExpectation Synchronizer::magnetometerExpectation() const {

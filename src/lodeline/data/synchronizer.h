@@ -9,6 +9,7 @@
 #include "lodeline/data/frame_packet.h"
 #include "lodeline/data/imu_interval.h"
 #include "lodeline/data/measurement_source.h"
+#include "lodeline/streams/inertial_screen.h"
 #include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
@@ -30,6 +31,10 @@ struct SynchronizerOptions {
   /// Decodes the next packet's images on threads of their own while the caller works on this one. The
   /// packets are the same either way.
   bool prefetch = true;
+  /// Added to the stamps of each camera's images besides what the calibration says; empty for none.
+  std::vector<double> image_offset_s = {};
+  /// How inertial readings are screened.
+  InertialScreenOptions inertial;
 };
 
 /// Turns a source's separate streams into one packet per image of the first camera. A packet is given out
@@ -75,6 +80,8 @@ class Synchronizer {
   void startDecoding(Draft* draft) const;
   FramePacket finish(Draft draft);
   void storeImage(size_t camera, const PendingImage& pending, LoadedImage loaded, FramePacket* packet);
+
+  ImuIntervals::Pull inertialReadings() const;
 
   MeasurementSource* source_;
   SynchronizerOptions options_;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/geometry/so3.h"
+#include "lodeline/inspection/inspection.h"
 #include "lodeline/inspection/visual_rotation.h"
 
 namespace lodeline {
@@ -144,7 +144,7 @@ void ClockMonitor::report(Time now, double offset_s, double sigma_s, Diagnostics
       offset_s < 0.0 ? "lag behind" : "run ahead of", 1e3 * std::abs(offset_s), 1e3 * sigma_s);
   if (!offset_s_) {
     diagnostics->report(
-        Severity::Serious, "camera_time_offset",
+        Severity::Serious, kCameraTimeOffset,
         where +
             ", far more than a calibration leaves: a wrong timeshift_cam_imu, images stamped on arrival, or "
             "a "

@@ -5,6 +5,7 @@
 
 #include "lodeline/inspection/median.h"
 #include "lodeline/inspection/signed_axes.h"
+#include "lodeline/streams/inertial_screen.h"
 #include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
@@ -183,15 +184,19 @@ ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics) {
   survey.stream.clock_jumps = diagnostics->count("imu_clock_jump");
   std::vector<ImuSample>& samples = survey.samples;
   if (samples.empty()) return survey;
+  std::erase_if(samples, [](const ImuSample& sample) {
+    return !sample.angular_velocity_B.allFinite() || !sample.specific_force_B.allFinite();
+  });
   survey.gyroscope = surveyTriad(samples, &ImuSample::angular_velocity_B);
   survey.accelerometer = surveyTriad(samples, &ImuSample::specific_force_B);
   survey.median_force = median(forces);
   survey.force_to_SI = forceToSI(survey.median_force);
+  for (ImuSample& sample : samples) sample.specific_force_B *= survey.force_to_SI;
+  InertialScreenOptions options;
+  options.knows_rate_unit = false;
+  samples = screened(samples, options, &survey.screening);
   Vec3 mean_force = Vec3::Zero();
-  for (ImuSample& sample : samples) {
-    sample.specific_force_B *= survey.force_to_SI;
-    mean_force += sample.specific_force_B;
-  }
+  for (const ImuSample& sample : samples) mean_force += sample.specific_force_B;
   survey.up_B = mean_force.normalized();
   const std::vector<Block> blocks = blocksOf(samples);
   surveyRest(blocks, &survey);

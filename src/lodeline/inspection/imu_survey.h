@@ -32,8 +32,10 @@ struct TriadSurvey {
 /// What the inertial readings look like by themselves.
 struct ImuSurvey {
   StreamSummary stream;
-  /// In order of time, each stamp once; the accelerometer in m/s^2 whatever it was recorded in.
+  /// In order of time, each stamp once, without what cannot be true; the accelerometer in m/s^2 whatever it
+  /// was recorded in.
   std::vector<ImuSample> samples;
+  Diagnostics screening;                 ///< what could not be true
   TriadSurvey gyroscope, accelerometer;  ///< in the units of the recording
   double median_force = 0.0;         ///< size of the accelerometer's readings, in the unit of the recording
   double force_to_SI = 1.0;          ///< 9.8 where they are in g

@@ -102,7 +102,8 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
   const std::vector<SurveySpan> spans =
       liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
   for (size_t i = 0; i < images.size(); ++i) {
-    inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, options.images), {}, {}, {}});
+    inspection->cameras.push_back(
+        {surveyCamera(source.get(), i, images[i], spans, options.images), {}, {}, {}});
   }
   if (images.size() > 1 && isCalibrated(inspection->rig.cameras[0]) &&
       isCalibrated(inspection->rig.cameras[1])) {

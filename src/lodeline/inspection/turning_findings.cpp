@@ -98,7 +98,7 @@ class TurningJudge {
     const double offset_s = turning_.time_offset_s;
     const double sigma_s = turning_.time_offset_sigma_s;
     if (std::abs(offset_s) < kHarmfulOffset_s || std::abs(offset_s) < kSignificant_sigmas * sigma_s) return;
-    add(Severity::Serious, 83.0, "camera_time_offset",
+    add(Severity::Serious, 83.0, kCameraTimeOffset,
         fmt::format("time offset: the images' stamps {} the gyroscope's by {:.0f} ms (+-{:.1f}); set "
                     "timeshift_cam_imu to "
                     "{:.4f} s or fix the clock",
