@@ -6,6 +6,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
+#include "lodeline/base/time_steps.h"
 #include "lodeline/export/depth_alignment.h"
 #include "lodeline/export/map_times.h"
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "lodeline/base/time_steps.h"
 #include "lodeline/export/map_times.h"
 #include "lodeline/export/write_formats.h"
 #include "lodeline/geometry/so3.h"

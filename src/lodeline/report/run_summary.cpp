@@ -238,7 +238,7 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
     text += fmt::format("  {:<20} {}\n", name, value);
   };
   line("completion", fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone)",
-                                 100.0 * completion(), posed_, frames_, inertial_));
+                                 100.0 * completion(), posed_, recorded(), inertial_));
   line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
                            keyframes_, map_points));
   line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
@@ -277,6 +277,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   nlohmann::ordered_json json = toJson(description_);
   json["interrupted"] = interrupted;
   json["frames"] = frames_;
+  json["images_recorded"] = recorded();
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
   if (posed_ == 0) json["waiting_for"] = last_.waiting_for;
