@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "lodeline/base/choice.h"
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 
@@ -62,11 +63,7 @@ const std::vector<std::string>& mapFormatNames() {
 }
 
 MapFormat mapFormatFromString(const std::string& name) {
-  const std::vector<std::string>& names = mapFormatNames();
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == name) return static_cast<MapFormat>(i);
-  }
-  throw UsageError(fmt::format("--format {}: one of {} is wanted", name, fmt::join(names, ", ")));
+  return static_cast<MapFormat>(chooseByName("--format", name, mapFormatNames()));
 }
 
 std::vector<std::filesystem::path> writeMap(const DiveMap& map, const std::optional<MapImages>& images,
