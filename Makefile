@@ -38,6 +38,10 @@ test-sanitized: dependencies fuzz
 	cmake --build --preset asan --target $(SANITIZED:%=%_test)
 	ctest --test-dir build/asan --output-on-failure -j2 -L fast -R "^($$(echo $(SANITIZED) | tr ' ' '|'))_test"
 
+# Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
+faults: build
+	./scripts/faults.sh build/faults --seeds 1 2 3 --repeat 2 --allow-told 5 --markdown build/faults/table.md
+
 # Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
 fuzz: dependencies
 	cmake --preset fuzz
