@@ -93,16 +93,19 @@ std::string nameOf(const fs::path& run) {
 
 nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<ReportReference>& reference,
                                    Diagnostics* diagnostics) {
-  const RunTable states = readRunTable(run / "states.csv", diagnostics);
+  const bool is_refined = fs::exists(run / "states_refined.csv");
+  const RunTable states = readRunTable(run / (is_refined ? "states_refined.csv" : "states.csv"), diagnostics);
   const int64_t origin_ns = states.rows() > 0 ? states.stamp_ns.front() : 0;
   nlohmann::ordered_json json;
   json["name"] = nameOf(run);
   json["origin_ns"] = std::to_string(origin_ns);
+  json["is_refined"] = is_refined;
   json["summary"] = readSummary(run / "run.json");
   json["config"] = readWhole(run / "config.yaml");
   // The page draws one sigma, not covariances, and the attitude filter has its own command.
   json["states"] = tableJson(states, origin_ns, {"cov_pose_", "attitude_", "keyframe"});
-  json["landmarks"] = landmarksJson(run / "landmarks.ply", diagnostics);
+  json["landmarks"] =
+      landmarksJson(run / (is_refined ? "landmarks_refined.ply" : "landmarks.ply"), diagnostics);
   json["pictures"] = picturesJson(run / "pictures", origin_ns);
   json["timings"] = optionalTable(run / "timings.csv", origin_ns, diagnostics);
   json["magnetometer"] = magnetometerJson(run, json["summary"], origin_ns, diagnostics);
