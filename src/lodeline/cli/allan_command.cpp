@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/open_recording.h"
 #include "lodeline/data/csv_reader.h"
@@ -155,7 +156,7 @@ void allan(const AllanArguments& arguments) {
   if (!arguments.json.empty()) {
     nlohmann::ordered_json json = noiseJson(sensors);
     json["findings"] = findingsJson(diagnostics);
-    writeOutput(arguments.json, json.dump(2) + "\n");
+    writeOutput(arguments.json, jsonText(json) + "\n");
   }
   fmt::print("{}{}", noiseTable(sensors), findingsText(diagnostics));
 }

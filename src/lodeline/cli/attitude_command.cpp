@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/open_recording.h"
@@ -123,7 +124,7 @@ void attitude(const AttitudeArguments& arguments) {
   const std::string north = northOf(arguments, magnetometer.has_value());
   nlohmann::ordered_json json = writer.json(north);
   json["findings"] = findingsJson(diagnostics);
-  writeOutput(folder / "attitude.json", json.dump(2) + "\n");
+  writeOutput(folder / "attitude.json", jsonText(json) + "\n");
   fmt::print("{}{}", writer.text(north), findingsText(diagnostics));
   if (writer.count() == 0) throw EstimationError(arguments.data + ": no IMU reading could be used");
 }

@@ -96,6 +96,8 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
       ->capture_default_str();
   command->add_flag("--no-report", arguments->no_report, "leave out report.html and its pictures");
   addBagOptions(&arguments->bag, command);
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace the results of another run in the output folder");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
 }
 

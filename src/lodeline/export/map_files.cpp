@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
-
+#include "lodeline/base/choice.h"
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 
@@ -72,13 +70,7 @@ const std::vector<std::string>& mapFormatNames() {
 }
 
 MapFormat mapFormatFromString(const std::string& name) {
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  const std::vector<std::string>& names = mapFormatNames();
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == lower) return static_cast<MapFormat>(i);
-  }
-  throw UsageError(fmt::format("--format {}: one of {} is wanted", name, fmt::join(names, ", ")));
+  return static_cast<MapFormat>(chooseByName("--format", name, mapFormatNames()));
 }
 
 std::vector<std::string> mapFileNames(const std::string& name, MapFormat format) {

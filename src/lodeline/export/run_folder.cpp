@@ -183,7 +183,8 @@ RunFolder readRunFolder(const fs::path& folder, Diagnostics* diagnostics) {
   const char* landmarks = choose("landmarks_refined.ply", "landmarks.ply");
   if (there(states, "how well positions are known is assumed"))
     run.uncertainties = readUncertainties(folder / states);
-  if (there(landmarks, "the passage has no walls")) run.landmarks = readLandmarkFile(folder / landmarks);
+  if (there(landmarks, "the passage has no walls"))
+    run.landmarks = readLandmarkFile(folder / landmarks, diagnostics);
   if (fs::exists(folder / "config.yaml")) readSite(folder / "config.yaml", &run);
   return run;
 }

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lodeline/base/json_text.h"
 #include "lodeline/report/findings.h"
 
 namespace lodeline {
@@ -321,7 +322,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   if (refinement) json["refinement"] = toJson(*refinement);
   json["findings"] = findingsJson(diagnostics);
-  return json.dump(2) + "\n";
+  return jsonText(json) + "\n";
 }
 
 }  // namespace lodeline
