@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/calibration/calibration_plots.h"
@@ -138,7 +139,7 @@ void calibrate(const CalibrateArguments& arguments) {
     text += comparisonText(*first, fit, dip_rad);
   }
   json["findings"] = findingsJson(diagnostics);
-  if (!arguments.json.empty()) writeOutput(arguments.json, json.dump(2) + "\n");
+  if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(json) + "\n");
   fmt::print("{}{}", text, findingsText(diagnostics));
 }
 

@@ -16,6 +16,7 @@ BagOptions bagOptions(const BagArguments& arguments) {
   BagOptions options;
   options.rig_files.assign(arguments.rig_files.begin(), arguments.rig_files.end());
   options.topics = topicsOf(arguments);
+  options.use_received_times = arguments.use_received_times;
   return options;
 }
 
@@ -34,6 +35,10 @@ void addBagOptions(BagArguments* arguments, CLI::App* command) {
           "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
           "is not named")
       ->type_name("SENSOR=TOPIC");
+  command->add_flag(
+      "--received-times", arguments->use_received_times,
+      "for a bag whose header stamps are not filled: stamp messages with the times at which they "
+      "were recorded, which are late and uneven");
 }
 
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
@@ -54,8 +59,11 @@ bool isBag(const std::filesystem::path& data) {
 }
 
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
-  if (isBag(data) || (bag_arguments.rig_files.empty() && bag_arguments.topics.empty())) return;
-  throw UsageError(fmt::format("--rig and --topic are for ROS bags; {} is none", data.string()));
+  if (isBag(data) ||
+      (bag_arguments.rig_files.empty() && bag_arguments.topics.empty() && !bag_arguments.use_received_times))
+    return;
+  throw UsageError(
+      fmt::format("--rig, --topic and --received-times are for ROS bags; {} is none", data.string()));
 }
 
 std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,

@@ -35,12 +35,15 @@ void requireResult(const RunRequest& request, const RunSummary& summary, const D
                     request.data, request.output, request.data));
   }
   if (summary.images == 0) {
-    throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",
-                                 request.data,
-                                 (std::filesystem::path(request.output) / "run.json").string()));
+    const std::vector<Finding> findings = diagnostics.ranked();
+    throw InputError(fmt::format("{}: no image of the recording could be used{}", request.data,
+                                 findings.empty() ? "" : ": " + findings.front().first_message));
   }
-  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}", request.data,
-                                    summary.frames(), summary.last().waiting_for));
+  const std::vector<Finding> findings = diagnostics.ranked();
+  const bool is_explained = !findings.empty() && findings.front().severity == Severity::Serious;
+  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}{}", request.data,
+                                    summary.frames(), summary.last().waiting_for,
+                                    is_explained ? ". " + findings.front().first_message : ""));
 }
 
 }  // namespace
@@ -93,6 +96,8 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
       ->capture_default_str();
   command->add_flag("--no-report", arguments->no_report, "leave out report.html and its pictures");
   addBagOptions(&arguments->bag, command);
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace the results of another run in the output folder");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
 }
 

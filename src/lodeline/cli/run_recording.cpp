@@ -9,6 +9,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/settings.h"
+#include "lodeline/cli/output_choice.h"
 #include "lodeline/cli/run_progress.h"
 #include "lodeline/cli/run_session.h"
 #include "lodeline/cli/stop_request.h"
@@ -50,6 +51,7 @@ void checkRecording(const RunRequest& request, RunSettings* options, Diagnostics
     return openRecording(request.data, options->source, request.bag, unheard);
   };
   const StartCheck check = checkStart(open, request.data, start, diagnostics);
+  options->synchronizer.image_offset_s = check.image_offset_s;
   options->synchronizer.inertial.rate_to_SI = check.rate_to_SI;
   options->shown_noise = check.noise;
 }
@@ -92,6 +94,10 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   // something.
   cv::setNumThreads(1);
   arrangeHeap();
+  if (!request.output.empty()) {
+    refuseRecordingAsOutput(request.data, request.output);
+    if (!request.overwrite) refuseToReplaceRun(request.output);
+  }
   RunSettings options;
   Settings settings;
   applyRequest(request, &settings, &options);

@@ -6,7 +6,7 @@
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_calibration.h"
 #include "lodeline/data/kalibr_calibration.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -16,13 +16,16 @@ struct StreamStart {
   std::string why_empty;  ///< where there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, int number_count) {
+StreamStart readStart(const std::filesystem::path& csv, int number_count, PlausibleRate rate) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, number_count, &reported_when_read_in_earnest);
+  CsvReader reader(csv, number_count, &reported_when_read_in_earnest, rate);
   StreamStart start;
-  CsvRow row;
+  CsvRow row, before;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
-    start.stamps.push_back(row.time);
+    // Rows that are written twice say nothing of the rate.
+    const bool is_repeat = !start.stamps.empty() && row.time == before.time && row.numbers == before.numbers;
+    if (!is_repeat) start.stamps.push_back(row.time);
+    before = row;
   }
   if (!start.stamps.empty()) return start;
   start.why_empty = fmt::format("{}: holds no usable row", csv.string());
@@ -32,8 +35,9 @@ StreamStart readStart(const std::filesystem::path& csv, int number_count) {
 }
 
 /// For sensors that cannot be done without.
-std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, const char* advice) {
-  StreamStart start = readStart(csv, number_count);
+std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, PlausibleRate rate,
+                                const char* advice) {
+  StreamStart start = readStart(csv, number_count, rate);
   if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
   return std::move(start.stamps);
 }
@@ -78,7 +82,7 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
     }
     const std::filesystem::path csv = layout.csv(name);
     const std::vector<Time> stamps =
-        requireStamps(csv, 0, "restore it or leave this camera out (source.cameras)");
+        requireStamps(csv, 0, kCameraRate, "restore it or leave this camera out (source.cameras)");
     camera.rate_hz = settleRate(csv.string(), stamps, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));
@@ -95,7 +99,8 @@ std::optional<Calibration> readOptional(const EurocLayout& layout, const char* n
                                         const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
-  const StreamStart start = readStart(csv, number_count);
+  const PlausibleRate rate = std::string_view(name) == "pressure0" ? kDepthRate : kMagnetometerRate;
+  const StreamStart start = readStart(csv, number_count, rate);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
@@ -128,7 +133,7 @@ EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnosti
     if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = euroc_rate_hz;
   }
   const std::vector<Time> stamps =
-      requireStamps(layout.csv("imu0"), 6, "the estimator cannot work without inertial data");
+      requireStamps(layout.csv("imu0"), 6, kInertialRate, "the estimator cannot work without inertial data");
   imu.calibration.rate_hz =
       settleRate(layout.csv("imu0").string(), stamps, imu.calibration.rate_hz, diagnostics);
   if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = ImuCalibration().rate_hz;

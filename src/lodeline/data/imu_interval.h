@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "lodeline/base/time_steps.h"
 #include "lodeline/sensors/measurements.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 
@@ -32,6 +34,22 @@ class ImuIntervals {
   /// cut before.
   std::vector<ImuSample> cut(Time time, double* longest_gap_s);
 
+  /// The longest time between two true readings in (from, to] as read so far, as its two ends; nothing where
+  /// fewer than two are there.
+  struct Gap {
+    Time begin, end;
+    Duration length() const { return span(end, begin); }
+  };
+  std::optional<Gap> longestGap(Time from, Time to) const;
+  /// Moves the readings from `from` on, which was read already, by so much: their clock jumped there.
+  void shiftFrom(Time from, Duration by);
+  /// Reads the stream to its end; what is read is lost. For messages about streams that do not meet.
+  void drain();
+
+  /// The first and last reading read so far.
+  std::optional<Time> first() const { return first_; }
+  std::optional<Time> last() const { return last_; }
+
   /// Readings held at present.
   size_t size() const { return buffer_.size(); }
 
@@ -42,6 +60,8 @@ class ImuIntervals {
   /// True readings, oldest first. After a cut the first one is the last at or before it.
   std::deque<ImuSample> buffer_;
   ImuSample border_;  ///< the interpolated reading at the last cut
+  std::optional<Time> first_, last_;
+  Duration correction_;  ///< of what is still to be read
 };
 
 }  // namespace lodeline

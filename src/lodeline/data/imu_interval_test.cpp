@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "lodeline/data/ordered_stream.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "lodeline/data/ordered_stream.h"
 #include "lodeline/streams/inertial_screen.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
 #include "lodeline/inspection/stream_survey.h"
 
@@ -45,6 +46,7 @@ struct ImuSurvey {
   std::optional<GravityTurning> turning;  ///< where the rig turned enough
 };
 
-ImuSurvey surveyImu(MeasurementSource* source);
+/// Reports what the order of the stamps tells, as OrderedStream does.
+ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics);
 
 }  // namespace lodeline

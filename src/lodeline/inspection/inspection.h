@@ -16,6 +16,9 @@
 
 namespace lodeline {
 
+/// Kind of the finding that the images' stamps are off the gyroscope's by a constant time.
+inline constexpr const char* kCameraTimeOffset = "camera_time_offset";
+
 /// One thing that is wrong with a recording, or worth knowing.
 struct InspectionFinding {
   Severity severity = Severity::Notice;
@@ -37,6 +40,7 @@ struct PlainSurvey {
 struct CameraInspection {
   CameraSurvey survey;
   std::optional<TurnComparison> turning;
+  std::optional<TurnComparison> turning_early, turning_late;  ///< of the first and second half of the turns
 };
 
 /// All that was found out about a recording.

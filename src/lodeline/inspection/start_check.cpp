@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "lodeline/base/angles.h"
@@ -56,15 +57,40 @@ const char* contradiction(const InspectionFinding& finding) {
                                            : "the inertial readings contradict each other";
 }
 
+/// What the run does about it, beside the finding's own advice.
+const char* remedy(const InspectionFinding& finding, const Inspection& inspection) {
+  if (isConverted(finding, inspection)) return "; this run converts them";
+  if (finding.kind == kCameraTimeOffset) {
+    return "; this run adds what it found to the images' stamps, as far as that is more than 15 ms";
+  }
+  return "";
+}
+
 void report(const InspectionFinding& finding, const Inspection& inspection, const std::string& hint,
             Diagnostics* diagnostics) {
-  const char* remedy = isConverted(finding, inspection) ? "; this run converts them" : "";
-  diagnostics->report(finding.severity, finding.kind,
-                      fmt::format("{}: {}{} ({})", finding.sensor, finding.message, remedy, hint));
+  diagnostics->report(
+      finding.severity, finding.kind,
+      fmt::format("{}: {}{} ({})", finding.sensor, finding.message, remedy(finding, inspection), hint));
   if (!isHopeless(finding, inspection)) return;
   diagnostics->report(Severity::Serious, kSensorsContradict,
                       fmt::format("{} ({}, {}): the result is not to be trusted ({})", contradiction(finding),
                                   finding.sensor, finding.kind, hint));
+}
+
+/// Offsets beyond what the estimator takes care of by itself. A camera that shows none of its own has the
+/// first one's.
+std::vector<double> imageOffsets_s(const Inspection& inspection) {
+  constexpr double kLeastOffset_s = 0.015;
+  std::vector<double> offsets_s;
+  for (const CameraInspection& camera : inspection.cameras) {
+    double offset_s = offsets_s.empty() ? 0.0 : offsets_s.front();
+    for (const InspectionFinding& finding : inspection.findings) {
+      if (finding.kind != kCameraTimeOffset || finding.sensor != camera.survey.name) continue;
+      if (std::abs(camera.turning->time_offset_s) > kLeastOffset_s) offset_s = camera.turning->time_offset_s;
+    }
+    offsets_s.push_back(offset_s);
+  }
+  return offsets_s;
 }
 
 }  // namespace
@@ -78,6 +104,8 @@ StartCheck checkStart(const SourceFactory& open, const std::string& data, const 
         return std::make_unique<ExcerptSource>(open(unheard), options.begin_s, options.length_s);
       },
       looking);
+  // Without readings at the time of the images there is nothing to compare; the run names both spans.
+  if (inspection.imu.stream.readings == 0) return {};
   const std::string hint =
       fmt::format("found in the first {:g} s; `lodeline inspect {}` says more", options.length_s, data);
   for (const InspectionFinding& finding : inspection.findings) {
@@ -85,7 +113,7 @@ StartCheck checkStart(const SourceFactory& open, const std::string& data, const 
     if (inspection.imu.screening.count(finding.kind) > 0) continue;
     if (finding.severity == Severity::Serious) report(finding, inspection, hint, diagnostics);
   }
-  return {inspection.rate_to_SI, inspection.shown_noise};
+  return {imageOffsets_s(inspection), inspection.rate_to_SI, inspection.shown_noise};
 }
 
 }  // namespace lodeline

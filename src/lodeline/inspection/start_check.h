@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/inertial/imu_noise_check.h"
 #include "lodeline/inspection/inspection.h"
@@ -17,6 +20,8 @@ struct StartCheckOptions {
 
 /// What a run takes from the check.
 struct StartCheck {
+  /// To be added to the stamps of each camera's images, where the first seconds show it beyond doubt; else 0.
+  std::vector<double> image_offset_s;
   double rate_to_SI = 1.0;  ///< takes the gyroscope's readings to rad/s
   WhiteNoise noise;         ///< that the readings show
 };
