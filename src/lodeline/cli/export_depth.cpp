@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 
 #include "lodeline/base/error.h"
-#include "lodeline/export/depth_alignment.h"
 #include "lodeline/export/map_times.h"
+#include "lodeline/export/profile_fit.h"
 
 namespace lodeline {
 namespace {
@@ -32,9 +32,9 @@ std::string describeAlignment(const DepthProfile& profile, const DepthAlignment&
 }  // namespace
 
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
-  CLI::Option* file =
-      command->add_option("--depth-profile", arguments->file,
-                          "CSV of a dive computer or a diver: time, depth; compared with the run");
+  CLI::Option* file = command->add_option("--depth-profile", arguments->file,
+                                          "log of a dive computer or a diver (CSV with time and depth, "
+                                          "Subsurface, UDDF, UDCF); compared with the run");
   command->add_flag("--correct-depth", arguments->correct, "take the vertical from that profile")
       ->needs(file);
   command
@@ -45,16 +45,22 @@ void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
 
 std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder* run, DiveMapOptions* map,
                               Diagnostics* diagnostics) {
-  const DepthProfile profile = readDepthProfile(arguments.file, diagnostics);
-  const DepthAlignment alignment = alignDepths(profile, run->trajectory, arguments.lag_s);
+  const ProfileFit fit = fitProfile(readDepthProfiles(arguments.file, diagnostics), run->trajectory,
+                                    arguments.lag_s, diagnostics);
+  const DepthProfile& profile = fit.profile;
+  const DepthAlignment& alignment = fit.alignment;
   if (!alignment.doubt.empty()) {
-    const std::string doubt = fmt::format("{}: its lag is uncertain: {}", arguments.file, alignment.doubt);
+    const std::string doubt = fmt::format("{}: it is doubtful whether this profile fits the run: {}",
+                                          arguments.file, alignment.doubt);
     if (arguments.correct) {
       throw InputError(doubt + "; nothing was corrected: state the lag with --profile-lag SECONDS");
     }
-    diagnostics->report(Severity::Warning, "profile_lag", doubt + "; --profile-lag SECONDS states it");
+    diagnostics->report(Severity::Warning, "profile_lag",
+                        doubt + "; the map takes nothing from it; --profile-lag SECONDS states the lag");
   }
   map->notes.push_back(describeAlignment(profile, alignment));
+  if (!alignment.doubt.empty())
+    map->notes.push_back("depth profile: doubted, so the map takes nothing from it: " + alignment.doubt);
   const std::string comparison = comparisonCsv(compareDepths(profile, run->trajectory, alignment));
   double start_depth_m = alignment.start_depth_m;
   if (arguments.correct) {

@@ -29,9 +29,9 @@ std::vector<DepthReading> runDepths(const Trajectory& trajectory, size_t count) 
   return depths;
 }
 
-/// The profile between its readings; nothing outside, and in gaps of more than a minute.
-std::optional<double> depthAt(const std::vector<DepthReading>& readings, double time_s) {
-  constexpr double kMaxGap_s = 60.0;
+/// The profile between its readings; nothing outside, and in gaps longer than its own.
+std::optional<double> depthAt(const DepthProfile& profile, double time_s) {
+  const std::vector<DepthReading>& readings = profile.readings;
   const auto after = std::lower_bound(readings.begin(), readings.end(), time_s,
                                       [](const DepthReading& r, double t) { return r.time_s < t; });
   if (after == readings.end()) return std::nullopt;
@@ -39,7 +39,7 @@ std::optional<double> depthAt(const std::vector<DepthReading>& readings, double 
   if (after == readings.begin()) return std::nullopt;
   const DepthReading& before = *(after - 1);
   const double gap_s = after->time_s - before.time_s;
-  if (gap_s > kMaxGap_s) return std::nullopt;
+  if (gap_s > profile.max_gap_s) return std::nullopt;
   return before.depth_m + (after->depth_m - before.depth_m) * (time_s - before.time_s) / gap_s;
 }
 
@@ -47,9 +47,9 @@ std::optional<double> depthAt(const std::vector<DepthReading>& readings, double 
 class LagCost {
  public:
   LagCost(const DepthProfile& profile, std::vector<DepthReading> run)
-      : readings_(profile.readings), run_(std::move(run)) {
+      : profile_(profile), run_(std::move(run)) {
     const double run_s = run_.back().time_s - run_.front().time_s;
-    const double profile_s = readings_.back().time_s - readings_.front().time_s;
+    const double profile_s = profile.readings.back().time_s - profile.readings.front().time_s;
     fewest_ = static_cast<size_t>(0.8 * std::min(1.0, profile_s / run_s) * static_cast<double>(run_.size()));
   }
 
@@ -57,7 +57,7 @@ class LagCost {
   std::vector<double> differences(double lag_s) const {
     std::vector<double> result;
     for (const DepthReading& reading : run_) {
-      if (const std::optional<double> depth_m = depthAt(readings_, reading.time_s - lag_s)) {
+      if (const std::optional<double> depth_m = depthAt(profile_, reading.time_s - lag_s)) {
         result.push_back(*depth_m - reading.depth_m);
       }
     }
@@ -79,12 +79,12 @@ class LagCost {
     return sum / static_cast<double>(kept);
   }
 
-  double firstLag() const { return run_.front().time_s - readings_.back().time_s; }
-  double lastLag() const { return run_.back().time_s - readings_.front().time_s; }
+  double firstLag() const { return run_.front().time_s - profile_.readings.back().time_s; }
+  double lastLag() const { return run_.back().time_s - profile_.readings.front().time_s; }
   double runSeconds() const { return run_.back().time_s - run_.front().time_s; }
 
  private:
-  const std::vector<DepthReading>& readings_;
+  const DepthProfile& profile_;
   std::vector<DepthReading> run_;
   size_t fewest_ = 0;
 };
@@ -156,6 +156,21 @@ std::string doubtOf(const LagSearch& search, const std::vector<DepthReading>& ru
   return "";
 }
 
+/// A lag that was found must be known well, and depths must change as the run's do; a lag that was stated
+/// stands, and only a ratio that is no scale error of a run is doubted.
+std::string doubtOfFit(const DepthAlignment& fit, bool lag_is_known) {
+  constexpr double kLeastLagSigma_s = 5.0, kLagSigmaShare = 0.02, kMostRatio = 1.33,
+                   kMostRatioAtKnownLag = 2.0;
+  if (!lag_is_known && fit.lag_sigma_s > std::max(kLeastLagSigma_s, kLagSigmaShare * fit.common_s)) {
+    return fmt::format("it is known to {:.0f} s only", fit.lag_sigma_s);
+  }
+  const double most = lag_is_known ? kMostRatioAtKnownLag : kMostRatio;
+  if (fit.slope > most || fit.slope < 1.0 / most) {
+    return fmt::format("the profile's depths change by {:.3g} m where the run's change by one", fit.slope);
+  }
+  return "";
+}
+
 }  // namespace
 
 DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajectory,
@@ -166,7 +181,11 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   if (known_lag_s) {
     result.lag_s = *known_lag_s;
   } else {
-    const double step_s = std::clamp(coarse_cost.runSeconds() / 300.0, 0.1, 1.0);
+    // Bounded work, however long the profile is.
+    constexpr double kMostLags = 1e5;
+    const double range_s = coarse_cost.lastLag() - coarse_cost.firstLag();
+    const double step_s =
+        std::max(std::clamp(coarse_cost.runSeconds() / 300.0, 0.1, 1.0), range_s / kMostLags);
     const LagSearch search = searchLags(coarse_cost, coarse_cost.firstLag(), coarse_cost.lastLag(), step_s);
     result.doubt = doubtOf(search, coarse, profile.resolution_m);
     result.lag_s =
@@ -190,6 +209,7 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   const double independent = static_cast<double>(deviations.size()) / correlationFactor(deviations);
   result.lag_sigma_s =
       result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(std::max(independent, 1.0));
+  if (result.doubt.empty()) result.doubt = doubtOfFit(result, known_lag_s.has_value());
   return result;
 }
 
@@ -197,7 +217,7 @@ std::vector<DepthComparison> compareDepths(const DepthProfile& profile, const Tr
                                            const DepthAlignment& alignment) {
   std::vector<DepthComparison> pairs;
   for (const StampedPose& pose : trajectory.poses) {
-    const std::optional<double> depth_m = depthAt(profile.readings, pose.time.seconds() - alignment.lag_s);
+    const std::optional<double> depth_m = depthAt(profile, pose.time.seconds() - alignment.lag_s);
     if (!depth_m) continue;
     pairs.push_back({pose.time, alignment.start_depth_m - pose.world_from_body.translation.z(), *depth_m});
   }
