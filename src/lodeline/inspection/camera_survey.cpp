@@ -53,14 +53,21 @@ class Survey {
       current.corners.emplace_back(corner.x(), corner.y());
     }
     FrameSurvey frame{pending.time, assess(pyramid), static_cast<int>(current.corners.size()), -1};
-    if (follow && previous_) compare(current, &frame);
+    const bool ends_pair = follow && previous_;
+    if (ends_pair) compare(current, &frame);
     result_->frames.push_back(frame);
+    if (ends_pair && options_.pair_interval_s > 0.0) {
+      next_pair_ = previous_->time + Duration::fromSeconds(options_.pair_interval_s);
+      previous_.reset();
+      return;
+    }
     previous_.reset();
     if (follow) previous_ = std::move(current);
   }
 
   /// Whether the next image comes too soon after the last one that was followed.
   bool isTooSoon(Time time) const {
+    if (!previous_ && next_pair_ && time < *next_pair_) return true;
     return previous_ && time > previous_->time && (time - previous_->time).seconds() < options_.least_step_s;
   }
 
@@ -110,6 +117,7 @@ class Survey {
   CornerDetector detector_;
   CameraSurvey* result_;
   std::optional<Followed> previous_;
+  std::optional<Time> next_pair_;
 };
 
 /// How variedly the rig turned in each stretch; readings in order of time.

@@ -42,6 +42,8 @@ struct CameraSurveyOptions {
   int most_turns = 160;         ///< images followed to the next, over all spans
   int most_samples = 60;        ///< images looked at besides, spread over the recording
   double least_step_s = 0.045;  ///< between images that are followed
+  /// From one followed pair of images to the next; 0 where each image is followed to the next.
+  double pair_interval_s = 0.0;
 };
 
 /// Stamps of a camera's images, which are not decoded. Reports what their order tells, as OrderedStream does.

@@ -96,14 +96,15 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
   if (images.empty()) return;
   Diagnostics reported_before;
   const std::unique_ptr<MeasurementSource> source = open(&reported_before);
-  const double total_s = options.images.most_turns *
-                         std::max(options.images.least_step_s,
-                                  images.front().rate_hz > 0.0 ? 1.0 / images.front().rate_hz : 0.05);
+  const double period_s = images.front().rate_hz > 0.0 ? 1.0 / images.front().rate_hz : 0.05;
+  const double total_s = options.images.most_turns * std::max({options.images.least_step_s, period_s,
+                                                               0.5 * options.images.pair_interval_s});
   const std::vector<SurveySpan> spans =
       liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
   for (size_t i = 0; i < images.size(); ++i) {
-    inspection->cameras.push_back(
-        {surveyCamera(source.get(), i, images[i], spans, options.images), {}, {}, {}});
+    CameraSurveyOptions looking = options.images;
+    if (i >= options.turning_cameras) looking.most_turns = 0;
+    inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, looking), {}, {}, {}});
   }
   if (images.size() > 1 && isCalibrated(inspection->rig.cameras[0]) &&
       isCalibrated(inspection->rig.cameras[1])) {

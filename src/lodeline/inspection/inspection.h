@@ -62,7 +62,8 @@ struct Inspection {
 
 struct InspectionOptions {
   CameraSurveyOptions images;
-  double span_s = 4.0;  ///< of the stretches that are looked at closely
+  double span_s = 4.0;          ///< of the stretches that are looked at closely
+  size_t turning_cameras = 16;  ///< whose images are followed to tell how they turn; the first ones
   std::optional<Vec3> site_field_W;
 };
 

@@ -13,10 +13,10 @@
 namespace lodeline {
 namespace {
 
-/// Images are what the check costs: these take half a second of a core for each camera.
-constexpr int kMostTurns = 36;
+/// Images are what the check costs: pairs of the first camera, spread over eight seconds, and a few others.
+constexpr int kImagesOfPairs = 72;
 constexpr int kMostSamples = 6;
-constexpr double kStep_s = 0.12;
+constexpr double kPairInterval_s = 0.22;
 
 using Kinds = std::array<std::string_view, 3>;
 constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
@@ -98,7 +98,10 @@ std::vector<double> imageOffsets_s(const Inspection& inspection) {
 StartCheck checkStart(const SourceFactory& open, const std::string& data, const StartCheckOptions& options,
                       Diagnostics* diagnostics) {
   InspectionOptions looking;
-  looking.images = {kMostTurns, kMostSamples, kStep_s};
+  looking.images.most_turns = kImagesOfPairs;
+  looking.images.most_samples = kMostSamples;
+  looking.images.pair_interval_s = kPairInterval_s;
+  looking.turning_cameras = 1;
   const Inspection inspection = inspect(
       [&](Diagnostics* unheard) {
         return std::make_unique<ExcerptSource>(open(unheard), options.begin_s, options.length_s);
