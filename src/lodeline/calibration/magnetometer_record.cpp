@@ -16,6 +16,7 @@
 #include "lodeline/evaluation/text_table.h"
 #include "lodeline/streams/inertial_screen.h"
 #include "lodeline/streams/ordered_stream.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline {
 namespace {
@@ -241,11 +242,23 @@ Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostic
   return reading;
 }
 
+/// Without a time in common, the gyroscope says nothing of how the magnetometer turns.
+void reportApart(const MagnetometerRecord& record, Diagnostics* diagnostics) {
+  SpanOfStream imu, magnetometer;
+  for (const ImuSample& sample : record.imu) imu.add(sample.time);
+  for (const MagnetometerSample& sample : record.magnetometer) magnetometer.add(sample.time);
+  if (!imu.get() || !magnetometer.get()) return;
+  const std::optional<std::string> words =
+      apart("the magnetometer", *magnetometer.get(), "the inertial readings", *imu.get(), "its clock");
+  if (words) diagnostics->report(Severity::Serious, kClocksApart, *words);
+}
+
 MagnetometerRecord settled(Reading reading, const std::string& name, const RecordOptions& options,
                            Diagnostics* diagnostics) {
   if (reading.record.magnetometer.empty()) {
     throw InputError(name + ": holds no magnetometer reading that can be used");
   }
+  reportApart(reading.record, diagnostics);
   cut(options, &reading.record);
   InertialScreenOptions screen;
   screen.knows_rate_unit = false;

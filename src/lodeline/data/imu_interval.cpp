@@ -23,7 +23,7 @@ ImuIntervals::Coverage ImuIntervals::readUntil(Time time) {
     buffer_.push_back(*sample);
     buffer_.back().time = moved(buffer_.back().time, correction_);
     last_ = buffer_.back().time;
-    if (!first_) first_ = last_;
+    span_.add(*last_);
     if (cut_before_) continue;
     // Until the first cut, old history goes, but never the last reading at or before `time`.
     const Time oldest = std::min(time, buffer_.back().time) - history;
@@ -73,7 +73,7 @@ void ImuIntervals::shiftFrom(Time from, Duration by) {
 void ImuIntervals::drain() {
   while (const std::optional<ImuSample> sample = pull_()) {
     last_ = moved(sample->time, correction_);
-    if (!first_) first_ = last_;
+    span_.add(*last_);
   }
 }
 

@@ -12,10 +12,11 @@ namespace {
 
 /// Readings up to `time`, less those older than `oldest`.
 template <typename Reading>
-std::vector<Reading> takeUntil(Time time, Time oldest, OrderedStream<Reading>* stream) {
+std::vector<Reading> takeUntil(Time time, Time oldest, OrderedStream<Reading>* stream, SpanOfStream* span) {
   std::vector<Reading> taken;
   while (stream->peek() != nullptr && stream->peek()->time <= time) {
     Reading reading = stream->pop();
+    span->add(reading.time);
     if (reading.time >= oldest) taken.push_back(std::move(reading));
   }
   return taken;
@@ -118,7 +119,9 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     if (options_.duration_s > 0.0 && since_start_s > options_.skip_s + options_.duration_s) return {};
     ++recorded_images_;
     if (last_packet_time_) followClocks(&reference);
+    if (last_packet_time_ && reference.time <= *last_packet_time_) continue;
     last_image_time_ = reference.time;
+    images_span_.add(reference.time);
     if (!coveredByImu(reference)) continue;
 
     draft.packet.time = reference.time;
@@ -126,15 +129,15 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     draft.packet.imu = imu_.cut(reference.time, &draft.packet.longest_imu_gap_s);
     const Time oldest =
         last_packet_time_ ? *last_packet_time_ : reference.time - Duration::fromSeconds(options_.history_s);
-    draft.packet.magnetometer = takeUntil(reference.time, oldest, &magnetometer_);
-    draft.packet.depth = takeUntil(reference.time, oldest, &depth_);
-    draft.packet.sonar = takeUntil(reference.time, oldest, &sonar_);
+    draft.packet.magnetometer = takeUntil(reference.time, oldest, &magnetometer_, &magnetometer_span_);
+    draft.packet.depth = takeUntil(reference.time, oldest, &depth_, &depth_span_);
+    draft.packet.sonar = takeUntil(reference.time, oldest, &sonar_, &sonar_span_);
     for (size_t i = 1; i < cameras_.size(); ++i) draft.pending.push_back(partnerOf(reference, i));
     last_packet_time_ = reference.time;
     draft.pending.insert(draft.pending.begin(), std::move(reference));
     return draft;
   }
-  if (first_image_time_ && !last_packet_time_) reportApart();
+  reportApart();
   return std::nullopt;
 }
 
@@ -210,6 +213,14 @@ void Synchronizer::storeImage(size_t camera, const PendingImage& pending, Loaded
         expected.height_px));
   }
   packet->images[camera] = std::move(loaded.image);
+}
+
+void Synchronizer::moveImages(Duration by) {
+  for (OrderedStream<PendingImage>& camera : cameras_) {
+    const PendingImage* next = camera.peek();
+    if (next != nullptr) camera.shiftFrom(next->time, by);
+  }
+  if (last_image_time_) last_image_time_ = moved(*last_image_time_, by);
 }
 
 size_t Synchronizer::bufferedReadings() const { return imu_.size(); }

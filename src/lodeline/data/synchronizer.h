@@ -55,6 +55,9 @@ class Synchronizer {
   /// that could not be used.
   int64_t recordedImages() const { return recorded_images_; }
 
+  /// Moves the images that are still to come by so much, as their clock was found to be off.
+  void moveImages(Duration by);
+
   /// Readings and images held at present, for tests of its boundedness.
   size_t bufferedReadings() const;
 
@@ -94,6 +97,7 @@ class Synchronizer {
   std::optional<Time> first_image_time_;
   std::optional<Time> last_image_time_;
   int64_t recorded_images_ = 0;
+  SpanOfStream images_span_, magnetometer_span_, depth_span_, sonar_span_;
   std::optional<Time> last_packet_time_;
   std::optional<Draft> prefetched_;
   bool started_ = false;
