@@ -176,9 +176,16 @@ std::string doubtOf(const LagSearch& search, const std::vector<DepthReading>& ru
 
 /// A lag that was found must be known well, and depths must change as the run's do; a lag that was stated
 /// stands, and only a ratio that is no scale error of a run is doubted.
-std::string doubtOfFit(const DepthAlignment& fit, bool lag_is_known) {
+std::string doubtOfFit(const DepthAlignment& fit, double run_s, bool lag_is_known) {
   constexpr double kLeastLagSigma_s = 5.0, kLagSigmaShare = 0.02, kMostRatio = 1.33,
                    kMostRatioAtKnownLag = 2.0;
+  constexpr double kLeastCommonShare = 0.3, kMostAboveWater_m = 0.5;
+  if (fit.start_depth_m < -kMostAboveWater_m) {
+    return fmt::format("the first pose would be {:.2f} m above the water", -fit.start_depth_m);
+  }
+  if (!lag_is_known && fit.common_s < kLeastCommonShare * run_s) {
+    return fmt::format("the profile covers {:.0f} s of the run's {:.0f} s only", fit.common_s, run_s);
+  }
   if (!lag_is_known && fit.lag_sigma_s > std::max(kLeastLagSigma_s, kLagSigmaShare * fit.common_s)) {
     return fmt::format("the lag is known to {:.0f} s only", fit.lag_sigma_s);
   }
@@ -227,7 +234,8 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   const double independent = static_cast<double>(deviations.size()) / correlationFactor(deviations);
   result.lag_sigma_s =
       result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(std::max(independent, 1.0));
-  if (result.doubt.empty()) result.doubt = doubtOfFit(result, known_lag_s.has_value());
+  if (result.doubt.empty())
+    result.doubt = doubtOfFit(result, fine_cost.runSeconds(), known_lag_s.has_value());
   return result;
 }
 

@@ -58,7 +58,7 @@ void considerUnits(const Trajectory& trajectory, std::optional<double> known_lag
     fit->alignment.doubt = text + ": the unit that the file states seems to be wrong";
     return;
   }
-  *finding = text + "; taken so, since the file states no unit; state it in the header, as 'depth [ft]'";
+  *finding = text + "; taken so, since the file states no unit; state it in the header, as in 'depth [ft]'";
   *fit = *better;
 }
 
