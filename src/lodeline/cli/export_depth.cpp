@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "lodeline/base/error.h"
 #include "lodeline/export/map_times.h"
@@ -29,6 +31,19 @@ std::string describeAlignment(const DepthProfile& profile, const DepthAlignment&
       alignment.rms_m, alignment.slope);
 }
 
+/// The profile's start depth is what the user asked for; that of the run's own sensor should be the same.
+void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics* diagnostics) {
+  constexpr double kLeast_m = 0.5, kShare = 0.05;
+  if (!run.depth_at_origin_m) return;
+  const double difference_m = start_depth_m - *run.depth_at_origin_m;
+  if (std::abs(difference_m) < std::max(kLeast_m, kShare * start_depth_m)) return;
+  diagnostics->report(
+      Severity::Warning, "start_depth_contradicted",
+      fmt::format("the first pose was {:.2f} m deep by the depth profile, which is taken, and {:.2f} m by "
+                  "the run's own pressure sensor",
+                  start_depth_m, *run.depth_at_origin_m));
+}
+
 }  // namespace
 
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
@@ -45,6 +60,8 @@ void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
 
 std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder* run, DiveMapOptions* map,
                               Diagnostics* diagnostics) {
+  if (!std::isfinite(arguments.lag_s.value_or(0.0)))
+    throw UsageError("--profile-lag: a number of seconds is wanted");
   const ProfileFit fit = fitProfile(readDepthProfiles(arguments.file, diagnostics), run->trajectory,
                                     arguments.lag_s, diagnostics);
   const DepthProfile& profile = fit.profile;
@@ -70,6 +87,7 @@ std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder*
     map->notes.push_back("vertical: the run's own; the depth profile was only compared");
   }
   if (map->start_depth_m || !alignment.doubt.empty()) return comparison;
+  reportContradiction(start_depth_m, *run, diagnostics);
   map->start_depth_m = start_depth_m;
   map->start_depth_source = "by the depth profile";
   return comparison;

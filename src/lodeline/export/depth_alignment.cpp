@@ -29,19 +29,36 @@ std::vector<DepthReading> runDepths(const Trajectory& trajectory, size_t count) 
   return depths;
 }
 
-/// The profile between its readings; nothing outside, and in gaps longer than its own.
-std::optional<double> depthAt(const DepthProfile& profile, double time_s) {
-  const std::vector<DepthReading>& readings = profile.readings;
-  const auto after = std::lower_bound(readings.begin(), readings.end(), time_s,
-                                      [](const DepthReading& r, double t) { return r.time_s < t; });
-  if (after == readings.end()) return std::nullopt;
-  if (after->time_s == time_s) return after->depth_m;
-  if (after == readings.begin()) return std::nullopt;
-  const DepthReading& before = *(after - 1);
-  const double gap_s = after->time_s - before.time_s;
-  if (gap_s > profile.max_gap_s) return std::nullopt;
-  return before.depth_m + (after->depth_m - before.depth_m) * (time_s - before.time_s) / gap_s;
-}
+/// The profile between its readings, for times that increase from call to call; nothing outside, and in gaps
+/// longer than its own.
+class ProfileReader {
+ public:
+  explicit ProfileReader(const DepthProfile& profile) : profile_(profile), after_(profile.readings.begin()) {}
+
+  std::optional<double> at(double time_s) {
+    const auto end = profile_.readings.end();
+    const auto isBefore = [](const DepthReading& r, double t) { return r.time_s < t; };
+    // Steps that double find what is near in few of them.
+    std::ptrdiff_t step = 1;
+    auto from = after_;
+    while (end - from > step && from[step].time_s < time_s) {
+      from += step;
+      step *= 2;
+    }
+    after_ = std::lower_bound(from, end - from > step ? from + step + 1 : end, time_s, isBefore);
+    if (after_ == end) return std::nullopt;
+    if (after_->time_s == time_s) return after_->depth_m;
+    if (after_ == profile_.readings.begin()) return std::nullopt;
+    const DepthReading& before = *(after_ - 1);
+    const double gap_s = after_->time_s - before.time_s;
+    if (gap_s > profile_.max_gap_s) return std::nullopt;
+    return before.depth_m + (after_->depth_m - before.depth_m) * (time_s - before.time_s) / gap_s;
+  }
+
+ private:
+  const DepthProfile& profile_;
+  std::vector<DepthReading>::const_iterator after_;  ///< the first reading that is not before the last time
+};
 
 /// Compares the run with the profile at one lag.
 class LagCost {
@@ -56,8 +73,9 @@ class LagCost {
   /// Profile less run where both are there.
   std::vector<double> differences(double lag_s) const {
     std::vector<double> result;
+    ProfileReader profile(profile_);
     for (const DepthReading& reading : run_) {
-      if (const std::optional<double> depth_m = depthAt(profile_, reading.time_s - lag_s)) {
+      if (const std::optional<double> depth_m = profile.at(reading.time_s - lag_s)) {
         result.push_back(*depth_m - reading.depth_m);
       }
     }
@@ -158,11 +176,18 @@ std::string doubtOf(const LagSearch& search, const std::vector<DepthReading>& ru
 
 /// A lag that was found must be known well, and depths must change as the run's do; a lag that was stated
 /// stands, and only a ratio that is no scale error of a run is doubted.
-std::string doubtOfFit(const DepthAlignment& fit, bool lag_is_known) {
+std::string doubtOfFit(const DepthAlignment& fit, double run_s, bool lag_is_known) {
   constexpr double kLeastLagSigma_s = 5.0, kLagSigmaShare = 0.02, kMostRatio = 1.33,
                    kMostRatioAtKnownLag = 2.0;
+  constexpr double kLeastCommonShare = 0.3, kMostAboveWater_m = 0.5;
+  if (fit.start_depth_m < -kMostAboveWater_m) {
+    return fmt::format("the first pose would be {:.2f} m above the water", -fit.start_depth_m);
+  }
+  if (!lag_is_known && fit.common_s < kLeastCommonShare * run_s) {
+    return fmt::format("the profile covers {:.0f} s of the run's {:.0f} s only", fit.common_s, run_s);
+  }
   if (!lag_is_known && fit.lag_sigma_s > std::max(kLeastLagSigma_s, kLagSigmaShare * fit.common_s)) {
-    return fmt::format("it is known to {:.0f} s only", fit.lag_sigma_s);
+    return fmt::format("the lag is known to {:.0f} s only", fit.lag_sigma_s);
   }
   const double most = lag_is_known ? kMostRatioAtKnownLag : kMostRatio;
   if (fit.slope > most || fit.slope < 1.0 / most) {
@@ -209,15 +234,17 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   const double independent = static_cast<double>(deviations.size()) / correlationFactor(deviations);
   result.lag_sigma_s =
       result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(std::max(independent, 1.0));
-  if (result.doubt.empty()) result.doubt = doubtOfFit(result, known_lag_s.has_value());
+  if (result.doubt.empty())
+    result.doubt = doubtOfFit(result, fine_cost.runSeconds(), known_lag_s.has_value());
   return result;
 }
 
 std::vector<DepthComparison> compareDepths(const DepthProfile& profile, const Trajectory& trajectory,
                                            const DepthAlignment& alignment) {
   std::vector<DepthComparison> pairs;
+  ProfileReader reader(profile);
   for (const StampedPose& pose : trajectory.poses) {
-    const std::optional<double> depth_m = depthAt(profile, pose.time.seconds() - alignment.lag_s);
+    const std::optional<double> depth_m = reader.at(pose.time.seconds() - alignment.lag_s);
     if (!depth_m) continue;
     pairs.push_back({pose.time, alignment.start_depth_m - pose.world_from_body.translation.z(), *depth_m});
   }

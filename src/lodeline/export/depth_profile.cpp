@@ -49,7 +49,8 @@ void refuseDl7(const std::filesystem::path& file) {
 DepthProfile profileOf(const std::vector<ProfileRow>& dive, double metres_per_unit) {
   DepthProfile profile;
   for (const ProfileRow& row : dive) profile.readings.push_back({row.time_s, row.depth * metres_per_unit});
-  profile.dive = fmt::format("lines {} to {}", dive.front().line, dive.back().line);
+  profile.dive = fmt::format("lines {} to {}", std::min(dive.front().line, dive.back().line),
+                             std::max(dive.front().line, dive.back().line));
   profile.resolution_m = resolutionOf(profile.readings);
   profile.max_gap_s = maxGap(profile.readings);
   return profile;

@@ -229,6 +229,9 @@ TEST_F(DepthProfileTest, ReadsTimesInTheirUsualForms) {
   EXPECT_EQ(steps("date,time,depth\n", "2026-11-21,10:34:{0:02},{0}\n"), 3.0);
   EXPECT_EQ(steps("date,time,depth\n", "11/21/2026,10:{0:02} AM,{0}\n"), 180.0);
   EXPECT_EQ(steps("Datum;Tiefe\n", "21.11.2026 10:34:{0:02};{0},5\n"), 3.0);
+  std::string latest_first = "time,depth\n";
+  for (int i = 11; i >= 0; --i) latest_first += fmt::format("{}0,{}.5\n", i, i);
+  EXPECT_EQ(read(latest_first).readings.at(3).depth_m, 3.5);
   const DepthProfile midnight =
       read(rows("time,depth\n", "23:59:{0:02},{0}\n") + rows("", "00:00:{0:02},{0}\n"));
   EXPECT_EQ(midnight.readings.size(), 24U);

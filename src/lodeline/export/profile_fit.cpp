@@ -16,12 +16,12 @@ struct MistakenUnit {
   double factor;
   const char* words;
 };
-constexpr std::array<MistakenUnit, 6> kMistakenUnits = {{{0.3048, "feet where metres are read"},
-                                                         {1.0 / 0.3048, "metres where feet are read"},
-                                                         {0.01, "centimetres where metres are read"},
-                                                         {100.0, "metres where centimetres are read"},
-                                                         {0.001, "millimetres where metres are read"},
-                                                         {1000.0, "metres where millimetres are read"}}};
+constexpr std::array<MistakenUnit, 6> kMistakenUnits = {{{0.3048, "feet"},
+                                                         {1.0 / 0.3048, "metres that were taken for feet"},
+                                                         {0.01, "centimetres"},
+                                                         {100.0, "metres that were taken for centimetres"},
+                                                         {0.001, "millimetres"},
+                                                         {1000.0, "metres that were taken for millimetres"}}};
 
 std::optional<DepthAlignment> align(const DepthProfile& profile, const Trajectory& trajectory,
                                     std::optional<double> known_lag_s) {
@@ -58,7 +58,7 @@ void considerUnits(const Trajectory& trajectory, std::optional<double> known_lag
     fit->alignment.doubt = text + ": the unit that the file states seems to be wrong";
     return;
   }
-  *finding = text + ", since the file states no unit; state it in the header, as 'depth [ft]'";
+  *finding = text + "; taken so, since the file states no unit; state it in the header, as in 'depth [ft]'";
   *fit = *better;
 }
 
@@ -68,15 +68,9 @@ ProfileFit fitProfile(const std::vector<DepthProfile>& dives, const Trajectory& 
                       std::optional<double> known_lag_s, Diagnostics* diagnostics) {
   constexpr double kAlike = 1.5;
   std::vector<ProfileFit> fits;
-  std::vector<std::string> findings;
   for (const DepthProfile& dive : dives) {
-    const std::optional<DepthAlignment> alignment = align(dive, trajectory, known_lag_s);
-    if (!alignment) continue;
-    ProfileFit fit{dive, *alignment};
-    std::string finding;
-    if (!alignment->doubt.empty()) considerUnits(trajectory, known_lag_s, &fit, &finding);
-    fits.push_back(fit);
-    findings.push_back(finding);
+    if (const std::optional<DepthAlignment> alignment = align(dive, trajectory, known_lag_s))
+      fits.push_back({dive, *alignment});
   }
   // Throws where there is no time in common.
   if (fits.empty()) fits.push_back({dives.front(), alignDepths(dives.front(), trajectory, known_lag_s)});
@@ -84,6 +78,15 @@ ProfileFit fitProfile(const std::vector<DepthProfile>& dives, const Trajectory& 
     if (a.alignment.doubt.empty() != b.alignment.doubt.empty()) return a.alignment.doubt.empty();
     return a.alignment.rms_m < b.alignment.rms_m;
   };
+  // All dives of a log are in one unit.
+  std::vector<std::string> findings(fits.size());
+  if (std::all_of(fits.begin(), fits.end(),
+                  [](const ProfileFit& fit) { return !fit.alignment.doubt.empty(); })) {
+    constexpr size_t kMostTried = 3;
+    std::sort(fits.begin(), fits.end(), isBetter);
+    for (size_t i = 0; i < std::min(kMostTried, fits.size()); ++i)
+      considerUnits(trajectory, known_lag_s, &fits[i], &findings[i]);
+  }
   const auto best = static_cast<size_t>(std::min_element(fits.begin(), fits.end(), isBetter) - fits.begin());
   ProfileFit result = fits[best];
   const std::string file = result.profile.name;

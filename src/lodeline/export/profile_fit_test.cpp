@@ -85,6 +85,17 @@ TEST(ProfileFit, ChoosesTheDiveThatFits) {
   EXPECT_EQ(fitProfile({right, twin}, runOfDive(), std::nullopt, &diagnostics).alignment.doubt, "");
 }
 
+TEST(ProfileFit, DoubtsWhatCoversLittleOfTheRunOrLiesAboveTheWater) {
+  Diagnostics diagnostics;
+  DepthProfile minutes = profile(1.0, false);  // minutes that were read as seconds
+  for (DepthReading& reading : minutes.readings) reading.time_s /= 60.0;
+  EXPECT_NE(fitProfile({minutes}, runOfDive(), std::nullopt, &diagnostics).alignment.doubt, "");
+  DepthProfile heights = profile(1.0, true);
+  for (DepthReading& reading : heights.readings) reading.depth_m -= 20.0;
+  EXPECT_THAT(fitProfile({heights}, runOfDive(), std::nullopt, &diagnostics).alignment.doubt,
+              HasSubstr("above the water"));
+}
+
 TEST(ProfileFit, DoubtsWhatDoesNotChangeAsTheRunDoes) {
   Diagnostics diagnostics;
   DepthProfile average = profile(1.0, true);

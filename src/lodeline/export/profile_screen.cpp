@@ -58,6 +58,14 @@ Rows pastMidnight(Rows rows) {
   return rows;
 }
 
+/// The rows with the earliest first, where the log begins with the latest.
+Rows inOrder(Rows rows) {
+  size_t forwards = 0, backwards = 0;
+  for (size_t i = 1; i < rows.size(); ++i) ++(rows[i].time_s > rows[i - 1].time_s ? forwards : backwards);
+  if (backwards > 4 * forwards) std::reverse(rows.begin(), rows.end());
+  return rows;
+}
+
 /// Stretches without a jump in time; of up to three rows that do not fit where a later one does, none is
 /// kept.
 std::vector<Rows> stretches(const Rows& rows, const Succession& follows, const PassOverRow& pass_over) {
@@ -86,7 +94,7 @@ std::vector<Rows> stretches(const Rows& rows, const Succession& follows, const P
 
 std::vector<Rows> splitDives(const Rows& all, const PassOverRow& pass_over) {
   constexpr size_t kFewestRows = 5;
-  const Rows rows = pastMidnight(all);
+  const Rows rows = pastMidnight(inOrder(all));
   const Succession follows(rows);
   std::vector<Rows> dives;
   for (Rows& part : stretches(rows, follows, pass_over)) {
