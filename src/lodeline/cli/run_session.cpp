@@ -80,6 +80,9 @@ void RunSession::process() {
   processed_ = std::move(*fetched_);
   fetched_.reset();
   const FrameEstimate estimate = odometry_.add(processed_);
+  if (const std::optional<FoundDelay> found = odometry_.takeDelay()) {
+    synchronizer_.delayCamera(found->camera, found->delay_s);
+  }
   if (record_) record_->add(odometry_.tracks(), processed_.imu, estimate, odometry_.estimator());
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
   landmarks_ = output_ ? output_->write(processed_, estimate, attitude, &odometry_)
@@ -90,6 +93,7 @@ void RunSession::process() {
 }
 
 RunSummary RunSession::finish() {
+  odometry_.finish();
   if (output_) summary_.map_points = output_->finish(odometry_);
   if (output_) summary_.pictures_s = output_->picturesSeconds();
   output_.reset();  // closes what is read next

@@ -29,6 +29,10 @@ class ImuIntervals {
   /// time, later than the cut before.
   std::vector<ImuSample> cut(Time time, double* longest_gap_s);
 
+  /// The readings from the last cut to `time`, both ends interpolated, which stay for the next cut; nothing
+  /// where they do not reach so far.
+  std::vector<ImuSample> ahead(Time time);
+
   /// Readings held at present.
   size_t size() const { return buffer_.size(); }
 

@@ -59,6 +59,16 @@ class OrderedStream {
     return head_ ? &*head_ : nullptr;
   }
 
+  /// The reading after the one that peek() shows, as far as it is known; null at the end.
+  const Reading* following() const { return following_ ? &*following_ : nullptr; }
+
+  /// Moves all stamps that were not taken out yet.
+  void shift(Duration by) {
+    offset_ = offset_ + by;
+    if (head_) head_->time = head_->time + by;
+    if (following_) following_->time = following_->time + by;
+  }
+
   /// Takes the next reading out; only after peek() has shown that there is one.
   Reading pop() {
     Reading reading = std::move(*head_);
@@ -69,7 +79,7 @@ class OrderedStream {
  private:
   std::optional<Reading> pull() {
     std::optional<Reading> reading = pull_();
-    if (reading) reading->time = reading->time + monitor_.expectation().offset_to_imu_clock;
+    if (reading) reading->time = reading->time + monitor_.expectation().offset_to_imu_clock + offset_;
     return reading;
   }
 
@@ -93,6 +103,7 @@ class OrderedStream {
 
   Pull pull_;
   StampMonitor monitor_;
+  Duration offset_;                   ///< by shift()
   std::optional<Reading> head_;       ///< accepted, not yet taken
   std::optional<Reading> following_;  ///< seen, not yet accepted
 };
