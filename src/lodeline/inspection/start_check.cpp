@@ -22,6 +22,8 @@ std::string remedy(const InspectionFinding& finding) {
   if (finding.kind == "gyroscope_unit" || finding.kind == "accelerometer_unit") {
     return "this run converts the readings";
   }
+  if (finding.kind == "cameras_swapped") return "where exchanged images explain it, this run puts them back";
+  if (finding.kind == "images_repeated") return "this run leaves them out";
   if (finding.kind == kCameraTimeOffset) {
     return "this run adds what it found to the images' stamps, as far as that is more than 15 ms";
   }
