@@ -80,6 +80,11 @@ void refuseOtherClock(const std::string& name, const std::vector<Time>& stamps,
                   name, by_stamps_hz, by_recording_hz, kStampAdvice));
 }
 
+messages::ImageForm formOf(const BagTopic& topic) {
+  return topic.connection.type == messages::kCompressedImage.name ? messages::ImageForm::Compressed
+                                                                  : messages::ImageForm::Raw;
+}
+
 }  // namespace
 
 std::filesystem::path rigFileBeside(const std::filesystem::path& bag) {
@@ -208,13 +213,24 @@ std::optional<PendingImage> BagSource::nextImage(size_t camera) {
   Cursor& cursor = cameras_[camera];
   std::optional<wire::Bytes> bytes = nextMessage(&cursor);
   if (!bytes) return std::nullopt;
-  const messages::ImageForm form = cursor.topic->connection.type == messages::kCompressedImage.name
-                                       ? messages::ImageForm::Compressed
-                                       : messages::ImageForm::Raw;
+  grey_ranges_.resize(cameras_.size());
+  std::optional<GreyRange>& range = grey_ranges_[camera];
+  if (!range) range = measureGreyRange(camera);
   PendingImage image = messages::pendingImage(
-      form, std::move(*bytes), fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic));
+      formOf(*cursor.topic), std::move(*bytes),
+      fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic), *range);
   restamp(cursor, &image);
   return image;
+}
+
+GreyRange BagSource::measureGreyRange(size_t camera) {
+  const BagTopic& topic = *cameras_[camera].topic;
+  const auto range = lodeline::measureGreyRange(topic.entries.size(), [&](size_t i) {
+    const std::optional<wire::Bytes> message = bag_.read(topic.entries[i]);
+    return message ? messages::storedPixels(formOf(topic), *message) : cv::Mat();
+  });
+  reportGreyRange(rig_.cameras[camera].name, range, diagnostics_);
+  return range.value_or(GreyRange());
 }
 
 std::optional<MagnetometerSample> BagSource::nextMagnetometer() {

@@ -10,6 +10,7 @@
 #include "lodeline/bags/bag_file.h"
 #include "lodeline/bags/messages.h"
 #include "lodeline/bags/topic_choice.h"
+#include "lodeline/data/grey_range.h"
 #include "lodeline/data/measurement_source.h"
 #include "lodeline/data/rig_file.h"
 
@@ -53,6 +54,7 @@ class BagSource : public RecordedSource {
     size_t next = 0;
   };
 
+  GreyRange measureGreyRange(size_t camera);
   void settleCameras(const BagOptions& options);
   void settleRates();
   Cursor cursorOf(const std::string& sensor) const;
@@ -71,6 +73,7 @@ class BagSource : public RecordedSource {
   bool use_received_times_;
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< of each camera, once its first image is asked for
   Cursor imu_, magnetometer_, pressure_, sonar_;
   std::deque<SonarSample> echoes_;  ///< of the scan last read
 };

@@ -88,6 +88,9 @@ void RunSession::process() {
   fetched_.reset();
   FrameEstimate estimate = odometry_.add(processed_);
   followClocks(estimate);
+  if (const std::optional<FoundDelay> found = odometry_.takeDelay()) {
+    synchronizer_.delayCamera(found->camera, found->delay_s);
+  }
   if (record_) record_->add(odometry_.tracks(), processed_.imu, estimate, odometry_.estimator());
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
   const bool has_stamp = stamp(&estimate);
@@ -127,6 +130,7 @@ bool RunSession::stamp(FrameEstimate* estimate) {
 }
 
 RunSummary RunSession::finish() {
+  odometry_.finish();
   if (output_) summary_.map_points = output_->finish(odometry_);
   if (output_) summary_.pictures_s = output_->picturesSeconds();
   output_.reset();  // closes what is read next

@@ -5,6 +5,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/data/euroc_rig.h"
+#include "lodeline/data/image_list.h"
 
 namespace lodeline {
 namespace {
@@ -26,18 +27,50 @@ std::filesystem::path findMav0(const std::filesystem::path& data) {
                   data.string()));
 }
 
-std::vector<int> findCameras(const EurocLayout& layout, const EurocOptions& options) {
+/// Why a folder camN gives no images, or nothing where it does or is not there.
+std::string whyNoImages(const std::filesystem::path& camera) {
+  if (!std::filesystem::is_directory(camera)) return {};
+  try {
+    Diagnostics reported_when_read_in_earnest;
+    if (ImageList::hasImages(camera)) {
+      ImageList(camera, &reported_when_read_in_earnest);
+      return {};
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return fmt::format("{}: missing, and there are no images in {}", (camera / "data.csv").string(),
+                     (camera / "data").string());
+}
+
+std::vector<int> findCameras(const EurocOptions& options, EurocLayout* found) {
+  EurocLayout& layout = *found;
   std::vector<int> present;
   for (int i = 0; i < kMostCameras; ++i) {
-    if (std::filesystem::exists(layout.csv(fmt::format("cam{}", i)))) present.push_back(i);
+    const std::filesystem::path camera = layout.sensor(fmt::format("cam{}", i));
+    if (!std::filesystem::is_directory(camera)) continue;
+    std::string problem = whyNoImages(camera);
+    if (problem.empty()) {
+      present.push_back(i);
+    } else {
+      layout.cameras_without_images[i] = std::move(problem);
+    }
   }
   for (const int index : options.camera_indices) {
     if (std::find(present.begin(), present.end(), index) != present.end()) continue;
-    throw InputError(fmt::format("{}: missing, but camera {} was asked for; the recording has cameras [{}]",
-                                 layout.csv(fmt::format("cam{}", index)).string(), index,
-                                 fmt::join(present, ", ")));
+    const auto broken = layout.cameras_without_images.find(index);
+    throw InputError(fmt::format(
+        "{}, but camera {} was asked for; the recording has cameras [{}]",
+        broken != layout.cameras_without_images.end()
+            ? broken->second
+            : layout.csv(fmt::format("cam{}", index)).string() + ": missing",
+        index, fmt::join(present, ", ")));
   }
   if (present.empty() && options.needs_cameras) {
+    if (!layout.cameras_without_images.empty()) {
+      throw InputError(layout.cameras_without_images.begin()->second +
+                       "; a trajectory cannot be estimated without images");
+    }
     throw InputError(
         fmt::format("{}: missing, and so is every other camera; a trajectory cannot be estimated "
                     "without images",
@@ -51,7 +84,7 @@ std::vector<int> findCameras(const EurocLayout& layout, const EurocOptions& opti
 EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options) {
   EurocLayout layout;
   layout.mav0 = findMav0(data);
-  if (options.with_cameras) layout.camera_indices = findCameras(layout, options);
+  if (options.with_cameras) layout.camera_indices = findCameras(options, &layout);
   layout.needs_cameras = options.needs_cameras;
   layout.needs_calibration = options.needs_calibration;
   layout.has_imu = std::filesystem::exists(layout.csv("imu0"));

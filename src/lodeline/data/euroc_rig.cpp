@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_calibration.h"
+#include "lodeline/data/image_list.h"
 #include "lodeline/data/kalibr_calibration.h"
 #include "lodeline/streams/stream_rate.h"
 
@@ -52,6 +55,43 @@ bool isUncalibrated(const EurocLayout& layout, const std::string& name, Diagnost
   return true;
 }
 
+double settleImageRate(const EurocLayout& layout, const std::string& camera, double stated_hz,
+                       Diagnostics* diagnostics) {
+  Diagnostics reported_when_read_in_earnest;
+  ImageList list(layout.sensor(camera), &reported_when_read_in_earnest);
+  if (!list.isMade()) {
+    const std::vector<Time> stamps = requireStamps(
+        layout.csv(camera), 0, kCameraRate, "restore it or leave this camera out (source.cameras)");
+    return settleRate(layout.csv(camera).string(), stamps, stated_hz, diagnostics);
+  }
+  std::vector<Time> stamps;
+  while (stamps.size() < kStampsForRate) {
+    const std::optional<ListedImage> image = list.next();
+    if (!image) break;
+    stamps.push_back(image->time);
+  }
+  return settleRate(list.origin().string(), stamps, stated_hz, diagnostics);
+}
+
+/// Says which cameras have no list of images. Where others have one, something is missing.
+void reportLists(const EurocLayout& layout, Diagnostics* diagnostics) {
+  const auto has_list = [&](int i) { return std::filesystem::exists(layout.csv(fmt::format("cam{}", i))); };
+  const bool is_missing = std::any_of(layout.camera_indices.begin(), layout.camera_indices.end(), has_list);
+  for (const int index : layout.camera_indices) {
+    if (has_list(index)) continue;
+    Diagnostics reported_when_read_in_earnest;
+    const std::string name = fmt::format("cam{}", index);
+    const ImageList list(layout.sensor(name), &reported_when_read_in_earnest);
+    diagnostics->report(is_missing ? Severity::Warning : Severity::Notice, "image_list_made",
+                        fmt::format("{}: missing; the list of images was made from {}", layout.csv(name).string(),
+                                    list.origin().string()));
+  }
+  for (const auto& [index, problem] : layout.cameras_without_images) {
+    diagnostics->report(Severity::Warning, "camera_left_out",
+                        fmt::format("{}; cam{} is left out", problem, index));
+  }
+}
+
 std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const KalibrFiles& kalibr,
                                            const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
   std::vector<CameraCalibration> chain;
@@ -80,10 +120,7 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
       camera = readEurocCamera(yaml, name, diagnostics);
       camera.body_from_camera = body_from_euroc_body * camera.body_from_camera;
     }
-    const std::filesystem::path csv = layout.csv(name);
-    const std::vector<Time> stamps =
-        requireStamps(csv, 0, kCameraRate, "restore it or leave this camera out (source.cameras)");
-    camera.rate_hz = settleRate(csv.string(), stamps, camera.rate_hz, diagnostics);
+    camera.rate_hz = settleImageRate(layout, name, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));
   }
@@ -156,6 +193,7 @@ Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics) {
       std::filesystem::absolute(layout.mav0).lexically_normal().parent_path();
   const KalibrFiles kalibr = findKalibrFiles({beside, layout.mav0});
   reportKalibr(layout, kalibr, diagnostics);
+  reportLists(layout, diagnostics);
 
   const EurocImu imu = readImu(layout, kalibr, diagnostics);
   const Rigid3 body_from_euroc_body = imu.euroc_body_from_imu.inverse();

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
@@ -28,6 +30,8 @@ struct EurocOptions {
 struct EurocLayout {
   std::filesystem::path mav0;
   std::vector<int> camera_indices;  ///< N of the camN used, in the order of Rig::cameras
+  /// Cameras that have a folder but no images that can be used, and why.
+  std::map<int, std::string> cameras_without_images = {};
   bool has_imu = false;
   bool needs_cameras = true, needs_calibration = true;  ///< as in EurocOptions
 
@@ -40,7 +44,7 @@ struct EurocLayout {
 /// or, with neither needed, no camera, IMU or magnetometer.
 EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options);
 
-/// Reads the calibration of every sensor that has a `data.csv`: Kalibr's files beside or in mav0 before the
+/// Reads the calibration of every sensor that has a `data.csv` (a camera: images that can be listed): Kalibr's files beside or in mav0 before the
 /// sensor.yaml files, which is reported as a notice. The body frame of the result is the IMU frame, also
 /// where EuRoC's body is another. Rates that no file states, or that contradict the stamps, are measured.
 /// Optional sensors whose CSV has no usable row are left out with a warning. Rig::imu keeps its defaults

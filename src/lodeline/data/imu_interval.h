@@ -52,6 +52,10 @@ class ImuIntervals {
   /// The last reading read so far.
   std::optional<Time> last() const { return last_; }
 
+  /// The readings from the last cut to `time`, both ends interpolated, which stay for the next cut; nothing
+  /// where they do not reach so far.
+  std::vector<ImuSample> ahead(Time time);
+
   /// Readings held at present.
   size_t size() const { return buffer_.size(); }
 
