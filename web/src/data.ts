@@ -20,6 +20,7 @@ export interface Summary {
   data?: string;
   rig?: { cameras?: string[]; camera_rate_hz?: number; imu_rate_hz?: number; camera_axis_B?: number[] };
   interrupted?: boolean;
+  first_frame_ns?: string; // findings count their times from it
   frames?: number;
   frames_with_pose?: number;
   completion?: number;
@@ -83,6 +84,7 @@ export interface Magnetometer {
 export interface Run {
   name: string;
   origin_ns: string;
+  is_refined?: boolean; // states, landmarks and evaluation are of the batch solution
   summary: Summary;
   config: string;
   states: Table;

@@ -8,7 +8,7 @@
 #include "lodeline/bags/checked_reading.h"
 #include "lodeline/bags/image_messages.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -64,6 +64,30 @@ TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
   return wish;
 }
 
+constexpr const char* kStampAdvice =
+    "use a driver that fills the header's stamp, or give --received-times, which takes the times at which "
+    "the "
+    "messages were recorded: milliseconds late and uneven, so that one camera may not start and poses are "
+    "worse";
+
+/// Header stamps that pass much faster or slower than the time does in which the messages were recorded.
+void refuseOtherClock(const std::string& name, const std::vector<Time>& stamps,
+                      const std::vector<Time>& received) {
+  constexpr double kOtherUnit = 100.0;
+  const auto rate_hz = [](const std::vector<Time>& times) {
+    std::vector<double> since_first_s;
+    for (const Time time : times) since_first_s.push_back((time - times.front()).seconds());
+    return stampsPerUnit(since_first_s);
+  };
+  const double by_stamps_hz = rate_hz(stamps), by_recording_hz = rate_hz(received);
+  if (!(by_stamps_hz > 0.0) || !(by_recording_hz > 0.0)) return;
+  if (by_stamps_hz < kOtherUnit * by_recording_hz && by_recording_hz < kOtherUnit * by_stamps_hz) return;
+  throw InputError(
+      fmt::format("{}: by their header stamps the messages come at {:.4g} Hz, by the times of their "
+                  "recording at {:.4g} Hz: the stamps count another unit; {}",
+                  name, by_stamps_hz, by_recording_hz, kStampAdvice));
+}
+
 }  // namespace
 
 std::filesystem::path rigFileBeside(const std::filesystem::path& bag) {
@@ -75,7 +99,8 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
     : RecordedSource(Rig()),
       bag_(bag, diagnostics),
       diagnostics_(diagnostics),
-      rig_file_(readRig(bag, options, diagnostics)) {
+      rig_file_(readRig(bag, options, diagnostics)),
+      use_received_times_(options.use_received_times) {
   if (!options.needs_calibration) addUncalibrated(bag_, &rig_file_);
   if (!rig_file_.has_imu) {
     throw InputError(
@@ -131,20 +156,31 @@ void BagSource::settleCameras(const BagOptions& options) {
 
 BagSource::Cursor BagSource::cursorOf(const std::string& sensor) const { return {choice_.of(sensor), 0}; }
 
+std::vector<Time> BagSource::firstStamps(Cursor cursor, const std::string& name) {
+  std::vector<Time> stamps, received;
+  wire::Bytes before;
+  while (stamps.size() < kStampsForRate) {
+    std::optional<wire::Bytes> message = nextMessage(&cursor);
+    if (!message) break;
+    // Messages that were recorded twice say nothing of the rate.
+    if (*message == before) continue;
+    std::string reported_when_read_in_earnest;
+    const auto stamp = messages::checkedReading(*message, messages::stampOf, &reported_when_read_in_earnest);
+    if (!stamp) continue;
+    stamps.push_back(*stamp);
+    received.push_back(cursor.topic->entries[cursor.next - 1].received);
+    before = std::move(*message);
+  }
+  if (use_received_times_) return received;
+  refuseOtherClock(name, stamps, received);
+  return stamps;
+}
+
 void BagSource::settleRates() {
-  const auto settle = [&](Cursor cursor, double fallback_hz, double* rate_hz) {
+  const auto settle = [&](const Cursor& cursor, double fallback_hz, double* rate_hz) {
     if (cursor.topic == nullptr) return;
-    std::vector<Time> stamps;
-    while (stamps.size() < kStampsForRate) {
-      const std::optional<wire::Bytes> message = nextMessage(&cursor);
-      if (!message) break;
-      std::string reported_when_read_in_earnest;
-      const auto stamp =
-          messages::checkedReading(*message, messages::stampOf, &reported_when_read_in_earnest);
-      if (stamp) stamps.push_back(*stamp);
-    }
     const std::string name = fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic);
-    *rate_hz = settleRate(name, stamps, *rate_hz, diagnostics_);
+    *rate_hz = settleRate(name, firstStamps(cursor, name), *rate_hz, diagnostics_, kStampAdvice);
     if (!(*rate_hz > 0.0)) *rate_hz = fallback_hz;
   };
   settle(imu_, ImuCalibration().rate_hz, &rig_.imu.rate_hz);
@@ -167,6 +203,11 @@ std::optional<wire::Bytes> BagSource::nextMessage(Cursor* cursor) {
   return std::nullopt;
 }
 
+template <typename Reading>
+void BagSource::restamp(const Cursor& cursor, Reading* reading) const {
+  if (use_received_times_) reading->time = cursor.topic->entries[cursor.next - 1].received;
+}
+
 template <typename Parse>
 auto BagSource::nextReading(Cursor* cursor, const Parse& parse)
     -> std::optional<decltype(parse(std::span<const uint8_t>()))> {
@@ -185,10 +226,15 @@ void BagSource::reportMessage(const Cursor& cursor, const std::string& problem) 
                                    cursor.topic->entries[cursor.next - 1].received.nanoseconds(), problem));
 }
 
+std::optional<ImuSample> BagSource::nextOf(Cursor* imu) {
+  std::optional<ImuSample> sample = nextReading(imu, messages::parseImu);
+  if (sample) restamp(*imu, &*sample);
+  return sample;
+}
+
 std::optional<ImuSample> BagSource::nextRecordedImu() {
-  if (accelerometer_.topic == nullptr) return nextReading(&imu_, messages::parseImu);
-  return halves_.next([this] { return nextReading(&imu_, messages::parseImu); },
-                      [this] { return nextReading(&accelerometer_, messages::parseImu); });
+  if (accelerometer_.topic == nullptr) return nextOf(&imu_);
+  return halves_.next([this] { return nextOf(&imu_); }, [this] { return nextOf(&accelerometer_); });
 }
 
 std::optional<PendingImage> BagSource::nextImage(size_t camera) {
@@ -202,18 +248,24 @@ std::optional<PendingImage> BagSource::nextImage(size_t camera) {
   const messages::ImageForm form = cursor.topic->connection.type == messages::kCompressedImage.name
                                        ? messages::ImageForm::Compressed
                                        : messages::ImageForm::Raw;
-  return messages::pendingImage(form, std::move(*bytes),
-                                fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic));
+  PendingImage image = messages::pendingImage(
+      form, std::move(*bytes), fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic));
+  restamp(cursor, &image);
+  return image;
 }
 
 std::optional<MagnetometerSample> BagSource::nextMagnetometer() {
-  return nextReading(&magnetometer_, messages::parseMagneticField);
+  std::optional<MagnetometerSample> sample = nextReading(&magnetometer_, messages::parseMagneticField);
+  if (sample) restamp(magnetometer_, &*sample);
+  return sample;
 }
 
 std::optional<DepthSample> BagSource::nextDepth() {
-  return nextReading(&pressure_, [this](std::span<const uint8_t> message) {
+  std::optional<DepthSample> sample = nextReading(&pressure_, [this](std::span<const uint8_t> message) {
     return messages::parseFluidPressure(message, rig_file_.water);
   });
+  if (sample) restamp(pressure_, &*sample);
+  return sample;
 }
 
 std::optional<SonarSample> BagSource::nextSonar() {
@@ -223,6 +275,11 @@ std::optional<SonarSample> BagSource::nextSonar() {
     const auto echoes = nextReading(&sonar_, is_scan ? messages::parseLaserScan : messages::parseRange);
     if (!echoes) return std::nullopt;
     echoes_.assign(echoes->begin(), echoes->end());
+    for (SonarSample& echo : echoes_) {
+      const Duration since_first = echo.time - echoes->front().time;
+      restamp(sonar_, &echo);
+      echo.time = echo.time + since_first;
+    }
   }
   const SonarSample echo = echoes_.front();
   echoes_.pop_front();

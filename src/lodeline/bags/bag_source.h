@@ -27,6 +27,9 @@ struct BagOptions {
   bool with_cameras = true;
   /// False for what needs readings only, as converting: sensors without a calibration get the default one.
   bool needs_calibration = true;
+  /// Stamps readings with the times at which they were recorded, not with those of their headers: for drivers
+  /// that write none. Transport and its jitter are in these times.
+  bool use_received_times = false;
 };
 
 /// A ROS 1 bag as a recording, streamed: one message of each topic at a time.
@@ -59,6 +62,11 @@ class BagSource : public RecordedSource {
   Cursor cursorOf(const std::string& sensor) const;
   std::optional<wire::Bytes> nextMessage(Cursor* cursor);
   void reportMessage(const Cursor& cursor, const std::string& problem);
+  std::vector<Time> firstStamps(Cursor cursor, const std::string& name);
+  /// Gives a reading of the message that was read last its time.
+  template <typename Reading>
+  void restamp(const Cursor& cursor, Reading* reading) const;
+  std::optional<ImuSample> nextOf(Cursor* imu);
   template <typename Parse>
   auto nextReading(Cursor* cursor, const Parse& parse)
       -> std::optional<decltype(parse(std::span<const uint8_t>()))>;
@@ -66,6 +74,7 @@ class BagSource : public RecordedSource {
   BagFile bag_;
   Diagnostics* diagnostics_;
   RigFile rig_file_;
+  bool use_received_times_;
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
   Cursor imu_, accelerometer_, magnetometer_, pressure_, sonar_;

@@ -11,9 +11,10 @@
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/folder_calibration.h"
-#include "lodeline/data/ordered_stream.h"
 #include "lodeline/data/plain_csv.h"
 #include "lodeline/evaluation/text_table.h"
+#include "lodeline/streams/inertial_screen.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {
@@ -33,7 +34,7 @@ void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* 
         Severity::Notice, "imu_noise_assumed",
         (layout.sensor("imu0") / "sensor.yaml").string() + ": missing; the noise of a usual IMU is assumed");
   }
-  CsvReader csv(layout.csv("imu0"), 6, diagnostics);
+  CsvReader csv(layout.csv("imu0"), 6, diagnostics, kInertialRate);
   for (CsvRow row; csv.next(&row);) {
     if (!record->imu.empty() && row.time <= record->imu.back().time) {
       diagnostics->report(Severity::Warning, "imu_order",
@@ -74,7 +75,7 @@ Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) 
   if (rig.rig.magnetometer) {
     reading.record.body_from_magnetometer = rig.rig.magnetometer->body_from_magnetometer.rotation;
   }
-  CsvReader rows(csv, 3, diagnostics);
+  CsvReader rows(csv, 3, diagnostics, kMagnetometerRate);
   for (CsvRow row; rows.next(&row);) {
     reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
   }
@@ -233,8 +234,10 @@ Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostic
   if (is_mounting_known && source.rig().magnetometer) {
     reading.record.body_from_magnetometer = source.rig().magnetometer->body_from_magnetometer.rotation;
   }
+  StreamExpectation expected{"imu", "IMU", 0.0, 0.0, Duration()};
+  expected.spreads_bursts = true;
   OrderedStream<ImuSample> imu(
-      {"imu", "IMU", 0.0, 0.0, Duration()}, [&] { return source.nextImu(); }, diagnostics);
+      expected, [&] { return source.nextImu(); }, diagnostics);
   while (imu.peek() != nullptr) reading.record.imu.push_back(imu.pop());
   while (const std::optional<MagnetometerSample> sample = source.nextMagnetometer()) {
     reading.record.magnetometer.push_back(*sample);
@@ -248,6 +251,7 @@ MagnetometerRecord settled(Reading reading, const std::string& name, const Recor
     throw InputError(name + ": holds no magnetometer reading that can be used");
   }
   cut(options, &reading.record);
+  reading.record.imu = screened(reading.record.imu, {}, diagnostics);
   settleUnit(name, options, reading.unit, &reading.record, diagnostics);
   return std::move(reading.record);
 }

@@ -7,14 +7,16 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/open_recording.h"
-#include "lodeline/data/ordered_stream.h"
+#include "lodeline/data/inertial_stream.h"
 #include "lodeline/data/plain_source.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/attitude_writer.h"
 #include "lodeline/report/findings.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {
@@ -74,14 +76,17 @@ std::string northOf(const AttitudeArguments& arguments, bool has_magnetometer) {
 }
 
 StreamExpectation expectation(const std::string& name, double rate_hz, double offset_s) {
-  return {name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
+  StreamExpectation expected{name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
+  expected.spreads_bursts = true;
+  return expected;
 }
 
 void filterAll(MeasurementSource& source, double rate_hz, AttitudeFilter* filter, AttitudeWriter* writer,
                Diagnostics* diagnostics) {
   const std::optional<MagnetometerCalibration>& magnetometer = source.rig().magnetometer;
-  OrderedStream<ImuSample> imu(
-      expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics);
+  InertialScreen imu = inertialStream(
+      {expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics}, {},
+      diagnostics);
   OrderedStream<MagnetometerSample> field(
       expectation("magnetometer", magnetometer ? magnetometer->rate_hz : 1.0,
                   magnetometer ? magnetometer->time_offset_to_imu_s : 0.0),
@@ -119,7 +124,7 @@ void attitude(const AttitudeArguments& arguments) {
   const std::string north = northOf(arguments, magnetometer.has_value());
   nlohmann::ordered_json json = writer.json(north);
   json["findings"] = findingsJson(diagnostics);
-  writeOutput(folder / "attitude.json", json.dump(2) + "\n");
+  writeOutput(folder / "attitude.json", jsonText(json) + "\n");
   fmt::print("{}{}", writer.text(north), findingsText(diagnostics));
   if (writer.count() == 0) throw EstimationError(arguments.data + ": no IMU reading could be used");
 }

@@ -9,6 +9,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/file_kind.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/calibration/calibration_plots.h"
@@ -140,7 +141,7 @@ void calibrate(const CalibrateArguments& arguments) {
     text += comparisonText(*first, fit, dip_rad);
   }
   json["findings"] = findingsJson(diagnostics);
-  if (!arguments.json.empty()) writeOutput(arguments.json, json.dump(2) + "\n");
+  if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(json) + "\n");
   fmt::print("{}{}", text, findingsText(diagnostics));
 }
 

@@ -5,15 +5,14 @@
 #include <CLI/CLI.hpp>
 
 #include "lodeline/base/error.h"
-#include "lodeline/base/output_file.h"
 #include "lodeline/export/depth_alignment.h"
 #include "lodeline/export/map_times.h"
 
 namespace lodeline {
 namespace {
 
-std::string comparisonCsv(const std::vector<DepthComparison>& pairs, const std::string& note) {
-  std::string text = "# " + note + "\ntime [s],run_depth [m],profile_depth [m],profile_less_run [m]\n";
+std::string comparisonCsv(const std::vector<DepthComparison>& pairs) {
+  std::string text = "time [s],run_depth [m],profile_depth [m],profile_less_run [m]\n";
   for (const DepthComparison& pair : pairs) {
     text += fmt::format("{},{:.3f},{:.3f},{:.3f}\n", secondsText(pair.time), pair.run_depth_m,
                         pair.profile_depth_m, pair.profile_depth_m - pair.run_depth_m);
@@ -44,9 +43,8 @@ void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
       ->needs(file);
 }
 
-void applyDepthProfile(const DepthProfileArguments& arguments, const std::filesystem::path& folder,
-                       bool start_depth_is_stated, RunFolder* run, DiveMapOptions* map,
-                       Diagnostics* diagnostics) {
+std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder* run, DiveMapOptions* map,
+                              Diagnostics* diagnostics) {
   const DepthProfile profile = readDepthProfile(arguments.file, diagnostics);
   const DepthAlignment alignment = alignDepths(profile, run->trajectory, arguments.lag_s);
   if (!alignment.doubt.empty()) {
@@ -57,8 +55,7 @@ void applyDepthProfile(const DepthProfileArguments& arguments, const std::filesy
     diagnostics->report(Severity::Warning, "profile_lag", doubt + "; --profile-lag SECONDS states it");
   }
   map->notes.push_back(describeAlignment(profile, alignment));
-  writeOutput(folder / "depth_profile.csv",
-              comparisonCsv(compareDepths(profile, run->trajectory, alignment), map->notes.back()));
+  const std::string comparison = comparisonCsv(compareDepths(profile, run->trajectory, alignment));
   double start_depth_m = alignment.start_depth_m;
   if (arguments.correct) {
     start_depth_m = correctDepths(profile, alignment, run);
@@ -66,7 +63,10 @@ void applyDepthProfile(const DepthProfileArguments& arguments, const std::filesy
   } else {
     map->notes.push_back("vertical: the run's own; the depth profile was only compared");
   }
-  if (!start_depth_is_stated) map->start_depth_m = start_depth_m;
+  if (map->start_depth_m || !alignment.doubt.empty()) return comparison;
+  map->start_depth_m = start_depth_m;
+  map->start_depth_source = "by the depth profile";
+  return comparison;
 }
 
 }  // namespace lodeline

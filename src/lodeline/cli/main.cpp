@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/printable_text.h"
 #include "lodeline/cli/allan_command.h"
+#include "lodeline/cli/arguments.h"
 #include "lodeline/cli/attitude_command.h"
 #include "lodeline/cli/calibrate_command.h"
 #include "lodeline/cli/calibration_file_commands.h"
@@ -32,7 +34,7 @@ namespace {
 enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3, kInterrupted = 130 };
 
 int fail(const char* kind, const std::exception& error, ExitCode code) {
-  fmt::print(stderr, "{}: {}\n", kind, error.what());
+  fmt::print(stderr, "{}: {}\n", kind, lodeline::printableText(error.what()));
   return code;
 }
 
@@ -68,7 +70,9 @@ int main(int argc, char** argv) {
   lodeline::addRigTemplateCommand(program);
   lodeline::addInspectCommand(program);
   try {
-    std::vector<std::string> arguments = lodeline::completeLiveOption({argv + 1, argv + argc});
+    std::vector<std::string> arguments =
+        lodeline::withJoinedPlaces(lodeline::completeLiveOption({argv + 1, argv + argc}));
+    lodeline::refuseUnknownWords(program, arguments);
     std::reverse(arguments.begin(), arguments.end());  // which is how CLI11 takes them
     program.parse(std::move(arguments));
     return kGood;

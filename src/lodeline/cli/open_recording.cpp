@@ -17,6 +17,7 @@ BagOptions bagOptions(const BagArguments& arguments) {
   BagOptions options;
   options.rig_files.assign(arguments.rig_files.begin(), arguments.rig_files.end());
   options.topics = topicsOf(arguments);
+  options.use_received_times = arguments.use_received_times;
   return options;
 }
 
@@ -35,6 +36,10 @@ void addBagOptions(BagArguments* arguments, CLI::App* command) {
           "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
           "is not named; imu0=/gyro,/accel unites two halves")
       ->type_name("SENSOR=TOPIC");
+  command->add_flag(
+      "--received-times", arguments->use_received_times,
+      "for a bag whose header stamps are not filled: stamp messages with the times at which they "
+      "were recorded, which are late and uneven");
 }
 
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
@@ -69,14 +74,15 @@ bool isTableOfReadings(const std::filesystem::path& data) {
 
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
   if (isBag(data)) return;
-  if (!bag_arguments.topics.empty() && std::filesystem::exists(data)) {
-    throw UsageError(
-        fmt::format("--topic is for ROS bags; {} is {}", data.string(), recogniseFile(data).what));
+  const bool is_for_bags = !bag_arguments.topics.empty() || bag_arguments.use_received_times;
+  if (is_for_bags && std::filesystem::exists(data)) {
+    throw UsageError(fmt::format("--topic and --received-times are for ROS bags; {} is {}", data.string(),
+                                 recogniseFile(data).what));
   }
   if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
     const RecognisedFile recognised = recogniseFile(data);
-    if (recognised.kind != FileKind::Table && recognised.kind != FileKind::Text)
-      return;  // refused by its kind
+    const bool is_table = recognised.kind == FileKind::Table || recognised.kind == FileKind::Text;
+    if (!is_table) return;  // refused by its kind
     throw UsageError(
         fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognised.what));
   }

@@ -21,9 +21,10 @@ namespace lodeline {
 struct BagArguments {
   std::vector<std::string> rig_files;
   std::vector<std::string> topics;  ///< SENSOR=TOPIC
+  bool use_received_times = false;
 };
 
-/// Adds --rig and --topic to a command.
+/// Adds --rig, --topic and --received-times to a command.
 void addBagOptions(BagArguments* arguments, CLI::App* command);
 
 /// Topics by sensor. Throws UsageError where one is not of the form SENSOR=TOPIC.

@@ -12,7 +12,8 @@ constexpr const char* kLandmarks = "landmarks_refined.ply";
 }  // namespace
 
 RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& record,
-                            const std::filesystem::path& folder, Diagnostics* diagnostics) {
+                            const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
+                            Diagnostics* diagnostics) {
   const Refinement refinement = refine(estimator.rig(), estimator.options(), record);
   const RefinementSummary& summary = refinement.summary;
   if (!summary.usable()) {
@@ -25,7 +26,14 @@ RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& rec
                         "refinement: its last round ended before the cost had settled");
   }
   StateWriter states(folder, kSuffix);
-  for (const FrameEstimate& frame : refinement.frames) states.write(frame);
+  std::optional<Time> last;
+  for (FrameEstimate frame : refinement.frames) {
+    if (const auto stamp = result_stamps.find(frame.time); stamp != result_stamps.end())
+      frame.time = stamp->second;
+    if (last && frame.time <= *last) continue;
+    states.write(frame);
+    last = frame.time;
+  }
   LandmarkWriter landmarks(folder, kLandmarks);
   landmarks.write(refinement.landmarks);
   landmarks.finish();

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "lodeline/base/output_file.h"
+#include "lodeline/base/time_steps.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/process_usage.h"
 #include "lodeline/cli/refine_run.h"
@@ -10,8 +11,11 @@
 namespace lodeline {
 namespace {
 
-/// The source with the magnetometer's calibration in it, for all who are made from it.
-RecordedSource* calibrated(const std::string& file, RecordedSource* source) {
+/// The source with the magnetometer's calibration and plausible noise densities in it, for all who are made
+/// from it.
+RecordedSource* calibrated(const RunSettings& options, RecordedSource* source, Diagnostics* diagnostics) {
+  source->setImuNoise(plausibleNoise(source->rig().imu.noise, options.shown_noise, diagnostics));
+  const std::string& file = options.magnetometer_calibration;
   if (file.empty()) return source;
   Rig rig = source->rig();
   applyCalibration(readCalibrationFile(file), file, &rig);
@@ -55,10 +59,12 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
                        RecordedSource* source, Diagnostics* diagnostics)
     : folder_(request.output),
       diagnostics_(diagnostics),
-      synchronizer_(calibrated(options.magnetometer_calibration, source), options.synchronizer, diagnostics),
+      synchronizer_(calibrated(options, source, diagnostics), options.synchronizer, diagnostics),
       odometry_(source->rig(), options.odometry, diagnostics),
       attitude_(source->rig(), attitudeOptions(options), &unheard_),
-      summary_(describe(request, options, source->rig())) {
+      summary_(describe(request, options, source->rig())),
+      clocks_(source->rig()),
+      image_offset_(Duration::fromSeconds(source->rig().cameras.front().time_offset_to_imu_s)) {
   if (!folder_.empty()) {
     createOutputFolder(folder_);
     lock_.emplace(folder_);
@@ -79,14 +85,31 @@ bool RunSession::fetch() {
 void RunSession::process() {
   processed_ = std::move(*fetched_);
   fetched_.reset();
-  const FrameEstimate estimate = odometry_.add(processed_);
+  FrameEstimate estimate = odometry_.add(processed_);
+  clocks_.add(odometry_.tracks(), processed_.imu, diagnostics_);
   if (record_) record_->add(odometry_.tracks(), processed_.imu, estimate, odometry_.estimator());
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
-  landmarks_ = output_ ? output_->write(processed_, estimate, attitude, &odometry_)
+  const bool has_stamp = stamp(&estimate);
+  landmarks_ = output_ ? output_->write(processed_, has_stamp ? &estimate : nullptr, attitude, &odometry_)
                        : odometry_.estimator().takeMapPoints();
   summary_.add(estimate);
   for (const cv::Mat& image : processed_.images) summary_.images += image.empty() ? 0 : 1;
   summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+/// Gives an estimate the stamp of its image as recorded, whatever was done about jumps of the clocks; where
+/// that goes back by more than a pause, the clock before goes on. False where the stamp has occurred before.
+bool RunSession::stamp(FrameEstimate* estimate) {
+  constexpr double kLongestPause_s = 10.0;
+  const Time recorded = processed_.image_stamp + image_offset_;
+  const bool goes_on = !last_result_stamp_ || span(*last_result_stamp_, recorded).seconds() < kLongestPause_s;
+  if (goes_on && recorded != estimate->time) {
+    result_stamps_[estimate->time] = recorded;
+    estimate->time = recorded;
+  }
+  if (last_result_stamp_ && estimate->time <= *last_result_stamp_) return false;
+  last_result_stamp_ = estimate->time;
+  return true;
 }
 
 RunSummary RunSession::finish() {
@@ -94,13 +117,14 @@ RunSummary RunSession::finish() {
   if (output_) summary_.pictures_s = output_->picturesSeconds();
   output_.reset();  // closes what is read next
   summary_.interrupted = fetched_.has_value();
+  if (!summary_.interrupted) summary_.recorded_images = synchronizer_.recordedImages();
   summary_.front_end_s = odometry_.times().front_end_s;
   summary_.estimator_s = odometry_.times().estimator_s;
   ProcessUsage usage = ProcessUsage::now();
   summary_.process_s = usage.processor_s - start_processor_s_;
   if (record_) {
     record_->finish(odometry_.estimator());
-    summary_.refinement = refineRun(odometry_.estimator(), *record_, folder_, diagnostics_);
+    summary_.refinement = refineRun(odometry_.estimator(), *record_, folder_, result_stamps_, diagnostics_);
     usage = ProcessUsage::now();
   }
   summary_.peak_memory_MB = usage.peak_memory_MB;

@@ -5,7 +5,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/folder_calibration.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -15,13 +15,16 @@ struct StreamStart {
   std::string why_empty;  ///< where there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, int number_count) {
+StreamStart readStart(const std::filesystem::path& csv, int number_count, PlausibleRate rate) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, number_count, &reported_when_read_in_earnest);
+  CsvReader reader(csv, number_count, &reported_when_read_in_earnest, rate);
   StreamStart start;
-  CsvRow row;
+  CsvRow row, before;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
-    start.stamps.push_back(row.time);
+    // Rows that are written twice say nothing of the rate.
+    const bool is_repeat = !start.stamps.empty() && row.time == before.time && row.numbers == before.numbers;
+    if (!is_repeat) start.stamps.push_back(row.time);
+    before = row;
   }
   if (!start.stamps.empty()) return start;
   start.why_empty = fmt::format("{}: holds no usable row", csv.string());
@@ -31,8 +34,9 @@ StreamStart readStart(const std::filesystem::path& csv, int number_count) {
 }
 
 /// For sensors that cannot be done without.
-std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, const char* advice) {
-  StreamStart start = readStart(csv, number_count);
+std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, PlausibleRate rate,
+                                const char* advice) {
+  StreamStart start = readStart(csv, number_count, rate);
   if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
   return std::move(start.stamps);
 }
@@ -56,7 +60,7 @@ std::vector<CameraCalibration> settledCameras(const EurocLayout& layout, const R
     }
     const std::filesystem::path csv = layout.csv(camera.name);
     const std::vector<Time> stamps =
-        requireStamps(csv, 0, "restore it or leave this camera out (source.cameras)");
+        requireStamps(csv, 0, kCameraRate, "restore it or leave this camera out (source.cameras)");
     settle(csv, stamps, CameraCalibration().rate_hz, &camera.rate_hz, diagnostics);
     cameras.push_back(std::move(camera));
   }
@@ -70,7 +74,8 @@ std::optional<Calibration> settledOptional(const EurocLayout& layout, const char
                                            Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
-  const StreamStart start = readStart(csv, number_count);
+  const PlausibleRate rate = std::string_view(name) == "pressure0" ? kDepthRate : kMagnetometerRate;
+  const StreamStart start = readStart(csv, number_count, rate);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
@@ -94,7 +99,8 @@ ImuCalibration settledImu(const EurocLayout& layout, const RigFile& described, D
   imu.rate_hz = 0.0;
   if (described.has_imu) imu = described.rig.imu;
   const std::filesystem::path csv = layout.csv("imu0");
-  const std::vector<Time> stamps = requireStamps(csv, 6, "the estimator cannot work without inertial data");
+  const std::vector<Time> stamps =
+      requireStamps(csv, 6, kInertialRate, "the estimator cannot work without inertial data");
   settle(csv, stamps, ImuCalibration().rate_hz, &imu.rate_hz, diagnostics);
   return imu;
 }

@@ -28,18 +28,18 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
     : RecordedSource(settleEurocRig(layout, described, diagnostics), described.imu_correction),
       layout_(std::move(layout)),
       diagnostics_(diagnostics) {
-  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics);
+  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics, kInertialRate);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
     if (layout_.needs_cameras && !std::filesystem::is_directory(images)) {
       throw InputError(
           fmt::format("{}: folder of images missing; unpack the recording completely", images.string()));
     }
-    cameras_.emplace_back(layout_.csv(camera.name), 0, diagnostics);
+    cameras_.emplace_back(layout_.csv(camera.name), 0, diagnostics, kCameraRate);
   }
-  if (rig_.magnetometer) magnetometer_.emplace(layout_.csv("mag0"), 3, diagnostics);
-  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), 1, diagnostics);
-  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), 2, diagnostics);
+  if (rig_.magnetometer) magnetometer_.emplace(layout_.csv("mag0"), 3, diagnostics, kMagnetometerRate);
+  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), 1, diagnostics, kDepthRate);
+  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), 2, diagnostics, kMagnetometerRate);
 }
 
 std::optional<ImuSample> EurocSource::nextRecordedImu() {
@@ -49,7 +49,8 @@ std::optional<ImuSample> EurocSource::nextRecordedImu() {
 
 std::optional<PendingImage> EurocSource::nextImage(size_t camera) {
   if (!cameras_[camera].next(&row_)) return std::nullopt;
-  const std::string name = row_.text.empty() ? fmt::format("{}.png", row_.time.nanoseconds()) : row_.text;
+  const std::string name =
+      row_.text.empty() ? fmt::format("{}.png", cameras_[camera].stampText()) : row_.text;
   const std::filesystem::path file = layout_.sensor(rig_.cameras[camera].name) / "data" / name;
   return PendingImage{row_.time, file.string(), [file] { return loadGreyImage(file); },
                       [file] { return loadStoredImage(file); }};

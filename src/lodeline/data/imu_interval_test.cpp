@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
+#include "lodeline/streams/ordered_stream.h"
+
 namespace lodeline {
 namespace {
 
@@ -16,7 +20,13 @@ ImuIntervals intervalsOf(std::vector<int64_t> stamps_ms, double history_s, Diagn
     const Time time = ms(stamps_ms[next++]);
     return ImuSample{time, Vec3(time.seconds(), 0.0, 0.0), Vec3(0.0, 0.0, -time.seconds())};
   };
-  return ImuIntervals({expected, std::move(pull), diagnostics}, history_s);
+  const auto stream = std::make_shared<OrderedStream<ImuSample>>(expected, std::move(pull), diagnostics);
+  return ImuIntervals(
+      [stream]() -> std::optional<ImuSample> {
+        if (stream->peek() == nullptr) return std::nullopt;
+        return stream->pop();
+      },
+      history_s);
 }
 
 using Coverage = ImuIntervals::Coverage;

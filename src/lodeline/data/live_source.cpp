@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {

@@ -53,6 +53,7 @@ class LiveSource : public RecordedSource {
   /// Images of the first camera that wait.
   size_t backlog() const;
 
+  bool isLive() const override { return true; }
   std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;

@@ -36,7 +36,11 @@ struct PendingImage {
   std::function<LoadedImage()> load;
   /// The same image as it is stored; sources that no recording stands behind have none.
   std::function<StoredImage()> stored = {};
+  Time recorded = {};  ///< the stamp as it was stored, whatever is done to `time`; set by the synchroniser
 };
+
+/// The same for images that are stored under the same name.
+inline uint64_t contentKey(const PendingImage& image) { return std::hash<std::string>()(image.name); }
 
 /// A recording (or a live or simulated rig) as one stream per sensor, each pulled one reading at a time in
 /// the order in which it was stored; nothing at a stream's end. Streams of sensors that the rig does not have
@@ -47,6 +51,9 @@ class MeasurementSource {
 
   /// The sensors, with the cameras in the order in which nextImage() counts them.
   virtual const Rig& rig() const = 0;
+
+  /// Whether readings come as they are measured, so that to read ahead is to wait.
+  virtual bool isLive() const { return false; }
 
   virtual std::optional<ImuSample> nextImu() = 0;
   virtual std::optional<PendingImage> nextImage(size_t camera) = 0;
@@ -69,6 +76,8 @@ class RecordedSource : public MeasurementSource {
   virtual std::optional<ImuSample> nextRecordedImu() = 0;
   /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
   void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
+  /// The same of the IMU's noise.
+  void setImuNoise(const ImuNoise& noise) { rig_.imu.noise = noise; }
 
  protected:
   explicit RecordedSource(Rig rig, std::optional<ImuCorrection> imu_correction = std::nullopt)

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "lodeline/base/error.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/base/error.h"
+#include "lodeline/data/inertial_stream.h"
 
 namespace lodeline {
 namespace {
@@ -32,9 +33,7 @@ Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions&
     : source_(source),
       options_(options),
       diagnostics_(diagnostics),
-      imu_({expectation("imu", "IMU", source->rig().imu.rate_hz), [source] { return source->nextImu(); },
-            diagnostics},
-           options.history_s),
+      imu_(inertialReadings(), options.history_s),
       magnetometer_(
           magnetometerExpectation(), [source] { return source->nextMagnetometer(); }, diagnostics),
       depth_(
@@ -45,14 +44,25 @@ Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions&
           [source] { return source->nextSonar(); }, diagnostics) {
   const std::vector<CameraCalibration>& cameras = source->rig().cameras;
   if (cameras.empty()) throw InputError("the recording has no camera; at least one is needed");
-  for (size_t i = 0; i < cameras.size(); ++i) {
-    StreamExpectation expected = expectation("image", cameras[i].name, cameras[i].rate_hz);
-    expected.offset_to_imu_clock = Duration::fromSeconds(cameras[i].time_offset_to_imu_s);
-    // A gap of another camera shows, packet by packet, as a missing partner.
-    expected.max_gap_s = i == 0 ? options.max_image_gap_periods / cameras[i].rate_hz : 0.0;
-    cameras_.emplace_back(
-        std::move(expected), [source, i] { return source->nextImage(i); }, diagnostics);
-  }
+  for (size_t i = 0; i < cameras.size(); ++i) cameras_.push_back(imageStream(i));
+}
+
+OrderedStream<PendingImage> Synchronizer::imageStream(size_t camera) {
+  constexpr size_t kImagesAhead = 8;
+  const CameraCalibration& calibration = source_->rig().cameras[camera];
+  StreamExpectation expected = expectation("image", calibration.name, calibration.rate_hz);
+  const double found_s = camera < options_.image_offset_s.size() ? options_.image_offset_s[camera] : 0.0;
+  expected.offset_to_imu_clock = Duration::fromSeconds(calibration.time_offset_to_imu_s + found_s);
+  expected.spreads_bursts = false;
+  expected.look_ahead = std::min(expected.look_ahead, kImagesAhead);
+  // A gap of another camera shows, packet by packet, as a missing partner.
+  expected.max_gap_s = camera == 0 ? options_.max_image_gap_periods / calibration.rate_hz : 0.0;
+  const auto pull = [this, camera] {
+    std::optional<PendingImage> image = source_->nextImage(camera);
+    if (image) image->recorded = image->time;
+    return image;
+  };
+  return {std::move(expected), pull, diagnostics_};
 }
 
 StreamExpectation Synchronizer::expectation(const char* kind, const std::string& name, double rate_hz) const {
@@ -61,7 +71,22 @@ StreamExpectation Synchronizer::expectation(const char* kind, const std::string&
   expected.name = name;
   expected.rate_hz = rate_hz;
   expected.max_gap_s = rate_hz > 0.0 ? options_.max_gap_periods / rate_hz : 0.0;
+  if (source_->isLive()) expected.look_ahead = 1;
+  const bool has_even_rate = expected.kind == "imu" || expected.kind == "magnetometer";
+  expected.spreads_bursts = has_even_rate && !source_->isLive();
   return expected;
+}
+
+ImuIntervals::Pull Synchronizer::inertialReadings() const {
+  OrderedStream<ImuSample> ordered(
+      expectation("imu", "IMU", source_->rig().imu.rate_hz), [source = source_] { return source->nextImu(); },
+      diagnostics_);
+  const auto screen =
+      std::make_shared<InertialScreen>(inertialStream(std::move(ordered), options_.inertial, diagnostics_));
+  return [screen]() -> std::optional<ImuSample> {
+    if (screen->peek() == nullptr) return std::nullopt;
+    return screen->pop();
+  };
 }
 
 StreamExpectation Synchronizer::magnetometerExpectation() const {
@@ -88,14 +113,16 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     Draft draft;
     PendingImage reference = cameras_[0].pop();
     if (!first_image_time_) first_image_time_ = reference.time;
-    const double since_start_s = (reference.time - *first_image_time_).seconds();
+    const double since_start_s = span(reference.time, *first_image_time_).seconds();
     if (since_start_s < options_.skip_s) continue;
     if (options_.duration_s > 0.0 && since_start_s > options_.skip_s + options_.duration_s) return {};
+    ++recorded_images_;
+    if (last_packet_time_) followClocks(&reference);
+    last_image_time_ = reference.time;
     if (!coveredByImu(reference)) continue;
 
     draft.packet.time = reference.time;
-    draft.packet.image_stamp =
-        reference.time - Duration::fromSeconds(source_->rig().cameras[0].time_offset_to_imu_s);
+    draft.packet.image_stamp = reference.recorded;
     draft.packet.imu = imu_.cut(reference.time, &draft.packet.longest_imu_gap_s);
     const Time oldest =
         last_packet_time_ ? *last_packet_time_ : reference.time - Duration::fromSeconds(options_.history_s);
@@ -107,6 +134,7 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     draft.pending.insert(draft.pending.begin(), std::move(reference));
     return draft;
   }
+  if (first_image_time_ && !last_packet_time_) reportApart();
   return std::nullopt;
 }
 

@@ -9,7 +9,8 @@
 #include "lodeline/data/frame_packet.h"
 #include "lodeline/data/imu_interval.h"
 #include "lodeline/data/measurement_source.h"
-#include "lodeline/data/ordered_stream.h"
+#include "lodeline/streams/inertial_screen.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 
@@ -30,6 +31,10 @@ struct SynchronizerOptions {
   /// Decodes the next packet's images on threads of their own while the caller works on this one. The
   /// packets are the same either way.
   bool prefetch = true;
+  /// Added to the stamps of each camera's images besides what the calibration says; empty for none.
+  std::vector<double> image_offset_s = {};
+  /// How inertial readings are screened.
+  InertialScreenOptions inertial;
 };
 
 /// Turns a source's separate streams into one packet per image of the first camera. A packet is given out
@@ -46,6 +51,10 @@ class Synchronizer {
   /// calibration says.
   std::optional<FramePacket> next();
 
+  /// Images of the first camera that the recording holds within the part that is used, so far; also those
+  /// that could not be used.
+  int64_t recordedImages() const { return recorded_images_; }
+
   /// Readings and images held at present, for tests of its boundedness.
   size_t bufferedReadings() const;
 
@@ -59,12 +68,20 @@ class Synchronizer {
 
   StreamExpectation expectation(const char* kind, const std::string& name, double rate_hz) const;
   StreamExpectation magnetometerExpectation() const;
+  OrderedStream<PendingImage> imageStream(size_t camera);
   std::optional<Draft> draftNext();
+  void followClocks(PendingImage* reference);
+  bool followImageClock(Duration step, PendingImage* reference);
+  bool followCommonClock(const ImuIntervals::Gap& gap, Duration step, PendingImage* reference);
+  bool followImuClock(const ImuIntervals::Gap& gap, const PendingImage& reference);
+  void reportApart();
   bool coveredByImu(const PendingImage& image);
   std::optional<PendingImage> partnerOf(const PendingImage& reference, size_t camera);
   void startDecoding(Draft* draft) const;
   FramePacket finish(Draft draft);
   void storeImage(size_t camera, const PendingImage& pending, LoadedImage loaded, FramePacket* packet);
+
+  ImuIntervals::Pull inertialReadings() const;
 
   MeasurementSource* source_;
   SynchronizerOptions options_;
@@ -75,6 +92,8 @@ class Synchronizer {
   OrderedStream<DepthSample> depth_;
   OrderedStream<SonarSample> sonar_;
   std::optional<Time> first_image_time_;
+  std::optional<Time> last_image_time_;
+  int64_t recorded_images_ = 0;
   std::optional<Time> last_packet_time_;
   std::optional<Draft> prefetched_;
   bool started_ = false;

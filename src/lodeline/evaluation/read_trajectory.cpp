@@ -55,7 +55,8 @@ TrajectoryFormat detectFormat(const std::filesystem::path& file) {
 /// The file in a folder that holds the trajectory, most specific first.
 std::filesystem::path findInFolder(const std::filesystem::path& folder) {
   const std::filesystem::path truth = "state_groundtruth_estimate0";
-  const std::array<std::filesystem::path, 9> candidates = {
+  const std::array<std::filesystem::path, 10> candidates = {
+      "trajectory_refined.tum",
       "trajectory.tum",
       "images.bin",
       "images.txt",

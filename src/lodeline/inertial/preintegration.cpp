@@ -187,11 +187,15 @@ Preintegration::Mat15 Preintegration::processNoise(
   const double h = (to.time - from.time).seconds();
   StepNoise noise =
       stepNoise(from, to, gyroscope_bias_, imu_.noise, options_.noise_inflation, options_.motion_noise);
-  if (h > std::max(options_.max_gap_s, 1.5 / imu_.rate_hz)) {
-    // White noise of density sigma * sqrt(h) has, over the gap, a mean with exactly that sigma.
-    noise.gyroscope += h * options_.gap_rate_sigma_rad_per_s * options_.gap_rate_sigma_rad_per_s;
+  const double gap_s = std::max(h, to.gap_s);
+  if (gap_s > std::max(options_.max_gap_s, 1.5 / imu_.rate_hz)) {
+    // White noise of density sigma * sqrt(h) has, over the gap, a mean with exactly that sigma. Of a gap that
+    // images divide, the parts err alike for as long as a motion lasts.
+    constexpr double kMotion_s = 0.2;
+    const double alike_s = std::max(h, std::min(gap_s, kMotion_s));
+    noise.gyroscope += alike_s * options_.gap_rate_sigma_rad_per_s * options_.gap_rate_sigma_rad_per_s;
     noise.accelerometer +=
-        h * options_.gap_specific_force_sigma_m_per_s2 * options_.gap_specific_force_sigma_m_per_s2;
+        alike_s * options_.gap_specific_force_sigma_m_per_s2 * options_.gap_specific_force_sigma_m_per_s2;
   }
 
   Mat15 q = Mat15::Zero();

@@ -9,6 +9,7 @@
 #include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/point_following.h"
 #include "lodeline/inspection/visual_rotation.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {
@@ -134,10 +135,23 @@ std::vector<std::pair<double, SurveySpan>> rateSpans(const std::vector<ImuSample
 
 }  // namespace
 
-StreamSummary surveyStamps(MeasurementSource* source, size_t camera) {
+StreamSummary surveyStamps(MeasurementSource* source, size_t camera, Diagnostics* diagnostics) {
+  constexpr size_t kImagesAhead = 8;
+  const CameraCalibration& calibration = source->rig().cameras[camera];
   StreamSurvey stream;
-  while (const std::optional<PendingImage> image = source->nextImage(camera)) stream.add(image->time);
-  return stream.summarize(kImageGapPeriods);
+  const int jumps_before = diagnostics->count("image_clock_jump");
+  StreamExpectation expected{"image", calibration.name, calibration.rate_hz, 0.0, Duration()};
+  expected.look_ahead = kImagesAhead;
+  const auto pull = [&] {
+    std::optional<PendingImage> image = source->nextImage(camera);
+    if (image) stream.add(image->time);
+    return image;
+  };
+  OrderedStream<PendingImage> ordered(expected, pull, diagnostics);
+  while (ordered.peek() != nullptr) ordered.pop();
+  StreamSummary summary = stream.summarize(kImageGapPeriods);
+  summary.clock_jumps = diagnostics->count("image_clock_jump") - jumps_before;
+  return summary;
 }
 
 CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const StreamSummary& stream,

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
 #include "lodeline/features/image_quality.h"
 #include "lodeline/inspection/stream_survey.h"
@@ -43,8 +44,8 @@ struct CameraSurveyOptions {
   double least_step_s = 0.045;  ///< between images that are followed
 };
 
-/// Stamps of a camera's images, which are not decoded.
-StreamSummary surveyStamps(MeasurementSource* source, size_t camera);
+/// Stamps of a camera's images, which are not decoded. Reports what their order tells, as OrderedStream does.
+StreamSummary surveyStamps(MeasurementSource* source, size_t camera, Diagnostics* diagnostics);
 
 /// Looks at the images within the spans closely, and at some of the others. `stream`: of the same camera,
 /// from surveyStamps(); the source must be a fresh one.

@@ -45,12 +45,13 @@ class StreamJudge {
               "dropped; look for a driver or merge that writes readings twice",
               stream_.duplicates, stream_.readings, 100.0 * share(stream_.duplicates)));
     }
-    if (stream_.backwards > 0) {
-      add(severity(stream_.backwards), 62.0 + 10.0 * share(stream_.backwards), "stamps_out_of_order",
-          fmt::format(
-              "stamps out of order: time goes backwards {} times in {} readings ({:.2g} %), which are "
-              "dropped; sort the readings by their stamps",
-              stream_.backwards, stream_.readings, 100.0 * share(stream_.backwards)));
+    // Where a clock was set back, the readings are in order.
+    const int64_t backwards = stream_.backwards - stream_.clock_jumps;
+    if (backwards > 0) {
+      add(severity(backwards), 62.0 + 10.0 * share(backwards), "stamps_out_of_order",
+          fmt::format("stamps out of order: time goes backwards {} times in {} readings ({:.2g} %), late "
+                      "ones are dropped; sort the readings by their stamps",
+                      backwards, stream_.readings, 100.0 * share(backwards)));
     }
   }
 
@@ -88,6 +89,34 @@ class StreamJudge {
   Inspection* inspection_;
 };
 
+/// Two sensors whose readings lie at other times altogether say nothing together, however good each is.
+class OverlapJudge {
+ public:
+  explicit OverlapJudge(Inspection* inspection) : inspection_(inspection) {}
+
+  void judge(const std::string& sensor, const StreamSummary& stream, double time_offset_to_imu_s) const {
+    const StreamSummary& imu = inspection_->imu.stream;
+    if (!imu.first || !imu.last || !stream.first || !stream.last) return;
+    const Duration offset = Duration::fromSeconds(time_offset_to_imu_s);
+    const Time first = *stream.first + offset, last = *stream.last + offset;
+    if (first <= *imu.last && last >= *imu.first) return;
+    const bool is_later = first > *imu.last;
+    inspection_->findings.push_back(
+        {Severity::Serious, 100.0, "recording", "clocks_apart",
+         fmt::format(
+             "{} and imu0 have no time in common: {} goes from {} to {} ns, imu0 from {} to {} ns, {:.6g} s "
+             "{}. Two clocks, such as the time of day and the time since the device was switched on: stamp "
+             "both by one clock, or state the difference as the time offset of the sensor",
+             sensor, sensor, first.nanoseconds(), last.nanoseconds(), imu.first->nanoseconds(),
+             imu.last->nanoseconds(),
+             is_later ? (first - *imu.last).seconds() : (*imu.first - last).seconds(),
+             is_later ? "earlier" : "later")});
+  }
+
+ private:
+  Inspection* inspection_;
+};
+
 /// Not all tools need all sensors; what cannot be done with this recording is said.
 void judgeAbsence(Inspection* inspection) {
   if (inspection->imu.stream.readings == 0) {
@@ -107,6 +136,15 @@ void judgeAbsence(Inspection* inspection) {
 
 void judgeStreams(Inspection* inspection) {
   judgeAbsence(inspection);
+  const OverlapJudge overlap(inspection);
+  for (size_t i = 0; i < inspection->cameras.size(); ++i) {
+    const CameraSurvey& camera = inspection->cameras[i].survey;
+    overlap.judge(camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s);
+  }
+  if (inspection->magnetometer)
+    overlap.judge("mag0", inspection->magnetometer->stream,
+                  inspection->rig.magnetometer->time_offset_to_imu_s);
+  for (const PlainSurvey& other : inspection->others) overlap.judge(other.sensor, other.stream, 0.0);
   if (inspection->imu.stream.readings > 0) {
     StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
   }

@@ -19,6 +19,7 @@ LandmarkWriter::LandmarkWriter(const std::filesystem::path& folder, const std::s
     : file_(folder / name), stream_(openOutput(file_)) {
   // Zero-padded so that the final count takes the same room.
   fmt::print(stream_, "{}{:012}{}", kBeforeCount, 0, kAfterCount);
+  stream_.flush();
 }
 
 LandmarkWriter::~LandmarkWriter() {
@@ -37,6 +38,8 @@ void LandmarkWriter::write(const std::vector<MapPoint>& points) {
     stream_.write(reinterpret_cast<const char*>(&sightings), sizeof(sightings));
     ++count_;
   }
+  // A run that is killed leaves what it has found.
+  stream_.flush();
 }
 
 void LandmarkWriter::finish() {

@@ -11,9 +11,9 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const 
   if (options.sample_pictures) sample_pictures_.emplace(folder);
 }
 
-std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEstimate& estimate,
+std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEstimate* estimate,
                                        const std::optional<AttitudeEstimate>& attitude, Odometry* odometry) {
-  states_.write(estimate, attitude);
+  if (estimate != nullptr) states_.write(*estimate, attitude);
   std::vector<MapPoint> finished = odometry->estimator().takeMapPoints();
   landmarks_.write(finished);
   if (magnetometer_) magnetometer_->write(packet);

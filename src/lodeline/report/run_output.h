@@ -24,9 +24,9 @@ class RunOutput {
   /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
   RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options);
 
-  /// To be called after each packet with what became of it. Gives the landmarks that left the window and were
-  /// written. Throws InputError where writing fails.
-  std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate& estimate,
+  /// To be called after each packet with what became of it; `estimate` is null where it has no stamp of its
+  /// own. Gives the landmarks that left the window and were written. Throws InputError where writing fails.
+  std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate* estimate,
                               const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
 
   /// Adds the landmarks that are still in the window and completes the files; gives the number of landmarks.

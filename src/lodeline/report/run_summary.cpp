@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lodeline/base/json_text.h"
 #include "lodeline/report/findings.h"
 
 namespace lodeline {
@@ -238,7 +239,7 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
     text += fmt::format("  {:<20} {}\n", name, value);
   };
   line("completion", fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone)",
-                                 100.0 * completion(), posed_, frames_, inertial_));
+                                 100.0 * completion(), posed_, recorded(), inertial_));
   line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
                            keyframes_, map_points));
   line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
@@ -277,6 +278,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   nlohmann::ordered_json json = toJson(description_);
   json["interrupted"] = interrupted;
   json["frames"] = frames_;
+  json["images_recorded"] = recorded();
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
   if (posed_ == 0) json["waiting_for"] = last_.waiting_for;
@@ -320,7 +322,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   if (refinement) json["refinement"] = toJson(*refinement);
   json["findings"] = findingsJson(diagnostics);
-  return json.dump(2) + "\n";
+  return jsonText(json) + "\n";
 }
 
 }  // namespace lodeline

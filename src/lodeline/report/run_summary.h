@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,13 +48,18 @@ class RunSummary {
   double wall_s = 0.0;
   double peak_memory_MB = 0.0;  ///< of the whole process
   int64_t images = 0;           ///< that could be read
+  int64_t recorded_images = 0;  ///< of the first camera, also those that could not be used
   int64_t map_points = 0;
   bool interrupted = false;                     ///< ended by the user before the recording did
   std::optional<RefinementSummary> refinement;  ///< of a run that was refined
 
   double recordingSeconds() const;
-  /// Share of the frames that got a pose.
-  double completion() const { return frames_ ? static_cast<double>(posed_) / frames_ : 0.0; }
+  /// Images of the first camera that were recorded; those that could not be used are no frames.
+  int64_t recorded() const { return std::max<int64_t>(recorded_images, frames_); }
+  /// Share of the recorded images that got a pose.
+  double completion() const {
+    return recorded() > 0 ? static_cast<double>(posed_) / static_cast<double>(recorded()) : 0.0;
+  }
   double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
   double pathLength_m() const { return path_m_; }
   double meanTracks() const;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lodeline/base/output_file.h"
+#include "lodeline/base/time_steps.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -20,11 +21,6 @@ constexpr const char* kStateHeader =
     "sigma_v_x [m/s],sigma_v_y [m/s],sigma_v_z [m/s],sigma_b_g_x [rad/s],sigma_b_g_y [rad/s],sigma_b_g_z "
     "[rad/s],"
     "sigma_b_a_x [m/s^2],sigma_b_a_y [m/s^2],sigma_b_a_z [m/s^2]";
-
-/// Seconds with nine decimals, from the integer so that no digit is lost.
-std::string seconds(Time time) {
-  return fmt::format("{}.{:09}", time.nanoseconds() / 1000000000, time.nanoseconds() % 1000000000);
-}
 
 void append(fmt::memory_buffer& line, const Vec3& v) {
   fmt::format_to(std::back_inserter(line), ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
@@ -148,7 +144,7 @@ void StateWriter::write(const FrameEstimate& estimate, const std::optional<Attit
 void StateWriter::writeTrajectory(const FrameEstimate& estimate) {
   const Vec3& p = estimate.state.world_from_body.translation;
   const Quat q = so3::canonical(estimate.state.world_from_body.rotation);
-  fmt::print(trajectory_, "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", seconds(estimate.time),
+  fmt::print(trajectory_, "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", secondsText(estimate.time),
              p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   trajectory_.flush();
 }
