@@ -53,7 +53,7 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
 
 std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
-  if (std::filesystem::is_regular_file(arguments.data) && !isBag(arguments.data)) {
+  if (isTableOfReadings(arguments.data)) {
     return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments);
   }
   EurocOptions options;

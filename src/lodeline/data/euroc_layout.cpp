@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/image_list.h"
 
@@ -13,18 +14,18 @@ namespace {
 constexpr int kMostCameras = 16;
 
 std::filesystem::path findMav0(const std::filesystem::path& data) {
-  if (!std::filesystem::is_directory(data)) {
-    throw InputError(fmt::format("{}: no such folder; give the folder that contains mav0", data.string()));
-  }
   if (std::filesystem::is_directory(data / "mav0")) return data / "mav0";
   for (const char* sensor : {"cam0", "imu0", "mag0"}) {
     if (std::filesystem::is_directory(data / sensor)) return data;
   }
+  const RecognisedFile recognised = recogniseFile(data);
+  if (!recognised.isFolder() || !recognised.advice.empty()) {
+    refuseFile(recognised, "give the folder that contains mav0, or a ROS 1 bag");
+  }
   throw InputError(
-      fmt::format("{}: holds neither mav0 nor sensors (cam0, imu0, mag0); give the folder of a recording in "
-                  "the EuRoC ASL "
-                  "layout (mav0/cam0/data.csv, mav0/imu0/data.csv, …)",
-                  data.string()));
+      fmt::format("{}: is {}; it holds neither mav0 nor sensors (cam0, imu0, mag0). Give the folder of a "
+                  "recording in the EuRoC ASL layout (mav0/cam0/data.csv, mav0/imu0/data.csv, …)",
+                  data.string(), recognised.what));
 }
 
 /// Why a folder camN gives no images, or nothing where it does or is not there.
@@ -87,6 +88,7 @@ EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOption
   if (options.with_cameras) layout.camera_indices = findCameras(options, &layout);
   layout.needs_cameras = options.needs_cameras;
   layout.needs_calibration = options.needs_calibration;
+  layout.rig_files = options.rig_files;
   layout.has_imu = std::filesystem::exists(layout.csv("imu0"));
   if (options.needs_imu && !layout.has_imu) {
     throw InputError(fmt::format("{}: missing; inertial readings are needed", layout.csv("imu0").string()));

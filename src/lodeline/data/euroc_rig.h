@@ -10,6 +10,8 @@
 
 namespace lodeline {
 
+struct RigFile;
+
 /// What to read of an EuRoC ASL recording. The defaults are what estimating a trajectory takes; tools that
 /// look at inertial or magnetic readings alone open recordings that have nothing else.
 struct EurocOptions {
@@ -24,6 +26,8 @@ struct EurocOptions {
   /// False gives sensors without a calibration file the default one, with a warning; a camera's has no size
   /// then and cannot project.
   bool needs_calibration = true;
+  /// Files that describe the rig (see readRigFiles), before those that lie in the recording.
+  std::vector<std::filesystem::path> rig_files = {};
 };
 
 /// Where the parts of an EuRoC ASL recording lie.
@@ -34,6 +38,7 @@ struct EurocLayout {
   std::map<int, std::string> cameras_without_images = {};
   bool has_imu = false;
   bool needs_cameras = true, needs_calibration = true;  ///< as in EurocOptions
+  std::vector<std::filesystem::path> rig_files = {};    ///< likewise
 
   std::filesystem::path sensor(const std::string& name) const { return mav0 / name; }
   std::filesystem::path csv(const std::string& name) const { return mav0 / name / "data.csv"; }
@@ -44,12 +49,14 @@ struct EurocLayout {
 /// or, with neither needed, no camera, IMU or magnetometer.
 EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options);
 
-/// Reads the calibration of every sensor that has a `data.csv` (a camera: images that can be listed): Kalibr's files beside or in mav0 before the
-/// sensor.yaml files, which is reported as a notice. The body frame of the result is the IMU frame, also
-/// where EuRoC's body is another. Rates that no file states, or that contradict the stamps, are measured.
-/// Optional sensors whose CSV has no usable row are left out with a warning. Rig::imu keeps its defaults
-/// where the recording has no IMU. Throws InputError naming file and key for a calibration that is absent or
-/// incomplete, and for a camera or IMU without data.
+/// Reads the calibration of every sensor that has a `data.csv` (a camera: images that can be listed; see readFolderCalibration). The body frame of
+/// the result is the IMU frame, also where EuRoC's body is another. Rates that no file states, or that
+/// contradict the stamps, are measured. Optional sensors whose CSV has no usable row are left out with a
+/// warning. Rig::imu keeps its defaults where the recording has no IMU. Throws InputError naming file and key
+/// for a calibration that is absent or incomplete, and for a camera or IMU without data.
 Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics);
+
+/// The same from a calibration that readFolderCalibration() has read.
+Rig settleEurocRig(const EurocLayout& layout, const RigFile& described, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "lodeline/base/error.h"
+#include "lodeline/data/folder_calibration.h"
 #include "lodeline/data/image_loader.h"
 
 namespace lodeline {
@@ -21,7 +22,10 @@ EurocSource::EurocSource(const std::filesystem::path& data, const EurocOptions& 
     : EurocSource(findEurocLayout(data, options), diagnostics) {}
 
 EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
-    : RecordedSource(readEurocRig(layout, diagnostics)),
+    : EurocSource(layout, readFolderCalibration(layout, diagnostics), diagnostics) {}
+
+EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnostics* diagnostics)
+    : RecordedSource(settleEurocRig(layout, described, diagnostics), described.imu_correction),
       layout_(std::move(layout)),
       diagnostics_(diagnostics) {
   if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics, kInertialRate);
@@ -39,7 +43,7 @@ EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
   if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), 2, diagnostics, kMagnetometerRate);
 }
 
-std::optional<ImuSample> EurocSource::nextImu() {
+std::optional<ImuSample> EurocSource::nextRecordedImu() {
   if (!next(&imu_, &row_)) return std::nullopt;
   return ImuSample{row_.time, Vec3(row_.numbers.data()), Vec3(row_.numbers.data() + 3)};
 }

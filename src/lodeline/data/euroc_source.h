@@ -27,7 +27,7 @@ class EurocSource : public RecordedSource {
   /// InputError as findEurocLayout() and readEurocRig() do.
   EurocSource(const std::filesystem::path& data, const EurocOptions& options, Diagnostics* diagnostics);
 
-  std::optional<ImuSample> nextImu() override;
+  std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
@@ -36,6 +36,7 @@ class EurocSource : public RecordedSource {
  private:
   EurocSource(EurocLayout layout, Diagnostics* diagnostics);
   GreyRange measureGreyRange(size_t camera);
+  EurocSource(EurocLayout layout, const RigFile& described, Diagnostics* diagnostics);
   void checkMagneticUnit(const MagnetometerSample& sample);
 
   EurocLayout layout_;
