@@ -24,11 +24,17 @@ RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& rec
     diagnostics->report(Severity::Warning, "refinement_not_converged",
                         "refinement: its last round ended before the cost had settled");
   }
-  StateWriter states(folder, kSuffix);
-  for (const FrameEstimate& frame : refinement.frames) states.write(frame);
+  {
+    StateWriter states(folder, kSuffix);
+    for (const FrameEstimate& frame : refinement.frames) states.write(frame);
+  }
+  const MagnetometerEstimate& north = refinement.frames.back().magnetometer;
+  std::optional<WorldTurn> turn = WorldTurn::of(north);
+  if (turn) turn->north_found.reset();  // all frames are relative to it
+  if (turn) turnStateFiles(folder, kSuffix, *turn);
   LandmarkWriter landmarks(folder, kLandmarks);
   landmarks.write(refinement.landmarks);
-  landmarks.finish();
+  landmarks.finish(north.heading_reference, turn);
   return summary;
 }
 

@@ -120,6 +120,64 @@ TEST(MagnetometerFusion, FindsNorthAndKeepsIt) {
   }
 }
 
+// Degrees by which the headings of a finished run are off north, over the last half of the dive.
+double lastHalf_deg(const HeadingTrial& trial, const HeadingTrialOptions& options) {
+  EXPECT_NE(trial.reference, HeadingReference::Start);
+  return trial.finishedRms(0.5 * options.duration_s) / kDegree;
+}
+
+TEST(MagnetometerFusion, FindsNorthHoweverLateItIsHeard) {
+  for (const int cameras : {2, 1}) {
+    HeadingTrialOptions options = trialOptions(140.0);
+    options.cameras = cameras;
+    if (cameras == 1) options.frame_rate_hz = 10.0;
+    if (cameras == 1) options.tracks = 80;
+    const HeadingTrial in_time = runHeadingTrial(options);
+    for (const double from_s : {0.3, 1.0, 10.0, 60.0}) {
+      options.magnetometer_from_s = from_s;
+      const HeadingTrial late = runHeadingTrial(options);
+      ASSERT_EQ(late.samples.size(), in_time.samples.size());
+      double largest_rad = 0.0;
+      for (size_t i = late.samples.size() / 2; i < late.samples.size(); ++i) {
+        largest_rad = std::max(largest_rad, std::abs(late.samples[i].finished_error_rad -
+                                                     in_time.samples[i].finished_error_rad));
+      }
+      EXPECT_LT(largest_rad, 0.3 * kDegree) << cameras << " " << from_s;
+      EXPECT_LT(lastHalf_deg(late, options), 0.5) << cameras << " " << from_s;
+      // From the first pose on, what the gyroscope drifted by before included.
+      EXPECT_LT(late.finishedRms(0.0), 1.0 * kDegree) << cameras << " " << from_s;
+      EXPECT_LT(late.rms(from_s + 20.0), 2.0 * late.claimed(from_s + 20.0)) << cameras << " " << from_s;
+      EXPECT_LT(late.claimed(from_s + 20.0), 1.0 * kDegree) << cameras << " " << from_s;
+    }
+  }
+}
+
+TEST(MagnetometerFusion, KeepsNorthOverAPause) {
+  HeadingTrialOptions options = trialOptions(140.0);
+  const HeadingTrial in_time = runHeadingTrial(options);
+  options.magnetometer_from_s = 5.0;
+  options.magnetometer_pause = TimeSpan{20.0, 80.0};
+  const HeadingTrial paused = runHeadingTrial(options);
+  EXPECT_LT(std::abs(lastHalf_deg(paused, options) - lastHalf_deg(in_time, options)), 0.3);
+  EXPECT_LT(paused.largest(10.0), 1.0 * kDegree);
+}
+
+TEST(MagnetometerFusion, IsNotFixedToTheFieldOfABoatThatItStartsBeside) {
+  for (const double site : {0.0, 1.0}) {
+    for (const double from_s : {0.0, 10.0}) {
+      HeadingTrialOptions options = trialOptions(180.0);
+      if (site > 0.0) options.estimator.magnetometer.site_field_W = Vec3(0.0, 24.2e-6, -38.6e-6);
+      const HeadingTrial clean = runHeadingTrial(options);
+      options.trouble = FieldTrouble::Boat;
+      options.magnetometer_from_s = from_s;
+      const HeadingTrial boat = runHeadingTrial(options);
+      EXPECT_LT(std::abs(lastHalf_deg(boat, options) - lastHalf_deg(clean, options)), 0.3) << site << from_s;
+      EXPECT_LT(boat.finishedRms(0.0), 5.0 * kDegree) << "the start is turned as the rest is";
+      EXPECT_GT(boat.share(MagnetometerStatus::Used), 0.5) << site << from_s;
+    }
+  }
+}
+
 TEST(MagnetometerFusion, StaysOutOfAHeadingThatItCannotImprove) {
   HeadingTrialOptions options = trialOptions(110.0);
   const HeadingTrial off = withoutMagnetometer(options);
@@ -301,6 +359,8 @@ TEST_F(SpoiltMagnetometer, WithNothingWrongIsUsed) {
   EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
   EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
   EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 0);
+  EXPECT_EQ(estimate.magnetometer.north_from_world_rad.value(), 0.0);
+  EXPECT_FALSE(estimate.magnetometer.north_found);
 }
 
 TEST_F(SpoiltMagnetometer, OfNaNsIsNoData) {
@@ -351,9 +411,42 @@ TEST_F(SpoiltMagnetometer, ThatComesLateIsUsedFromThenOn) {
   const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
     if (i < 150) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
   });
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Start);
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
   EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
-  EXPECT_TRUE(estimate.magnetometer.field_W.has_value());
+  ASSERT_TRUE(estimate.magnetometer.field_W.has_value());
+  // In the estimator's own world, which stays that of the first pose.
+  const double azimuth_rad =
+      std::atan2(estimate.magnetometer.field_W->y(), estimate.magnetometer.field_W->x());
+  EXPECT_NEAR(std::remainder(azimuth_rad + *estimate.magnetometer.north_from_world_rad - 90.0 * kDegree,
+                             360.0 * kDegree),
+              0.0, 1e-9);
+  EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 1);
+  EXPECT_EQ(diagnostics_.count("north_found"), 1);
+}
+
+// A calibration's lag that takes the readings before the first image away.
+TEST_F(SpoiltMagnetometer, ThatMissesTheFirstFrameAloneIsAsGoodAsInTime) {
+  const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
+    if (i < 2) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
+  });
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_TRUE(estimate.magnetometer.north_from_world_rad.has_value());
+  EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 0);
+}
+
+TEST_F(SpoiltMagnetometer, WhoseFieldPointsUpIsDoubted) {
+  run([](int64_t, MagnetometerSample* s) { s->field_M *= -1.0; });
+  EXPECT_EQ(diagnostics_.count("magnetic_field_upwards"), 1);
+}
+
+TEST_F(SpoiltMagnetometer, AsInThePaperFindsNorthLate) {
+  const FrameEstimate estimate = run(
+      [](int64_t i, MagnetometerSample* s) {
+        if (i < 100) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
+      },
+      MagnetometerUse::Paper);
+  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_TRUE(estimate.magnetometer.north_from_world_rad.has_value());
 }
 
 TEST_F(SpoiltMagnetometer, ThatLosesTheFieldIsRejectedAndSaysSo) {
