@@ -14,9 +14,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kField_T = 45e-6;
+constexpr double kTurnedField_T = 45e-6;
 
-MagnetometerRecord recordOf() {
+MagnetometerRecord turnedRecord() {
   test::TurningSensor sensor;
   sensor.duration_s = 40.0;
   sensor.motion.a = Vec3(2.2, -0.9, 1.3);
@@ -24,7 +24,7 @@ MagnetometerRecord recordOf() {
   sensor.imu_rate_hz = 400.0;
   MagnetometerRecord record;
   for (const NormalizedFieldSample& sample : sensor.field())
-    record.magnetometer.push_back({sample.time, kField_T * sample.field_M});
+    record.magnetometer.push_back({sample.time, kTurnedField_T * sample.field_M});
   record.imu = sensor.imu();
   record.imu_noise.gyroscope_density_rad_per_s_sqrtHz = sensor.gyroscope_density;
   record.body_from_magnetometer = sensor.truth.body_from_magnetometer;
@@ -35,21 +35,21 @@ void exchange(MagnetometerRecord* record) {
   for (MagnetometerSample& sample : record->magnetometer) std::swap(sample.field_M.x(), sample.field_M.y());
 }
 
-const Vec3 kSite_ENU = kField_T * Vec3(0.0, std::cos(1.0), -std::sin(1.0));
+const Vec3 kSite_ENU = kTurnedField_T * Vec3(0.0, std::cos(1.0), -std::sin(1.0));
 
 TEST(AxisChecks, SayNothingOfAHealthySensor) {
   for (const bool with_site : {false, true}) {
     CalibrationOptions options;
     if (with_site) options.site_field_ENU = kSite_ENU;
     Diagnostics diagnostics;
-    const auto result = calibrateMagnetometer(recordOf(), options, &diagnostics);
+    const auto result = calibrateMagnetometer(turnedRecord(), options, &diagnostics);
     EXPECT_TRUE(diagnostics.ranked().empty()) << diagnostics.ranked().front().first_message;
     EXPECT_THAT(result.fit.verdict, HasSubstr("Good"));
   }
 }
 
 TEST(AxisChecks, NameMirroredAxesByDipAndRotation) {
-  MagnetometerRecord record = recordOf();
+  MagnetometerRecord record = turnedRecord();
   exchange(&record);
   Diagnostics diagnostics;
   const auto result = calibrateMagnetometer(record, {}, &diagnostics);
@@ -61,9 +61,9 @@ TEST(AxisChecks, NameMirroredAxesByDipAndRotation) {
 TEST(AxisChecks, RefuseMirroredOrReversedAxesWhereTheSiteTells) {
   CalibrationOptions options;
   options.site_field_ENU = kSite_ENU;
-  MagnetometerRecord exchanged = recordOf();
+  MagnetometerRecord exchanged = turnedRecord();
   exchange(&exchanged);
-  MagnetometerRecord reversed = recordOf();
+  MagnetometerRecord reversed = turnedRecord();
   for (MagnetometerSample& sample : reversed.magnetometer) sample.field_M *= -1.0;
   for (const MagnetometerRecord& record : {exchanged, reversed}) {
     Diagnostics diagnostics;
@@ -77,7 +77,7 @@ TEST(AxisChecks, RefuseMirroredOrReversedAxesWhereTheSiteTells) {
 }
 
 TEST(AxisChecks, NameAReversedSignByTheDipAlone) {
-  MagnetometerRecord record = recordOf();
+  MagnetometerRecord record = turnedRecord();
   for (MagnetometerSample& sample : record.magnetometer) sample.field_M *= -1.0;
   Diagnostics diagnostics;
   const auto result = calibrateMagnetometer(record, {}, &diagnostics);
@@ -90,7 +90,7 @@ TEST(AxisChecks, NameTheGyroscopeWhoseSignsAreWrong) {
   const std::vector<Vec3> all_signs = {Vec3(-1, -1, -1), Vec3(-1, 1, 1),  Vec3(1, -1, 1), Vec3(1, 1, -1),
                                        Vec3(-1, -1, 1),  Vec3(-1, 1, -1), Vec3(1, -1, -1)};
   for (const Vec3& signs : all_signs) {
-    MagnetometerRecord record = recordOf();
+    MagnetometerRecord record = turnedRecord();
     for (ImuSample& sample : record.imu)
       sample.angular_velocity_B = sample.angular_velocity_B.cwiseProduct(signs);
     Diagnostics diagnostics;
@@ -98,12 +98,12 @@ TEST(AxisChecks, NameTheGyroscopeWhoseSignsAreWrong) {
     EXPECT_EQ(diagnostics.count("gyroscope_axes"), 1) << signs.transpose();
     EXPECT_FALSE(result.inertial) << signs.transpose();
     EXPECT_THAT(result.fit.verdict, HasSubstr("rotation to the IMU is not"));
-    EXPECT_THAT(result.fit.verdict, ::testing::Not(HasSubstr("Good")));
+    EXPECT_THAT(result.fit.verdict, HasSubstr("for the magnetometer alone"));
   }
 }
 
 TEST(AxisChecks, NameAGyroscopeWithExchangedAxes) {
-  MagnetometerRecord record = recordOf();
+  MagnetometerRecord record = turnedRecord();
   for (ImuSample& sample : record.imu)
     std::swap(sample.angular_velocity_B.x(), sample.angular_velocity_B.z());
   Diagnostics diagnostics;
@@ -112,7 +112,7 @@ TEST(AxisChecks, NameAGyroscopeWithExchangedAxes) {
 }
 
 TEST(AxisChecks, NameAReversedAccelerometerByTheDip) {
-  MagnetometerRecord record = recordOf();
+  MagnetometerRecord record = turnedRecord();
   for (ImuSample& sample : record.imu) sample.specific_force_B *= -1.0;
   Diagnostics diagnostics;
   calibrateMagnetometer(record, {}, &diagnostics);
@@ -128,7 +128,7 @@ TEST(AxisChecks, BelieveASouthernSite) {
   sensor.truth.dip_rad = -1.0;
   MagnetometerRecord record;
   for (const NormalizedFieldSample& sample : sensor.field())
-    record.magnetometer.push_back({sample.time, kField_T * sample.field_M});
+    record.magnetometer.push_back({sample.time, kTurnedField_T * sample.field_M});
   record.imu = sensor.imu();
   record.imu_noise.gyroscope_density_rad_per_s_sqrtHz = sensor.gyroscope_density;
   CalibrationOptions options;

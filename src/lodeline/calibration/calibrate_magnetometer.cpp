@@ -201,8 +201,9 @@ std::string verdictOf(const MagnetometerCalibrationResult& result) {
     return "Not calibrated: these readings are no better than the old calibration, which is kept.";
   const double degrees = fit.heading_error_rad / kDegree;
   const bool knows_rotation = fit.body_from_magnetometer && result.inertial;
-  const char* worth = degrees >= 2.0 ? "Weak" : degrees < 0.5 && knows_rotation ? "Good" : "Usable";
+  const char* worth = degrees < 0.5 ? "Good" : degrees < 2.0 ? "Usable" : "Weak";
   std::string text = worth;
+  if (!knows_rotation) text += " for the magnetometer alone";
   switch (fit.model) {
     case IronModel::Full:
       text += ": soft and hard iron are determined";
@@ -228,6 +229,10 @@ std::string verdictOf(const MagnetometerCalibrationResult& result) {
         degrees, fit.body_from_magnetometer ? "that the recording states" : "that the rig's file states",
         1.0 / std::cos(result.dip_rad));
   }
+  if (fit.dip_rad && *fit.dip_rad < 0.0 && result.dip_source == "measured")
+    text +=
+        " That holds south of the magnetic equator; north of it headings are reversed, since the field dips "
+        "up.";
   if (degrees >= 2.0) text += " Repeat with more directions before relying on it.";
   return text;
 }

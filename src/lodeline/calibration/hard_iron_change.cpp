@@ -12,7 +12,7 @@ namespace {
 constexpr double kStretch_s = 20.0;
 constexpr int kStretches = 4;
 constexpr double kLeastStep_T = 0.15e-6;
-constexpr double kLeastStep_sigmas = 7.0;
+constexpr double kLeastStep_sigmas = 4.0;
 /// Least eigenvalue of the mean of u u^T: 1/3 where directions are spread evenly.
 constexpr double kLeastSpread = 0.05;
 constexpr size_t kFewestReadings = 30;
@@ -111,22 +111,29 @@ std::optional<HardIronChange::Step> greatestStep(std::span<const CorrectedReadin
   return greatest;
 }
 
+/// Nothing unless the stretches' offsets differ by three sigma (chi-square) of their noise.
 double spreadOf(const Offsets& offsets, size_t count) {
   std::vector<Vec3> found;
-  Mat3 noise = Mat3::Zero();
+  std::vector<Mat3> noise;
+  Vec3 mean = Vec3::Zero();
   for (size_t k = 0; k < kStretches; ++k) {
     const Stretch stretch = offsets.between(count * k / kStretches, count * (k + 1) / kStretches);
     if (!stretch.tells()) continue;
     found.push_back(stretch.offset());
-    noise += stretch.covariance(offsets.variance_T2());
+    noise.push_back(stretch.covariance(offsets.variance_T2()));
+    mean += found.back();
   }
   if (found.size() < 2) return 0.0;
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& offset : found) mean += offset / static_cast<double>(found.size());
-  double square = 0.0;
-  for (const Vec3& offset : found) square += (offset - mean).squaredNorm() / 3.0;
-  square /= static_cast<double>(found.size() - 1);
-  return std::sqrt(std::max(0.0, square - noise.trace() / 3.0 / static_cast<double>(found.size())));
+  const auto stretches = static_cast<double>(found.size());
+  mean /= stretches;
+  double chi2 = 0.0, square = 0.0;
+  for (size_t k = 0; k < found.size(); ++k) {
+    const Vec3 difference = found[k] - mean;
+    chi2 += difference.dot(noise[k].ldlt().solve(difference));
+    square += difference.squaredNorm() / 3.0 / (stretches - 1.0) - noise[k].trace() / 3.0 / stretches;
+  }
+  const double freedom = 3.0 * (stretches - 1.0);
+  return chi2 > freedom + 3.0 * std::sqrt(2.0 * freedom) ? std::sqrt(std::max(0.0, square)) : 0.0;
 }
 
 }  // namespace

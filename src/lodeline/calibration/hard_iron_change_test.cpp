@@ -11,26 +11,27 @@
 namespace lodeline {
 namespace {
 
-constexpr double kField_T = 45e-6;
-constexpr double kNoise_T = 0.07e-6;
+constexpr double kSteadyField_T = 45e-6;
+constexpr double kReadingNoise_T = 0.07e-6;
 
 // 90 s at 50 Hz of a rig that is turned through all directions every ten seconds or so.
 std::vector<CorrectedReading> turned(const std::function<Vec3(double)>& iron_T) {
   std::mt19937_64 engine(3);
-  std::normal_distribution<double> normal(0.0, kNoise_T);
+  std::normal_distribution<double> normal(0.0, kReadingNoise_T);
   std::vector<CorrectedReading> readings;
   for (int i = 0; i < 4500; ++i) {
     const double t_s = i / 50.0;
     const Vec3 direction = Vec3(std::sin(1.1 * t_s) * std::cos(0.7 * t_s),
                                 std::sin(1.1 * t_s) * std::sin(0.7 * t_s), std::cos(1.1 * t_s));
-    readings.push_back({Time::fromSeconds(t_s), kField_T * direction + iron_T(t_s) +
+    readings.push_back({Time::fromSeconds(t_s), kSteadyField_T * direction + iron_T(t_s) +
                                                     Vec3(normal(engine), normal(engine), normal(engine))});
   }
   return readings;
 }
 
 TEST(HardIronChange, IsNothingWhereTheIronStays) {
-  const HardIronChange change = findHardIronChange(turned([](double) { return Vec3::Zero(); }), kField_T);
+  const HardIronChange change =
+      findHardIronChange(turned([](double) { return Vec3::Zero(); }), kSteadyField_T);
   EXPECT_FALSE(change.step);
   EXPECT_LT(change.spread_T, 0.01e-6);
 }
@@ -38,7 +39,7 @@ TEST(HardIronChange, IsNothingWhereTheIronStays) {
 TEST(HardIronChange, FindsACurrentThatIsSwitched) {
   const Vec3 current_T(0.2e-6, -0.25e-6, 0.1e-6);
   const auto iron_T = [&](double t_s) { return Vec3((t_s < 52.0 ? -0.5 : 0.5) * current_T); };
-  const HardIronChange change = findHardIronChange(turned(iron_T), kField_T);
+  const HardIronChange change = findHardIronChange(turned(iron_T), kSteadyField_T);
   ASSERT_TRUE(change.step);
   EXPECT_NEAR(change.step->time.seconds(), 52.0, 2.0);
   EXPECT_NEAR(change.step->size_T, current_T.norm(), 0.05e-6);
@@ -47,7 +48,7 @@ TEST(HardIronChange, FindsACurrentThatIsSwitched) {
 
 TEST(HardIronChange, TakesASlowCreepForSpread) {
   const auto iron_T = [](double t_s) { return Vec3(0.0, 0.3e-6 * (t_s / 90.0 - 0.5), 0.0); };
-  const HardIronChange change = findHardIronChange(turned(iron_T), kField_T);
+  const HardIronChange change = findHardIronChange(turned(iron_T), kSteadyField_T);
   EXPECT_FALSE(change.step);
   EXPECT_NEAR(change.spread_T, 0.3e-6 / std::sqrt(12.0) / std::sqrt(3.0), 0.02e-6);
 }

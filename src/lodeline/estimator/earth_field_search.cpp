@@ -19,7 +19,7 @@ std::optional<Vec3> EarthFieldSearch::add(const Reading& reading) {
     candidate_W_.reset();
     return std::nullopt;
   }
-  if (!reading.is_plausible) {
+  if (!reading.is_plausible || replacements_ == kMostReplacements) {
     candidate_W_.reset();
     return std::nullopt;
   }
@@ -28,6 +28,7 @@ std::optional<Vec3> EarthFieldSearch::add(const Reading& reading) {
   const bool is_only_choice = !reading.is_field_in_force_plausible && held_s_ >= kPlausible_s;
   if (!has_held_longer && !is_only_choice) return std::nullopt;
   agreed_s_ = held_s_;
+  ++replacements_;
   return std::exchange(candidate_W_, std::nullopt);
 }
 

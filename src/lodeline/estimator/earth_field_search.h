@@ -13,13 +13,15 @@ namespace lodeline {
 /// the rig goes, so the field that holds for longest is the Earth's:
 /// - a field replaces the one in force when it has held for `kLeast_s` and for longer than that one agreed;
 /// - `kPlausible_s` are enough where the one in force cannot be the Earth's at the site (alignHeading());
-/// - a field that has agreed for `kConfirmed_s` is not replaced any more.
+/// - a field that has agreed for `kConfirmed_s` is not replaced any more, nor one after `kMostReplacements`:
+///   by then the calibration is what is wrong.
 /// Only time with readings counts.
 class EarthFieldSearch {
  public:
   static constexpr double kLeast_s = 20.0;
   static constexpr double kPlausible_s = 5.0;
   static constexpr double kConfirmed_s = 300.0;
+  static constexpr int kMostReplacements = 3;
   static constexpr double kSteadiness = 0.05;  ///< greatest change, relative to the field's size
 
   struct Reading {
@@ -40,6 +42,7 @@ class EarthFieldSearch {
   std::optional<Vec3> candidate_W_;  ///< mean of the readings that have held
   int readings_ = 0;                 ///< of that mean
   double held_s_ = 0.0;
+  int replacements_ = 0;
 };
 
 }  // namespace lodeline

@@ -67,6 +67,13 @@ TEST(EarthFieldSearch, KeepsTheFieldWhileNoOtherHolds) {
   for (int i = 0; i < 40; ++i) EXPECT_FALSE(search.feed(i % 2 == 0 ? kEarth_W : Vec3(1.1 * kEarth_W), 4.0));
 }
 
+TEST(EarthFieldSearch, GivesUpOnACalibrationThatIsWrong) {
+  Search search;
+  int taken = 0;
+  for (int i = 0; i < 40; ++i) taken += search.feed(i % 2 == 0 ? kEarth_W : kBoat_W, 400.0).has_value();
+  EXPECT_LE(taken, EarthFieldSearch::kMostReplacements);
+}
+
 TEST(EarthFieldSearch, DoesNotCountAPause) {
   Search search;
   search.feed(kBoat_W, 10.0);

@@ -78,8 +78,8 @@ TEST_F(TurnedRun, PointsToNorthFromTheFirstPoseOn) {
                              .dot(q)),
                 1.0, 1e-8);
   }
-  EXPECT_NEAR(states.numbers.at("field_x [T]")[3], 0.0, 1e-14);
-  EXPECT_NEAR(states.numbers.at("field_y [T]")[3], 24e-6, 1e-14);
+  EXPECT_NEAR(states.numbers.at("field_x [T]")[3], 0.0, 1e-13);
+  EXPECT_NEAR(states.numbers.at("field_y [T]")[3], 24e-6, 1e-13);
 }
 
 TEST_F(TurnedRun, SaysWhereEachRowTookNorthToBe) {
