@@ -33,7 +33,7 @@ export interface Summary {
   real_time_factor?: number;
   core_ms_per_frame?: Record<string, number>;
   peak_memory_MB?: number;
-  heading?: { reference?: string; sigma_rad?: number };
+  heading?: { reference?: string; sigma_rad?: number; north_found_after_s?: number; world_turned_rad?: number };
   findings?: Finding[];
 }
 
@@ -79,6 +79,7 @@ export interface Magnetometer {
   table: Table;
   is_calibrated: boolean;
   field_strength_T: number | null; // that corrected readings should have
+  field_strength_from: string; // in words
 }
 
 export interface Run {

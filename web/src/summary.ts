@@ -21,7 +21,8 @@ function tiles(run: Run): Tile[] {
     },
     {
       name: "Heading, one sigma", value: `${number((180 / Math.PI) * (s.heading?.sigma_rad ?? NaN), 2)}°`,
-      detail: `from ${s.heading?.reference ?? "the first heading"}, at the end`,
+      detail: `from ${s.heading?.reference ?? "the first heading"}, at the end` +
+        (s.heading?.north_found_after_s === undefined ? "" : `; north found after ${number(s.heading.north_found_after_s, 3)} s`),
     },
     {
       name: "Reprojection", value: `${number(s.mean_reprojection_rms_px, 2)} px`,

@@ -313,6 +313,7 @@ void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* es
   lens_trust_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
+  magnetometer_.relateToNorth(window_, &estimate->covariance);
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {

@@ -35,8 +35,8 @@ struct FrameEstimate {
   Status status = Status::Waiting;
   std::string waiting_for;  ///< in words, while waiting
   NavigationState state;
-  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position
-  /// and heading.
+  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position,
+  /// and to north or, while that is unknown, to the first pose's heading.
   Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
   bool is_keyframe = false;
   int tracks = 0;     ///< seen in this frame

@@ -41,6 +41,7 @@ void ForwardRecord::add(const FrameTracks& tracks, std::span<const ImuSample> im
     start(estimate, estimator);
     return;
   }
+  if (estimate.magnetometer.field_epoch != field_epoch_) forgetFields(estimate.magnetometer.field_epoch);
   const Frame& newest = estimator.window().newest();
   state.state = estimate.state;
   state.is_keyframe = estimate.is_keyframe;
@@ -65,6 +66,13 @@ void ForwardRecord::start(const FrameEstimate& estimate, const Estimator& estima
   }
   waiting_.clear();
   rememberPrior(estimator);
+}
+
+void ForwardRecord::forgetFields(int epoch) {
+  field_epoch_ = epoch;
+  fields_ = 0;
+  for (RecordedState& state : states_) state.magnetometer.reset();
+  if (newest_) newest_->magnetometer.reset();
 }
 
 void ForwardRecord::rememberPrior(const Estimator& estimator) {

@@ -57,6 +57,8 @@ class ForwardRecord {
  private:
   void start(const FrameEstimate& estimate, const Estimator& estimator);
   void rememberPrior(const Estimator& estimator);
+  /// What was taken for the Earth's field was another one.
+  void forgetFields(int epoch);
   bool isState(const RecordedState& candidate) const;
   void append(RecordedState state);
 
@@ -70,6 +72,7 @@ class ForwardRecord {
   std::optional<RecordedState> newest_;  ///< the last frame, where it is no state
   int fields_ = 0, depths_ = 0;          ///< measurements used since the last state that had one
   int gauge_epoch_ = 0;
+  int field_epoch_ = 0;
 };
 
 }  // namespace lodeline

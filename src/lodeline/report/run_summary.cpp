@@ -8,6 +8,7 @@
 
 #include "lodeline/base/json_text.h"
 #include "lodeline/report/findings.h"
+#include "lodeline/report/world_turn.h"
 
 namespace lodeline {
 namespace {
@@ -23,6 +24,7 @@ nlohmann::ordered_json rigJson(const RunDescription& run) {
     json["magnetometer"]["is_calibrated"] = run.magnetometer->is_calibrated;
     if (run.magnetometer->field_strength_T)
       json["magnetometer"]["field_strength_T"] = *run.magnetometer->field_strength_T;
+    if (run.site_field_W) json["magnetometer"]["site_field_strength_T"] = run.site_field_W->norm();
   }
   return json;
 }
@@ -167,6 +169,7 @@ void RunSummary::add(const FrameEstimate& estimate) {
   if (!first_time_) first_time_ = estimate.time;
   last_ = estimate;
   if (estimate.status == Status::Waiting) return;
+  if (posed_ == 0) first_pose_time_ = estimate.time;
   ++posed_;
   inertial_ += estimate.status == Status::Inertial;
   keyframes_ += estimate.is_keyframe;
@@ -200,10 +203,19 @@ double RunSummary::coreMillisecondsPerFrame(double seconds) const {
   return frames_ ? 1e3 * seconds / frames_ : 0.0;
 }
 
+double RunSummary::northFoundAfter_s() const {
+  return (*last_.magnetometer.north_found - first_pose_time_).seconds();
+}
+
 std::string RunSummary::headingText() const {
   const MagnetometerEstimate& last = last_.magnetometer;
-  return fmt::format("against {}, {:.2f} deg (one sigma, at the end)", toString(last.heading_reference),
-                     last.heading_sigma_rad * 180.0 / M_PI);
+  const std::string text =
+      fmt::format("against {}, {:.2f} deg (one sigma, at the end)", toString(last.heading_reference),
+                  last.heading_sigma_rad * 180.0 / M_PI);
+  const std::optional<WorldTurn> turn = WorldTurn::of(last);
+  if (!turn) return text;
+  return text + fmt::format("; found {:.1f} s after the first pose, all files turned by {:.1f} deg to it",
+                            northFoundAfter_s(), turn->angle_rad * 180.0 / M_PI);
 }
 
 std::string RunSummary::magnetometerText() const {
@@ -306,12 +318,17 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   const MagnetometerEstimate& magnetometer = last_.magnetometer;
   json["heading"] = {{"reference", toString(magnetometer.heading_reference)},
                      {"sigma_rad", magnetometer.heading_sigma_rad}};
+  const std::optional<WorldTurn> turn = WorldTurn::of(magnetometer);
+  if (turn) {
+    json["heading"]["north_found_after_s"] = northFoundAfter_s();
+    json["heading"]["world_turned_rad"] = turn->angle_rad;
+  }
   if (hasMagnetometer()) {
     for (const auto& [status, frames] : magnetometer_frames_)
       json["magnetometer"]["frames"][toString(status)] = frames;
   }
   if (magnetometer.field_W) {
-    const Vec3& field = *magnetometer.field_W;
+    const Vec3 field = turn ? turn->apply(*magnetometer.field_W) : *magnetometer.field_W;
     const Vec3& offset = *magnetometer.offset_B;
     json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
     json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};

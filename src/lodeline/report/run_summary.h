@@ -25,6 +25,7 @@ struct RunDescription {
   double imu_rate_hz = 0.0;
   Vec3 camera_axis_B = Vec3::UnitX();  ///< where the reference camera looks
   std::vector<std::string> other_sensors;
+  std::optional<Vec3> site_field_W;  ///< of the Earth, T, where the run was told its site
   std::optional<MagnetometerCalibration> magnetometer;
   double observation_sigma_px = 0.0;
 };
@@ -74,6 +75,7 @@ class RunSummary {
  private:
   double coreMillisecondsPerFrame(double seconds) const;
   bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
+  double northFoundAfter_s() const;
   std::string headingText() const;
   std::string magnetometerText() const;
   std::string depthText() const;
@@ -85,6 +87,7 @@ class RunSummary {
   RunDescription description_;
   FrameEstimate last_;
   std::optional<Time> first_time_;
+  Time first_pose_time_;
   std::optional<Vec3> last_position_W_;
   int frames_ = 0;
   int posed_ = 0;

@@ -34,18 +34,18 @@ double sigma(double variance) { return variance < 0.0 ? 0.0 : std::sqrt(variance
 
 constexpr const char* kMagnetometerHeader =
     ",sigma_heading [rad],magnetometer,field_x [T],field_y [T],field_z [T],offset_x [T],offset_y "
-    "[T],offset_z "
-    "[T]";
+    "[T],offset_z [T],north_from_world [rad]";
 
 constexpr const char* kDepthHeader = ",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s]";
 
-/// Header of the pose covariance's upper triangle, [p, theta] in world axes.
+/// Header of the pose covariance's upper triangle, [p, theta] in world axes, and of the covariance of v_x and
+/// v_y.
 std::string covarianceHeader() {
   std::string header;
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) header += fmt::format(",cov_pose_{}{}", row, column);
   }
-  return header;
+  return header + ",cov_v_01";
 }
 
 /// What is not estimated is nan.
@@ -55,6 +55,8 @@ void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& ma
                  toString(magnetometer.status));
   append(line, magnetometer.field_W.value_or(unknown));
   append(line, magnetometer.offset_B.value_or(unknown));
+  fmt::format_to(std::back_inserter(line), ",{:.9g}",
+                 magnetometer.north_from_world_rad.value_or(unknown.x()));
 }
 
 /// What is not estimated is nan.
@@ -110,6 +112,7 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
       fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(row, column));
     }
   }
+  fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(6, 7));
   appendMagnetometer(line, estimate.magnetometer);
   return line;
 }
