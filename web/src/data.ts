@@ -20,6 +20,7 @@ export interface Summary {
   data?: string;
   rig?: { cameras?: string[]; camera_rate_hz?: number; imu_rate_hz?: number; camera_axis_B?: number[] };
   interrupted?: boolean;
+  do_not_trust?: string;
   frames?: number;
   frames_with_pose?: number;
   completion?: number;

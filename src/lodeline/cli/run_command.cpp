@@ -26,6 +26,12 @@ bool isNumber(const std::string& text) {
 /// Turns a run without a result into the error that explains it.
 void requireResult(const RunRequest& request, const RunSummary& summary) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
+  if (const std::string reason = summary.distrust(); !reason.empty()) {
+    throw EstimationError(
+        fmt::format("{}: {}; the result in {} is not to be trusted. `lodeline inspect {}` looks for units, "
+                    "axes, time stamps and calibrations that do not belong together",
+                    request.data, reason, request.output, request.data));
+  }
   if (summary.posed() > 0) return;
   if (summary.images == 0) {
     throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",

@@ -5,6 +5,7 @@
 #include "lodeline/base/angles.h"
 #include "lodeline/base/thread_clock.h"
 #include "lodeline/estimator/inertial_states.h"
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
@@ -35,18 +36,36 @@ Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* 
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
-  tracks_ = front_end_.process(packet.time, packet.images, previousFromCurrent(packet));
+  const Quat by_gyroscope = previousFromCurrent(packet);
+  const Quat steady = steadilyTurning(packet, by_gyroscope);
+  const bool is_doubted = estimator_.isGyroscopeDoubted();
+  tracks_ = front_end_.process(packet.time, packet.images, is_doubted ? steady : by_gyroscope,
+                               is_doubted ? by_gyroscope : steady);
   reportFixedStructure(packet.time);
   reportTurnedCameras();
   const double tracked_s = threadSeconds();
   const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
   times_.front_end_s += tracked_s - start_s;
   times_.estimator_s += threadSeconds() - tracked_s;
-  if (estimate.status != Status::Waiting) gyroscope_bias_B_ = estimate.state.gyroscope_bias_B;
+  if (estimate.status != Status::Waiting) follow(estimate.state);
   if (estimate.camera_corrections)
     baseline_watch_.add(packet.time, *estimate.camera_corrections, diagnostics_);
   first_ = false;
   return estimate;
+}
+
+void Odometry::follow(const NavigationState& state) {
+  gyroscope_bias_B_ = state.gyroscope_bias_B;
+  if (newest_) {
+    const Quat turned = newest_->world_from_body.rotation.conjugate() * state.world_from_body.rotation;
+    rate_B_ = so3::log(turned) / (state.time - newest_->time).seconds();
+  }
+  newest_ = state;
+}
+
+Quat Odometry::steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const {
+  if (!newest_ || packet.imu.empty()) return by_gyroscope;
+  return so3::exp((packet.time - packet.imu.front().time).seconds() * rate_B_);
 }
 
 void Odometry::reportFixedStructure(Time time) {

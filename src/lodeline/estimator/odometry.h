@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lodeline/data/frame_packet.h"
@@ -45,6 +46,10 @@ class Odometry {
  private:
   /// The gyroscope's rotation over the packet; none for the first one.
   Quat previousFromCurrent(const FramePacket& packet) const;
+  /// That of a body that goes on turning as the estimate has it, in place of the gyroscope's where that is
+  /// doubted.
+  Quat steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const;
+  void follow(const NavigationState& state);
   /// Of each camera once.
   void reportFixedStructure(Time time);
   void reportTurnedCameras();
@@ -54,6 +59,8 @@ class Odometry {
   FrameTracks tracks_;
   Estimator estimator_;
   Vec3 gyroscope_bias_B_ = Vec3::Zero();
+  std::optional<NavigationState> newest_;  ///< of the last frame that has a pose
+  Vec3 rate_B_ = Vec3::Zero();             ///< that led there, rad/s
   bool first_ = true;
   std::vector<bool> fixed_structure_reported_;
   std::vector<bool> turn_reported_;  ///< of camera 1, 2, ...
