@@ -21,6 +21,7 @@ export interface Summary {
   rig?: { cameras?: string[]; camera_rate_hz?: number; imu_rate_hz?: number; camera_axis_B?: number[] };
   interrupted?: boolean;
   first_frame_ns?: string; // findings count their times from it
+  do_not_trust?: string;
   frames?: number;
   frames_with_pose?: number;
   completion?: number;

@@ -85,6 +85,10 @@ export function findingsList(view: View): HTMLElement {
       lines.unshift(findingLine({ severity: "warning", kind: "interrupted", count: 1,
         message: "The run was ended by hand before the recording was; what follows covers what was read." }, view, run));
     }
+    if (run.summary.do_not_trust) {
+      lines.unshift(findingLine({ severity: "serious", kind: "do_not_trust", count: 1,
+        message: `The result is not to be trusted: ${run.summary.do_not_trust}.` }));
+    }
     list.replaceChildren(...(lines.length ? lines : [element("li", "", "Nothing was found wrong with the data.")]));
   });
   return list;

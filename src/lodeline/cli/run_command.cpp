@@ -27,6 +27,12 @@ bool isNumber(const std::string& text) {
 /// Turns a run without a result into the error that explains it.
 void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
+  if (const std::string reason = summary.distrust(); !reason.empty()) {
+    throw EstimationError(
+        fmt::format("{}: {}; the result in {} is not to be trusted. `lodeline inspect {}` looks for units, "
+                    "axes, time stamps and calibrations that do not belong together",
+                    request.data, reason, request.output, request.data));
+  }
   if (summary.posed() > 0) {
     if (diagnostics.count(kSensorsContradict) == 0) return;
     throw EstimationError(

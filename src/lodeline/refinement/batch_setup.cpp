@@ -67,6 +67,8 @@ void BatchProblem::addStates(const Rig& rig, const ForwardRecord& record) {
       frame->from_previous = std::make_unique<Preintegration>(
           record.imuBetween(before.time, frame->time), before.gyroscopeBias(), before.accelerometerBias(),
           rig.imu, options_.preintegration);
+      if (const InertialDoubt doubt = record.doubtBetween(before.time, frame->time); doubt.any())
+        frame->from_previous->setDoubt(doubt);
     }
     window_.add(std::move(frame));
   }

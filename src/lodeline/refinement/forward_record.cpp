@@ -132,4 +132,23 @@ std::span<const ImuSample> ForwardRecord::imuBetween(Time begin, Time end) const
   return std::span(imu_).subspan(static_cast<size_t>(first - imu_.begin()), count);
 }
 
+InertialDoubt ForwardRecord::doubtBetween(Time begin, Time end) const {
+  const auto first =
+      std::upper_bound(frames_.begin(), frames_.end(), begin,
+                       [](Time time, const FrameEstimate& frame) { return time < frame.time; });
+  InertialDoubt sum;
+  for (auto frame = first; frame != frames_.end() && frame->time <= end; ++frame) {
+    const InertialDoubt& doubt = frame->inertial_doubt;
+    sum.gyroscope_density_rad_per_s_sqrtHz =
+        std::max(sum.gyroscope_density_rad_per_s_sqrtHz, doubt.gyroscope_density_rad_per_s_sqrtHz);
+    sum.accelerometer_density_m_per_s2_sqrtHz =
+        std::max(sum.accelerometer_density_m_per_s2_sqrtHz, doubt.accelerometer_density_m_per_s2_sqrtHz);
+    sum.gyroscope_bias_step_rad_per_s =
+        std::hypot(sum.gyroscope_bias_step_rad_per_s, doubt.gyroscope_bias_step_rad_per_s);
+    sum.accelerometer_bias_step_m_per_s2 =
+        std::hypot(sum.accelerometer_bias_step_m_per_s2, doubt.accelerometer_bias_step_m_per_s2);
+  }
+  return sum;
+}
+
 }  // namespace lodeline

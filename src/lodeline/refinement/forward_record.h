@@ -44,6 +44,9 @@ class ForwardRecord {
   /// Without gaps from the first state to the last, with a reading at every frame's time.
   std::span<const ImuSample> imuBetween(Time begin, Time end) const;
 
+  /// Noise that the run added to the readings between two moments: the greatest density, all steps together.
+  InertialDoubt doubtBetween(Time begin, Time end) const;
+
   /// The prior that the run started from. Its blocks' values are of no use any more; `name` says what each
   /// was: "pose" or "motion" of the first state, or a global state's name.
   struct StartPrior {

@@ -13,6 +13,9 @@
 namespace lodeline {
 namespace {
 
+/// Points that an image follows where there is something to see.
+constexpr int kManyTracks = 30;
+
 nlohmann::ordered_json rigJson(const RunDescription& run) {
   const Vec3& axis = run.camera_axis_B;
   nlohmann::ordered_json json = {{"cameras", run.cameras},
@@ -172,6 +175,8 @@ void RunSummary::add(const FrameEstimate& estimate) {
   if (posed_ == 0) first_pose_time_ = estimate.time;
   ++posed_;
   inertial_ += estimate.status == Status::Inertial;
+  degraded_ += estimate.status == Status::Degraded;
+  disagreeing_ += estimate.status == Status::Inertial && estimate.tracks >= kManyTracks;
   keyframes_ += estimate.is_keyframe;
   if (estimate.magnetometer.status != MagnetometerStatus::Off)
     ++magnetometer_frames_[estimate.magnetometer.status];
@@ -189,6 +194,14 @@ void RunSummary::add(const FrameEstimate& estimate) {
     reprojection_sigmas_ += estimate.reprojection_rms_sigmas;
     ++reprojected_frames_;
   }
+}
+
+std::string RunSummary::distrust() const {
+  const int contradicted = degraded_ + disagreeing_;
+  const bool at_the_end = last_.status == Status::Degraded;
+  if (!at_the_end && 2 * contradicted <= posed_) return {};
+  return fmt::format("images and inertial readings contradict each other in {} of {} frames{}", contradicted,
+                     posed_, at_the_end ? ", the last among them" : "");
 }
 
 double RunSummary::recordingSeconds() const {
@@ -250,8 +263,10 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
   const auto line = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<20} {}\n", name, value);
   };
-  line("completion", fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone)",
-                                 100.0 * completion(), posed_, recorded(), inertial_));
+  if (const std::string reason = distrust(); !reason.empty()) line("do not trust", reason);
+  line("completion",
+       fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone{})", 100.0 * completion(),
+                   posed_, recorded(), inertial_, degraded_ > 0 ? fmt::format(", {} degraded", degraded_) : ""));
   line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
                            keyframes_, map_points));
   line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
@@ -293,6 +308,8 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   json["images_recorded"] = recorded();
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
+  json["frames_degraded"] = degraded_;
+  if (const std::string reason = distrust(); !reason.empty()) json["do_not_trust"] = reason;
   if (posed_ == 0) json["waiting_for"] = last_.waiting_for;
   json["images"] = images;
   json["keyframes"] = keyframes_;

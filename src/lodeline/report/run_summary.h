@@ -61,6 +61,9 @@ class RunSummary {
   double completion() const {
     return recorded() > 0 ? static_cast<double>(posed_) / static_cast<double>(recorded()) : 0.0;
   }
+  /// Why the result is not to be trusted: images and inertial readings contradicted each other in most frames
+  /// or at the end. Empty otherwise.
+  std::string distrust() const;
   double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
   double pathLength_m() const { return path_m_; }
   double meanTracks() const;
@@ -92,6 +95,8 @@ class RunSummary {
   int frames_ = 0;
   int posed_ = 0;
   int inertial_ = 0;
+  int degraded_ = 0;
+  int disagreeing_ = 0;  ///< inertial although images had much to follow
   int keyframes_ = 0;
   double path_m_ = 0.0;
   double tracks_ = 0.0;

@@ -8,6 +8,7 @@
 
 #include "lodeline/base/output_file.h"
 #include "lodeline/base/time_steps.h"
+#include "lodeline/estimator/covariance.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -29,8 +30,8 @@ void append(fmt::memory_buffer& line, const Vec3& v) {
 constexpr const char* kAttitudeHeader =
     ",attitude_q_w,attitude_q_x,attitude_q_y,attitude_q_z,attitude_sigma_heading [rad],attitude_status";
 
-/// One sigma of a variance that rounding may have made negative; nan stays nan.
-double sigma(double variance) { return variance < 0.0 ? 0.0 : std::sqrt(variance); }
+/// One sigma; of a variance that is none, the sigma that stands for "not known". nan stays nan.
+double sigma(double variance) { return std::sqrt(variance <= 0.0 ? kUnknownVariance : variance); }
 
 constexpr const char* kMagnetometerHeader =
     ",sigma_heading [rad],magnetometer,field_x [T],field_y [T],field_z [T],offset_x [T],offset_y "
