@@ -183,11 +183,12 @@ double HeadingTrial::alignedRms(double begin_s) const {
   int count = 0;
   for (const HeadingSample& sample : samples) {
     if (sample.time_s < begin_s) continue;
-    sum += sample.error_rad;
+    sum += sample.finished_error_rad;
     ++count;
   }
   const double mean = count > 0 ? sum / count : 0.0;
-  return rootMeanSquare(samples, begin_s, [mean](const HeadingSample& s) { return s.error_rad - mean; });
+  return rootMeanSquare(samples, begin_s,
+                        [mean](const HeadingSample& s) { return s.finished_error_rad - mean; });
 }
 
 double HeadingTrial::share(MagnetometerStatus status) const {

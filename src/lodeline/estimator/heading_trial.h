@@ -67,7 +67,8 @@ struct HeadingTrial {
   double largest(double begin_s = 60.0) const;
   double finishedRms(double begin_s = 60.0) const;
   double claimed(double begin_s = 60.0) const;
-  /// The same for what is left when the mean error is taken off, as by aligning the trajectory.
+  /// The same of a finished run for what is left when the mean error is taken off, as by aligning the
+  /// trajectory.
   double alignedRms(double begin_s = 60.0) const;
   /// Of the frames, with a status.
   double share(MagnetometerStatus status) const;
