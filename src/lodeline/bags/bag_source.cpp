@@ -1,6 +1,9 @@
 #include "lodeline/bags/bag_source.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "lodeline/bags/checked_reading.h"
 #include "lodeline/bags/image_messages.h"
@@ -48,7 +51,12 @@ TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
   TopicWish wish;
   wish.named = rig_file.topics;
   for (const auto& [sensor, topic] : options.topics) wish.named[sensor] = topic;
-  wish.camera_count = options.with_cameras ? rig_file.rig.cameras.size() : 0;
+  Rig used = rig_file.rig;
+  selectCameras(options.camera_indices, "source.cameras", &used);
+  for (const CameraCalibration& camera : rig_file.rig.cameras) wish.rig_cameras.push_back(camera.name);
+  for (const CameraCalibration& camera : used.cameras) {
+    if (options.with_cameras) wish.cameras.push_back(camera.name);
+  }
   wish.sensors = {"imu0"};
   if (rig_file.rig.magnetometer) wish.sensors.push_back("mag0");
   if (rig_file.rig.pressure) wish.sensors.push_back("pressure0");
@@ -80,6 +88,11 @@ void refuseOtherClock(const std::string& name, const std::vector<Time>& stamps,
                   name, by_stamps_hz, by_recording_hz, kStampAdvice));
 }
 
+messages::ImageForm formOf(const BagTopic& topic) {
+  return topic.connection.type == messages::kCompressedImage.name ? messages::ImageForm::Compressed
+                                                                  : messages::ImageForm::Raw;
+}
+
 }  // namespace
 
 std::filesystem::path rigFileBeside(const std::filesystem::path& bag) {
@@ -100,11 +113,14 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
                     "densities are needed",
                     bag.string()));
   }
-  choice_ = chooseTopics(bag_, wishOf(rig_file_, options), diagnostics);
+  refuseUnknownTopics(options);
+  choice_ = chooseTopics(&bag_, wishOf(rig_file_, options), diagnostics);
   rig_ = rig_file_.rig;
+  imu_correction_ = rig_file_.imu_correction;
   if (!options.with_cameras) rig_.cameras.clear();
   settleCameras(options);
   imu_ = cursorOf("imu0");
+  accelerometer_ = {choice_.accelerometer, 0};
   magnetometer_ = cursorOf("mag0");
   pressure_ = cursorOf("pressure0");
   sonar_ = cursorOf("sonar0");
@@ -118,6 +134,20 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
   settleRates();
 }
 
+void BagSource::refuseUnknownTopics(const BagOptions& options) const {
+  std::vector<std::string> sensors;
+  for (const CameraCalibration& camera : rig_file_.rig.cameras) sensors.push_back(camera.name);
+  sensors.push_back("imu0");
+  if (rig_file_.rig.magnetometer) sensors.push_back("mag0");
+  if (rig_file_.rig.pressure) sensors.push_back("pressure0");
+  if (rig_file_.rig.sonar) sensors.push_back("sonar0");
+  for (const auto& [sensor, topic] : options.topics) {
+    if (std::find(sensors.begin(), sensors.end(), sensor) != sensors.end()) continue;
+    throw UsageError(fmt::format("--topic {}={}: the rig has no {}; it has {}", sensor, topic, sensor,
+                                 fmt::join(sensors, ", ")));
+  }
+}
+
 void BagSource::settleCameras(const BagOptions& options) {
   if (options.needs_calibration && options.with_cameras && rig_.cameras.empty()) {
     throw InputError(
@@ -129,10 +159,7 @@ void BagSource::settleCameras(const BagOptions& options) {
   for (const CameraCalibration& camera : rig_.cameras) cameras_.push_back(cursorOf(camera.name));
 }
 
-BagSource::Cursor BagSource::cursorOf(const std::string& sensor) const {
-  const auto choice = choice_.find(sensor);
-  return {choice == choice_.end() ? nullptr : choice->second, 0};
-}
+BagSource::Cursor BagSource::cursorOf(const std::string& sensor) const { return {choice_.of(sensor), 0}; }
 
 std::vector<Time> BagSource::firstStamps(Cursor cursor, const std::string& name) {
   std::vector<Time> stamps, received;
@@ -142,7 +169,10 @@ std::vector<Time> BagSource::firstStamps(Cursor cursor, const std::string& name)
     if (!message) break;
     // Messages that were recorded twice say nothing of the rate.
     if (*message == before) continue;
-    stamps.push_back(messages::stampOf(*message));
+    std::string reported_when_read_in_earnest;
+    const auto stamp = messages::checkedReading(*message, messages::stampOf, &reported_when_read_in_earnest);
+    if (!stamp) continue;
+    stamps.push_back(*stamp);
     received.push_back(cursor.topic->entries[cursor.next - 1].received);
     before = std::move(*message);
   }
@@ -189,32 +219,55 @@ auto BagSource::nextReading(Cursor* cursor, const Parse& parse)
   while (const std::optional<wire::Bytes> message = nextMessage(cursor)) {
     std::string problem;
     if (auto reading = messages::checkedReading(*message, parse, &problem)) return reading;
-    diagnostics_->report(
-        Severity::Warning, "bag_message",
-        fmt::format("{} {}: the message received at {} ns: {}; passed over", bag_.file().string(),
-                    cursor->topic->connection.topic,
-                    cursor->topic->entries[cursor->next - 1].received.nanoseconds(), problem));
+    reportMessage(*cursor, problem);
   }
   return std::nullopt;
 }
 
-std::optional<ImuSample> BagSource::nextImu() {
-  std::optional<ImuSample> sample = nextReading(&imu_, messages::parseImu);
-  if (sample) restamp(imu_, &*sample);
+void BagSource::reportMessage(const Cursor& cursor, const std::string& problem) {
+  diagnostics_->report(Severity::Warning, "bag_message",
+                       fmt::format("{} {}: the message received at {} ns: {}; passed over",
+                                   bag_.file().string(), cursor.topic->connection.topic,
+                                   cursor.topic->entries[cursor.next - 1].received.nanoseconds(), problem));
+}
+
+std::optional<ImuSample> BagSource::nextOf(Cursor* imu) {
+  std::optional<ImuSample> sample = nextReading(imu, messages::parseImu);
+  if (sample) restamp(*imu, &*sample);
   return sample;
+}
+
+std::optional<ImuSample> BagSource::nextRecordedImu() {
+  if (accelerometer_.topic == nullptr) return nextOf(&imu_);
+  return halves_.next([this] { return nextOf(&imu_); }, [this] { return nextOf(&accelerometer_); });
 }
 
 std::optional<PendingImage> BagSource::nextImage(size_t camera) {
   Cursor& cursor = cameras_[camera];
-  std::optional<wire::Bytes> bytes = nextMessage(&cursor);
+  std::optional<wire::Bytes> bytes;
+  std::string problem;
+  while ((bytes = nextMessage(&cursor)) && !messages::checkedReading(*bytes, messages::stampOf, &problem)) {
+    reportMessage(cursor, problem);
+  }
   if (!bytes) return std::nullopt;
-  const messages::ImageForm form = cursor.topic->connection.type == messages::kCompressedImage.name
-                                       ? messages::ImageForm::Compressed
-                                       : messages::ImageForm::Raw;
+  grey_ranges_.resize(cameras_.size());
+  std::optional<GreyRange>& range = grey_ranges_[camera];
+  if (!range) range = measureGreyRange(camera);
   PendingImage image = messages::pendingImage(
-      form, std::move(*bytes), fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic));
+      formOf(*cursor.topic), std::move(*bytes),
+      fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic), *range);
   restamp(cursor, &image);
   return image;
+}
+
+GreyRange BagSource::measureGreyRange(size_t camera) {
+  const BagTopic& topic = *cameras_[camera].topic;
+  const auto range = lodeline::measureGreyRange(topic.entries.size(), [&](size_t i) {
+    const std::optional<wire::Bytes> message = bag_.read(topic.entries[i]);
+    return message ? messages::storedPixels(formOf(topic), *message) : cv::Mat();
+  });
+  reportGreyRange(rig_.cameras[camera].name, range, diagnostics_);
+  return range.value_or(GreyRange());
 }
 
 std::optional<MagnetometerSample> BagSource::nextMagnetometer() {

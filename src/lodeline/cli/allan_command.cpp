@@ -135,10 +135,10 @@ void allan(const AllanArguments& arguments) {
   Diagnostics diagnostics;
   Analyses analyses(&diagnostics);
   refuseBagOptions(arguments.data, arguments.bag);
-  if (isBag(arguments.data)) {
-    readBag(arguments, &diagnostics, &analyses);
-  } else if (std::filesystem::is_regular_file(arguments.data)) {
+  if (isTableOfReadings(arguments.data)) {
     readFile(arguments, &diagnostics, &analyses);
+  } else if (isBag(arguments.data)) {
+    readBag(arguments, &diagnostics, &analyses);
   } else {
     readFolder(arguments, &diagnostics, &analyses);
   }

@@ -18,6 +18,7 @@
 #include "lodeline/report/attitude_writer.h"
 #include "lodeline/report/findings.h"
 #include "lodeline/streams/ordered_stream.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline {
 namespace {
@@ -52,7 +53,7 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
 
 std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
-  if (std::filesystem::is_regular_file(arguments.data) && !isBag(arguments.data)) {
+  if (isTableOfReadings(arguments.data)) {
     return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments);
   }
   EurocOptions options;
@@ -101,15 +102,25 @@ void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOp
                   magnetometer ? magnetometer->time_offset_to_imu_s : 0.0),
       [&] { return source.nextMagnetometer(); }, diagnostics);
   std::optional<Time> next_output;
+  SpanOfStream imu_span, field_span;
   while (imu.peek() != nullptr) {
     const ImuSample sample = imu.pop();
+    imu_span.add(sample.time);
     filter->add(sample);
-    while (magnetometer && field.peek() != nullptr && field.peek()->time <= sample.time)
+    while (magnetometer && field.peek() != nullptr && field.peek()->time <= sample.time) {
+      field_span.add(field.peek()->time);
       filter->add(field.pop());
+    }
     if (!filter->estimate() || (next_output && sample.time < *next_output)) continue;
     writer->write(*filter->estimate());
     if (rate_hz > 0.0) next_output = sample.time + Duration::fromSeconds(1.0 / rate_hz);
   }
+  while (magnetometer && field.peek() != nullptr) field_span.add(field.pop().time);
+  if (!imu_span.get() || !field_span.get()) return;
+  const std::optional<std::string> words =
+      apart("the magnetometer", *field_span.get(), "the inertial readings", *imu_span.get(),
+            "time_offset_to_imu_s of its calibration");
+  if (words) diagnostics->report(Severity::Serious, kClocksApart, *words);
 }
 
 void attitude(const AttitudeArguments& arguments) {

@@ -49,6 +49,7 @@ std::string identity(const RunRequest& request) {
   }
   settings.write(text);
   if (!options.magnetometer_calibration.empty()) text << readFileBytes(options.magnetometer_calibration);
+  for (const std::string& file : request.bag.rig_files) text << readFileBytes(file);
   return text.str();
 }
 

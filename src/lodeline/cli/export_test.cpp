@@ -206,6 +206,48 @@ TEST_F(ExportTest, ComparesAndCorrectsByADepthProfile) {
   EXPECT_THAT(uncertain.output, HasSubstr("--profile-lag"));
 }
 
+// Profiles in another unit, and flat ones.
+TEST_F(ExportTest, TakesNothingFromAProfileThatIsDoubted) {
+  std::string poses, metres = "time [s],depth [m]\n", average = "time [s],Average Depth (m),Depth (m)\n";
+  std::string feet_as_metres = metres, flat = metres, unknown = "time [s],depth [fathom]\n";
+  double sum = 0.0;
+  for (int i = 0; i <= 600; ++i) {
+    const double depth_m = 5.0 + 3.0 * std::sin(i / 40.0) + 0.01 * i;
+    poses += fmt::format("{}.5 {:.3f} 0 {:.4f} 0 0 0 1\n", 1795255200 + i, 0.1 * i, 5.0 - depth_m);
+    sum += depth_m;
+    if (i % 10 != 0) continue;
+    metres += fmt::format("{},{:.1f}\n", i, depth_m);
+    average += fmt::format("{},{:.1f},{:.1f}\n", i, sum / (i + 1), depth_m);
+    feet_as_metres += fmt::format("{},{:.1f}\n", i, depth_m / 0.3048);
+    flat += fmt::format("{},17.0\n", i);
+    unknown += fmt::format("{},{:.1f}\n", i, depth_m);
+  }
+  folder_.write("run/trajectory.tum", poses);
+  const auto exported = [&](const std::string& profile, const std::string& more = "") {
+    return exportRun("-f survex --entrance 29.83,-82.6,10 --depth-profile " +
+                     test::quoted(folder_.write("p.csv", profile)) + more);
+  };
+  const std::string taken = "5.00 m under water (by the depth profile)";
+  EXPECT_THAT(exported(metres).output, HasSubstr(taken));
+  EXPECT_THAT(exported(average).output, HasSubstr(taken));
+  for (const std::string& profile : {feet_as_metres, flat}) {
+    const Execution doubted = exported(profile);
+    EXPECT_EQ(doubted.exit_code, 0) << doubted.output;
+    EXPECT_THAT(text("run.svx"), HasSubstr("height 10.00 m, 0.00 m under water (assumed"));
+    EXPECT_THAT(doubted.output, HasSubstr("the map takes nothing from it"));
+    EXPECT_EQ(exported(profile, " --correct-depth").exit_code, 1);
+  }
+  EXPECT_THAT(exported(feet_as_metres).output, HasSubstr("as feet"));
+  const Execution refused = exported(unknown);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("fathom"));
+  folder_.write(
+      "run/run.json",
+      R"({"heading": {"reference": "true north"}, "pressure": {"gauge": {"depth_at_origin_m": 8.0}}})");
+  EXPECT_THAT(exported(metres).output, HasSubstr("8.00 m by the run's own pressure sensor"));
+  EXPECT_THAT(exported(flat).output, HasSubstr("8.00 m under water (by the run's own pressure sensor)"));
+}
+
 TEST_F(ExportTest, EndsWithOneOnBadInput) {
   const Execution nowhere = runProgram("export /nowhere -f survex");
   EXPECT_EQ(nowhere.exit_code, 1);

@@ -38,7 +38,8 @@ std::optional<Vec3> siteField(const InspectArguments& arguments) {
 /// Also recordings that nothing could be estimated from.
 std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
                                                    Diagnostics* diagnostics) {
-  if (!isBag(arguments.data) && std::filesystem::is_regular_file(arguments.data)) {
+  if (isTableOfReadings(arguments.data)) {
+    refuseBagOptions(arguments.data, arguments.bag);
     return std::make_unique<PlainSource>(arguments.data, diagnostics);
   }
   EurocOptions options;

@@ -6,6 +6,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "lodeline/cli/arguments.h"
 #include "lodeline/cli/attitude_command.h"
 #include "lodeline/cli/calibrate_command.h"
+#include "lodeline/cli/calibration_file_commands.h"
 #include "lodeline/cli/compare_command.h"
 #include "lodeline/cli/convert_command.h"
 #include "lodeline/cli/evaluate_command.h"
@@ -64,6 +66,8 @@ int main(int argc, char** argv) {
   lodeline::addAttitudeCommand(program);
   lodeline::addCalibrateCommand(program);
   lodeline::addConvertCommand(program);
+  lodeline::addConvertCalibrationCommand(program);
+  lodeline::addRigTemplateCommand(program);
   lodeline::addInspectCommand(program);
   try {
     std::vector<std::string> arguments =
@@ -76,6 +80,10 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? kGood : kBadUsage;
   } catch (const lodeline::InputError& error) {
     return fail("bad input", error, kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A path that cannot be followed: links in a circle, missing rights, too many open files.
+    const auto reason = error.path1().string() + ": " + error.code().message();
+    return fail("bad input", lodeline::InputError(reason), kBadInput);
   } catch (const lodeline::UsageError& error) {
     return fail("bad usage", error, kBadUsage);
   } catch (const lodeline::EstimationError& error) {

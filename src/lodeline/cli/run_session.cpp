@@ -1,5 +1,6 @@
 #include "lodeline/cli/run_session.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "lodeline/base/output_file.h"
@@ -86,7 +87,10 @@ void RunSession::process() {
   processed_ = std::move(*fetched_);
   fetched_.reset();
   FrameEstimate estimate = odometry_.add(processed_);
-  clocks_.add(odometry_.tracks(), processed_.imu, diagnostics_);
+  followClocks(estimate);
+  if (const std::optional<FoundDelay> found = odometry_.takeDelay()) {
+    synchronizer_.delayCamera(found->camera, found->delay_s);
+  }
   if (record_) record_->add(odometry_.tracks(), processed_.imu, estimate, odometry_.estimator());
   const std::optional<AttitudeEstimate>& attitude = attitude_.add(processed_);
   const bool has_stamp = stamp(&estimate);
@@ -95,6 +99,19 @@ void RunSession::process() {
   summary_.add(estimate);
   for (const cv::Mat& image : processed_.images) summary_.images += image.empty() ? 0 : 1;
   summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+/// Takes an offset between the clocks that came up in the run off the images to come, but for what the
+/// estimator has found by itself.
+void RunSession::followClocks(const FrameEstimate& estimate) {
+  constexpr double kLeast_s = 0.015;
+  const std::optional<double> offset_s = clocks_.add(odometry_.tracks(), processed_.imu, diagnostics_);
+  if (!offset_s) return;
+  const double by_s =
+      *offset_s - (estimate.camera_corrections ? estimate.camera_corrections->time_offset_s : 0.0);
+  if (std::abs(by_s) < kLeast_s) return;
+  synchronizer_.moveImages(Duration::fromSeconds(by_s));
+  clocks_.move(by_s);
 }
 
 /// Gives an estimate the stamp of its image as recorded, whatever was done about jumps of the clocks; where
@@ -113,6 +130,7 @@ bool RunSession::stamp(FrameEstimate* estimate) {
 }
 
 RunSummary RunSession::finish() {
+  odometry_.finish();
   if (output_) summary_.map_points = output_->finish(odometry_);
   if (output_) summary_.pictures_s = output_->picturesSeconds();
   output_.reset();  // closes what is read next

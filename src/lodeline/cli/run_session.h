@@ -51,6 +51,7 @@ class RunSession {
   const Odometry& odometry() const { return odometry_; }
 
  private:
+  void followClocks(const FrameEstimate& estimate);
   bool stamp(FrameEstimate* estimate);
 
   using Clock = std::chrono::steady_clock;

@@ -93,11 +93,10 @@ std::string CsvReader::parseLine(std::string_view line, CsvRow* row) {
   if (number_count_ > 0 && fields_.size() != column_count_) {
     return fmt::format("{} columns where {} are due", fields_.size(), column_count_);
   }
-  const std::optional<int64_t> stamp_ns =
-      parseTime_ns(fields_[0], hasDecimals(fields_[0]) ? decimal_unit_ : stamp_unit_);
+  const std::optional<TimeUnit> unit = hasDecimals(fields_[0]) ? decimal_unit_ : std::optional(stamp_unit_);
+  const std::optional<int64_t> stamp_ns = unit ? parseTime_ns(fields_[0], *unit) : std::nullopt;
   if (!stamp_ns) {
-    return fmt::format(
-        "the time stamp '{}' is neither a whole number of nanoseconds nor seconds with decimals", fields_[0]);
+    return fmt::format("the time stamp '{}' is not an integer number of nanoseconds", fields_[0]);
   }
   row->time = Time::fromNanoseconds(*stamp_ns);
   row->numbers.resize(number_count_);

@@ -59,7 +59,7 @@ class CsvReader {
   std::vector<std::string_view> fields_;
   int line_number_ = 0;
   TimeUnit stamp_unit_ = TimeUnit::Nanoseconds;
-  TimeUnit decimal_unit_ = TimeUnit::Seconds;  ///< of stamps with decimals
+  std::optional<TimeUnit> decimal_unit_;  ///< of stamps with decimals; nothing where these are no stamps
 };
 
 }  // namespace lodeline

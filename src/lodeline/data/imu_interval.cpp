@@ -23,7 +23,7 @@ ImuIntervals::Coverage ImuIntervals::readUntil(Time time) {
     buffer_.push_back(*sample);
     buffer_.back().time = moved(buffer_.back().time, correction_);
     last_ = buffer_.back().time;
-    if (!first_) first_ = last_;
+    span_.add(*last_);
     if (cut_before_) continue;
     // Until the first cut, old history goes, but never the last reading at or before `time`.
     const Time oldest = std::min(time, buffer_.back().time) - history;
@@ -73,8 +73,22 @@ void ImuIntervals::shiftFrom(Time from, Duration by) {
 void ImuIntervals::drain() {
   while (const std::optional<ImuSample> sample = pull_()) {
     last_ = moved(sample->time, correction_);
-    if (!first_) first_ = last_;
+    span_.add(*last_);
   }
+}
+
+std::vector<ImuSample> ImuIntervals::ahead(Time time) {
+  if (readUntil(time) != Coverage::Covered) return {};
+  std::vector<ImuSample> interval = {border_};
+  for (size_t i = 0; i < buffer_.size(); ++i) {
+    if (buffer_[i].time <= border_.time) continue;
+    if (buffer_[i].time >= time) {
+      interval.push_back(buffer_[i].time == time ? buffer_[i] : interpolate(interval.back(), buffer_[i], time));
+      break;
+    }
+    interval.push_back(buffer_[i]);
+  }
+  return interval;
 }
 
 }  // namespace lodeline

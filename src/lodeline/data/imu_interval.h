@@ -8,6 +8,7 @@
 #include "lodeline/base/time_steps.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/streams/ordered_stream.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline {
 
@@ -38,7 +39,7 @@ class ImuIntervals {
   /// fewer than two are there.
   struct Gap {
     Time begin, end;
-    Duration length() const { return span(end, begin); }
+    Duration length() const { return lodeline::span(end, begin); }
   };
   std::optional<Gap> longestGap(Time from, Time to) const;
   /// Moves the readings from `from` on, which was read already, by so much: their clock jumped there.
@@ -46,9 +47,14 @@ class ImuIntervals {
   /// Reads the stream to its end; what is read is lost. For messages about streams that do not meet.
   void drain();
 
-  /// The first and last reading read so far.
-  std::optional<Time> first() const { return first_; }
+  /// Of the readings read so far.
+  const std::optional<TimeSpan>& span() const { return span_.get(); }
+  /// The last reading read so far.
   std::optional<Time> last() const { return last_; }
+
+  /// The readings from the last cut to `time`, both ends interpolated, which stay for the next cut; nothing
+  /// where they do not reach so far.
+  std::vector<ImuSample> ahead(Time time);
 
   /// Readings held at present.
   size_t size() const { return buffer_.size(); }
@@ -60,7 +66,8 @@ class ImuIntervals {
   /// True readings, oldest first. After a cut the first one is the last at or before it.
   std::deque<ImuSample> buffer_;
   ImuSample border_;  ///< the interpolated reading at the last cut
-  std::optional<Time> first_, last_;
+  std::optional<Time> last_;
+  SpanOfStream span_;
   Duration correction_;  ///< of what is still to be read
 };
 

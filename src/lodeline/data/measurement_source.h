@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lodeline/sensors/imu_correction.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
 
@@ -65,15 +66,26 @@ class MeasurementSource {
 class RecordedSource : public MeasurementSource {
  public:
   const Rig& rig() const override { return rig_; }
+  /// The next reading, freed from what the calibration says of the IMU's axes.
+  std::optional<ImuSample> nextImu() final {
+    std::optional<ImuSample> sample = nextRecordedImu();
+    if (sample && imu_correction_) sample = imu_correction_->applied(*sample);
+    return sample;
+  }
+  /// The next reading as it was stored.
+  virtual std::optional<ImuSample> nextRecordedImu() = 0;
   /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
   void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
   /// The same of the IMU's noise.
   void setImuNoise(const ImuNoise& noise) { rig_.imu.noise = noise; }
 
  protected:
-  explicit RecordedSource(Rig rig) : rig_(std::move(rig)) {}
+  explicit RecordedSource(Rig rig, std::optional<ImuCorrection> imu_correction = std::nullopt)
+      : rig_(std::move(rig)), imu_correction_(imu_correction) {}
 
   Rig rig_;
+  /// Nothing where no calibration states it.
+  std::optional<ImuCorrection> imu_correction_;
 };
 
 }  // namespace lodeline

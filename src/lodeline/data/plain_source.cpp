@@ -46,7 +46,7 @@ bool PlainSource::readRow() {
   return true;
 }
 
-std::optional<ImuSample> PlainSource::nextImu() {
+std::optional<ImuSample> PlainSource::nextRecordedImu() {
   if (imu_.empty()) readRow();
   return takeFirst(&imu_);
 }

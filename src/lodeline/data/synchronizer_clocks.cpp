@@ -108,24 +108,27 @@ bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingIma
   return true;
 }
 
-/// Both streams have readings, but none of one at a time of the other.
+/// Says which sensors have readings, but none at a time of the others'.
 void Synchronizer::reportApart() {
-  if (!source_->isLive()) imu_.drain();
-  if (!imu_.first() || !imu_.last()) return;
-  const bool are_later = *first_image_time_ > *imu_.last();
-  if (!are_later && *last_image_time_ >= *imu_.first()) return;
-  diagnostics_->report(
-      Severity::Serious, "clocks_apart",
-      fmt::format(
-          "images and inertial readings have no time in common: the images of {} go from {} to {} ns, the "
-          "inertial readings from {} to {} ns, {:.6g} s {}. Two clocks, such as the time of day and the "
-          "time since the device was switched on: stamp both by one clock, or set timeshift_cam_imu (to be "
-          "added to the images' stamps) to the difference of the clocks",
-          source_->rig().cameras[0].name, first_image_time_->nanoseconds(), last_image_time_->nanoseconds(),
-          imu_.first()->nanoseconds(), imu_.last()->nanoseconds(),
-          are_later ? span(*first_image_time_, *imu_.last()).seconds()
-                    : span(*imu_.first(), *last_image_time_).seconds(),
-          are_later ? "earlier" : "later"));
+  const bool may_read_on = !source_->isLive();
+  if (may_read_on) imu_.drain();
+  const auto report = [this](const char* name, const std::optional<TimeSpan>& span, const char* other_name,
+                             const std::optional<TimeSpan>& other, const char* offset) {
+    if (!span || !other) return;
+    const std::optional<std::string> words = apart(name, *span, other_name, *other, offset);
+    if (words) diagnostics_->report(Severity::Serious, kClocksApart, *words);
+  };
+  report("the images", images_span_.get(), "the inertial readings", imu_.span(),
+         "timeshift_cam_imu (to be added to the images' stamps)");
+  if (!last_packet_time_) return;
+  const auto reportOther = [&](const char* name, auto* stream, SpanOfStream* span, const char* offset) {
+    while (may_read_on && stream->peek() != nullptr) span->add(stream->pop().time);
+    report(name, span->get(), "the images", images_span_.get(), offset);
+  };
+  reportOther("the magnetometer", &magnetometer_, &magnetometer_span_,
+              "time_offset_to_imu_s of its calibration");
+  reportOther("the pressure sensor", &depth_, &depth_span_, "its clock");
+  reportOther("the sonar", &sonar_, &sonar_span_, "its clock");
 }
 
 }  // namespace lodeline

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/evaluation/read_formats.h"
 
 namespace lodeline {
@@ -113,10 +114,14 @@ TrajectoryFormat trajectoryFormatFromString(const std::string& name) {
 
 TrajectorySource findTrajectory(const std::filesystem::path& path, std::optional<TrajectoryFormat> format) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file or folder", path.string()));
+  const RecognisedFile recognised = recogniseFile(path);
+  if (recognised.kind == FileKind::Missing) {
+    throw InputError(fmt::format("{}: {}", path.string(), recognised.what));
   }
   const auto file = std::filesystem::is_directory(path, ignored) ? findInFolder(path) : path;
+  const bool is_other = !recognised.isFolder() && !recognised.isText() &&
+                        recognised.kind != FileKind::Compressed && file.extension() != ".bin";
+  if (is_other) refuseFile(recognised, "give a trajectory (TUM, KITTI, EuRoC or COLMAP)");
   return {file, format ? *format : detectFormat(file)};
 }
 

@@ -9,6 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/export/map_times.h"
 #include "lodeline/export/survey_name.h"
+#include "lodeline/tables/text_lines.h"
 
 namespace lodeline {
 namespace {
@@ -45,6 +46,8 @@ void checkNumbers(const DiveMapOptions& options) {
   expectFinite(options.start_depth_m.value_or(0.0), "--start-depth");
   expectFinite(options.geoid_height_m, "--geoid-height");
   expectFinite(options.turn_deg.value_or(0.0), "--turn");
+  expectFinite(options.stations.spacing_m, "--spacing");
+  expectFinite(options.relative_sigma.value_or(0.0), "--relative-sigma");
   for (double sigma_m : {options.entrance_sigma_m, options.entrance_height_sigma_m}) {
     if (std::isfinite(sigma_m) && sigma_m >= 0.0) continue;
     throw UsageError(fmt::format("--entrance-sigma {}: metres of zero or more are wanted", sigma_m));
@@ -99,6 +102,14 @@ void checkEntrance(const GeodeticPosition& entrance, const std::optional<Geodeti
       1e-3 * roughDistance_m(entrance, *site), site->latitude_deg, site->longitude_deg,
       roughDistance_m(swapped, *site) < kFarthest_m ? ": latitude and longitude seem to be swapped"
                                                     : "; correct one of them"));
+}
+
+/// What headers may hold: valid UTF-8 in one line, or the rest of it would be read as data.
+std::string headerText(const std::string& text) {
+  std::string line = isUtf8(text) ? text : fromLatin1(text);
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, ' ');
+  return line;
 }
 
 std::optional<Georeference> placeOf(const std::optional<GeodeticPosition>& entrance, const std::string& crs,
@@ -215,6 +226,9 @@ DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
   survey(options, extra_walls_ENU, diagnostics, &map);
   map.notes = describe(map, run);
   map.notes.insert(map.notes.end(), options.notes.begin(), options.notes.end());
+  map.title = headerText(map.title);
+  for (std::string& name : map.team) name = headerText(name);
+  for (std::string& note : map.notes) note = headerText(note);
   return map;
 }
 

@@ -202,6 +202,12 @@ MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(
     throw UsageError(fmt::format("--crs {}: {}", crs, why));
   };
   if (code.starts_with("EPSG:") || code.starts_with("ESRI:")) proj_->crs = proj_->create(code);
+  if (code == "AUTO") {
+    refuse(fmt::format(
+        "latitude {:g}, longitude {:g} lies in no UTM zone (80 S to 84 N): are latitude and longitude "
+        "swapped? Else name a grid",
+        place.latitude_deg, place.longitude_deg));
+  }
   if (proj_->crs == nullptr) refuse("a projected grid is wanted, as UTM17N, EPSG:32617 or EPSG:6372");
   description_.code = code;
   description_.name = nameOf(code);

@@ -9,6 +9,7 @@
 
 #include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/data/yaml_file.h"
 #include "lodeline/evaluation/read_trajectory.h"
 
@@ -27,8 +28,10 @@ Trajectory readPoses(const fs::path& folder, std::string* file, Diagnostics* dia
     options.format = TrajectoryFormat::Tum;
     return readTrajectory(folder / name, options, *diagnostics);
   }
-  throw InputError(fmt::format("{}: no trajectory.tum there; give the folder that `lodeline run -o` wrote",
-                               folder.string()));
+  const RecognisedFile recognised = recogniseFile(folder);
+  const std::string needed = "no trajectory.tum there; give the folder that `lodeline run -o` wrote";
+  if (!recognised.isFolder()) refuseFile(recognised, needed);
+  throw InputError(fmt::format("{}: {}", folder.string(), needed));
 }
 
 /// Columns of states.csv by the names in its header.

@@ -60,7 +60,7 @@ void FrontEnd::check(Time time, const std::vector<cv::Mat>& images) const {
 }
 
 FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
-                              const Quat& previous_from_current_B) {
+                              const Quat& previous_from_current_B, const RigMotion& motion) {
   check(time, images);
   constexpr double kGap = 1.5;  // in usual intervals
   statistics_ = {};
@@ -88,6 +88,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
       body_from_camera_.conjugate() * previous_from_current_B_.conjugate() * body_from_camera_;
   follow(current, current_from_previous_C.toRotationMatrix());
   detect(current);
+  for (size_t m = 0; m < matchers_.size(); ++m) matchers_[m].setMotion(motion, m + 1);
   matchOthers(time, current, images);
 
   previous_ = std::move(current);
@@ -95,6 +96,11 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   previous_interval_s_ = interval_s;
   previous_from_current_B_ = Quat::Identity();
   return observations(time);
+}
+
+void FrontEnd::forgetTracks() {
+  statistics_.lost += static_cast<int>(tracks_.size());
+  tracks_.clear();
 }
 
 ImagePyramid FrontEnd::pyramid(const cv::Mat& image) const {
@@ -240,16 +246,19 @@ FrameTracks FrontEnd::observations(Time time) const {
   FrameTracks result{time};
   for (const StereoMatcher& matcher : matchers_)
     result.camera_rotations.push_back(matcher.rotationCorrection());
-  const auto add = [&](TrackId id, size_t camera, const Eigen::Vector2f& position) {
-    const Vec2 pixel = position.cast<double>();
-    const auto bearing = cameras_[camera]->unproject(pixel);
-    if (!bearing) return;
-    result.observations.push_back({id, static_cast<int>(camera), pixel, *bearing, options_.sigma_px});
-  };
   for (const Track& track : tracks_) {
-    add(track.id, 0, track.warp.position);
+    const Vec2 pixel = track.warp.position.cast<double>();
+    const auto bearing = cameras_.front()->unproject(pixel);
+    if (bearing) result.observations.push_back({track.id, 0, pixel, *bearing, options_.sigma_px});
     for (size_t m = 0; m < track.matches.size(); ++m) {
-      if (track.matches[m]) add(track.id, m + 1, track.matches[m]->position);
+      if (!track.matches[m]) continue;
+      const Vec2 matched = track.matches[m]->position.cast<double>();
+      const auto ray = cameras_[m + 1]->unproject(matched);
+      if (!ray) continue;
+      const Vec3 at_frame =
+          bearing ? matchers_[m].rayAtFrame({*bearing, *ray}, *track.inverse_depth_per_m) : *ray;
+      result.observations.push_back(
+          {track.id, static_cast<int>(m) + 1, matched, at_frame, options_.sigma_px});
     }
   }
   return result;

@@ -57,14 +57,21 @@ class FrontEnd {
 
   /// `images`: one 8-bit grey image per camera of the rig; empty where the camera gave none.
   /// `previous_from_current_B`: rotation of the body between the call before and this one. Without an image
-  /// of camera 0 nothing is observed, and tracks wait for the next one. Throws InputError where an image has
+  /// of camera 0 nothing is observed, and tracks wait for the next one. What another camera saw at another
+  /// moment, by `motion`, is given as it would have seen it at `time`. Throws InputError where an image has
   /// another size or type than the calibration says.
-  FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B);
+  FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
+                      const RigMotion& motion = {});
+
+  /// Gives up all tracks: the images so far were not those of camera 0.
+  void forgetTracks();
 
   /// Of the last frame.
   const FrontEndStatistics& statistics() const { return statistics_; }
   const std::vector<Track>& tracks() const { return tracks_; }
   const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
+  /// By how much later than thought a further camera (1, 2, ...) takes its images.
+  StereoDelay& delay(size_t camera) { return matchers_[camera - 1].delay(); }
   /// What stays at its place in the images of each camera and is not looked at.
   const std::vector<FixedStructure>& fixedStructures() const { return fixed_structures_; }
 

@@ -1,6 +1,7 @@
 #include "lodeline/inspection/camera_survey.h"
 
 #include <algorithm>
+#include <cstring>
 #include <opencv2/core.hpp>
 
 #include "lodeline/cameras/camera.h"
@@ -66,6 +67,20 @@ class Survey {
     return previous_ && time > previous_->time && (time - previous_->time).seconds() < options_.least_step_s;
   }
 
+  /// Whether an image is stored with the same bytes as the one before, which is much cheaper to tell than to
+  /// decode both. A repeat shows the moment of the image before: what follows must be compared with that.
+  bool repeats(const PendingImage& pending) {
+    if (!pending.stored) return false;
+    StoredImage image = pending.stored();
+    if (!image.problem.empty()) return false;
+    const bool is_repeat = before_ && isSame(image, *before_);
+    result_->compared += before_ ? 1 : 0;
+    before_ = std::move(image);
+    if (!is_repeat) return false;
+    if (result_->identical++ == 0) result_->first_identical = pending.time;
+    return true;
+  }
+
  private:
   /// Nothing but the turn is asked of the second image of a pair.
   void endPair(Time time, const cv::Mat& image) {
@@ -73,6 +88,16 @@ class Survey {
     compare({time, image, {}}, &unused);
     next_pair_ = previous_->time + Duration::fromSeconds(options_.pair_interval_s);
     previous_.reset();
+  }
+
+  static bool isSame(const StoredImage& a, const StoredImage& b) {
+    if (a.pixels.empty() || b.pixels.empty()) return a.file == b.file && !a.file.empty();
+    if (a.pixels.size() != b.pixels.size() || a.pixels.type() != b.pixels.type()) return false;
+    const size_t row_bytes = a.pixels.elemSize() * static_cast<size_t>(a.pixels.cols);
+    for (int row = 0; row < a.pixels.rows; ++row) {
+      if (std::memcmp(a.pixels.ptr(row), b.pixels.ptr(row), row_bytes) != 0) return false;
+    }
+    return true;
   }
 
   bool hasRightSize(const cv::Mat& image) {
@@ -87,11 +112,6 @@ class Survey {
 
   void compare(const Followed& current, FrameSurvey* frame) {
     if (previous_->image.size() != current.image.size()) return;
-    ++result_->compared;
-    if (cv::norm(previous_->image, current.image, cv::NORM_INF) == 0.0) {
-      ++result_->identical;
-      return;
-    }
     constexpr double kLongestStep_s = 0.3;
     const double step_s = (current.time - previous_->time).seconds();
     if (previous_->corners.empty() || !(step_s > 0.0) || step_s > kLongestStep_s) return;
@@ -121,6 +141,7 @@ class Survey {
   CameraSurvey* result_;
   std::optional<Followed> previous_;
   std::optional<Time> next_pair_;
+  std::optional<StoredImage> before_;  ///< the image before, in the stretches that are followed
 };
 
 /// How variedly the rig turned in each stretch; readings in order of time.
@@ -178,7 +199,7 @@ CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const Stream
   while (const std::optional<PendingImage> image = source->nextImage(camera)) {
     const bool follow = followed < options.most_turns && isWithin(image->time, spans);
     const bool sample = index++ % every == 0;
-    if (follow && survey.isTooSoon(image->time)) continue;
+    if (follow && (survey.repeats(*image) || survey.isTooSoon(image->time))) continue;
     if (!follow && !sample) continue;
     survey.look(*image, follow);
     if (follow) ++followed;

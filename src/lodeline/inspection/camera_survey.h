@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct CameraSurvey {
   std::vector<CameraTurn> turns;
   int unreadable = 0;
   std::string first_problem;
-  int identical = 0;                            ///< images with the same pixels as the one before
-  int compared = 0;                             ///< with the one before
+  int identical = 0;  ///< images with the same pixels as the one before, in stretches in which the rig turns
+  int compared = 0;   ///< with the one before, in such stretches
+  std::optional<Time> first_identical;
   int other_size = 0;                           ///< images of another size than the calibration's
   int other_width_px = 0, other_height_px = 0;  ///< the first such size
 };

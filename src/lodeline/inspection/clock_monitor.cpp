@@ -37,13 +37,14 @@ constexpr double kSame_s = 0.010;
 ClockMonitor::ClockMonitor(const Rig& rig)
     : camera_(rig.cameras.front().name), body_from_camera_(rig.cameras.front().body_from_camera.rotation) {}
 
-void ClockMonitor::add(const FrameTracks& tracks, std::span<const ImuSample> imu, Diagnostics* diagnostics) {
+std::optional<double> ClockMonitor::add(const FrameTracks& tracks, std::span<const ImuSample> imu,
+                                        Diagnostics* diagnostics) {
   for (const ImuSample& sample : imu) {
     if (imu_.empty() || sample.time > imu_.back().time) imu_.push_back(sample);
   }
   forget(tracks.time);
   const double since_s = rays_time_ ? (tracks.time - *rays_time_).seconds() : kLongestTurn_s;
-  if (since_s < kTurn_s) return;
+  if (since_s < kTurn_s) return std::nullopt;
   if (since_s < kLongestTurn_s) addTurn(tracks);
   rays_.clear();
   rays_time_ = tracks.time;
@@ -51,9 +52,16 @@ void ClockMonitor::add(const FrameTracks& tracks, std::span<const ImuSample> imu
     if (observation.camera == 0) rays_[observation.track] = observation.bearing_C;
   }
   if (!next_comparison_) next_comparison_ = tracks.time + Duration::fromSeconds(kWindow_s);
-  if (tracks.time < *next_comparison_) return;
+  if (tracks.time < *next_comparison_) return std::nullopt;
   next_comparison_ = tracks.time + Duration::fromSeconds(kBetweenComparisons_s);
-  compare(tracks.time, diagnostics);
+  return compare(tracks.time, diagnostics);
+}
+
+void ClockMonitor::move(double by_s) {
+  turns_.clear();
+  rays_time_.reset();
+  suspected_s_.reset();
+  if (offset_s_) *offset_s_ -= by_s;
 }
 
 void ClockMonitor::addTurn(const FrameTracks& tracks) {
@@ -116,16 +124,16 @@ bool ClockMonitor::keepTogether(const GyroscopeIntegral& gyroscope) const {
   return error < (1.0 - kExplained) * size && std::abs(along) < 0.5 * kLeastOffset_s * change;
 }
 
-void ClockMonitor::compare(Time now, Diagnostics* diagnostics) {
+std::optional<double> ClockMonitor::compare(Time now, Diagnostics* diagnostics) {
   const std::vector<ImuSample> samples(imu_.begin(), imu_.end());
   const GyroscopeIntegral gyroscope(samples);
   if (keepTogether(gyroscope)) {
     suspected_s_.reset();
-    return;
+    return std::nullopt;
   }
   const std::optional<TurnComparison> comparison =
       compareTurns({turns_.begin(), turns_.end()}, gyroscope, body_from_camera_);
-  if (!comparison || comparison->correlation < kLeastCorrelation) return;
+  if (!comparison || comparison->correlation < kLeastCorrelation) return std::nullopt;
   const double offset_s = comparison->time_offset_s;
   const double sigma_s = comparison->time_offset_sigma_s;
   const double change_s = offset_s - offset_s_.value_or(0.0);
@@ -133,7 +141,9 @@ void ClockMonitor::compare(Time now, Diagnostics* diagnostics) {
       std::abs(change_s) > kLeastOffset_s && std::abs(change_s) > kSignificant_sigmas * sigma_s;
   const bool is_confirmed = is_off && suspected_s_ && std::abs(*suspected_s_ - offset_s) < kSame_s;
   suspected_s_ = is_off ? std::optional(offset_s) : std::nullopt;
-  if (is_confirmed) report(now, offset_s, sigma_s, diagnostics);
+  if (!is_confirmed) return std::nullopt;
+  report(now, offset_s, sigma_s, diagnostics);
+  return offset_s;
 }
 
 void ClockMonitor::report(Time now, double offset_s, double sigma_s, Diagnostics* diagnostics) {

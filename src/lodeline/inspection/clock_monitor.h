@@ -23,16 +23,19 @@ class ClockMonitor {
   explicit ClockMonitor(const Rig& rig);
 
   /// `imu`: the readings that lead to the frame, as in FramePacket. Frames must come in order of time.
-  void add(const FrameTracks& tracks, std::span<const ImuSample> imu, Diagnostics* diagnostics);
+  /// Returns what is to be added to the stamps of the images, in s, when an offset or a change of it has just
+  /// been reported.
+  std::optional<double> add(const FrameTracks& tracks, std::span<const ImuSample> imu,
+                            Diagnostics* diagnostics);
 
-  /// To be added to the stamps of the images, as found last; nothing where none was found.
-  std::optional<double> offset_s() const { return offset_s_; }
+  /// To be called when the stamps of later images are moved by so much.
+  void move(double by_s);
 
  private:
   void addTurn(const FrameTracks& tracks);
   void forget(Time now);
   bool keepTogether(const GyroscopeIntegral& gyroscope) const;
-  void compare(Time now, Diagnostics* diagnostics);
+  std::optional<double> compare(Time now, Diagnostics* diagnostics);
   void report(Time now, double offset_s, double sigma_s, Diagnostics* diagnostics);
 
   std::string camera_;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include "lodeline/base/time_steps.h"
 #include "lodeline/inspection/findings.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline::findings {
 namespace {
@@ -94,23 +96,15 @@ class OverlapJudge {
  public:
   explicit OverlapJudge(Inspection* inspection) : inspection_(inspection) {}
 
-  void judge(const std::string& sensor, const StreamSummary& stream, double time_offset_to_imu_s) const {
+  void judge(const std::string& sensor, const StreamSummary& stream, double time_offset_to_imu_s,
+             const char* offset) const {
     const StreamSummary& imu = inspection_->imu.stream;
     if (!imu.first || !imu.last || !stream.first || !stream.last) return;
-    const Duration offset = Duration::fromSeconds(time_offset_to_imu_s);
-    const Time first = *stream.first + offset, last = *stream.last + offset;
-    if (first <= *imu.last && last >= *imu.first) return;
-    const bool is_later = first > *imu.last;
-    inspection_->findings.push_back(
-        {Severity::Serious, 100.0, "recording", "clocks_apart",
-         fmt::format(
-             "{} and imu0 have no time in common: {} goes from {} to {} ns, imu0 from {} to {} ns, {:.6g} s "
-             "{}. Two clocks, such as the time of day and the time since the device was switched on: stamp "
-             "both by one clock, or state the difference as the time offset of the sensor",
-             sensor, sensor, first.nanoseconds(), last.nanoseconds(), imu.first->nanoseconds(),
-             imu.last->nanoseconds(),
-             is_later ? (first - *imu.last).seconds() : (*imu.first - last).seconds(),
-             is_later ? "earlier" : "later")});
+    const Duration to_imu = Duration::fromSeconds(time_offset_to_imu_s);
+    const std::optional<std::string> words =
+        apart(sensor, {moved(*stream.first, to_imu), moved(*stream.last, to_imu)}, "imu0",
+              {*imu.first, *imu.last}, offset);
+    if (words) inspection_->findings.push_back({Severity::Serious, 100.0, "recording", kClocksApart, *words});
   }
 
  private:
@@ -139,12 +133,15 @@ void judgeStreams(Inspection* inspection) {
   const OverlapJudge overlap(inspection);
   for (size_t i = 0; i < inspection->cameras.size(); ++i) {
     const CameraSurvey& camera = inspection->cameras[i].survey;
-    overlap.judge(camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s);
+    overlap.judge(camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s,
+                  "timeshift_cam_imu (to be added to the images' stamps)");
   }
   if (inspection->magnetometer)
     overlap.judge("mag0", inspection->magnetometer->stream,
-                  inspection->rig.magnetometer->time_offset_to_imu_s);
-  for (const PlainSurvey& other : inspection->others) overlap.judge(other.sensor, other.stream, 0.0);
+                  inspection->rig.magnetometer->time_offset_to_imu_s,
+                  "time_offset_to_imu_s of its calibration");
+  for (const PlainSurvey& other : inspection->others)
+    overlap.judge(other.sensor, other.stream, 0.0, "its clock");
   if (inspection->imu.stream.readings > 0) {
     StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
   }

@@ -94,6 +94,17 @@ class OrderedStream {
     return is_ready_ ? &ahead_.front() : nullptr;
   }
 
+  /// The reading after the one that peek() shows, as far as it is known; null at the end.
+  const Reading* following() const { return ahead_.size() > 1 ? &ahead_[1] : nullptr; }
+
+  /// Moves all readings that were not taken out yet.
+  void shift(Duration by) {
+    correction_ = correction_ + by;
+    for (std::deque<Reading>* readings : {&ahead_, &unsorted_, &burst_}) {
+      for (Reading& reading : *readings) reading.time = moved(reading.time, by);
+    }
+  }
+
   /// Takes the next reading out; only after peek() has shown that there is one.
   Reading pop() {
     Reading reading = std::move(ahead_.front());

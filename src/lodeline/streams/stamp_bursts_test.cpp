@@ -7,7 +7,7 @@ namespace {
 
 std::vector<Time> times(const std::vector<double>& seconds) {
   std::vector<Time> result;
-  for (const double s : seconds) result.push_back(Time::fromSeconds(1.4e9 + s));
+  for (const double s : seconds) result.push_back(Time::fromSeconds(1.4e9) + Duration::fromSeconds(s));
   return result;
 }
 
@@ -49,8 +49,8 @@ TEST(StampBursts, AreSpreadOutSinceTheBurstBefore) {
   BurstSpreader spreader(Duration::fromSeconds(0.005));
   EXPECT_EQ(spreader.spread(times({0.049, 0.05})), times({0.045, 0.05}));
   EXPECT_EQ(spreader.spread(times({0.07, 0.07, 0.07, 0.07})), times({0.055, 0.06, 0.065, 0.07}));
-  EXPECT_TRUE(spreader.separates(Time::fromSeconds(0.07), Time::fromSeconds(0.09)));
-  EXPECT_FALSE(spreader.separates(Time::fromSeconds(0.07), Time::fromSeconds(0.0701)));
+  EXPECT_TRUE(spreader.separates(times({0.07})[0], times({0.09})[0]));
+  EXPECT_FALSE(spreader.separates(times({0.07})[0], times({0.0701})[0]));
   // After half a second of silence, readings keep their period.
   EXPECT_EQ(spreader.spread(times({0.6, 0.6})), times({0.595, 0.6}));
 }

@@ -22,6 +22,8 @@ struct TableOptions {
   std::function<bool(const std::vector<ColumnName>&)> is_header;
   /// The kind of the finding for a row that is passed over.
   std::string finding = "csv_row";
+  /// Rows may end early; the cells that are not there are empty.
+  bool rows_may_be_short = false;
 };
 
 /// Reads a table of text row by row, whatever wrote it: UTF-8, UTF-16 or Latin-1, plain or compressed with
