@@ -75,16 +75,16 @@ TEST(PlausibleNoise, RaisesWhatNoSensorHas) {
   EXPECT_NEAR(blind.accelerometer_random_walk_m_per_s3_sqrtHz, 2e-4, 1e-9);
   EXPECT_EQ(diagnostics.count("imu_noise_too_small"), 4);
   const ImuNoise seen = plausibleNoise(nearly_zero, {5.0e-5, 1.0e-3}, &diagnostics);
-  EXPECT_EQ(seen.gyroscope_density_rad_per_s_sqrtHz, 5.0e-5);
-  EXPECT_EQ(seen.accelerometer_density_m_per_s2_sqrtHz, 1.0e-3);
+  EXPECT_NEAR(seen.gyroscope_density_rad_per_s_sqrtHz, 7.5e-5, 1e-9);
+  EXPECT_NEAR(seen.accelerometer_density_m_per_s2_sqrtHz, 1.5e-3, 1e-9);
 }
 
 TEST(PlausibleNoise, RaisesATenthOfWhatTheReadingsShow) {
   const ImuNoise tenth{1.7e-5, 1.9e-6, 2e-4, 3e-4};
   Diagnostics diagnostics;
   const ImuNoise noise = plausibleNoise(tenth, {1.0e-4, 1.4e-3}, &diagnostics);
-  EXPECT_EQ(noise.gyroscope_density_rad_per_s_sqrtHz, 1.0e-4);
-  EXPECT_EQ(noise.accelerometer_density_m_per_s2_sqrtHz, 1.4e-3);
+  EXPECT_NEAR(noise.gyroscope_density_rad_per_s_sqrtHz, 1.5e-4, 1e-9);
+  EXPECT_NEAR(noise.accelerometer_density_m_per_s2_sqrtHz, 2.1e-3, 1e-9);
   ASSERT_EQ(diagnostics.ranked().size(), 1u);
   EXPECT_EQ(diagnostics.ranked().front().severity, Severity::Warning);
 }

@@ -48,20 +48,15 @@ class Survey {
       return;
     }
     if (!hasRightSize(loaded.image)) return;
+    if (follow && previous_ && options_.pair_interval_s > 0.0) return endPair(pending.time, loaded.image);
     const ImagePyramid pyramid(loaded.image, kPyramidLevels);
     Followed current{pending.time, loaded.image, {}};
     for (const Eigen::Vector2f& corner : detector_.detect(pyramid, mask_, {})) {
       current.corners.emplace_back(corner.x(), corner.y());
     }
     FrameSurvey frame{pending.time, assess(pyramid), static_cast<int>(current.corners.size()), -1};
-    const bool ends_pair = follow && previous_;
-    if (ends_pair) compare(current, &frame);
+    if (follow && previous_) compare(current, &frame);
     result_->frames.push_back(frame);
-    if (ends_pair && options_.pair_interval_s > 0.0) {
-      next_pair_ = previous_->time + Duration::fromSeconds(options_.pair_interval_s);
-      previous_.reset();
-      return;
-    }
     previous_.reset();
     if (follow) previous_ = std::move(current);
   }
@@ -87,6 +82,14 @@ class Survey {
   }
 
  private:
+  /// Nothing but the turn is asked of the second image of a pair.
+  void endPair(Time time, const cv::Mat& image) {
+    FrameSurvey unused;
+    compare({time, image, {}}, &unused);
+    next_pair_ = previous_->time + Duration::fromSeconds(options_.pair_interval_s);
+    previous_.reset();
+  }
+
   static bool isSame(const StoredImage& a, const StoredImage& b) {
     if (a.pixels.empty() || b.pixels.empty()) return a.file == b.file && !a.file.empty();
     if (a.pixels.size() != b.pixels.size() || a.pixels.type() != b.pixels.type()) return false;
