@@ -147,6 +147,7 @@ RunSummary RunSession::finish() {
     usage = ProcessUsage::now();
   }
   summary_.peak_memory_MB = usage.peak_memory_MB;
+  summary_.reportBlindStretches(diagnostics_);
   if (!folder_.empty())
     writeOutput(std::filesystem::path(folder_) / "run.json", summary_.json(*diagnostics_));
   return summary_;

@@ -40,6 +40,34 @@ TEST(RunSummary, TrustsARunWhoseContradictionPassed) {
   EXPECT_THAT(summary.text({}), testing::HasSubstr("40 degraded"));
 }
 
+TEST(RunSummary, OnlyFramesWithVisionCountAsComplete) {
+  RunSummary summary = summaryOf(
+      {{Status::Tracking, 60}, {Status::Inertial, 20, 5}, {Status::Degraded, 10}, {Status::Tracking, 10}});
+  summary.recorded_images = 140;
+  EXPECT_DOUBLE_EQ(summary.completion(), 0.5);
+  EXPECT_THAT(summary.text({}),
+              testing::HasSubstr("50.0 % (70 of 140 images gave a pose of their own; 20 by"));
+  Diagnostics diagnostics;
+  summary.reportBlindStretches(&diagnostics);
+  ASSERT_EQ(diagnostics.count("blind_stretch"), 1);
+  EXPECT_THAT(diagnostics.ranked()[0].first_message, testing::HasSubstr("0:03.0 to 0:04.0"));
+}
+
+TEST(RunSummary, IsSixLinesUnlessAllFiguresAreWanted) {
+  const RunSummary summary = summaryOf({{Status::Tracking, 60}});
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  EXPECT_LE(lines(summary.text({})), 6);
+  EXPECT_GT(lines(summary.text({}, true)), 6);
+}
+
+TEST(RunSummary, FindingsNameTimesSinceTheFirstFrame) {
+  const RunSummary summary = summaryOf({{Status::Tracking, 60}});
+  Diagnostics diagnostics;
+  diagnostics.report(Severity::Warning, "image_missing", "no image at 101500000000 ns");
+  EXPECT_THAT(summary.text(diagnostics), testing::HasSubstr("no image at 0:01.5"));
+  EXPECT_EQ(nlohmann::json::parse(summary.json(diagnostics))["findings"][0]["message"], "no image at 0:01.5");
+}
+
 TEST(RunSummary, DistrustsARunThatEndsInAContradiction) {
   const RunSummary summary = summaryOf({{Status::Tracking, 99}, {Status::Degraded, 1}});
   const std::string reason =
