@@ -120,12 +120,13 @@ void Odometry::lookForDelays(const FramePacket& packet) {
     const CameraCalibration& camera = front_end_.cameras()[i]->calibration();
     diagnostics_->report(
         Severity::Warning, "cameras_apart",
-        fmt::format("{}: at stamp {} ns its images turn out to be taken {:.1f} ms {} than those of {} that they are "
-                    "paired with; used so from there on. Trigger both cameras together, or set "
-                    "timeshift_cam_imu of {} to {:.4f} s",
-                    camera.name, packet.image_stamp.nanoseconds(), 1e3 * std::abs(found->delay_s),
-                    found->delay_s > 0.0 ? "later" : "earlier", front_end_.cameras()[0]->calibration().name,
-                    camera.name, camera.time_offset_to_imu_s + found->delay_s));
+        fmt::format(
+            "{}: at stamp {} ns its images turn out to be taken {:.1f} ms {} than those of {} that they are "
+            "paired with; used so from there on. Trigger both cameras together, or set "
+            "timeshift_cam_imu of {} to {:.4f} s",
+            camera.name, packet.image_stamp.nanoseconds(), 1e3 * std::abs(found->delay_s),
+            found->delay_s > 0.0 ? "later" : "earlier", front_end_.cameras()[0]->calibration().name,
+            camera.name, camera.time_offset_to_imu_s + found->delay_s));
   }
 }
 

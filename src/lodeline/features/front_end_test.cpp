@@ -313,7 +313,8 @@ std::pair<double, size_t> rightRayError(int later, bool motion_is_known) {
     }
   }
   if (errors_px.empty()) return {0.0, 0};
-  std::nth_element(errors_px.begin(), errors_px.begin() + static_cast<int>(errors_px.size() / 2), errors_px.end());
+  std::nth_element(errors_px.begin(), errors_px.begin() + static_cast<int>(errors_px.size() / 2),
+                   errors_px.end());
   return {errors_px[errors_px.size() / 2], errors_px.size()};
 }
 
