@@ -8,9 +8,9 @@
 
 #include "lodeline/base/angles.h"
 #include "lodeline/evaluation/read_trajectory.h"
+#include "lodeline/export/landmark_file.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/report/landmark_writer.h"
-#include "lodeline/report/read_landmarks.h"
 #include "lodeline/report/run_table.h"
 #include "lodeline/report/state_writer.h"
 
@@ -150,17 +150,18 @@ TEST_F(TurnedRun, TurnsLandmarksAndNamesTheirWorld) {
     writer.write({{1, Vec3(3.0, -2.0, 1.0), 5}, {2, Vec3(0.0, 1.0, 0.0), 7}});
     writer.finish(HeadingReference::Magnetic, turn_);
   }
-  const std::vector<Eigen::Vector3f> points = readLandmarks(folder_ / "landmarks.ply");
+  Diagnostics diagnostics;
+  const std::vector<MapLandmark> points = readLandmarkFile(folder_ / "landmarks.ply", &diagnostics);
   ASSERT_EQ(points.size(), 2u);
-  EXPECT_LT((points[0].cast<double>() - turn_.apply(Vec3(3.0, -2.0, 1.0))).norm(), 1e-6);
-  EXPECT_LT((points[1].cast<double>() - turn_.apply(Vec3(0.0, 1.0, 0.0))).norm(), 1e-6);
+  EXPECT_LT((points[0].position - turn_.apply(Vec3(3.0, -2.0, 1.0))).norm(), 1e-6);
+  EXPECT_LT((points[1].position - turn_.apply(Vec3(0.0, 1.0, 0.0))).norm(), 1e-6);
   EXPECT_NE(comment().find("x east, y north (magnetic north)"), std::string::npos) << comment();
   {
     LandmarkWriter writer(folder_);
     writer.write({{1, Vec3(3.0, -2.0, 1.0), 5}});
     writer.finish(HeadingReference::Start, std::nullopt);
   }
-  EXPECT_EQ(readLandmarks(folder_ / "landmarks.ply").at(0), Eigen::Vector3f(3.0F, -2.0F, 1.0F));
+  EXPECT_EQ(readLandmarkFile(folder_ / "landmarks.ply", &diagnostics).at(0).position, Vec3(3.0, -2.0, 1.0));
   EXPECT_NE(comment().find("x, y from the start heading"), std::string::npos) << comment();
   EXPECT_EQ(comment().find("east"), std::string::npos);
   { LandmarkWriter killed(folder_); }
