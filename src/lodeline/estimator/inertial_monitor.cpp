@@ -45,10 +45,6 @@ void InertialMonitor::check(Window& window, const FactorMaker& factors,
   const std::optional<MotionInnovation> innovation =
       motionInnovation(window, factors, before, is_before_placed_);
   is_before_placed_ = innovation.has_value();
-  if (getenv("MONDBG")) {
-    if (!innovation) fmt::print(stderr, "MON {} none\n", window.newest().time.nanoseconds() % 1000000000000);
-    else fmt::print(stderr, "MON {} rot {:.4f} nis {:.2f} steady {:.4f} pos {:.4f} nis {:.2f} steady {:.4f} alarms {}{}{}\n", window.newest().time.nanoseconds() % 1000000000000, innovation->rotation_W.norm(), innovation->rotation_nis, innovation->rotation_from_steady_W.norm(), innovation->position_W.norm(), innovation->position_nis, innovation->position_from_steady_W.norm(), gyroscope_.isAlarmed(), accelerometer_.isAlarmed(), images_.isAlarmed());
-  }
   if (!innovation) return;
   const Time time = window.newest().time;
   const bool contradicts = innovation->rotation_nis > InnovationWatch::kBeyondChance ||
