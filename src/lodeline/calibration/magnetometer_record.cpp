@@ -12,6 +12,7 @@
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/folder_calibration.h"
 #include "lodeline/data/plain_csv.h"
+#include "lodeline/evaluation/text_table.h"
 #include "lodeline/streams/inertial_screen.h"
 #include "lodeline/streams/ordered_stream.h"
 #include "lodeline/streams/time_span.h"
@@ -34,7 +35,7 @@ void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* 
         Severity::Notice, "imu_noise_assumed",
         (layout.sensor("imu0") / "sensor.yaml").string() + ": missing; the noise of a usual IMU is assumed");
   }
-  CsvReader csv(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
+  CsvReader csv(layout.csv("imu0"), 6, diagnostics, kInertialRate);
   for (CsvRow row; csv.next(&row);) {
     if (!record->imu.empty() && row.time <= record->imu.back().time) {
       diagnostics->report(Severity::Warning, "imu_order",
@@ -75,7 +76,7 @@ Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) 
   if (rig.rig.magnetometer) {
     reading.record.body_from_magnetometer = rig.rig.magnetometer->body_from_magnetometer.rotation;
   }
-  CsvReader rows(csv, CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
+  CsvReader rows(csv, 3, diagnostics, kMagnetometerRate);
   for (CsvRow row; rows.next(&row);) {
     reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
   }

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <fstream>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <string_view>
 #include <vector>
 

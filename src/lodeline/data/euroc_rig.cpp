@@ -18,9 +18,9 @@ struct StreamStart {
   std::string why_empty;  ///< where there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate) {
+StreamStart readStart(const std::filesystem::path& csv, int number_count, PlausibleRate rate) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, content, &reported_when_read_in_earnest, rate);
+  CsvReader reader(csv, number_count, &reported_when_read_in_earnest, rate);
   StreamStart start;
   CsvRow row, before;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
@@ -37,9 +37,9 @@ StreamStart readStart(const std::filesystem::path& csv, CsvContent content, Plau
 }
 
 /// For sensors that cannot be done without.
-std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate,
+std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, PlausibleRate rate,
                                 const char* advice) {
-  StreamStart start = readStart(csv, content, rate);
+  StreamStart start = readStart(csv, number_count, rate);
   if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
   return std::move(start.stamps);
 }
@@ -57,7 +57,7 @@ double settleImageRate(const EurocLayout& layout, const std::string& camera, dou
   ImageList list(layout.sensor(camera), &reported_when_read_in_earnest);
   if (!list.isMade()) {
     const std::vector<Time> stamps = requireStamps(
-        layout.csv(camera), CsvContent::Images, kCameraRate, "restore it or leave this camera out (source.cameras)");
+        layout.csv(camera), 0, kCameraRate, "restore it or leave this camera out (source.cameras)");
     return settleRate(layout.csv(camera).string(), stamps, stated_hz, diagnostics);
   }
   std::vector<Time> stamps;
@@ -107,13 +107,13 @@ std::vector<CameraCalibration> settledCameras(const EurocLayout& layout, const R
 
 /// A sensor that a recording may or may not have.
 template <typename Calibration>
-std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, CsvContent content,
+std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, int number_count,
                                            const std::optional<Calibration>& described,
                                            Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
   const PlausibleRate rate = std::string_view(name) == "pressure0" ? kDepthRate : kMagnetometerRate;
-  const StreamStart start = readStart(csv, content, rate);
+  const StreamStart start = readStart(csv, number_count, rate);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
@@ -138,7 +138,7 @@ ImuCalibration settledImu(const EurocLayout& layout, const RigFile& described, D
   if (described.has_imu) imu = described.rig.imu;
   const std::filesystem::path csv = layout.csv("imu0");
   const std::vector<Time> stamps =
-      requireStamps(csv, CsvContent::Imu, kInertialRate, "the estimator cannot work without inertial data");
+      requireStamps(csv, 6, kInertialRate, "the estimator cannot work without inertial data");
   settle(csv, stamps, ImuCalibration().rate_hz, &imu.rate_hz, diagnostics);
   return imu;
 }
@@ -154,9 +154,9 @@ Rig settleEurocRig(const EurocLayout& layout, const RigFile& described, Diagnost
   Rig rig;
   rig.imu = settledImu(layout, described, diagnostics);
   rig.cameras = settledCameras(layout, described.rig, diagnostics);
-  rig.magnetometer = settledOptional(layout, "mag0", CsvContent::Magnetometer, described.rig.magnetometer, diagnostics);
-  rig.pressure = settledOptional(layout, "pressure0", CsvContent::Depth, described.rig.pressure, diagnostics);
-  rig.sonar = settledOptional(layout, "sonar0", CsvContent::Sonar, described.rig.sonar, diagnostics);
+  rig.magnetometer = settledOptional(layout, "mag0", 3, described.rig.magnetometer, diagnostics);
+  rig.pressure = settledOptional(layout, "pressure0", 1, described.rig.pressure, diagnostics);
+  rig.sonar = settledOptional(layout, "sonar0", 2, described.rig.sonar, diagnostics);
   return rig;
 }
 

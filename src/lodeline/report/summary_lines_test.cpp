@@ -26,7 +26,9 @@ TEST(SummaryLines, LongValuesAreWrappedBetweenWords) {
   int count = 0;
   while (std::getline(text, line)) {
     EXPECT_EQ(line.substr(0, 17), count++ == 0 ? "  warning        " : std::string(17, ' '));
-    if (line.find('x') == std::string::npos) EXPECT_LE(line.size(), 113u);
+    if (line.find('x') == std::string::npos) {
+      EXPECT_LE(line.size(), 113u);
+    }
     joined += (joined.empty() ? "" : " ") + line.substr(17);
   }
   EXPECT_EQ(joined, value);
