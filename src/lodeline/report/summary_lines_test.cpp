@@ -18,7 +18,11 @@ TEST(SummaryLines, ShortValuesTakeALine) {
 TEST(SummaryLines, LongValuesAreWrappedBetweenWords) {
   SummaryLines lines;
   std::string value;
-  for (int i = 0; i < 60; ++i) value += (i > 0 ? " word" : "word") + std::to_string(i);
+  for (int i = 0; i < 60; ++i) {
+    if (i > 0) value += ' ';
+    value += "word";
+    value += std::to_string(i);
+  }
   value += " " + std::string(150, 'x');
   lines.add("warning", value);
   std::istringstream text(lines.text());
@@ -29,7 +33,8 @@ TEST(SummaryLines, LongValuesAreWrappedBetweenWords) {
     if (line.find('x') == std::string::npos) {
       EXPECT_LE(line.size(), 113u);
     }
-    joined += (joined.empty() ? "" : " ") + line.substr(17);
+    if (!joined.empty()) joined += ' ';
+    joined += line.substr(17);
   }
   EXPECT_EQ(joined, value);
 }
