@@ -23,7 +23,8 @@ TEST(SummaryLines, LongValuesAreWrappedBetweenWords) {
     value += "word";
     value += std::to_string(i);
   }
-  value += " " + std::string(150, 'x');
+  value += ' ';
+  value.append(150, 'x');
   lines.add("warning", value);
   std::istringstream text(lines.text());
   std::string line, joined;
