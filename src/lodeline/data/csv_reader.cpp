@@ -2,81 +2,216 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
+#include "lodeline/data/sensor_columns.h"
+#include "lodeline/tables/pose_columns.h"
 
 namespace lodeline {
 namespace {
 
-using csv::parse;
-using csv::split;
-using csv::trimmed;
+std::size_t numberCount(CsvContent content) {
+  switch (content) {
+    case CsvContent::Images:
+      return 0;
+    case CsvContent::Imu:
+      return 6;
+    case CsvContent::Magnetometer:
+      return 3;
+    case CsvContent::Depth:
+      return 1;
+    case CsvContent::Sonar:
+      return 2;
+    case CsvContent::TruePose:
+      return 7;
+  }
+  return 0;
+}
 
-bool startsLikeNumber(std::string_view text) {
-  return !text.empty() && (text.front() == '-' || text.front() == '+' || std::isdigit(text.front()) != 0);
+const char* expectedHeader(CsvContent content) {
+  switch (content) {
+    case CsvContent::Images:
+      return "#timestamp [ns],filename";
+    case CsvContent::Imu:
+      return "#timestamp [ns],w_x [rad/s],w_y [rad/s],w_z [rad/s],a_x [m/s^2],a_y [m/s^2],a_z [m/s^2]";
+    case CsvContent::Magnetometer:
+      return "#timestamp [ns],m_x [T],m_y [T],m_z [T]";
+    case CsvContent::Depth:
+      return "#timestamp [ns],depth [m]";
+    case CsvContent::Sonar:
+      return "#timestamp [ns],range [m],angle [rad]";
+    case CsvContent::TruePose:
+      return "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z";
+  }
+  return "";
+}
+
+std::unique_ptr<ByteSource> openSensorFile(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored) || std::filesystem::is_directory(file, ignored)) {
+    throw InputError(fmt::format("{}: cannot be opened; the recording needs this file", file.string()));
+  }
+  return openFile(file);
+}
+
+bool namesTime(const ColumnName& column) {
+  return column.hasWord({"t"}) || column.hasStem({"time", "stamp"});
+}
+
+/// A header names a time and at least what is needed; others are prose.
+TableOptions optionsFor(std::size_t number_count) {
+  TableOptions options;
+  options.is_header = [number_count](const std::vector<ColumnName>& columns) {
+    return columns.size() > number_count && std::any_of(columns.begin(), columns.end(), namesTime);
+  };
+  // Lists of images may or may not have the column of names, whatever the header says.
+  options.needs_rows = false;  // the caller knows whether it can do without
+  options.least_columns = number_count == 0 ? 2 : 1 + number_count;
+  options.optional_columns = number_count == 0 ? 1 : 0;
+  return options;
+}
+
+std::optional<std::size_t> columnWith(const std::vector<ColumnName>& columns,
+                                      std::initializer_list<std::string_view> words) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].hasWord(words)) return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-CsvReader::CsvReader(std::filesystem::path file, int number_count, Diagnostics* diagnostics)
+CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, std::filesystem::path file, std::size_t number_count,
+                     Diagnostics* diagnostics)
     : file_(std::move(file)),
-      number_count_(static_cast<size_t>(number_count)),
-      column_count_(1 + number_count_),
-      diagnostics_(diagnostics),
-      stream_(file_) {
-  if (!stream_ || std::filesystem::is_directory(file_)) {
-    throw InputError(fmt::format("{}: cannot be opened; the recording needs this file", file_.string()));
+      table_(std::move(bytes), file_.string(), optionsFor(number_count), diagnostics) {
+  for (std::size_t i = 0; i < number_count; ++i) numbers_.push_back({1 + i, 1.0});
+  text_column_ = 1 + number_count;
+}
+
+CsvReader::CsvReader(const std::filesystem::path& file, int number_count, Diagnostics* diagnostics)
+    : CsvReader(openSensorFile(file), file, static_cast<std::size_t>(number_count), diagnostics) {}
+
+CsvReader::CsvReader(const std::filesystem::path& file, CsvContent content, Diagnostics* diagnostics)
+    : CsvReader(openSensorFile(file), file, content, diagnostics) {}
+
+CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, const std::filesystem::path& file, CsvContent content,
+                     Diagnostics* diagnostics)
+    : CsvReader(std::move(bytes), file, numberCount(content), diagnostics) {
+  if (table_.hasHeader()) findColumns(content);
+}
+
+void CsvReader::findColumns(CsvContent content) {
+  const std::vector<ColumnName>& columns = table_.columns();
+  const SensorColumns sensors = findSensorColumns(columns);
+  const auto factorOf = [&](const StatedUnit& unit, Quantity quantity) {
+    if (!unit.isUnknown()) return unit.factor.value_or(1.0);
+    throw InputError(fmt::format("{}: unit '{}' of the {} is not known; known for it are {}", file_.string(),
+                                 unit.text, toString(quantity), knownUnits(quantity)));
+  };
+  std::vector<NumberColumn> found;
+  const auto addTriad = [&](const TriadColumns& triad, Quantity quantity) {
+    for (const std::size_t column : triad.column) found.push_back({column, factorOf(triad.unit, quantity)});
+  };
+  const auto addLength = [&](std::optional<std::size_t> column) {
+    if (column)
+      found.push_back({*column, factorOf(statedUnit(columns[*column], Quantity::Length), Quantity::Length)});
+  };
+  switch (content) {
+    case CsvContent::Images:
+      if (const auto name = columnWith(columns, {"filename", "file", "name", "image", "path"}))
+        text_column_ = *name;
+      break;
+    case CsvContent::Imu:
+      if (sensors.angular_rate) addTriad(*sensors.angular_rate, Quantity::AngularRate);
+      if (sensors.specific_force) addTriad(*sensors.specific_force, Quantity::SpecificForce);
+      break;
+    case CsvContent::Magnetometer:
+      if (sensors.field) {
+        addTriad(*sensors.field, Quantity::MagneticField);
+      } else if (sensors.unnamed) {
+        addTriad(*sensors.unnamed, Quantity::MagneticField);
+      }
+      break;
+    case CsvContent::Depth:
+      addLength(columnWith(columns, {"depth"}));
+      if (found.empty() && std::any_of(columns.begin(), columns.end(),
+                                       [](const ColumnName& column) { return column.hasStem({"press"}); })) {
+        throw InputError(file_.string() +
+                         ": its header names a pressure; expected a depth in metres, positive down");
+      }
+      break;
+    case CsvContent::Sonar: {
+      addLength(columnWith(columns, {"range", "distance"}));
+      const auto angle = columnWith(columns, {"angle", "bearing", "azimuth"});
+      const bool is_degrees = angle && columns[*angle].unit.find_first_of("dD") != std::string::npos &&
+                              columns[*angle].unit.find("rad") == std::string::npos;
+      if (angle) found.push_back({*angle, is_degrees ? M_PI / 180.0 : 1.0});
+      break;
+    }
+    case CsvContent::TruePose:
+      if (const std::optional<PoseColumns> pose = findPoseColumns(columns)) {
+        for (const std::size_t column : pose->position) found.push_back({column, 1.0});
+        for (const std::size_t i : {3, 0, 1, 2}) found.push_back({pose->rotation[i], 1.0});
+        text_column_ = 1 + numbers_.size();
+      }
+      break;
   }
+  if (found.size() == numbers_.size()) {
+    numbers_ = std::move(found);
+  } else if (!found.empty()) {
+    throw InputError(
+        fmt::format("{}: its header names only part of what it should hold; expected columns such as `{}`",
+                    file_.string(), expectedHeader(content)));
+  }
+  findTimeColumn(sensors);
+}
+
+void CsvReader::findTimeColumn(const SensorColumns& sensors) {
+  if (sensors.times.empty()) return;
+  const TimeColumn& time = sensors.times.front();
+  if (!time.unknown_unit.empty()) {
+    throw InputError(
+        fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are ns, us, ms, s",
+                    file_.string(), time.unknown_unit, time.name));
+  }
+  time_column_ = time.column;
+  states_time_unit_ = time.unit.has_value();
+  time_unit_ = time.unit.value_or(TimeUnit::Nanoseconds);
+}
+
+std::string CsvReader::parseRow(CsvRow* row) const {
+  const std::string_view stamp = table_.cell(time_column_);
+  // Where the header says nothing, a stamp is a whole number of nanoseconds.
+  const bool may_have_decimals = states_time_unit_ && time_unit_ != TimeUnit::Nanoseconds;
+  const bool is_whole = stamp.find_first_not_of("+-0123456789") == std::string_view::npos;
+  const std::optional<int64_t> stamp_ns = table_.time_ns(time_column_, time_unit_);
+  if (!stamp_ns || !(is_whole || may_have_decimals)) {
+    return fmt::format("the time stamp '{}' is not an integer number of nanoseconds", excerpt(stamp));
+  }
+  row->time = Time::fromNanoseconds(*stamp_ns);
+  row->numbers.resize(numbers_.size());
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    const std::optional<double> number = table_.number(numbers_[i].column);
+    if (!number || !std::isfinite(*number)) {
+      return fmt::format("'{}' in column {} is not a {}number", excerpt(table_.cell(numbers_[i].column)),
+                         numbers_[i].column + 1, number ? "finite " : "");
+    }
+    row->numbers[i] = numbers_[i].to_si * *number;
+  }
+  row->text = text_column_ < table_.columnCount() ? std::string(table_.cell(text_column_)) : std::string();
+  return {};
 }
 
 bool CsvReader::next(CsvRow* row) {
-  while (std::getline(stream_, line_)) {
-    ++line_number_;
-    const std::string_view line = trimmed(line_);
-    if (line.empty()) continue;
-    if (line.front() == '#' || (line_number_ == 1 && !startsLikeNumber(line))) {
-      readHeader(line);
-      continue;
-    }
-    std::string problem = parseLine(line, row);
+  while (table_.next()) {
+    const std::string problem = parseRow(row);
     if (problem.empty()) return true;
-    if (stream_.eof()) problem += " (the file's last line, without a line end: it was cut off)";
-    diagnostics_->report(Severity::Warning, "csv_row",
-                         fmt::format("{}:{}: {}; row passed over", file_.string(), line_number_, problem));
+    table_.passOver(problem);
   }
   return false;
-}
-
-void CsvReader::readHeader(std::string_view header) {
-  split(header, &fields_);
-  // Only a header that names at least what is needed says something about the columns; others are prose.
-  if (fields_.size() > column_count_) column_count_ = fields_.size();
-}
-
-std::string CsvReader::parseLine(std::string_view line, CsvRow* row) {
-  split(line, &fields_);
-  // Lists without numbers may or may not have their text column, whatever the header says.
-  if (number_count_ > 0 && fields_.size() != column_count_) {
-    return fmt::format("{} columns where {} are due", fields_.size(), column_count_);
-  }
-  int64_t stamp_ns = 0;
-  if (!parse(fields_[0], &stamp_ns)) {
-    return fmt::format("the time stamp '{}' is not an integer number of nanoseconds", fields_[0]);
-  }
-  row->time = Time::fromNanoseconds(stamp_ns);
-  row->numbers.resize(number_count_);
-  for (size_t i = 0; i < number_count_; ++i) {
-    if (!parse(fields_[1 + i], &row->numbers[i])) {
-      return fmt::format("'{}' in column {} is not a number", fields_[1 + i], i + 2);
-    }
-    if (!std::isfinite(row->numbers[i])) {
-      return fmt::format("'{}' in column {} is not a finite number", fields_[1 + i], i + 2);
-    }
-  }
-  row->text = fields_.size() > 1 + number_count_ ? std::string(fields_[1 + number_count_]) : std::string();
-  return {};
 }
 
 }  // namespace lodeline

@@ -16,9 +16,9 @@ struct StreamStart {
   std::string why_empty;  ///< where there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, int number_count) {
+StreamStart readStart(const std::filesystem::path& csv, CsvContent content) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, number_count, &reported_when_read_in_earnest);
+  CsvReader reader(csv, content, &reported_when_read_in_earnest);
   StreamStart start;
   CsvRow row;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
@@ -32,8 +32,8 @@ StreamStart readStart(const std::filesystem::path& csv, int number_count) {
 }
 
 /// For sensors that cannot be done without.
-std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, const char* advice) {
-  StreamStart start = readStart(csv, number_count);
+std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent content, const char* advice) {
+  StreamStart start = readStart(csv, content);
   if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
   return std::move(start.stamps);
 }
@@ -78,7 +78,7 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
     }
     const std::filesystem::path csv = layout.csv(name);
     const std::vector<Time> stamps =
-        requireStamps(csv, 0, "restore it or leave this camera out (source.cameras)");
+        requireStamps(csv, CsvContent::Images, "restore it or leave this camera out (source.cameras)");
     camera.rate_hz = settleRate(csv.string(), stamps, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));
@@ -88,14 +88,14 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
 
 /// A sensor that a recording may or may not have.
 template <typename Calibration>
-std::optional<Calibration> readOptional(const EurocLayout& layout, const char* name, int number_count,
+std::optional<Calibration> readOptional(const EurocLayout& layout, const char* name, CsvContent content,
                                         Rigid3 Calibration::*body_from_sensor,
                                         Calibration (*read)(const std::filesystem::path& file,
                                                             Diagnostics* diagnostics),
                                         const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
-  const StreamStart start = readStart(csv, number_count);
+  const StreamStart start = readStart(csv, content);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
@@ -128,7 +128,7 @@ EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnosti
     if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = euroc_rate_hz;
   }
   const std::vector<Time> stamps =
-      requireStamps(layout.csv("imu0"), 6, "the estimator cannot work without inertial data");
+      requireStamps(layout.csv("imu0"), CsvContent::Imu, "the estimator cannot work without inertial data");
   imu.calibration.rate_hz =
       settleRate(layout.csv("imu0").string(), stamps, imu.calibration.rate_hz, diagnostics);
   if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = ImuCalibration().rate_hz;
@@ -158,13 +158,14 @@ Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics) {
   rig.imu = imu.calibration;
   rig.cameras = readCameras(layout, kalibr, body_from_euroc_body, diagnostics);
   rig.magnetometer = readOptional<MagnetometerCalibration>(
-      layout, "mag0", 3, &MagnetometerCalibration::body_from_magnetometer, readEurocMagnetometer,
-      body_from_euroc_body, diagnostics);
-  rig.pressure =
-      readOptional<PressureCalibration>(layout, "pressure0", 1, &PressureCalibration::body_from_pressure,
-                                        readEurocPressure, body_from_euroc_body, diagnostics);
-  rig.sonar = readOptional<SonarCalibration>(layout, "sonar0", 2, &SonarCalibration::body_from_sonar,
-                                             readEurocSonar, body_from_euroc_body, diagnostics);
+      layout, "mag0", CsvContent::Magnetometer, &MagnetometerCalibration::body_from_magnetometer,
+      readEurocMagnetometer, body_from_euroc_body, diagnostics);
+  rig.pressure = readOptional<PressureCalibration>(layout, "pressure0", CsvContent::Depth,
+                                                   &PressureCalibration::body_from_pressure,
+                                                   readEurocPressure, body_from_euroc_body, diagnostics);
+  rig.sonar =
+      readOptional<SonarCalibration>(layout, "sonar0", CsvContent::Sonar, &SonarCalibration::body_from_sonar,
+                                     readEurocSonar, body_from_euroc_body, diagnostics);
   return rig;
 }
 

@@ -24,18 +24,18 @@ EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
     : RecordedSource(readEurocRig(layout, diagnostics)),
       layout_(std::move(layout)),
       diagnostics_(diagnostics) {
-  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics);
+  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), CsvContent::Imu, diagnostics);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
     if (layout_.needs_cameras && !std::filesystem::is_directory(images)) {
       throw InputError(
           fmt::format("{}: folder of images missing; unpack the recording completely", images.string()));
     }
-    cameras_.emplace_back(layout_.csv(camera.name), 0, diagnostics);
+    cameras_.emplace_back(layout_.csv(camera.name), CsvContent::Images, diagnostics);
   }
-  if (rig_.magnetometer) magnetometer_.emplace(layout_.csv("mag0"), 3, diagnostics);
-  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), 1, diagnostics);
-  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), 2, diagnostics);
+  if (rig_.magnetometer) magnetometer_.emplace(layout_.csv("mag0"), CsvContent::Magnetometer, diagnostics);
+  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), CsvContent::Depth, diagnostics);
+  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics);
 }
 
 std::optional<ImuSample> EurocSource::nextImu() {
