@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything dependencies demo experiments test test-sanitized bench install package format check-format clean
+.PHONY: build everything fuzz faults dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
 
 # The program and the library; `everything` has the tests, benchmarks and studies as well.
@@ -33,10 +33,20 @@ test: everything check-format
 # wrote, and those that the rest computes with. The layers from the estimator up take longer to build so than all of
 # these, and the estimator's tests work through whole simulated scenes.
 SANITIZED = base geometry cameras inertial data bags features factors evaluation
-test-sanitized: dependencies
+test-sanitized: dependencies fuzz
 	cmake --preset asan
 	cmake --build --preset asan --target $(SANITIZED:%=%_test)
 	ctest --test-dir build/asan --output-on-failure -j2 -L fast -R "^($$(echo $(SANITIZED) | tr ' ' '|'))_test"
+
+# Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
+faults: build
+	./scripts/faults.sh build/faults --seeds 1 2 3 --repeat 2 --allow-told 5 --markdown build/faults/table.md
+
+# Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
+fuzz: dependencies
+	cmake --preset fuzz
+	cmake --build --preset fuzz --target lodeline_fuzzers
+	ctest --test-dir build/fuzz --output-on-failure -j2 -L fuzz
 
 bench: everything
 	./scripts/benchmark.sh

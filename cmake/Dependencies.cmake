@@ -22,6 +22,8 @@ add_library(geographiclib::geographiclib UNKNOWN IMPORTED)
 set_target_properties(geographiclib::geographiclib PROPERTIES
                       IMPORTED_LOCATION ${GEOGRAPHICLIB_LIBRARY}
                       INTERFACE_INCLUDE_DIRECTORIES ${GEOGRAPHICLIB_INCLUDE_DIR})
+find_package(PROJ 9 CONFIG REQUIRED)
+find_package(LibXml2 REQUIRED)  # dive logs
 find_package(nanoflann REQUIRED)
 # Debian's cpp-httplib brings no CMake package on Debian 12.
 find_path(HTTPLIB_INCLUDE_DIR httplib.h REQUIRED)

@@ -14,6 +14,6 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
     "libeigen3-dev, libceres-dev, libopencv-dev, libyaml-cpp-dev, libcli11-dev, libfmt-dev, nlohmann-json3-dev, \
-zlib1g-dev, libdeflate-dev, libgeographiclib-dev, libnanoflann-dev, libembree-dev, libtbb-dev, libcpp-httplib-dev, gnuplot-nox")
+zlib1g-dev, libdeflate-dev, libgeographiclib-dev, libproj-dev, libxml2-dev, libnanoflann-dev, libembree-dev, libtbb-dev, libcpp-httplib-dev, gnuplot-nox")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "survex, therion, qgis")
 include(CPack)

@@ -29,7 +29,7 @@ measure() {
   local name=$1 data=$2 run
   shift 2
   for run in $(seq "${RUNS:-3}"); do
-    "$bin/lodeline" run "$data" -o "$output/run" -q --no-report --set "source.duration_s=${SECONDS_USED:-0}" "$@" \
+    "$bin/lodeline" run "$data" -o "$output/run" --overwrite -q --no-report --set "source.duration_s=${SECONDS_USED:-0}" "$@" \
       2>/dev/null
     cp "$output/run/run.json" "$output/$run.json"
     echo "$(figure "$output/$run.json" total) $output/$run.json"
@@ -109,10 +109,10 @@ fi
 
 [ "$minutes" != 0 ] || exit 0
 echo "== the same to and fro for $minutes minutes"
-"$bin/lodeline" run "$recording" -o "$output/run" -q --no-report 2>/dev/null
+"$bin/lodeline" run "$recording" -o "$output/run" --overwrite -q --no-report 2>/dev/null
 to_and_fro "$recording" "$output/dive" "$minutes" "$(tail -1 "$output/run/states.csv" | cut -d, -f17-19)"
 frames=$(grep -vc '^#' "$output/dive/mav0/cam0/data.csv")
-"$bin/lodeline" run "$output/dive" -o "$output/long" -q --no-report 2>/dev/null &
+"$bin/lodeline" run "$output/dive" -o "$output/long" --overwrite -q --no-report 2>/dev/null &
 process=$!
 echo 'progress  memory now'
 for tenth in 1 2 3 4 5 6 7 8 9; do

@@ -12,8 +12,8 @@ announce() { printf '\n== lodeline %s\n' "$*"; }
 estimate() {  # FOLDER ALIGNMENT [SETTING...]
   local folder=$1 alignment=$2
   shift 2
-  announce run "$recording" -o "$folder" --draw-tracks 3 "$@"
-  "$lodeline" run "$recording" -o "$folder" --draw-tracks 3 "$@"
+  announce run "$recording" -o "$folder" --overwrite --draw-tracks 3 "$@"
+  "$lodeline" run "$recording" -o "$folder" --overwrite --draw-tracks 3 "$@"
   [ -n "$reference" ] || return 0
   announce evaluate "$folder" "$reference" --align "$alignment" --plots "$folder/plots"
   "$lodeline" evaluate "$folder" "$reference" --align "$alignment" --interpolate --images "$recording/mav0/cam0" \

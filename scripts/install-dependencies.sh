@@ -8,11 +8,12 @@ packages=(
   libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  libgeographiclib-dev libnanoflann-dev libembree-dev libtbb-dev
+  libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev
   libbz2-dev liblz4-dev librosbag-storage-dev libsensor-msgs-dev  # ROS 1 bags
   libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
   python3-roslaunch  # roscore, for the node's test
   python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program, for the tests
+  clang-14 libclang-rt-14-dev  # the fuzzers of the readers
   gnuplot-nox
   libcpp-httplib-dev
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes

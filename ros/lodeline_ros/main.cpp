@@ -100,6 +100,7 @@ void runNode() {
   parameters.run.data = inWords(topics);
   parameters.run.sample_pictures = parameters.report;
 
+  parameters.source.imu_correction = rig_file.imu_correction;
   LiveSource source(rig, parameters.source, &diagnostics);
   const EndWatch watch(&source);
   const SensorIntake intake(node, topics, rig_file.water, &source);

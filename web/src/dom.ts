@@ -57,14 +57,18 @@ export function toggle(text: string, checked: boolean, action: (checked: boolean
   return element("label", "toggle", box, text);
 }
 
-/// Calls once the element comes near the visible part of the page.
+/// Calls once the element comes near the visible part of the page, or the page is printed.
 export function whenNear(node: Element, action: () => void): void {
-  const observer = new IntersectionObserver((entries) => {
-    if (!entries.some((entry) => entry.isIntersecting)) return;
+  const call = () => {
     observer.disconnect();
+    window.removeEventListener("beforeprint", call);
     action();
+  };
+  const observer = new IntersectionObserver((entries) => {
+    if (entries.some((entry) => entry.isIntersecting)) call();
   }, { rootMargin: "300px" });
   observer.observe(node);
+  window.addEventListener("beforeprint", call);
 }
 
 /// Calls at once and whenever the element changes its width or height.

@@ -20,7 +20,8 @@ export function head(view: View): HTMLElement {
     name.textContent = run.name;
     const rig = run.summary.rig;
     const cameras = rig?.cameras?.length ?? 0;
-    const parts = [run.summary.data, cameras ? `${cameras} camera${cameras > 1 ? "s" : ""} at ${rig?.camera_rate_hz} Hz` : null,
+    const parts = [run.is_refined ? "refined trajectory (trajectory_refined.tum)" : "causal trajectory (trajectory.tum)",
+      run.summary.data, cameras ? `${cameras} camera${cameras > 1 ? "s" : ""} at ${rig?.camera_rate_hz} Hz` : null,
       rig?.imu_rate_hz ? `IMU at ${rig.imu_rate_hz} Hz` : null, run.summary.program];
     from.textContent = parts.filter(Boolean).join(" · ");
     document.title = `${run.name} – Lodeline`;

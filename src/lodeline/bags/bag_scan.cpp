@@ -9,6 +9,7 @@
 
 #include "lodeline/bags/record.h"
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 
 namespace lodeline {
 namespace {
@@ -85,6 +86,8 @@ class Scan {
       throw InputError(fmt::format("{}: a bag of an old format ({}); convert it with `rosbag fix`", name,
                                    text.substr(0, text.find('\n'))));
     }
+    const RecognisedFile recognised = recogniseFile(file_.path());
+    if (recognised.kind != FileKind::Ros1Bag) refuseFile(recognised, "a ROS 1 bag begins with #ROSBAG V2.0");
     throw InputError(name + ": no ROS 1 bag (it does not begin with #ROSBAG V2.0)");
   }
 

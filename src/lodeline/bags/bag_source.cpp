@@ -1,11 +1,14 @@
 #include "lodeline/bags/bag_source.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "lodeline/bags/checked_reading.h"
 #include "lodeline/bags/image_messages.h"
 #include "lodeline/base/error.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -48,12 +51,46 @@ TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
   TopicWish wish;
   wish.named = rig_file.topics;
   for (const auto& [sensor, topic] : options.topics) wish.named[sensor] = topic;
-  wish.camera_count = options.with_cameras ? rig_file.rig.cameras.size() : 0;
+  Rig used = rig_file.rig;
+  selectCameras(options.camera_indices, "source.cameras", &used);
+  for (const CameraCalibration& camera : rig_file.rig.cameras) wish.rig_cameras.push_back(camera.name);
+  for (const CameraCalibration& camera : used.cameras) {
+    if (options.with_cameras) wish.cameras.push_back(camera.name);
+  }
   wish.sensors = {"imu0"};
   if (rig_file.rig.magnetometer) wish.sensors.push_back("mag0");
   if (rig_file.rig.pressure) wish.sensors.push_back("pressure0");
   if (rig_file.rig.sonar) wish.sensors.push_back("sonar0");
   return wish;
+}
+
+constexpr const char* kStampAdvice =
+    "use a driver that fills the header's stamp, or give --received-times, which takes the times at which "
+    "the "
+    "messages were recorded: milliseconds late and uneven, so that one camera may not start and poses are "
+    "worse";
+
+/// Header stamps that pass much faster or slower than the time does in which the messages were recorded.
+void refuseOtherClock(const std::string& name, const std::vector<Time>& stamps,
+                      const std::vector<Time>& received) {
+  constexpr double kOtherUnit = 100.0;
+  const auto rate_hz = [](const std::vector<Time>& times) {
+    std::vector<double> since_first_s;
+    for (const Time time : times) since_first_s.push_back((time - times.front()).seconds());
+    return stampsPerUnit(since_first_s);
+  };
+  const double by_stamps_hz = rate_hz(stamps), by_recording_hz = rate_hz(received);
+  if (!(by_stamps_hz > 0.0) || !(by_recording_hz > 0.0)) return;
+  if (by_stamps_hz < kOtherUnit * by_recording_hz && by_recording_hz < kOtherUnit * by_stamps_hz) return;
+  throw InputError(
+      fmt::format("{}: by their header stamps the messages come at {:.4g} Hz, by the times of their "
+                  "recording at {:.4g} Hz: the stamps count another unit; {}",
+                  name, by_stamps_hz, by_recording_hz, kStampAdvice));
+}
+
+messages::ImageForm formOf(const BagTopic& topic) {
+  return topic.connection.type == messages::kCompressedImage.name ? messages::ImageForm::Compressed
+                                                                  : messages::ImageForm::Raw;
 }
 
 }  // namespace
@@ -67,7 +104,8 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
     : RecordedSource(Rig()),
       bag_(bag, diagnostics),
       diagnostics_(diagnostics),
-      rig_file_(readRig(bag, options, diagnostics)) {
+      rig_file_(readRig(bag, options, diagnostics)),
+      use_received_times_(options.use_received_times) {
   if (!options.needs_calibration) addUncalibrated(bag_, &rig_file_);
   if (!rig_file_.has_imu) {
     throw InputError(
@@ -75,11 +113,14 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
                     "densities are needed",
                     bag.string()));
   }
-  choice_ = chooseTopics(bag_, wishOf(rig_file_, options), diagnostics);
+  refuseUnknownTopics(options);
+  choice_ = chooseTopics(&bag_, wishOf(rig_file_, options), diagnostics);
   rig_ = rig_file_.rig;
+  imu_correction_ = rig_file_.imu_correction;
   if (!options.with_cameras) rig_.cameras.clear();
   settleCameras(options);
   imu_ = cursorOf("imu0");
+  accelerometer_ = {choice_.accelerometer, 0};
   magnetometer_ = cursorOf("mag0");
   pressure_ = cursorOf("pressure0");
   sonar_ = cursorOf("sonar0");
@@ -93,6 +134,20 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
   settleRates();
 }
 
+void BagSource::refuseUnknownTopics(const BagOptions& options) const {
+  std::vector<std::string> sensors;
+  for (const CameraCalibration& camera : rig_file_.rig.cameras) sensors.push_back(camera.name);
+  sensors.push_back("imu0");
+  if (rig_file_.rig.magnetometer) sensors.push_back("mag0");
+  if (rig_file_.rig.pressure) sensors.push_back("pressure0");
+  if (rig_file_.rig.sonar) sensors.push_back("sonar0");
+  for (const auto& [sensor, topic] : options.topics) {
+    if (std::find(sensors.begin(), sensors.end(), sensor) != sensors.end()) continue;
+    throw UsageError(fmt::format("--topic {}={}: the rig has no {}; it has {}", sensor, topic, sensor,
+                                 fmt::join(sensors, ", ")));
+  }
+}
+
 void BagSource::settleCameras(const BagOptions& options) {
   if (options.needs_calibration && options.with_cameras && rig_.cameras.empty()) {
     throw InputError(
@@ -104,22 +159,33 @@ void BagSource::settleCameras(const BagOptions& options) {
   for (const CameraCalibration& camera : rig_.cameras) cameras_.push_back(cursorOf(camera.name));
 }
 
-BagSource::Cursor BagSource::cursorOf(const std::string& sensor) const {
-  const auto choice = choice_.find(sensor);
-  return {choice == choice_.end() ? nullptr : choice->second, 0};
+BagSource::Cursor BagSource::cursorOf(const std::string& sensor) const { return {choice_.of(sensor), 0}; }
+
+std::vector<Time> BagSource::firstStamps(Cursor cursor, const std::string& name) {
+  std::vector<Time> stamps, received;
+  wire::Bytes before;
+  while (stamps.size() < kStampsForRate) {
+    std::optional<wire::Bytes> message = nextMessage(&cursor);
+    if (!message) break;
+    // Messages that were recorded twice say nothing of the rate.
+    if (*message == before) continue;
+    std::string reported_when_read_in_earnest;
+    const auto stamp = messages::checkedReading(*message, messages::stampOf, &reported_when_read_in_earnest);
+    if (!stamp) continue;
+    stamps.push_back(*stamp);
+    received.push_back(cursor.topic->entries[cursor.next - 1].received);
+    before = std::move(*message);
+  }
+  if (use_received_times_) return received;
+  refuseOtherClock(name, stamps, received);
+  return stamps;
 }
 
 void BagSource::settleRates() {
-  const auto settle = [&](Cursor cursor, double fallback_hz, double* rate_hz) {
+  const auto settle = [&](const Cursor& cursor, double fallback_hz, double* rate_hz) {
     if (cursor.topic == nullptr) return;
-    std::vector<Time> stamps;
-    while (stamps.size() < kStampsForRate) {
-      const std::optional<wire::Bytes> message = nextMessage(&cursor);
-      if (!message) break;
-      stamps.push_back(messages::stampOf(*message));
-    }
     const std::string name = fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic);
-    *rate_hz = settleRate(name, stamps, *rate_hz, diagnostics_);
+    *rate_hz = settleRate(name, firstStamps(cursor, name), *rate_hz, diagnostics_, kStampAdvice);
     if (!(*rate_hz > 0.0)) *rate_hz = fallback_hz;
   };
   settle(imu_, ImuCalibration().rate_hz, &rig_.imu.rate_hz);
@@ -142,42 +208,80 @@ std::optional<wire::Bytes> BagSource::nextMessage(Cursor* cursor) {
   return std::nullopt;
 }
 
+template <typename Reading>
+void BagSource::restamp(const Cursor& cursor, Reading* reading) const {
+  if (use_received_times_) reading->time = cursor.topic->entries[cursor.next - 1].received;
+}
+
 template <typename Parse>
 auto BagSource::nextReading(Cursor* cursor, const Parse& parse)
     -> std::optional<decltype(parse(std::span<const uint8_t>()))> {
   while (const std::optional<wire::Bytes> message = nextMessage(cursor)) {
     std::string problem;
     if (auto reading = messages::checkedReading(*message, parse, &problem)) return reading;
-    diagnostics_->report(
-        Severity::Warning, "bag_message",
-        fmt::format("{} {}: the message received at {} ns: {}; passed over", bag_.file().string(),
-                    cursor->topic->connection.topic,
-                    cursor->topic->entries[cursor->next - 1].received.nanoseconds(), problem));
+    reportMessage(*cursor, problem);
   }
   return std::nullopt;
 }
 
-std::optional<ImuSample> BagSource::nextImu() { return nextReading(&imu_, messages::parseImu); }
+void BagSource::reportMessage(const Cursor& cursor, const std::string& problem) {
+  diagnostics_->report(Severity::Warning, "bag_message",
+                       fmt::format("{} {}: the message received at {} ns: {}; passed over",
+                                   bag_.file().string(), cursor.topic->connection.topic,
+                                   cursor.topic->entries[cursor.next - 1].received.nanoseconds(), problem));
+}
+
+std::optional<ImuSample> BagSource::nextOf(Cursor* imu) {
+  std::optional<ImuSample> sample = nextReading(imu, messages::parseImu);
+  if (sample) restamp(*imu, &*sample);
+  return sample;
+}
+
+std::optional<ImuSample> BagSource::nextRecordedImu() {
+  if (accelerometer_.topic == nullptr) return nextOf(&imu_);
+  return halves_.next([this] { return nextOf(&imu_); }, [this] { return nextOf(&accelerometer_); });
+}
 
 std::optional<PendingImage> BagSource::nextImage(size_t camera) {
   Cursor& cursor = cameras_[camera];
-  std::optional<wire::Bytes> bytes = nextMessage(&cursor);
+  std::optional<wire::Bytes> bytes;
+  std::string problem;
+  while ((bytes = nextMessage(&cursor)) && !messages::checkedReading(*bytes, messages::stampOf, &problem)) {
+    reportMessage(cursor, problem);
+  }
   if (!bytes) return std::nullopt;
-  const messages::ImageForm form = cursor.topic->connection.type == messages::kCompressedImage.name
-                                       ? messages::ImageForm::Compressed
-                                       : messages::ImageForm::Raw;
-  return messages::pendingImage(form, std::move(*bytes),
-                                fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic));
+  grey_ranges_.resize(cameras_.size());
+  std::optional<GreyRange>& range = grey_ranges_[camera];
+  if (!range) range = measureGreyRange(camera);
+  PendingImage image = messages::pendingImage(
+      formOf(*cursor.topic), std::move(*bytes),
+      fmt::format("{} {}", bag_.file().string(), cursor.topic->connection.topic), *range);
+  restamp(cursor, &image);
+  return image;
+}
+
+GreyRange BagSource::measureGreyRange(size_t camera) {
+  const BagTopic& topic = *cameras_[camera].topic;
+  const auto range = lodeline::measureGreyRange(topic.entries.size(), [&](size_t i) {
+    const std::optional<wire::Bytes> message = bag_.read(topic.entries[i]);
+    return message ? messages::storedPixels(formOf(topic), *message) : cv::Mat();
+  });
+  reportGreyRange(rig_.cameras[camera].name, range, diagnostics_);
+  return range.value_or(GreyRange());
 }
 
 std::optional<MagnetometerSample> BagSource::nextMagnetometer() {
-  return nextReading(&magnetometer_, messages::parseMagneticField);
+  std::optional<MagnetometerSample> sample = nextReading(&magnetometer_, messages::parseMagneticField);
+  if (sample) restamp(magnetometer_, &*sample);
+  return sample;
 }
 
 std::optional<DepthSample> BagSource::nextDepth() {
-  return nextReading(&pressure_, [this](std::span<const uint8_t> message) {
+  std::optional<DepthSample> sample = nextReading(&pressure_, [this](std::span<const uint8_t> message) {
     return messages::parseFluidPressure(message, rig_file_.water);
   });
+  if (sample) restamp(pressure_, &*sample);
+  return sample;
 }
 
 std::optional<SonarSample> BagSource::nextSonar() {
@@ -187,6 +291,11 @@ std::optional<SonarSample> BagSource::nextSonar() {
     const auto echoes = nextReading(&sonar_, is_scan ? messages::parseLaserScan : messages::parseRange);
     if (!echoes) return std::nullopt;
     echoes_.assign(echoes->begin(), echoes->end());
+    for (SonarSample& echo : echoes_) {
+      const Duration since_first = echo.time - echoes->front().time;
+      restamp(sonar_, &echo);
+      echo.time = echo.time + since_first;
+    }
   }
   const SonarSample echo = echoes_.front();
   echoes_.pop_front();

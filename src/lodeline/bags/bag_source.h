@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "lodeline/bags/bag_file.h"
+#include "lodeline/bags/imu_halves.h"
 #include "lodeline/bags/messages.h"
 #include "lodeline/bags/topic_choice.h"
+#include "lodeline/data/grey_range.h"
 #include "lodeline/data/measurement_source.h"
 #include "lodeline/data/rig_file.h"
 
@@ -18,23 +20,28 @@ namespace lodeline {
 struct BagOptions {
   /// Files that describe the rig (see readRigFiles). None: NAME.rig.yaml beside NAME.bag.
   std::vector<std::filesystem::path> rig_files;
-  /// Topics by sensor ("cam0", "imu0", …), before what the rig files name.
+  /// Topics by sensor ("cam0", "imu0", …), before what the rig files name; two for the halves of an IMU, with
+  /// a comma between them.
   std::map<std::string, std::string> topics;
   /// N of the camN to use, as in EurocOptions.
   std::vector<int> camera_indices;
   bool with_cameras = true;
   /// False for what needs readings only, as converting: sensors without a calibration get the default one.
   bool needs_calibration = true;
+  /// Stamps readings with the times at which they were recorded, not with those of their headers: for drivers
+  /// that write none. Transport and its jitter are in these times.
+  bool use_received_times = false;
 };
 
 /// A ROS 1 bag as a recording, streamed: one message of each topic at a time.
 class BagSource : public RecordedSource {
  public:
   /// Throws InputError as BagFile, readRigFiles and chooseTopics do, and for a rig that has no camera or IMU
-  /// or a bag that has none of its readings. `diagnostics` must outlive the source.
+  /// or a bag that has none of its readings; UsageError for a topic of a sensor that the rig does not have.
+  /// `diagnostics` must outlive the source.
   BagSource(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics);
 
-  std::optional<ImuSample> nextImu() override;
+  std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
@@ -50,10 +57,18 @@ class BagSource : public RecordedSource {
     size_t next = 0;
   };
 
+  GreyRange measureGreyRange(size_t camera);
+  void refuseUnknownTopics(const BagOptions& options) const;
   void settleCameras(const BagOptions& options);
   void settleRates();
   Cursor cursorOf(const std::string& sensor) const;
   std::optional<wire::Bytes> nextMessage(Cursor* cursor);
+  void reportMessage(const Cursor& cursor, const std::string& problem);
+  std::vector<Time> firstStamps(Cursor cursor, const std::string& name);
+  /// Gives a reading of the message that was read last its time.
+  template <typename Reading>
+  void restamp(const Cursor& cursor, Reading* reading) const;
+  std::optional<ImuSample> nextOf(Cursor* imu);
   template <typename Parse>
   auto nextReading(Cursor* cursor, const Parse& parse)
       -> std::optional<decltype(parse(std::span<const uint8_t>()))>;
@@ -61,9 +76,12 @@ class BagSource : public RecordedSource {
   BagFile bag_;
   Diagnostics* diagnostics_;
   RigFile rig_file_;
+  bool use_received_times_;
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
-  Cursor imu_, magnetometer_, pressure_, sonar_;
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< of each camera, once its first image is asked for
+  Cursor imu_, accelerometer_, magnetometer_, pressure_, sonar_;
+  ImuHalves halves_;                ///< of an IMU in two topics
   std::deque<SonarSample> echoes_;  ///< of the scan last read
 };
 

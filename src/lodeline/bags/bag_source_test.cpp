@@ -113,6 +113,38 @@ TEST_F(BagSourceTest, SaysWhyAnImageCannotBeUsed) {
   EXPECT_THAT(problem_, HasSubstr("encoding 'hsv' is not supported"));
 }
 
+TEST_F(BagSourceTest, CamerasThatAreLeftOutNeedNoTopic) {
+  const std::string rig = std::string(kRig) + "cam0: " + fmt::format(kCamera, "/i/padded") +
+                          "\ncam1: " + fmt::format(kCamera, "/none");
+  test::writeContent(rig_, rig);
+  BagOptions options;
+  options.rig_files = {rig_};
+  options.topics = {{"sonar0", "/sonar"}};
+  try {
+    BagSource(bag_, options, &diagnostics_);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has no topic /none for cam1"));
+    EXPECT_THAT(error.what(), HasSubstr("--set source.cameras"));
+  }
+  options.camera_indices = {0};
+  BagSource source(bag_, options, &diagnostics_);
+  EXPECT_EQ(source.rig().cameras.size(), 1u);
+  EXPECT_TRUE(source.nextImage(0));
+}
+
+TEST_F(BagSourceTest, ADamagedHeaderCostsOneMessage) {
+  // The length of a frame's name, which stands behind sequence number and stamp, becomes 2 GB.
+  test::runRosbag(fmt::format("damaged '{}'", bag_.string()));
+  BagSource source = open(std::string(kRig) + "cam0: " + fmt::format(kCamera, "/i/grey"));
+  int images = 0, readings = 0;
+  while (source.nextImage(0)) ++images;
+  while (source.nextImu()) ++readings;
+  EXPECT_EQ(images, 2);
+  EXPECT_EQ(readings, 2);
+  EXPECT_EQ(diagnostics_.count("bag_message"), 2);
+}
+
 TEST_F(BagSourceTest, SaysWhichTopicsThereAre) {
   const auto refusal = [&](const std::string& rig, std::map<std::string, std::string> topics) {
     try {

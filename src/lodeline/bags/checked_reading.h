@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/bags/wire.h"
+#include "lodeline/bags/messages.h"
 #include "lodeline/sensors/measurements.h"
 
 namespace lodeline::messages {
@@ -15,6 +15,10 @@ inline bool isFinite(const ImuSample& s) {
   return s.angular_velocity_B.allFinite() && s.specific_force_B.allFinite();
 }
 inline bool isFinite(const MagnetometerSample& s) { return s.field_M.allFinite(); }
+inline bool isFinite(const StampedPosition& s) {
+  return s.world_from_body.translation.allFinite() && s.world_from_body.rotation.coeffs().allFinite();
+}
+inline bool isFinite(Time) { return true; }
 inline bool isFinite(const DepthSample& s) { return std::isfinite(s.depth_m); }
 inline bool isFinite(const std::vector<SonarSample>&) { return true; }  // parsing leaves odd echoes out
 

@@ -10,7 +10,7 @@
 namespace lodeline {
 
 struct ConvertOptions {
-  /// For bags: files that describe the rig, and topics by sensor, as in BagOptions.
+  /// Files that describe the rig, and for bags topics by sensor, as in BagOptions.
   std::vector<std::filesystem::path> rig_files;
   std::map<std::string, std::string> topics;
   /// Of the bag that is written: "none", "lz4" or "bz2".

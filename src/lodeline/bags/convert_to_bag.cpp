@@ -41,8 +41,10 @@ void merge(const std::vector<Pull>& streams) {
 }
 
 /// All that a folder has; inertial and magnetic readings alone are a recording too.
-EurocOptions optionsFor(const std::filesystem::path& folder) {
+EurocOptions optionsFor(const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& rig_files) {
   EurocOptions options;
+  options.rig_files = rig_files;
   options.with_cameras = false;
   const EurocLayout layout = findEurocLayout(folder, options);
   for (const auto& entry : std::filesystem::directory_iterator(layout.mav0)) {
@@ -55,9 +57,9 @@ class FolderConversion {
  public:
   FolderConversion(const std::filesystem::path& folder, const std::filesystem::path& bag,
                    const ConvertOptions& options, Diagnostics* diagnostics)
-      : layout_(findEurocLayout(folder, optionsFor(folder))),
+      : layout_(findEurocLayout(folder, optionsFor(folder, options.rig_files))),
         diagnostics_(diagnostics),
-        source_(folder, optionsFor(folder), diagnostics),
+        source_(folder, optionsFor(folder, options.rig_files), diagnostics),
         writer_(bag, options.compression) {}
 
   ConvertSummary run() {
@@ -105,7 +107,7 @@ class FolderConversion {
   }
 
   std::optional<Outgoing> imu() {
-    const std::optional<ImuSample> sample = source_.nextImu();
+    const std::optional<ImuSample> sample = source_.nextRecordedImu();
     if (!sample) return std::nullopt;
     return Outgoing{sample->time, [this, sample] {
                       write("imu0", "/imu0", messages::kImu, sample->time,

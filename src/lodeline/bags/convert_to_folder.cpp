@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "lodeline/bags/bag_source.h"
+#include "lodeline/bags/checked_reading.h"
 #include "lodeline/bags/convert.h"
 #include "lodeline/bags/messages.h"
 #include "lodeline/bags/rig_conversion.h"
@@ -38,7 +39,7 @@ class BagConversion {
     const Rig& rig = source_->rig();
     for (size_t i = 0; i < rig.cameras.size(); ++i) writeImages(i);
     writeReadings(
-        "imu0", kImuColumns, [&] { return source_->nextImu(); },
+        "imu0", kImuColumns, [&] { return source_->nextRecordedImu(); },
         [](const ImuSample& s) {
           const Vec3& w = s.angular_velocity_B;
           const Vec3& f = s.specific_force_B;
@@ -119,7 +120,13 @@ class BagConversion {
       const auto nextPose = [&]() -> std::optional<messages::StampedPosition> {
         while (next < topic.entries.size()) {
           const std::optional<wire::Bytes> message = bag.read(topic.entries[next++]);
-          if (message) return messages::parsePoseStamped(*message);
+          std::string problem;
+          if (!message) continue;
+          const auto pose = messages::checkedReading(*message, messages::parsePoseStamped, &problem);
+          if (pose) return pose;
+          diagnostics_->report(
+              Severity::Warning, "bag_message",
+              fmt::format("{} {}: {}; passed over", bag.file().string(), kTruthTopic, problem));
         }
         return std::nullopt;
       };

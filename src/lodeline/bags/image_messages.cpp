@@ -116,20 +116,26 @@ StoredImage storedImage(ImageForm form, std::span<const uint8_t> message, const 
   return form == ImageForm::Compressed ? compressedImageFile(message, name) : imagePixels(message, name);
 }
 
-LoadedImage greyImage(ImageForm form, std::span<const uint8_t> message, const std::string& name) {
+LoadedImage greyImage(ImageForm form, std::span<const uint8_t> message, const std::string& name,
+                      const GreyRange& range) {
   const StoredImage stored = storedImage(form, message, name);
   if (!stored.problem.empty()) return {cv::Mat(), stored.problem};
-  return form == ImageForm::Compressed ? decodeGreyImage(stored.file, name)
-                                       : LoadedImage{greyFrom(stored.pixels), ""};
+  return form == ImageForm::Compressed ? decodeGreyImage(stored.file, name, range)
+                                       : LoadedImage{greyFrom(stored.pixels, range), ""};
 }
 
 }  // namespace
 
-PendingImage pendingImage(ImageForm form, wire::Bytes bytes, const std::string& where) {
+cv::Mat storedPixels(ImageForm form, std::span<const uint8_t> message) {
+  const StoredImage stored = storedImage(form, message, "");
+  return form == ImageForm::Compressed ? decodeStoredPixels(stored.file) : stored.pixels;
+}
+
+PendingImage pendingImage(ImageForm form, wire::Bytes bytes, const std::string& where, const GreyRange& range) {
   const auto message = std::make_shared<const wire::Bytes>(std::move(bytes));
   const Time stamp = stampOf(*message);
   const std::string name = fmt::format("{} at {} ns", where, stamp.nanoseconds());
-  return {stamp, name, [=] { return greyImage(form, *message, name); },
+  return {stamp, name, [=] { return greyImage(form, *message, name, range); },
           [=] { return storedImage(form, *message, name); }};
 }
 

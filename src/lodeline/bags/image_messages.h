@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lodeline/bags/wire.h"
+#include "lodeline/data/grey_range.h"
 #include "lodeline/data/measurement_source.h"
 
 /// sensor_msgs/Image and sensor_msgs/CompressedImage.
@@ -21,9 +22,13 @@ StoredImage compressedImageFile(std::span<const uint8_t> message, const std::str
 
 enum class ImageForm { Raw, Compressed };
 
-/// An Image or CompressedImage that is decoded on demand. `where` it came from: for messages. Throws
-/// wire::Reader::CutOff where the message ends before its stamp does.
-PendingImage pendingImage(ImageForm form, wire::Bytes message, const std::string& where);
+/// The pixels of either as they are stored; empty where they cannot be read.
+cv::Mat storedPixels(ImageForm form, std::span<const uint8_t> message);
+
+/// An Image or CompressedImage that is decoded on demand, 16 bits by `range`. `where` it came from: for
+/// messages. Throws wire::Reader::CutOff where the message ends before its stamp does.
+PendingImage pendingImage(ImageForm form, wire::Bytes message, const std::string& where,
+                          const GreyRange& range = {});
 
 /// An Image from 8 or 16-bit grey, BGR or BGRA pixels.
 wire::Bytes image(Time stamp, const std::string& frame, const cv::Mat& pixels, uint32_t sequence);

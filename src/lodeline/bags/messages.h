@@ -33,7 +33,7 @@ inline constexpr Type kPoseStamped = {"geometry_msgs/PoseStamped", "d3812c3cbc69
 /// Those that a sensor may publish: imu0, mag0, pressure0, sonar0; any other one is a camera.
 std::vector<Type> typesOf(const std::string& sensor);
 
-/// The stamp that every one of these begins with.
+/// The stamp in the header that every one of these begins with.
 Time stampOf(std::span<const uint8_t> message);
 
 ImuSample parseImu(std::span<const uint8_t> message);

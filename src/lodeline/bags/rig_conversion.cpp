@@ -6,8 +6,7 @@
 #include <array>
 
 #include "lodeline/base/error.h"
-#include "lodeline/data/euroc_calibration.h"
-#include "lodeline/data/kalibr_calibration.h"
+#include "lodeline/data/folder_calibration.h"
 #include "lodeline/data/recording_file.h"
 
 namespace lodeline {
@@ -42,71 +41,33 @@ void copyMask(const std::filesystem::path& from_folder, const std::filesystem::p
   (*node)["mask"] = target.filename().string();
 }
 
-/// Only keys that the reader of the sensor knows: a rig file must not have others.
-template <typename Read>
-YAML::Node knownPart(const std::filesystem::path& file, const Read& read) {
-  const YAML::Node node = loadYamlFile(file);
-  CalibrationMap map(node, file, "");
-  read(&map);
-  YAML::Node known;
-  for (const auto& entry : node) {
-    if (map.isKnown(entry.first.Scalar())) known[entry.first.Scalar()] = entry.second;
-  }
-  return known;
-}
-
-YAML::Node cameraSection(const EurocLayout& layout, const KalibrFiles& kalibr, const std::string& name) {
-  const std::filesystem::path yaml = layout.sensor(name) / "sensor.yaml";
-  if (!kalibr.camchain) return knownPart(yaml, [&](CalibrationMap* map) { readEurocCamera(name, map); });
-  YAML::Node section = loadYamlFile(*kalibr.camchain)[name];
-  section.remove("rostopic");
-  if (!std::filesystem::exists(yaml)) return section;
-  const YAML::Node beside = loadYamlFile(yaml);
-  for (const char* key : kBesideKalibr) {
-    if (beside[key].IsDefined()) section[key] = beside[key];
-  }
-  return section;
-}
-
-YAML::Node imuSection(const EurocLayout& layout, const KalibrFiles& kalibr) {
-  const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
-  if (!kalibr.imu) return knownPart(yaml, [](CalibrationMap* map) { readEurocImu(map); });
-  const YAML::Node root = loadYamlFile(*kalibr.imu);
-  YAML::Node section = root["imu0"].IsDefined() ? root["imu0"] : root;
-  if (!section["update_rate"].IsDefined()) {
-    // Marks the section as Kalibr's; 0 stands for unknown.
-    section["update_rate"] = std::filesystem::exists(yaml) ? loadYamlFile(yaml)["rate_hz"] : YAML::Node(0);
-  }
-  section.remove("rostopic");
-  return section;
-}
-
 }  // namespace
 
 void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::string>& topics,
                   const std::filesystem::path& file) {
-  const std::filesystem::path beside =
-      std::filesystem::absolute(layout.mav0).lexically_normal().parent_path();
-  const KalibrFiles kalibr = findKalibrFiles({beside, layout.mav0});
+  Diagnostics reported_when_read_in_earnest;
+  const RigFile rig = readFolderCalibration(layout, &reported_when_read_in_earnest);
   YAML::Node root;
-  for (size_t i = 0; i < layout.camera_indices.size(); ++i) {
-    const std::string in_folder = fmt::format("cam{}", layout.camera_indices[i]);
-    const std::string sensor = fmt::format("cam{}", i);
-    YAML::Node section = cameraSection(layout, kalibr, in_folder);
+  const auto add = [&](const std::string& in_folder, const std::string& sensor) {
+    const RigSection& section = rig.sections.at(in_folder);
+    YAML::Node node = YAML::Clone(section.node);
+    node.remove("rostopic");
+    const auto topic = topics.find(sensor);
+    if (topic != topics.end()) node["topic"] = topic->second;
     std::filesystem::path mask = file;
     mask.replace_extension(sensor + "_mask");
-    copyMask(layout.sensor(in_folder), mask, &section);
-    root[sensor] = section;
-  }
-  root["imu0"] = imuSection(layout, kalibr);
-  const auto addSmall = [&](const char* sensor, const auto& read) {
-    if (topics.contains(sensor)) root[sensor] = knownPart(layout.sensor(sensor) / "sensor.yaml", read);
+    copyMask(section.file.parent_path(), mask, &node);
+    root[sensor] = node;
   };
-  addSmall("mag0", [](CalibrationMap* map) { readEurocMagnetometer(map); });
-  addSmall("pressure0", [](CalibrationMap* map) { readEurocPressure(map); });
-  addSmall("sonar0", [](CalibrationMap* map) { readEurocSonar(map); });
-  for (const auto& [sensor, topic] : topics) {
-    if (root[sensor].IsDefined()) root[sensor]["topic"] = topic;
+  for (size_t i = 0; i < layout.camera_indices.size(); ++i) {
+    add(fmt::format("cam{}", layout.camera_indices[i]), fmt::format("cam{}", i));
+  }
+  for (const char* sensor : {"imu0", "mag0", "pressure0", "sonar0"}) {
+    if (topics.contains(sensor) && rig.sections.contains(sensor)) add(sensor, sensor);
+  }
+  if (root["imu0"].IsDefined() && rig.sections.at("imu0").keys == SectionKeys::Kalibr &&
+      !root["imu0"]["update_rate"].IsDefined()) {
+    root["imu0"]["update_rate"] = 0;  // marks the section as Kalibr's; 0 stands for unknown
   }
   writeYaml(root, file);
 }
@@ -115,16 +76,17 @@ void writeFolderCalibration(const RigFile& rig_file, const std::filesystem::path
   YAML::Node camchain;
   for (const auto& [sensor, section] : rig_file.sections) {
     const std::filesystem::path sensor_folder = folder / "mav0" / sensor;
+    const bool is_kalibr = section.keys == SectionKeys::Kalibr;
     YAML::Node here;    // for sensor.yaml
     YAML::Node kalibr;  // for Kalibr's files
     for (const auto& entry : section.node) {
       const std::string key = entry.first.Scalar();
       if (isAmong(key, kOfRigFile)) continue;
-      (section.is_kalibr && !isAmong(key, kBesideKalibr) ? kalibr : here)[key] = entry.second;
+      (is_kalibr && !isAmong(key, kBesideKalibr) ? kalibr : here)[key] = entry.second;
     }
     copyMask(section.file.parent_path(), sensor_folder / "mask", &here);
     if (here.IsDefined() && here.size() > 0) writeYaml(here, sensor_folder / "sensor.yaml");
-    if (!section.is_kalibr) continue;
+    if (!is_kalibr) continue;
     if (sensor == "imu0") {
       writeYaml(kalibr, folder / "imu.yaml");
     } else {

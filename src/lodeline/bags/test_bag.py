@@ -4,6 +4,8 @@
                                                     images as PGM beside the PNG files, for IMAGES = raw
     test_bag.py unclosed MAV0 BAG COMPRESSION       the same (compressed images), as if the recorder had crashed
     test_bag.py kinds BAG                           a message of every kind that a rig may publish
+    test_bag.py halves BAG                          an IMU's gyroscope and accelerometer on topics of their own
+    test_bag.py damaged BAG                         three images and readings, the headers of the second ones damaged
     test_bag.py list BAG                            topics, types, numbers of messages, sums over their bytes
 """
 import csv
@@ -130,6 +132,41 @@ def kinds(path):
         put("/i/strange", Image(height=2, width=3, encoding="hsv", step=9, data=colour), second)
 
 
+def halves(path):
+    with rosbag.Bag(path, "w") as bag:
+        for i in range(100):
+            ns = 10**9 + i * 5_000_000
+            gyro = imu(["", 0.5, 0, 0, 0, 0, 0])
+            gyro.header.stamp = stamp(ns)
+            bag.write("/camera/gyro/sample", gyro, stamp(ns))
+            if i % 2 == 0:
+                accel = imu(["", 0, 0, 0, 0, 0, 9.8])
+                accel.header.stamp = stamp(ns + 1_700_000)
+                bag.write("/camera/accel/sample", accel, stamp(ns + 1_700_000))
+
+
+def damaged(path):
+    name = b"name_of_frame"
+    with rosbag.Bag(path, "w") as bag:
+        for i in range(3):
+            time = stamp(10**9 * (i + 1))
+            grey = Image(height=2, width=3, encoding="mono8", step=3, data=bytes(6))
+            reading = imu(["", 1, 2, 3, 4, 5, 6])
+            for topic, message in (("/i/grey", grey), ("/imu", reading)):
+                message.header.stamp = time
+                message.header.frame_id = name.decode() if i == 1 else "f"
+                bag.write(topic, message, time)
+            for topic, message in (("/mag", field(["", 2e-5, -1e-5, 4e-5])), ("/depth", FluidPressure()),
+                                   ("/sonar", LaserScan())):
+                message.header.stamp = time
+                bag.write(topic, message, time)
+    with open(path, "rb") as stream:
+        content = stream.read()
+    length = len(name).to_bytes(4, "little")
+    with open(path, "wb") as stream:
+        stream.write(content.replace(length + name, (2 << 30).to_bytes(4, "little") + name))
+
+
 def list_topics(path):
     with rosbag.Bag(path) as bag:
         sums = {}
@@ -143,4 +180,4 @@ def list_topics(path):
 
 
 if __name__ == "__main__":
-    {"write": write, "unclosed": unclosed, "kinds": kinds, "list": list_topics}[sys.argv[1]](*sys.argv[2:])
+    {"write": write, "unclosed": unclosed, "damaged": damaged, "halves": halves, "kinds": kinds, "list": list_topics}[sys.argv[1]](*sys.argv[2:])

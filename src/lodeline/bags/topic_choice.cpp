@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lodeline/bags/imu_halves.h"
 #include "lodeline/bags/messages.h"
 #include "lodeline/base/error.h"
 
@@ -56,52 +57,88 @@ std::string cameraOf(const BagTopic& topic) {
 
 class Chooser {
  public:
-  Chooser(const BagFile& bag, const TopicWish& wish, Diagnostics* diagnostics)
-      : bag_(bag), wish_(wish), diagnostics_(diagnostics) {}
+  Chooser(BagFile* bag, const TopicWish& wish, Diagnostics* diagnostics)
+      : bag_(*bag), wish_(wish), diagnostics_(diagnostics) {}
 
   TopicChoice run() {
-    for (const auto& [sensor, name] : wish_.named) choice_[sensor] = findNamed(bag_, sensor, name);
+    takeNamed();
     chooseCameras();
     for (const std::string& sensor : wish_.sensors) chooseSensor(sensor);
+    requireWholeImu();
     reportUnused();
     return std::move(choice_);
   }
 
  private:
+  static constexpr const char* kLeaveOut =
+      "; cameras that the bag lacks can be left out, e.g. --set source.cameras=[0,1]";
+
   bool isChosen(const BagTopic* topic) const {
-    return std::any_of(choice_.begin(), choice_.end(),
+    return std::any_of(choice_.topics.begin(), choice_.topics.end(),
                        [&](const auto& entry) { return entry.second == topic; });
   }
 
+  bool isWanted(const std::string& sensor) const {
+    return std::find(wish_.cameras.begin(), wish_.cameras.end(), sensor) != wish_.cameras.end() ||
+           std::find(wish_.sensors.begin(), wish_.sensors.end(), sensor) != wish_.sensors.end();
+  }
+
+  void takeNamed() {
+    for (const auto& [sensor, name] : wish_.named) {
+      const size_t comma = name.find(',');
+      if (sensor == "imu0" && comma != std::string::npos) {
+        takeHalves(findNamed(bag_, sensor, name.substr(0, comma)),
+                   findNamed(bag_, sensor, name.substr(comma + 1)));
+        continue;
+      }
+      try {
+        choice_.topics[sensor] = findNamed(bag_, sensor, name);
+      } catch (const InputError& error) {
+        choice_.topics.erase(sensor);
+        if (!isWanted(sensor)) continue;
+        const bool is_camera = sensor.starts_with("cam") && wish_.rig_cameras.size() > 1;
+        throw InputError(std::string(error.what()) + (is_camera ? kLeaveOut : ""));
+      }
+    }
+  }
+
   void take(const std::string& sensor, const BagTopic* topic) {
-    choice_[sensor] = topic;
+    choice_.topics[sensor] = topic;
     diagnostics_->report(Severity::Notice, "bag_topic",
                          fmt::format("{}: {} is taken from {}, found by its type", bag_.file().string(),
                                      sensor, topic->connection.topic));
   }
 
-  void chooseCameras() {
+  std::vector<std::string> without(const std::vector<std::string>& cameras) const {
     std::vector<std::string> missing;
-    for (size_t i = 0; i < wish_.camera_count; ++i) {
-      const std::string sensor = fmt::format("cam{}", i);
-      if (!choice_.contains(sensor)) missing.push_back(sensor);
+    for (const std::string& sensor : cameras) {
+      if (choice_.of(sensor) == nullptr) missing.push_back(sensor);
     }
-    if (missing.empty()) return;
+    return missing;
+  }
+
+  void chooseCameras() {
+    if (without(wish_.cameras).empty()) return;
     std::vector<const BagTopic*> free = imageTopics(bag_);
     std::erase_if(free, [&](const BagTopic* topic) { return isChosen(topic); });
+    // A bag holds the images of all cameras, or of those to be used.
+    std::vector<std::string> missing = without(wish_.rig_cameras);
+    if (free.size() != missing.size()) missing = without(wish_.cameras);
     if (free.size() != missing.size()) {
       throw InputError(
           fmt::format("{}: {} topics of images for {} cameras; name them with `topic` in the rig "
-                      "file or --topic cam0=/…; {}",
-                      bag_.file().string(), free.size(), missing.size(), listTopics(bag_)));
+                      "file or --topic cam0=/…{}; {}",
+                      bag_.file().string(), free.size(), missing.size(),
+                      free.size() < missing.size() ? kLeaveOut : "", listTopics(bag_)));
     }
     for (size_t i = 0; i < missing.size(); ++i) take(missing[i], free[i]);
   }
 
   void chooseSensor(const std::string& sensor) {
-    if (choice_.contains(sensor)) return;
-    const std::vector<const BagTopic*> found = topicsFor(bag_, sensor);
+    if (choice_.of(sensor) != nullptr) return;
+    std::vector<const BagTopic*> found = topicsFor(bag_, sensor);
     if (found.empty()) return;
+    if (found.size() > 1 && sensor == "imu0") found = wholeOrHalves(found);
     if (found.size() > 1) {
       throw InputError(
           fmt::format("{}: {} topics could be {} ({}, {}, …); name one with `topic` in the rig file "
@@ -109,12 +146,69 @@ class Chooser {
                       bag_.file().string(), found.size(), sensor, found[0]->connection.topic,
                       found[1]->connection.topic, sensor));
     }
-    take(sensor, found.front());
+    if (choice_.of(sensor) == nullptr) take(sensor, found.front());
+  }
+
+  /// Of several IMUs those that are whole; where none is and there are two halves, these are taken.
+  std::vector<const BagTopic*> wholeOrHalves(const std::vector<const BagTopic*>& found) {
+    std::vector<const BagTopic*> whole, gyroscopes, accelerometers;
+    for (const BagTopic* topic : found) {
+      const ImuContent content = contentOf(*topic, &bag_);
+      if (content.isWhole()) {
+        whole.push_back(topic);
+      } else if (content.has_gyroscope) {
+        gyroscopes.push_back(topic);
+      } else if (content.has_accelerometer) {
+        accelerometers.push_back(topic);
+      }
+    }
+    if (!whole.empty()) return whole;
+    if (gyroscopes.size() != 1 || accelerometers.size() != 1) return found;
+    takeHalves(gyroscopes[0], accelerometers[0]);
+    return gyroscopes;
+  }
+
+  void takeHalves(const BagTopic* one, const BagTopic* other) {
+    const ImuContent first = contentOf(*one, &bag_), second = contentOf(*other, &bag_);
+    const bool is_swapped = !first.has_gyroscope && second.has_gyroscope;
+    const BagTopic* gyroscope = is_swapped ? other : one;
+    const BagTopic* accelerometer = is_swapped ? one : other;
+    if (one == other || !(is_swapped ? second : first).has_gyroscope ||
+        !(is_swapped ? first : second).has_accelerometer) {
+      throw InputError(
+          fmt::format("{}: {} and {} are not the gyroscope and the accelerometer of an IMU: one of "
+                      "the two is zero throughout in both",
+                      bag_.file().string(), one->connection.topic, other->connection.topic));
+    }
+    choice_.topics["imu0"] = gyroscope;
+    choice_.accelerometer = accelerometer;
+    diagnostics_->report(
+        Severity::Notice, "imu_united",
+        fmt::format("{}: imu0 is united from {} (gyroscope) and {} (accelerometer, interpolated to the "
+                    "gyroscope's stamps)",
+                    bag_.file().string(), gyroscope->connection.topic, accelerometer->connection.topic));
+  }
+
+  void requireWholeImu() {
+    const BagTopic* imu = choice_.of("imu0");
+    if (imu == nullptr || choice_.accelerometer != nullptr) return;
+    const ImuContent content = contentOf(*imu, &bag_);
+    if (content.isWhole()) return;
+    const char* absent = content.has_gyroscope ? "specific force" : "angular velocity";
+    std::string advice = "record gyroscope and accelerometer";
+    for (const BagTopic* topic : topicsFor(bag_, "imu0")) {
+      const ImuContent other = contentOf(*topic, &bag_);
+      if (topic == imu || (content.has_gyroscope ? !other.has_accelerometer : !other.has_gyroscope)) continue;
+      advice =
+          fmt::format("--topic imu0={},{} unites the halves", imu->connection.topic, topic->connection.topic);
+    }
+    throw InputError(fmt::format("{}: topic {} is no whole IMU: its {} is zero throughout; {}",
+                                 bag_.file().string(), imu->connection.topic, absent, advice));
   }
 
   void reportUnused() {
     for (const char* sensor : {"mag0", "pressure0", "sonar0"}) {
-      if (choice_.contains(sensor)) continue;
+      if (choice_.of(sensor) != nullptr) continue;
       for (const BagTopic* topic : topicsFor(bag_, sensor)) {
         diagnostics_->report(
             Severity::Notice, "bag_topic_unused",
@@ -124,7 +218,7 @@ class Chooser {
     }
   }
 
-  const BagFile& bag_;
+  BagFile& bag_;
   const TopicWish& wish_;
   Diagnostics* diagnostics_;
   TopicChoice choice_;
@@ -153,7 +247,7 @@ std::vector<const BagTopic*> topicsFor(const BagFile& bag, const std::string& se
   return found;
 }
 
-TopicChoice chooseTopics(const BagFile& bag, const TopicWish& wish, Diagnostics* diagnostics) {
+TopicChoice chooseTopics(BagFile* bag, const TopicWish& wish, Diagnostics* diagnostics) {
   return Chooser(bag, wish, diagnostics).run();
 }
 

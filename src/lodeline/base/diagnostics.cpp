@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <tuple>
 
+#include "lodeline/base/printable_text.h"
+
 namespace lodeline {
 
 void Diagnostics::report(Severity severity, const std::string& kind, const std::string& message) {
   Finding& finding = findings_[kind];
   if (finding.count == 0) {
     finding.kind = kind;
-    finding.first_message = message;
+    finding.first_message = printableText(message);
     finding.severity = severity;
   }
   finding.severity = std::max(finding.severity, severity);

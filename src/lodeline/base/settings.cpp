@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lodeline/base/choice.h"
 #include "lodeline/base/edit_distance.h"
 #include "lodeline/base/error.h"
 
@@ -117,8 +118,9 @@ void Settings::addChoice(const std::string& key, const std::string& documentatio
   const std::string choices = fmt::format("one of {}", fmt::join(names, ", "));
   add({key, documentation + " (" + choices + ")", choices,
        [names, store](const Text& text) {
-         const auto found =
-             text.is_list ? names.end() : std::find(names.begin(), names.end(), text.scalars[0]);
+         const auto found = std::find_if(names.begin(), names.end(), [&text](const std::string& name) {
+           return !text.is_list && equalIgnoringCase(name, text.scalars[0]);
+         });
          if (found != names.end()) store(static_cast<size_t>(found - names.begin()));
          return found != names.end();
        },

@@ -7,11 +7,12 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_reader.h"
-#include "lodeline/data/euroc_calibration.h"
 #include "lodeline/data/euroc_rig.h"
-#include "lodeline/data/kalibr_calibration.h"
-#include "lodeline/data/ordered_stream.h"
+#include "lodeline/data/folder_calibration.h"
 #include "lodeline/data/plain_csv.h"
+#include "lodeline/streams/inertial_screen.h"
+#include "lodeline/streams/ordered_stream.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline {
 namespace {
@@ -22,22 +23,16 @@ struct Reading {
   std::optional<FieldUnit> unit;
 };
 
-void readImu(const EurocLayout& layout, Quat* imu_from_body, MagnetometerRecord* record,
+void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* record,
              Diagnostics* diagnostics) {
-  const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
-  const KalibrFiles kalibr = findKalibrFiles({layout.mav0.parent_path(), layout.mav0});
-  if (std::filesystem::exists(yaml)) {
-    const EurocImu imu = readEurocImu(yaml, diagnostics);
-    record->imu_noise = imu.calibration.noise;
-    *imu_from_body = imu.euroc_body_from_imu.rotation.conjugate();
+  if (rig.has_imu) {
+    record->imu_noise = rig.rig.imu.noise;
+  } else {
+    diagnostics->report(
+        Severity::Notice, "imu_noise_assumed",
+        (layout.sensor("imu0") / "sensor.yaml").string() + ": missing; the noise of a usual IMU is assumed");
   }
-  if (kalibr.imu) {
-    record->imu_noise = readKalibrImu(*kalibr.imu, diagnostics).noise;
-  } else if (!std::filesystem::exists(yaml)) {
-    diagnostics->report(Severity::Notice, "imu_noise_assumed",
-                        yaml.string() + ": missing; the noise of a usual IMU is assumed");
-  }
-  CsvReader csv(layout.csv("imu0"), CsvContent::Imu, diagnostics);
+  CsvReader csv(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
   for (CsvRow row; csv.next(&row);) {
     if (!record->imu.empty() && row.time <= record->imu.back().time) {
       diagnostics->report(Severity::Warning, "imu_order",
@@ -45,14 +40,27 @@ void readImu(const EurocLayout& layout, Quat* imu_from_body, MagnetometerRecord*
                                       csv.file().string(), csv.line()));
       continue;
     }
-    record->imu.push_back({row.time, Vec3(row.numbers.data()), Vec3(row.numbers.data() + 3)});
+    const ImuSample sample{row.time, Vec3(row.numbers.data()), Vec3(row.numbers.data() + 3)};
+    record->imu.push_back(rig.imu_correction ? rig.imu_correction->applied(sample) : sample);
   }
+}
+
+/// The calibration of a recording that may have none.
+RigFile readCalibration(const EurocLayout& layout, Diagnostics* diagnostics) {
+  Diagnostics found;
+  RigFile rig = readFolderCalibration(layout, &found);
+  for (const Finding& finding : found.ranked()) {
+    if (finding.kind.ends_with("_uncalibrated")) continue;  // what that means here is said below
+    diagnostics->report(finding.severity, finding.kind, finding.first_message);
+  }
+  return rig;
 }
 
 Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) {
   EurocOptions options;
   options.with_cameras = false;
   options.needs_imu = false;
+  options.needs_calibration = false;
   const EurocLayout layout = findEurocLayout(data, options);
   const std::filesystem::path csv = layout.csv("mag0");
   if (!std::filesystem::exists(csv)) {
@@ -60,14 +68,12 @@ Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) 
   }
   Reading reading;
   reading.unit = FieldUnit::Tesla;
-  Quat imu_from_body = Quat::Identity();
-  if (layout.has_imu) readImu(layout, &imu_from_body, &reading.record, diagnostics);
-  const std::filesystem::path yaml = layout.sensor("mag0") / "sensor.yaml";
-  if (std::filesystem::exists(yaml)) {
-    reading.record.body_from_magnetometer =
-        imu_from_body * readEurocMagnetometer(yaml, diagnostics).body_from_magnetometer.rotation;
+  const RigFile rig = readCalibration(layout, diagnostics);
+  if (layout.has_imu) readImu(layout, rig, &reading.record, diagnostics);
+  if (rig.rig.magnetometer) {
+    reading.record.body_from_magnetometer = rig.rig.magnetometer->body_from_magnetometer.rotation;
   }
-  CsvReader rows(csv, CsvContent::Magnetometer, diagnostics);
+  CsvReader rows(csv, CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   for (CsvRow row; rows.next(&row);) {
     reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
   }
@@ -160,8 +166,10 @@ Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostic
   if (is_mounting_known && source.rig().magnetometer) {
     reading.record.body_from_magnetometer = source.rig().magnetometer->body_from_magnetometer.rotation;
   }
+  StreamExpectation expected{"imu", "IMU", 0.0, 0.0, Duration()};
+  expected.spreads_bursts = true;
   OrderedStream<ImuSample> imu(
-      {"imu", "IMU", 0.0, 0.0, Duration()}, [&] { return source.nextImu(); }, diagnostics);
+      expected, [&] { return source.nextImu(); }, diagnostics);
   while (imu.peek() != nullptr) reading.record.imu.push_back(imu.pop());
   while (const std::optional<MagnetometerSample> sample = source.nextMagnetometer()) {
     reading.record.magnetometer.push_back(*sample);
@@ -169,12 +177,27 @@ Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostic
   return reading;
 }
 
+/// Without a time in common, the gyroscope says nothing of how the magnetometer turns.
+void reportApart(const MagnetometerRecord& record, Diagnostics* diagnostics) {
+  SpanOfStream imu, magnetometer;
+  for (const ImuSample& sample : record.imu) imu.add(sample.time);
+  for (const MagnetometerSample& sample : record.magnetometer) magnetometer.add(sample.time);
+  if (!imu.get() || !magnetometer.get()) return;
+  const std::optional<std::string> words =
+      apart("the magnetometer", *magnetometer.get(), "the inertial readings", *imu.get(), "its clock");
+  if (words) diagnostics->report(Severity::Serious, kClocksApart, *words);
+}
+
 MagnetometerRecord settled(Reading reading, const std::string& name, const RecordOptions& options,
                            Diagnostics* diagnostics) {
   if (reading.record.magnetometer.empty()) {
     throw InputError(name + ": holds no magnetometer reading that can be used");
   }
+  reportApart(reading.record, diagnostics);
   cut(options, &reading.record);
+  InertialScreenOptions screen;
+  screen.knows_rate_unit = false;
+  reading.record.imu = screened(reading.record.imu, screen, diagnostics);
   settleUnit(name, options, reading.unit, &reading.record, diagnostics);
   return std::move(reading.record);
 }

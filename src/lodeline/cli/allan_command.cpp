@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/open_recording.h"
 #include "lodeline/data/csv_reader.h"
@@ -71,7 +72,7 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   CsvRow row;
   if (layout.has_imu) {
     analyses->has_gyroscope = analyses->has_accelerometer = true;
-    CsvReader imu(layout.csv("imu0"), CsvContent::Imu, diagnostics);
+    CsvReader imu(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
     for (Part part(arguments); imu.next(&row);) {
       if (!part.holds(row.time)) continue;
       analyses->gyroscope.add(row.time, Vec3(row.numbers.data()));
@@ -80,7 +81,7 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   }
   if (!std::filesystem::exists(layout.csv("mag0"))) return;
   analyses->has_magnetometer = true;
-  CsvReader magnetometer(layout.csv("mag0"), CsvContent::Magnetometer, diagnostics);
+  CsvReader magnetometer(layout.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   for (Part part(arguments); magnetometer.next(&row);) {
     if (part.holds(row.time)) analyses->magnetometer.add(row.time, Vec3(row.numbers.data()));
   }
@@ -134,10 +135,10 @@ void allan(const AllanArguments& arguments) {
   Diagnostics diagnostics;
   Analyses analyses(&diagnostics);
   refuseBagOptions(arguments.data, arguments.bag);
-  if (isBag(arguments.data)) {
-    readBag(arguments, &diagnostics, &analyses);
-  } else if (std::filesystem::is_regular_file(arguments.data)) {
+  if (isTableOfReadings(arguments.data)) {
     readFile(arguments, &diagnostics, &analyses);
+  } else if (isBag(arguments.data)) {
+    readBag(arguments, &diagnostics, &analyses);
   } else {
     readFolder(arguments, &diagnostics, &analyses);
   }
@@ -155,7 +156,7 @@ void allan(const AllanArguments& arguments) {
   if (!arguments.json.empty()) {
     nlohmann::ordered_json json = noiseJson(sensors);
     json["findings"] = findingsJson(diagnostics);
-    writeOutput(arguments.json, json.dump(2) + "\n");
+    writeOutput(arguments.json, jsonText(json) + "\n");
   }
   fmt::print("{}{}", noiseTable(sensors), findingsText(diagnostics));
 }

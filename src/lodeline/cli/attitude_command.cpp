@@ -7,14 +7,19 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
+#include "lodeline/calibration/axis_checks.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/open_recording.h"
-#include "lodeline/data/ordered_stream.h"
+#include "lodeline/data/inertial_stream.h"
 #include "lodeline/data/plain_source.h"
+#include "lodeline/inspection/start_check.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 #include "lodeline/report/attitude_writer.h"
 #include "lodeline/report/findings.h"
+#include "lodeline/streams/ordered_stream.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline {
 namespace {
@@ -34,11 +39,12 @@ struct AttitudeArguments {
 /// Opens DATA and gives its magnetometer what the command line says about it.
 template <typename Source>
 std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
-                                            const AttitudeArguments& arguments) {
+                                            const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   Rig rig = source->rig();
   if (!arguments.magnetometer_calibration.empty()) {
-    applyCalibration(readCalibrationFile(arguments.magnetometer_calibration),
-                     arguments.magnetometer_calibration, &rig);
+    const MagnetometerFit fit = readCalibrationFile(arguments.magnetometer_calibration);
+    applyCalibration(fit, arguments.magnetometer_calibration, &rig);
+    if (fit.dip_rad && arguments.site.empty()) reportNegativeDip(*fit.dip_rad, diagnostics);
   }
   if (rig.magnetometer) {
     rig.magnetometer->time_offset_to_imu_s -= arguments.magnetometer_lag_s;
@@ -49,12 +55,12 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
 
 std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
-  if (std::filesystem::is_regular_file(arguments.data) && !isBag(arguments.data)) {
-    return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments);
+  if (isTableOfReadings(arguments.data)) {
+    return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments, diagnostics);
   }
   EurocOptions options;
   options.with_cameras = false;
-  return prepared(openRecording(arguments.data, options, arguments.bag, diagnostics), arguments);
+  return prepared(openRecording(arguments.data, options, arguments.bag, diagnostics), arguments, diagnostics);
 }
 
 AttitudeFilterOptions filterOptions(const AttitudeArguments& arguments) {
@@ -74,28 +80,49 @@ std::string northOf(const AttitudeArguments& arguments, bool has_magnetometer) {
 }
 
 StreamExpectation expectation(const std::string& name, double rate_hz, double offset_s) {
-  return {name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
+  StreamExpectation expected{name, name, rate_hz, 4.0 / rate_hz, Duration::fromSeconds(offset_s)};
+  expected.spreads_bursts = true;
+  return expected;
 }
 
-void filterAll(MeasurementSource& source, double rate_hz, AttitudeFilter* filter, AttitudeWriter* writer,
-               Diagnostics* diagnostics) {
+/// Without images, the turning of gravity tells the gyroscope's unit.
+InertialScreenOptions screenOptions(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
+  InertialScreenOptions options;
+  const SourceFactory open = [&](Diagnostics* unheard) { return openSource(arguments, unheard); };
+  options.rate_to_SI = checkStart(open, arguments.data, {}, diagnostics).rate_to_SI;
+  return options;
+}
+
+void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOptions& screen,
+               AttitudeFilter* filter, AttitudeWriter* writer, Diagnostics* diagnostics) {
   const std::optional<MagnetometerCalibration>& magnetometer = source.rig().magnetometer;
-  OrderedStream<ImuSample> imu(
-      expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics);
+  InertialScreen imu = inertialStream(
+      {expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics},
+      screen, diagnostics);
   OrderedStream<MagnetometerSample> field(
       expectation("magnetometer", magnetometer ? magnetometer->rate_hz : 1.0,
                   magnetometer ? magnetometer->time_offset_to_imu_s : 0.0),
       [&] { return source.nextMagnetometer(); }, diagnostics);
   std::optional<Time> next_output;
+  SpanOfStream imu_span, field_span;
   while (imu.peek() != nullptr) {
     const ImuSample sample = imu.pop();
+    imu_span.add(sample.time);
     filter->add(sample);
-    while (magnetometer && field.peek() != nullptr && field.peek()->time <= sample.time)
+    while (magnetometer && field.peek() != nullptr && field.peek()->time <= sample.time) {
+      field_span.add(field.peek()->time);
       filter->add(field.pop());
+    }
     if (!filter->estimate() || (next_output && sample.time < *next_output)) continue;
     writer->write(*filter->estimate());
     if (rate_hz > 0.0) next_output = sample.time + Duration::fromSeconds(1.0 / rate_hz);
   }
+  while (magnetometer && field.peek() != nullptr) field_span.add(field.pop().time);
+  if (!imu_span.get() || !field_span.get()) return;
+  const std::optional<std::string> words =
+      apart("the magnetometer", *field_span.get(), "the inertial readings", *imu_span.get(),
+            "time_offset_to_imu_s of its calibration");
+  if (words) diagnostics->report(Severity::Serious, kClocksApart, *words);
 }
 
 void attitude(const AttitudeArguments& arguments) {
@@ -114,12 +141,13 @@ void attitude(const AttitudeArguments& arguments) {
   createOutputFolder(folder);
   AttitudeWriter writer(folder);
   AttitudeFilter filter(options, magnetometer, &diagnostics);
-  filterAll(*source, arguments.rate_hz, &filter, &writer, &diagnostics);
+  filterAll(*source, arguments.rate_hz, screenOptions(arguments, &diagnostics), &filter, &writer,
+            &diagnostics);
   writer.finish();
   const std::string north = northOf(arguments, magnetometer.has_value());
   nlohmann::ordered_json json = writer.json(north);
   json["findings"] = findingsJson(diagnostics);
-  writeOutput(folder / "attitude.json", json.dump(2) + "\n");
+  writeOutput(folder / "attitude.json", jsonText(json) + "\n");
   fmt::print("{}{}", writer.text(north), findingsText(diagnostics));
   if (writer.count() == 0) throw EstimationError(arguments.data + ": no IMU reading could be used");
 }

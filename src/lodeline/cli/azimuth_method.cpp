@@ -19,6 +19,7 @@ std::vector<StampedField> readField(const RunRequest& request, const RunSettings
   EurocOptions source_options = options.source;
   source_options.with_cameras = false;
   source_options.camera_indices.clear();
+  source_options.rig_files.assign(request.bag.rig_files.begin(), request.bag.rig_files.end());
   EurocSource source(request.data, source_options, &diagnostics);
   Rig rig = source.rig();
   if (!options.magnetometer_calibration.empty()) {

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/calibration/calibration_plots.h"
@@ -88,7 +90,8 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
 
 MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
-  if (!isBag(arguments.data)) {
+  const bool is_packed = recogniseFile(arguments.data).kind == FileKind::Compressed;
+  if (is_packed || isTableOfReadings(arguments.data) || !isBag(arguments.data)) {
     return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
   }
   const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
@@ -138,7 +141,7 @@ void calibrate(const CalibrateArguments& arguments) {
     text += comparisonText(*first, fit, dip_rad);
   }
   json["findings"] = findingsJson(diagnostics);
-  if (!arguments.json.empty()) writeOutput(arguments.json, json.dump(2) + "\n");
+  if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(json) + "\n");
   fmt::print("{}{}", text, findingsText(diagnostics));
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/compared_run.h"
 #include "lodeline/cli/interruption.h"
@@ -94,7 +95,7 @@ void writeResults(const std::vector<ComparedRecording>& recordings, const Compar
   }
   drawFigures(figures, request.output / "plots", diagnostics);
   json["findings"] = findingsJson(diagnostics);
-  writeOutput(request.output / "compare.json", json.dump(2) + "\n");
+  writeOutput(request.output / "compare.json", jsonText(json) + "\n");
   writeOutput(request.output / "compare.md", markdown);
   fmt::print("{}", findingsText(diagnostics));
 }

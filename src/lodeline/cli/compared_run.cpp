@@ -49,6 +49,7 @@ std::string identity(const RunRequest& request) {
   }
   settings.write(text);
   if (!options.magnetometer_calibration.empty()) text << readFileBytes(options.magnetometer_calibration);
+  for (const std::string& file : request.bag.rig_files) text << readFileBytes(file);
   return text.str();
 }
 
@@ -115,6 +116,7 @@ std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const C
   RunRequest request = input.run;
   request.data = seed.data.string();
   request.magnetometer = by_azimuth ? "off" : method;
+  request.overwrite = true;
   request.overrides.push_back(fmt::format("front_end.seed={}", seed.feature_seed));
   const auto folderOf = [&](const std::string& name) {
     std::string folder = name + "_" + seed.name;

@@ -7,6 +7,7 @@
 
 #include "lodeline/bags/convert.h"
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/calibration/calibrate_magnetometer.h"
 #include "lodeline/calibration/calibration_file.h"
@@ -195,6 +196,9 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
   } else {
     std::string names;
     for (const Scenario& s : all) names += (names.empty() ? "" : ", ") + s.name;
+    const RecognisedFile recognised = recogniseFile(input);
+    if (recognised.kind != FileKind::Missing)
+      refuseFile(recognised, "give a folder with mav0, or a ROS 1 bag");
     throw UsageError(
         fmt::format("{}: neither a folder, a bag nor a scenario; scenarios are {}", input, names));
   }

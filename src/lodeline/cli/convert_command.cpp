@@ -8,6 +8,7 @@
 
 #include "lodeline/bags/convert.h"
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/cli/open_recording.h"
 #include "lodeline/report/findings.h"
 
@@ -26,20 +27,25 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
   options.rig_files.assign(arguments.bag.rig_files.begin(), arguments.bag.rig_files.end());
   options.topics = topicsOf(arguments.bag);
   options.compression = arguments.compression;
+  const RecognisedFile source = recogniseFile(arguments.source);
   const bool from_bag = isBag(arguments.source);
+  const bool is_other = !from_bag && !source.isFolder();
+  if (is_other) refuseFile(source, "convert takes a bag (NAME.bag) and a folder, in either order");
   if (from_bag == isBag(arguments.target)) {
     throw UsageError("convert takes a bag (NAME.bag) and a folder, in either order");
   }
   if (from_bag) return convertBagToFolder(arguments.source, arguments.target, options, diagnostics);
-  if (!options.rig_files.empty() || !options.topics.empty()) {
-    throw UsageError("--rig and --topic are for reading a bag; here one is written");
-  }
+  if (!options.topics.empty()) throw UsageError("--topic is for reading a bag; here one is written");
   return convertFolderToBag(arguments.source, arguments.target, options, diagnostics);
 }
 
 void convert(const ConvertArguments& arguments) {
   Diagnostics diagnostics;
   const ConvertSummary summary = convertEitherWay(arguments, &diagnostics);
+  if (summary.readings.empty()) {
+    throw InputError(
+        fmt::format("{}: nothing in it could be converted\n{}", arguments.source, findingsText(diagnostics)));
+  }
   fmt::print("{}\n", arguments.target);
   for (const auto& [sensor, count] : summary.readings) fmt::print("  {:<12}{:>9}\n", sensor, count);
   if (!summary.rig_file.empty()) fmt::print("calibration: {}\n", summary.rig_file.string());

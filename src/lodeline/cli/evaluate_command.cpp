@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/evaluation/evaluation.h"
 #include "lodeline/evaluation/evaluation_report.h"
 #include "lodeline/evaluation/image_times.h"
@@ -64,7 +65,7 @@ bool isColmap(const std::string& path, const TrajectoryReadOptions& options) {
 
 void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
   std::ofstream file(path);
-  file << json.dump(2) << "\n";
+  file << jsonText(json) << "\n";
   file.close();
   if (!file)
     throw InputError(fmt::format("{}: cannot be written; check the folder and its rights", path.string()));

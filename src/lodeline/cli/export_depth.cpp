@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "lodeline/base/error.h"
-#include "lodeline/base/output_file.h"
-#include "lodeline/export/depth_alignment.h"
 #include "lodeline/export/map_times.h"
+#include "lodeline/export/profile_fit.h"
 
 namespace lodeline {
 namespace {
 
-std::string comparisonCsv(const std::vector<DepthComparison>& pairs, const std::string& note) {
-  std::string text = "# " + note + "\ntime [s],run_depth [m],profile_depth [m],profile_less_run [m]\n";
+std::string comparisonCsv(const std::vector<DepthComparison>& pairs) {
+  std::string text = "time [s],run_depth [m],profile_depth [m],profile_less_run [m]\n";
   for (const DepthComparison& pair : pairs) {
     text += fmt::format("{},{:.3f},{:.3f},{:.3f}\n", secondsText(pair.time), pair.run_depth_m,
                         pair.profile_depth_m, pair.profile_depth_m - pair.run_depth_m);
@@ -30,12 +31,25 @@ std::string describeAlignment(const DepthProfile& profile, const DepthAlignment&
       alignment.rms_m, alignment.slope);
 }
 
+/// The profile's start depth is what the user asked for; that of the run's own sensor should be the same.
+void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics* diagnostics) {
+  constexpr double kLeast_m = 0.5, kShare = 0.05;
+  if (!run.depth_at_origin_m) return;
+  const double difference_m = start_depth_m - *run.depth_at_origin_m;
+  if (std::abs(difference_m) < std::max(kLeast_m, kShare * start_depth_m)) return;
+  diagnostics->report(
+      Severity::Warning, "start_depth_contradicted",
+      fmt::format("the first pose was {:.2f} m deep by the depth profile, which is taken, and {:.2f} m by "
+                  "the run's own pressure sensor",
+                  start_depth_m, *run.depth_at_origin_m));
+}
+
 }  // namespace
 
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
-  CLI::Option* file =
-      command->add_option("--depth-profile", arguments->file,
-                          "CSV of a dive computer or a diver: time, depth; compared with the run");
+  CLI::Option* file = command->add_option("--depth-profile", arguments->file,
+                                          "log of a dive computer or a diver (CSV with time and depth, "
+                                          "Subsurface, UDDF, UDCF); compared with the run");
   command->add_flag("--correct-depth", arguments->correct, "take the vertical from that profile")
       ->needs(file);
   command
@@ -44,21 +58,27 @@ void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
       ->needs(file);
 }
 
-void applyDepthProfile(const DepthProfileArguments& arguments, const std::filesystem::path& folder,
-                       bool start_depth_is_stated, RunFolder* run, DiveMapOptions* map,
-                       Diagnostics* diagnostics) {
-  const DepthProfile profile = readDepthProfile(arguments.file, diagnostics);
-  const DepthAlignment alignment = alignDepths(profile, run->trajectory, arguments.lag_s);
+std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder* run, DiveMapOptions* map,
+                              Diagnostics* diagnostics) {
+  if (!std::isfinite(arguments.lag_s.value_or(0.0)))
+    throw UsageError("--profile-lag: a number of seconds is wanted");
+  const ProfileFit fit = fitProfile(readDepthProfiles(arguments.file, diagnostics), run->trajectory,
+                                    arguments.lag_s, diagnostics);
+  const DepthProfile& profile = fit.profile;
+  const DepthAlignment& alignment = fit.alignment;
   if (!alignment.doubt.empty()) {
-    const std::string doubt = fmt::format("{}: its lag is uncertain: {}", arguments.file, alignment.doubt);
+    const std::string doubt = fmt::format("{}: it is doubtful whether this profile fits the run: {}",
+                                          arguments.file, alignment.doubt);
     if (arguments.correct) {
       throw InputError(doubt + "; nothing was corrected: state the lag with --profile-lag SECONDS");
     }
-    diagnostics->report(Severity::Warning, "profile_lag", doubt + "; --profile-lag SECONDS states it");
+    diagnostics->report(Severity::Warning, "profile_lag",
+                        doubt + "; the map takes nothing from it; --profile-lag SECONDS states the lag");
   }
   map->notes.push_back(describeAlignment(profile, alignment));
-  writeOutput(folder / "depth_profile.csv",
-              comparisonCsv(compareDepths(profile, run->trajectory, alignment), map->notes.back()));
+  if (!alignment.doubt.empty())
+    map->notes.push_back("depth profile: doubted, so the map takes nothing from it: " + alignment.doubt);
+  const std::string comparison = comparisonCsv(compareDepths(profile, run->trajectory, alignment));
   double start_depth_m = alignment.start_depth_m;
   if (arguments.correct) {
     start_depth_m = correctDepths(profile, alignment, run);
@@ -66,7 +86,11 @@ void applyDepthProfile(const DepthProfileArguments& arguments, const std::filesy
   } else {
     map->notes.push_back("vertical: the run's own; the depth profile was only compared");
   }
-  if (!start_depth_is_stated) map->start_depth_m = start_depth_m;
+  if (map->start_depth_m || !alignment.doubt.empty()) return comparison;
+  reportContradiction(start_depth_m, *run, diagnostics);
+  map->start_depth_m = start_depth_m;
+  map->start_depth_source = "by the depth profile";
+  return comparison;
 }
 
 }  // namespace lodeline

@@ -17,11 +17,10 @@ struct DepthProfileArguments {
 };
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments);
 
-/// Aligns the profile with the run, writes `depth_profile.csv` (both over time) into the folder, and adds
-/// what was found to the notes of the map. The start depth of the map becomes the profile's unless the user
-/// stated it; with `correct`, the run's vertical becomes the profile's.
-void applyDepthProfile(const DepthProfileArguments& arguments, const std::filesystem::path& folder,
-                       bool start_depth_is_stated, RunFolder* run, DiveMapOptions* map,
-                       Diagnostics* diagnostics);
+/// Aligns the profile with the run and adds what was found to the notes of the map. The start depth of the
+/// map becomes the profile's unless the user stated it or the alignment is doubted; with `correct`, the run's
+/// vertical becomes the profile's. Gives the text of `NAME_depth_profile.csv`, both over time.
+std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder* run, DiveMapOptions* map,
+                              Diagnostics* diagnostics);
 
 }  // namespace lodeline

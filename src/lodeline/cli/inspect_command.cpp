@@ -8,6 +8,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
 #include "lodeline/cli/open_recording.h"
 #include "lodeline/data/plain_source.h"
@@ -37,7 +38,8 @@ std::optional<Vec3> siteField(const InspectArguments& arguments) {
 /// Also recordings that nothing could be estimated from.
 std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
                                                    Diagnostics* diagnostics) {
-  if (!isBag(arguments.data) && std::filesystem::is_regular_file(arguments.data)) {
+  if (isTableOfReadings(arguments.data)) {
+    refuseBagOptions(arguments.data, arguments.bag);
     return std::make_unique<PlainSource>(arguments.data, diagnostics);
   }
   EurocOptions options;
@@ -51,7 +53,7 @@ void inspectRecording(const InspectArguments& arguments) {
   options.site_field_W = siteField(arguments);
   const Inspection inspection =
       inspect([&](Diagnostics* diagnostics) { return openWhatThereIs(arguments, diagnostics); }, options);
-  if (!arguments.json.empty()) writeOutput(arguments.json, inspectionJson(inspection).dump(2) + "\n");
+  if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(inspectionJson(inspection)) + "\n");
   fmt::print("{}", inspectionText(inspection));
 }
 

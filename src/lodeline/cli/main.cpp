@@ -6,13 +6,17 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/printable_text.h"
 #include "lodeline/cli/allan_command.h"
+#include "lodeline/cli/arguments.h"
 #include "lodeline/cli/attitude_command.h"
 #include "lodeline/cli/calibrate_command.h"
+#include "lodeline/cli/calibration_file_commands.h"
 #include "lodeline/cli/compare_command.h"
 #include "lodeline/cli/convert_command.h"
 #include "lodeline/cli/evaluate_command.h"
@@ -30,7 +34,7 @@ namespace {
 enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3, kInterrupted = 130 };
 
 int fail(const char* kind, const std::exception& error, ExitCode code) {
-  fmt::print(stderr, "{}: {}\n", kind, error.what());
+  fmt::print(stderr, "{}: {}\n", kind, lodeline::printableText(error.what()));
   return code;
 }
 
@@ -62,9 +66,13 @@ int main(int argc, char** argv) {
   lodeline::addAttitudeCommand(program);
   lodeline::addCalibrateCommand(program);
   lodeline::addConvertCommand(program);
+  lodeline::addConvertCalibrationCommand(program);
+  lodeline::addRigTemplateCommand(program);
   lodeline::addInspectCommand(program);
   try {
-    std::vector<std::string> arguments = lodeline::completeLiveOption({argv + 1, argv + argc});
+    std::vector<std::string> arguments =
+        lodeline::withJoinedPlaces(lodeline::completeLiveOption({argv + 1, argv + argc}));
+    lodeline::refuseUnknownWords(program, arguments);
     std::reverse(arguments.begin(), arguments.end());  // which is how CLI11 takes them
     program.parse(std::move(arguments));
     return kGood;
@@ -72,6 +80,10 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? kGood : kBadUsage;
   } catch (const lodeline::InputError& error) {
     return fail("bad input", error, kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A path that cannot be followed: links in a circle, missing rights, too many open files.
+    const auto reason = error.path1().string() + ": " + error.code().message();
+    return fail("bad input", lodeline::InputError(reason), kBadInput);
   } catch (const lodeline::UsageError& error) {
     return fail("bad usage", error, kBadUsage);
   } catch (const lodeline::EstimationError& error) {

@@ -7,6 +7,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/data/euroc_source.h"
 
 namespace lodeline {
@@ -16,6 +17,7 @@ BagOptions bagOptions(const BagArguments& arguments) {
   BagOptions options;
   options.rig_files.assign(arguments.rig_files.begin(), arguments.rig_files.end());
   options.topics = topicsOf(arguments);
+  options.use_received_times = arguments.use_received_times;
   return options;
 }
 
@@ -23,17 +25,21 @@ BagOptions bagOptions(const BagArguments& arguments) {
 
 void addBagOptions(BagArguments* arguments, CLI::App* command) {
   command
-      ->add_option(
-          "--rig", arguments->rig_files,
-          "for a bag: calibration of the rig (rig.yaml, or Kalibr's camchain-imucam.yaml and imu.yaml); "
-          "without it NAME.rig.yaml beside NAME.bag")
+      ->add_option("--rig", arguments->rig_files,
+                   "calibration of the rig: rig.yaml, or files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3, "
+                   "OKVIS, Basalt; "
+                   "without it NAME.rig.yaml beside NAME.bag, or what lies in the folder")
       ->type_name("FILE");
   command
       ->add_option(
           "--topic", arguments->topics,
           "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
-          "is not named")
+          "is not named; imu0=/gyro,/accel unites two halves")
       ->type_name("SENSOR=TOPIC");
+  command->add_flag(
+      "--received-times", arguments->use_received_times,
+      "for a bag whose header stamps are not filled: stamp messages with the times at which they "
+      "were recorded, which are late and uneven");
 }
 
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
@@ -49,13 +55,37 @@ std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
 }
 
 bool isBag(const std::filesystem::path& data) {
+  const RecognisedFile recognised = recogniseFile(data);
+  if (recognised.kind == FileKind::Ros1Bag) return true;
   const std::string name = data.filename().string();
-  return data.extension() == ".bag" || name.ends_with(".bag.active");
+  return recognised.kind == FileKind::Missing &&
+         (data.extension() == ".bag" || name.ends_with(".bag.active"));
+}
+
+bool isTableOfReadings(const std::filesystem::path& data) {
+  const RecognisedFile recognised = recogniseFile(data);
+  if (recognised.isFolder() || recognised.kind == FileKind::Ros1Bag) return false;
+  if (isBag(data)) return false;  // one that is missing is reported by its reader
+  if (recognised.kind != FileKind::Table && recognised.kind != FileKind::Text) {
+    refuseFile(recognised, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
+  }
+  return true;
 }
 
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
-  if (isBag(data) || (bag_arguments.rig_files.empty() && bag_arguments.topics.empty())) return;
-  throw UsageError(fmt::format("--rig and --topic are for ROS bags; {} is none", data.string()));
+  if (isBag(data)) return;
+  const bool is_for_bags = !bag_arguments.topics.empty() || bag_arguments.use_received_times;
+  if (is_for_bags && std::filesystem::exists(data)) {
+    throw UsageError(fmt::format("--topic and --received-times are for ROS bags; {} is {}", data.string(),
+                                 recogniseFile(data).what));
+  }
+  if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
+    const RecognisedFile recognised = recogniseFile(data);
+    const bool is_table = recognised.kind == FileKind::Table || recognised.kind == FileKind::Text;
+    if (!is_table) return;  // refused by its kind
+    throw UsageError(
+        fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognised.what));
+  }
 }
 
 std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
@@ -70,7 +100,9 @@ std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics) {
   if (!isBag(data)) {
     refuseBagOptions(data, bag_arguments);
-    return std::make_unique<EurocSource>(data, options, diagnostics);
+    EurocOptions folder_options = options;
+    folder_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
+    return std::make_unique<EurocSource>(data, folder_options, diagnostics);
   }
   BagOptions bag_options = bagOptions(bag_arguments);
   bag_options.camera_indices = options.camera_indices;

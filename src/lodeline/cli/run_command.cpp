@@ -11,6 +11,7 @@
 #include "lodeline/cli/interruption.h"
 #include "lodeline/cli/report_command.h"
 #include "lodeline/cli/run_recording.h"
+#include "lodeline/inspection/start_check.h"
 #include "lodeline/page/page_template.h"
 
 namespace lodeline {
@@ -24,16 +25,31 @@ bool isNumber(const std::string& text) {
 }
 
 /// Turns a run without a result into the error that explains it.
-void requireResult(const RunRequest& request, const RunSummary& summary) {
+void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
-  if (summary.posed() > 0) return;
-  if (summary.images == 0) {
-    throw InputError(fmt::format("{}: no image of the recording could be used; the findings in {} say why",
-                                 request.data,
-                                 (std::filesystem::path(request.output) / "run.json").string()));
+  if (const std::string reason = summary.distrust(); !reason.empty()) {
+    throw EstimationError(
+        fmt::format("{}: {}; the result in {} is not to be trusted. `lodeline inspect {}` looks for units, "
+                    "axes, time stamps and calibrations that do not belong together",
+                    request.data, reason, request.output, request.data));
   }
-  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}", request.data,
-                                    summary.frames(), summary.last().waiting_for));
+  if (summary.posed() > 0) {
+    if (diagnostics.count(kSensorsContradict) == 0) return;
+    throw EstimationError(
+        fmt::format("{}: the sensors contradict each other; the result in {} is not to be trusted. "
+                    "`lodeline inspect {}` says what is wrong",
+                    request.data, request.output, request.data));
+  }
+  if (summary.images == 0) {
+    const std::vector<Finding> findings = diagnostics.ranked();
+    throw InputError(fmt::format("{}: no image of the recording could be used{}", request.data,
+                                 findings.empty() ? "" : ": " + findings.front().first_message));
+  }
+  const std::vector<Finding> findings = diagnostics.ranked();
+  const bool is_explained = !findings.empty() && findings.front().severity == Severity::Serious;
+  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}{}", request.data,
+                                    summary.frames(), summary.last().waiting_for,
+                                    is_explained ? ". " + findings.front().first_message : ""));
 }
 
 }  // namespace
@@ -48,7 +64,7 @@ void executeRun(RunRequest request) {
     const std::string remark = writeRunReport(request);
     if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);
   }
-  requireResult(request, summary);
+  requireResult(request, summary, diagnostics);
 }
 
 void addRunOptions(RunRequest* arguments, CLI::App* command) {
@@ -86,6 +102,8 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
       ->capture_default_str();
   command->add_flag("--no-report", arguments->no_report, "leave out report.html and its pictures");
   addBagOptions(&arguments->bag, command);
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace the results of another run in the output folder");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
 }
 

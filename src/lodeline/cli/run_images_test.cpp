@@ -131,5 +131,80 @@ TEST_F(RunImages, ImagesWithoutTextureEndInEstimationFailure) {
   EXPECT_EQ(poses(), 0);
 }
 
+TEST_F(RunImages, EveryImageTwiceIsNamedAndLeavesTheResultAsItIs) {
+  for (const char* camera : {"cam0", "cam1"}) {
+    editLines(recording_.csv(camera), [](auto& lines) {
+      std::vector<std::string> doubled = {lines.front()};
+      for (size_t i = 1; i < lines.size(); ++i) {
+        const size_t comma = lines[i].find(',');
+        const int64_t stamp_ns = std::stoll(lines[i].substr(0, comma));
+        doubled.push_back(lines[i]);
+        if (i + 1 < lines.size())
+          doubled.push_back(fmt::format("{}{}", stamp_ns + 25'000'000, lines[i].substr(comma)));
+      }
+      lines = doubled;
+    });
+    replaceText(recording_.sensor(camera) / "sensor.yaml", "rate_hz: 20", "rate_hz: 40");
+  }
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("images_repeated"), 2 * (kRoomImages - 1));
+  EXPECT_THAT(result.output, HasSubstr("repeats the one before"));
+}
+
+TEST_F(RunImages, ARightCameraThatHangsIsNamedWithItsTimeAndLeftOut) {
+  for (size_t i = 11; i < 21; ++i) {
+    std::filesystem::copy_file(recording_.image(1, 10), recording_.image(1, i),
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("images_frozen"), 1);
+  EXPECT_THAT(result.output, HasSubstr("cam1: frozen from 0:00.550 to 0:01.000"));
+}
+
+TEST_F(RunImages, ExchangedCalibrationsOfLeftAndRightAreNamedAndUndone) {
+  const std::filesystem::path left = recording_.sensor("cam0") / "sensor.yaml";
+  const std::filesystem::path right = recording_.sensor("cam1") / "sensor.yaml";
+  std::filesystem::rename(left, folder_.path() / "kept.yaml");
+  std::filesystem::rename(right, left);
+  std::filesystem::rename(folder_.path() / "kept.yaml", right);
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_GE(findings("cameras_swapped"), 1);
+  EXPECT_THAT(result.output, HasSubstr("exchanged"));
+}
+
+TEST_F(RunImages, CamerasExchangedInMidRunArePutBack) {
+  for (size_t i = 15; i < recording_.image_names.size(); ++i) {
+    const std::filesystem::path kept = folder_.path() / "kept.png";
+    std::filesystem::rename(recording_.image(0, i), kept);
+    std::filesystem::rename(recording_.image(1, i), recording_.image(0, i));
+    std::filesystem::rename(kept, recording_.image(1, i));
+  }
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("cameras_swapped"), 1);
+  EXPECT_THAT(result.output, HasSubstr(fmt::format("stamp {} ns", roomImageStamp_ns(15))));
+}
+
+TEST_F(RunImages, AMissingListOfTheRightCameraIsMadeFromTheNamesOfItsImages) {
+  std::filesystem::remove(recording_.csv("cam1"));
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("image_list_made"), 1);
+  EXPECT_THAT(result.output, HasSubstr("cam1/data.csv: missing"));
+}
+
+TEST_F(RunImages, OtherSizesFromMidRunOnAreNamedAndBridged) {
+  for (size_t i = 15; i < recording_.image_names.size(); ++i) {
+    cv::imwrite(recording_.image(1, i).string(), cv::Mat(120, 160, CV_8UC1, cv::Scalar(90)));
+  }
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_EQ(findings("image_size"), kRoomImages - 15);
+  EXPECT_EQ(findings("one_camera"), 1) << "the second half hangs on the left camera";
+}
+
 }  // namespace
 }  // namespace lodeline::test

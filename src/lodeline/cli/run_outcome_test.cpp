@@ -143,7 +143,7 @@ int signalAfterPoses(const RoomRecording& recording, const std::filesystem::path
 
 TEST_F(RunOutcome, InterruptCompletesTheResultsSoFar) {
   prolong(recording_);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     EXPECT_EQ(signalAfterPoses(recording_, output_, 10, signal), 130);
     const nlohmann::json json = summary();
     EXPECT_TRUE(json["interrupted"]);
@@ -156,6 +156,67 @@ TEST_F(RunOutcome, InterruptCompletesTheResultsSoFar) {
               std::string::npos);
     std::filesystem::remove_all(output_);
   }
+}
+
+TEST_F(RunOutcome, AKilledRunCanBeShownAndExported) {
+  prolong(recording_);
+  EXPECT_EQ(signalAfterPoses(recording_, output_, 10, SIGKILL), -1);
+  const Execution exported = runProgram(
+      fmt::format("export {} --format csv --turn 0 -o {}", quoted(output_), quoted(folder_.path() / "map")));
+  EXPECT_EQ(exported.exit_code, 0) << exported.output;
+  EXPECT_THAT(exported.output, HasSubstr("run.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "map/out_poses.csv"));
+  if (pageTemplate().empty()) return;
+  const std::filesystem::path page = folder_.path() / "page.html";
+  const Execution reported = runProgram(fmt::format("report {} -o {}", quoted(output_), quoted(page)));
+  EXPECT_EQ(reported.exit_code, 0) << reported.output;
+  EXPECT_GT(std::filesystem::file_size(page), 100'000u);
+}
+
+TEST_F(RunOutcome, AnotherRunIsReplacedOnRequestOnly) {
+  ASSERT_EQ(run().exit_code, 0);
+  const std::string trajectory = readText(output_ / "trajectory.tum");
+  const std::string again =
+      fmt::format("{} -o {} --set source.duration_s=0.5", quoted(recording_.data), quoted(output_));
+  for (const char* command : {"run ", "refine "}) {
+    const Execution refused = runProgram(command + again);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.output, AllOf(HasSubstr(output_.string()), HasSubstr("--overwrite")));
+    EXPECT_EQ(readText(output_ / "trajectory.tum"), trajectory);
+  }
+  EXPECT_EQ(runProgram("run " + again + " --overwrite").exit_code, 0);
+  EXPECT_LT(readText(output_ / "trajectory.tum").size(), trajectory.size());
+}
+
+TEST_F(RunOutcome, TheRecordingIsNoFolderForResults) {
+  output_ = recording_.data;
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, HasSubstr("holds a recording"));
+  EXPECT_FALSE(std::filesystem::exists(recording_.data / "run.json"));
+}
+
+TEST_F(RunOutcome, ABadByteCostsItsRowAlone) {
+  editLines(recording_.csv("imu0"),
+            [](std::vector<std::string>& lines) { lines[150] = "14036365\xf8,1,2,3,4,5,6"; });
+  expectGoodResult(run());
+  EXPECT_EQ(findings("csv_row"), 1);
+  EXPECT_THAT(readText(output_ / "run.json"), HasSubstr("xF8"));
+}
+
+TEST_F(RunOutcome, MisspeltWordsAreRecognised) {
+  const std::string rest = quoted(recording_.data) + " -o " + quoted(output_);
+  const auto output = [](const std::string& arguments) {
+    const Execution result = runProgram(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    return result.output;
+  };
+  EXPECT_THAT(output("runn " + rest), HasSubstr("did you mean 'run'?"));
+  EXPECT_THAT(output("run " + rest + " --draw-track 3"), HasSubstr("did you mean '--draw-tracks'?"));
+  EXPECT_THAT(output("run " + quoted(recording_.data) + " --output-dir out"),
+              HasSubstr("did you mean '--output'?"));
+  EXPECT_EQ(
+      runProgram("run " + rest + " --site 20.32 -87.39 5 --date 2026-11-21 --magnetometer OFF").exit_code, 0);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include "lodeline/cli/test_room.h"
 
 // `lodeline run` on lists of readings that are empty, cut off, disordered or full of holes.
@@ -8,7 +10,27 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-using RunReadings = RoomTest;
+class RunReadings : public RoomTest {
+ protected:
+  /// One sigma of the last pose's position along x, as states.csv has it.
+  double lastSigma_m() const {
+    std::istringstream lines(readText(output_ / "states.csv"));
+    std::string header, line, last;
+    std::getline(lines, header);
+    while (std::getline(lines, line)) last = line;
+    const auto columns = [](const std::string& text) {
+      std::vector<std::string> fields;
+      std::istringstream stream(text);
+      for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+      return fields;
+    };
+    const std::vector<std::string> names = columns(header), values = columns(last);
+    for (size_t i = 0; i < names.size(); ++i) {
+      if (names[i].starts_with("sigma_p_x")) return std::stod(values[i]);
+    }
+    return -1.0;
+  }
+};
 
 void expectNamed(const Execution& result, const std::filesystem::path& file, int line) {
   EXPECT_THAT(result.output, HasSubstr(fmt::format("{}:{}", file.string(), line)));
@@ -75,6 +97,25 @@ TEST_F(RunReadings, LineEndsOfWindowsChangeNothing) {
   EXPECT_EQ(summary()["findings"].size(), 0u);
 }
 
+// As when a driver turns to the camera's axes: readings that look like readings.
+TEST_F(RunReadings, GyroscopeInOtherAxesEndsWithoutTrust) {
+  editLines(recording_.csv("imu0"), [](auto& lines) {
+    for (size_t i = 150; i < lines.size(); ++i) {
+      std::vector<std::string> cells;
+      std::stringstream line(lines[i]);
+      for (std::string cell; std::getline(line, cell, ',');) cells.push_back(cell);
+      lines[i] = fmt::format("{},{},{},{},{},{},{}", cells[0], cells[3], cells[1], cells[2], cells[4],
+                             cells[5], cells[6]);
+    }
+  });
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("contradict each other"), HasSubstr("lodeline inspect")));
+  EXPECT_EQ(findings("motion_contradiction"), 1);
+  EXPECT_EQ(poses(), kRoomImages);
+  EXPECT_TRUE(summary().contains("do_not_trust"));
+}
+
 TEST_F(RunReadings, NanIsNamedAndPassedOver) {
   editLines(recording_.csv("imu0"), [](auto& lines) {
     lines[150] = lines[150].substr(0, lines[150].find(',')) + ",nan,0,0,0,0,9.8";
@@ -116,6 +157,79 @@ TEST_F(RunReadings, InertialGapOfHalfASecondIsReportedAndSurvived) {
   EXPECT_EQ(poses(), kRoomImages);
   // Images carry on through the gap; inertial readings made up over it must not be believed.
   EXPECT_LT(error_m(), 0.02);
+}
+
+TEST_F(RunReadings, AReadingThatNoSensorGivesIsLeftOutAndNamed) {
+  const std::string good = readText(recording_.csv("imu0"));
+  for (const char* value : {"1000", "1e6", "-1e30", "1e300"}) {
+    for (const size_t column : {1, 4}) {
+      std::ofstream(recording_.csv("imu0")) << good;
+      editLines(recording_.csv("imu0"), [&](auto& lines) {
+        size_t begin = 0;
+        for (size_t i = 0; i < column; ++i) begin = lines[200].find(',', begin) + 1;
+        lines[200].replace(begin, lines[200].find(',', begin) - begin, value);
+      });
+      const Execution result = run();
+      expectGoodResult(result);
+      EXPECT_EQ(findings("imu_impossible"), 1) << value;
+      EXPECT_THAT(result.output, HasSubstr("beyond what any inertial sensor can measure"));
+    }
+  }
+}
+
+TEST_F(RunReadings, AStuckImuIsAGapWithWords) {
+  editLines(recording_.csv("imu0"), [](auto& lines) {
+    for (size_t i = 182; i < 282; ++i)
+      lines[i].replace(lines[i].find(','), std::string::npos, lines[181].substr(lines[181].find(',')));
+  });
+  const Execution result = run();
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(findings("imu_unusable"), 1);
+  EXPECT_EQ(poses(), kRoomImages);
+  EXPECT_LT(error_m(), 0.02);
+}
+
+TEST_F(RunReadings, AnImuOfZerosIsBadInput) {
+  editLines(recording_.csv("imu0"), [](auto& lines) {
+    for (size_t i = 1; i < lines.size(); ++i)
+      lines[i] = lines[i].substr(0, lines[i].find(',')) + ",0,0,0,0,0,0";
+  });
+  const Execution result = run();
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_THAT(readText(output_ / "run.json"), HasSubstr("zero in every axis"));
+}
+
+TEST_F(RunReadings, AnAccelerometerInGIsConvertedWithWords) {
+  editLines(recording_.csv("imu0"), [](auto& lines) {
+    for (size_t i = 1; i < lines.size(); ++i) {
+      std::istringstream fields(lines[i]);
+      std::string row, field;
+      for (int column = 0; std::getline(fields, field, ','); ++column) {
+        row +=
+            (column == 0 ? "" : ",") + (column > 3 ? fmt::format("{}", std::stod(field) / 9.80665) : field);
+      }
+      lines[i] = row;
+    }
+  });
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_GE(findings("accelerometer_unit"), 1);
+}
+
+TEST_F(RunReadings, NoiseDensitiesOfNearlyZeroAreRaised) {
+  const double sigma = [&] {
+    EXPECT_EQ(run().exit_code, 0);
+    return lastSigma_m();
+  }();
+  for (const char* key : {"gyroscope_noise_density: 1.7e-4", "gyroscope_random_walk: 2.0e-5",
+                          "accelerometer_noise_density: 2.0e-3", "accelerometer_random_walk: 3.0e-3"}) {
+    const std::string line = key;
+    replaceText(recording_.sensor("imu0") / "sensor.yaml", line, line.substr(0, line.find(':')) + ": 1.0e-9");
+  }
+  const Execution result = run();
+  expectGoodResult(result);
+  EXPECT_GE(findings("imu_noise_too_small"), 3);
+  EXPECT_NEAR(lastSigma_m() / sigma, 1.0, 0.5);
 }
 
 }  // namespace

@@ -3,14 +3,17 @@
 #include <fmt/core.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <opencv2/core/utility.hpp>
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/settings.h"
+#include "lodeline/cli/output_choice.h"
 #include "lodeline/cli/run_progress.h"
 #include "lodeline/cli/run_session.h"
 #include "lodeline/cli/stop_request.h"
+#include "lodeline/inspection/start_check.h"
 #include "lodeline/live/live_view.h"
 
 namespace lodeline {
@@ -35,6 +38,22 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
     progress.show(session->summary());
   }
   progress.end();
+}
+
+/// Opens the recording another time, to check its first seconds before the run begins.
+void checkRecording(const RunRequest& request, RunSettings* options, Diagnostics* diagnostics) {
+  StartCheckOptions start;
+  start.begin_s = options->synchronizer.skip_s;
+  if (options->synchronizer.duration_s > 0.0) {
+    start.length_s = std::min(start.length_s, options->synchronizer.duration_s);
+  }
+  const SourceFactory open = [&](Diagnostics* unheard) -> std::unique_ptr<MeasurementSource> {
+    return openRecording(request.data, options->source, request.bag, unheard);
+  };
+  const StartCheck check = checkStart(open, request.data, start, diagnostics);
+  options->synchronizer.image_offset_s = check.image_offset_s;
+  options->synchronizer.inertial.rate_to_SI = check.rate_to_SI;
+  options->shown_noise = check.noise;
 }
 
 /// By default glibc gives every thread a heap of its own. Images are decoded by one short-lived thread each,
@@ -75,12 +94,17 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   // something.
   cv::setNumThreads(1);
   arrangeHeap();
+  if (!request.output.empty()) {
+    refuseRecordingAsOutput(request.data, request.output);
+    if (!request.overwrite) refuseToReplaceRun(request.output);
+  }
   RunSettings options;
   Settings settings;
   applyRequest(request, &settings, &options);
 
   const std::unique_ptr<RecordedSource> source =
       openRecording(request.data, options.source, request.bag, diagnostics);
+  checkRecording(request, &options, diagnostics);
   RunSession session(request, settings, options, source.get(), diagnostics);
   process(&session, source->rig(), request);
   return session.finish();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "lodeline/data/synchronizer.h"
 #include "lodeline/estimator/attitude_track.h"
 #include "lodeline/estimator/odometry.h"
+#include "lodeline/inspection/clock_monitor.h"
 #include "lodeline/refinement/forward_record.h"
 #include "lodeline/report/run_output.h"
 #include "lodeline/report/run_summary.h"
@@ -49,6 +51,9 @@ class RunSession {
   const Odometry& odometry() const { return odometry_; }
 
  private:
+  void followClocks(const FrameEstimate& estimate);
+  bool stamp(FrameEstimate* estimate);
+
   using Clock = std::chrono::steady_clock;
 
   std::string folder_;  ///< empty for none
@@ -63,6 +68,10 @@ class RunSession {
   std::optional<ForwardRecord> record_;  ///< of a run that is to be refined
   std::optional<FramePacket> fetched_;
   FramePacket processed_;
+  ClockMonitor clocks_;
+  Duration image_offset_;  ///< from the clock of the images to that of the results
+  std::optional<Time> last_result_stamp_;
+  std::map<Time, Time> result_stamps_;  ///< of frames whose results have another stamp than their time
   std::vector<MapPoint> landmarks_;
   Clock::time_point start_;
   double start_processor_s_ = 0.0;

@@ -8,6 +8,7 @@
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/data/synchronizer.h"
 #include "lodeline/estimator/odometry.h"
+#include "lodeline/inertial/imu_noise_check.h"
 
 namespace lodeline {
 
@@ -19,6 +20,7 @@ struct RunSettings {
   std::string magnetometer_calibration;  ///< file of `lodeline calibrate magnetometer`; empty for none
   std::vector<double> site;              ///< latitude, longitude (degrees) and height (m); empty for unknown
   std::string date;                      ///< YYYY-MM-DD; empty for unknown
+  WhiteNoise shown_noise;                ///< of the IMU, by its readings; what its file says is held to it
 };
 
 void bindRunSettings(Settings* settings, RunSettings* options);

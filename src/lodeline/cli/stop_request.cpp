@@ -5,6 +5,9 @@
 namespace lodeline {
 namespace {
 
+/// Ctrl-C, a polite kill, and a terminal that was closed.
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+
 volatile std::sig_atomic_t stop_requested = 0;
 
 void requestStop(int signal) {
@@ -16,13 +19,16 @@ void requestStop(int signal) {
 
 StopRequest::StopRequest() {
   stop_requested = 0;
-  std::signal(SIGINT, requestStop);
-  std::signal(SIGTERM, requestStop);
+  // A signal that the caller has the program ignore (nohup) stays ignored.
+  for (const int signal : kSignals) {
+    if (std::signal(signal, requestStop) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
 StopRequest::~StopRequest() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  for (const int signal : kSignals) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
 bool StopRequest::made() const { return stop_requested != 0; }

@@ -2,8 +2,8 @@
 
 namespace lodeline {
 
-/// While one exists, the first Ctrl-C (SIGINT) or SIGTERM asks for a stop instead of ending the program, so
-/// that results can be completed; the second one ends it as usual. One at a time.
+/// While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks for a stop instead of ending the
+/// program, so that results can be completed; the second one ends it as usual. One at a time.
 class StopRequest {
  public:
   StopRequest();

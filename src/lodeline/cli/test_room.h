@@ -18,7 +18,8 @@ class RoomTest : public testing::Test {
   RoomTest() : recording_(writeRoomRecording(folder_.path())), output_(folder_.path() / "out") {}
 
   Execution run(const std::string& options = "") const {
-    return runProgram(fmt::format("run {} -o {} {}", quoted(recording_.data), quoted(output_), options));
+    return runProgram(
+        fmt::format("run {} -o {} --overwrite {}", quoted(recording_.data), quoted(output_), options));
   }
 
   nlohmann::json summary() const { return readJson(output_ / "run.json"); }

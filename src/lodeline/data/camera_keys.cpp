@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lodeline/base/error.h"
+#include "lodeline/cameras/camera.h"
 
 namespace lodeline {
 namespace {
@@ -53,6 +54,53 @@ std::vector<double> readDistortion(const std::string& key, DistortionModel model
   return values;
 }
 
+/// Refuses what no lens and sensor have: most often other units, or the calibration of another image size.
+void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) {
+  const double width = camera.width_px, height = camera.height_px;
+  const double focal_share = camera.fx_px / width;
+  const bool is_relative = std::max({camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}) < 10.0 &&
+                           std::min(width, height) > 20.0;
+  if (is_relative) {
+    throw InputError(fmt::format(
+        "{}: [{:g}, {:g}, {:g}, {:g}] look like shares of the image's size, but pixels are due; multiply fx and "
+        "cx by {}, fy and cy by {}",
+        map.at("intrinsics"), camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, width, height));
+  }
+  constexpr double kShortest = 0.1, kLongest = 20.0;  // of the width; lenses in use have 0.25 to 5
+  if (focal_share < kShortest || focal_share > kLongest || camera.fy_px < kShortest * height ||
+      camera.fy_px > kLongest * width) {
+    throw InputError(
+        fmt::format("{}: a focal length of {:g}, {:g} px cannot be for an image {} px wide; it must be in "
+                    "pixels of that size",
+                    map.at("intrinsics"), camera.fx_px, camera.fy_px, width));
+  }
+  if (camera.cx_px < 0.0 || camera.cx_px > width || camera.cy_px < 0.0 || camera.cy_px > height) {
+    throw InputError(fmt::format(
+        "{}: the principal point ({:g}, {:g}) px lies outside of the image of {} x {} px; is this the "
+        "calibration of another image size, or are intrinsics not in the order fx, fy, cx, cy?",
+        map.at("intrinsics"), camera.cx_px, camera.cy_px, width, height));
+  }
+}
+
+/// Refuses a distortion under which less than half of the image has viewing rays.
+void checkDistortion(const std::string& key, const CalibrationMap& map, const CameraCalibration& calibration) {
+  const std::shared_ptr<const Camera> camera = makeCamera(calibration);
+  constexpr int kSteps = 8;
+  int seen = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const Vec2 pixel(i * (calibration.width_px - 1.0) / kSteps, j * (calibration.height_px - 1.0) / kSteps);
+      if (camera->unproject(pixel)) ++seen;
+    }
+  }
+  const double share = seen / ((kSteps + 1.0) * (kSteps + 1.0));
+  if (share >= 0.5) return;
+  throw InputError(
+      fmt::format("{}: under this distortion only {:.0f} % of the image have a viewing ray; are model and order "
+                  "of the coefficients right (radtan: k1, k2, p1, p2; equidistant: k1, k2, k3, k4)?",
+                  map.at(key), 100.0 * share));
+}
+
 }  // namespace
 
 void readPinhole(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera) {
@@ -76,6 +124,8 @@ void readPinhole(const std::string& coefficients_key, CalibrationMap* map, Camer
   }
   camera->distortion_model = readDistortionModel(map);
   camera->distortion = readDistortion(coefficients_key, camera->distortion_model, map);
+  checkPlausible(*map, *camera);
+  checkDistortion(coefficients_key, *map, *camera);
 }
 
 }  // namespace lodeline

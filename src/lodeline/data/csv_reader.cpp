@@ -7,6 +7,7 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/data/sensor_columns.h"
+#include "lodeline/streams/stream_rate.h"
 #include "lodeline/tables/pose_columns.h"
 
 namespace lodeline {
@@ -81,6 +82,10 @@ std::optional<std::size_t> columnWith(const std::vector<ColumnName>& columns,
   return std::nullopt;
 }
 
+bool hasDecimals(std::string_view stamp) { return stamp.find('.') != std::string_view::npos; }
+
+bool hasDecimals(std::string_view stamp) { return stamp.find_first_of(".,") != std::string_view::npos; }
+
 }  // namespace
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, std::filesystem::path file, std::size_t number_count,
@@ -91,11 +96,21 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, std::filesystem::path fi
   text_column_ = 1 + number_count;
 }
 
-CsvReader::CsvReader(const std::filesystem::path& file, int number_count, Diagnostics* diagnostics)
-    : CsvReader(openSensorFile(file), file, static_cast<std::size_t>(number_count), diagnostics) {}
+CsvReader::CsvReader(const std::filesystem::path& file, int number_count, Diagnostics* diagnostics,
+                     std::optional<PlausibleRate> rate)
+    : CsvReader(openSensorFile(file), file, static_cast<std::size_t>(number_count), diagnostics) {
+  if (!rate) return;
+  Diagnostics reported_when_read_in_earnest;
+  settleStampUnit(CsvReader(file, number_count, &reported_when_read_in_earnest), *rate, diagnostics);
+}
 
-CsvReader::CsvReader(const std::filesystem::path& file, CsvContent content, Diagnostics* diagnostics)
-    : CsvReader(openSensorFile(file), file, content, diagnostics) {}
+CsvReader::CsvReader(const std::filesystem::path& file, CsvContent content, Diagnostics* diagnostics,
+                     std::optional<PlausibleRate> rate)
+    : CsvReader(openSensorFile(file), file, content, diagnostics) {
+  if (!rate) return;
+  Diagnostics reported_when_read_in_earnest;
+  settleStampUnit(CsvReader(file, content, &reported_when_read_in_earnest), *rate, diagnostics);
+}
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, const std::filesystem::path& file, CsvContent content,
                      Diagnostics* diagnostics)
@@ -178,17 +193,41 @@ void CsvReader::findTimeColumn(const SensorColumns& sensors) {
                     file_.string(), time.unknown_unit, time.name));
   }
   time_column_ = time.column;
-  states_time_unit_ = time.unit.has_value();
-  time_unit_ = time.unit.value_or(TimeUnit::Nanoseconds);
+  if (!time.unit || *time.unit == TimeUnit::Nanoseconds) return;
+  stamp_unit_ = *time.unit;
+  decimal_unit_ = time.unit;
+}
+
+void CsvReader::settleStampUnit(CsvReader ahead, PlausibleRate rate, Diagnostics* diagnostics) {
+  if (stamp_unit_ != TimeUnit::Nanoseconds) return;  // the header states another
+  std::vector<double> stamps;
+  bool has_decimals = false;
+  while (stamps.size() < kStampsForRate && ahead.table_.next()) {
+    const std::optional<double> stamp = numberFrom(ahead.stampText());
+    if (!stamp) continue;
+    has_decimals = has_decimals || hasDecimals(ahead.stampText());
+    stamps.push_back(*stamp);
+  }
+  if (has_decimals) {
+    decimal_unit_ = timeUnitOfStamps(stamps, rate).value_or(TimeUnit::Seconds);
+    return;
+  }
+  stamp_unit_ = unitOfNanosecondStamps(stamps, rate);
+  if (stamp_unit_ == TimeUnit::Nanoseconds) return;
+  diagnostics->report(
+      Severity::Warning, "stamp_unit",
+      fmt::format(
+          "{}: the stamps count {}, not nanoseconds: as nanoseconds the readings would come at {:.3g} Hz, "
+          "as {} they come at {:.4g} Hz. Read as such; multiply the column by {} to make it clear",
+          file_.string(), nameOf(stamp_unit_), stampsPerUnit(stamps) * 1e9, nameOf(stamp_unit_),
+          stampsPerUnit(stamps) / secondsPer(stamp_unit_), nanosecondsPer(stamp_unit_)));
 }
 
 std::string CsvReader::parseRow(CsvRow* row) const {
-  const std::string_view stamp = table_.cell(time_column_);
-  // Where the header says nothing, a stamp is a whole number of nanoseconds.
-  const bool may_have_decimals = states_time_unit_ && time_unit_ != TimeUnit::Nanoseconds;
-  const bool is_whole = stamp.find_first_not_of("+-0123456789") == std::string_view::npos;
-  const std::optional<int64_t> stamp_ns = table_.time_ns(time_column_, time_unit_);
-  if (!stamp_ns || !(is_whole || may_have_decimals)) {
+  const std::string_view stamp = stampText();
+  const std::optional<TimeUnit> unit = hasDecimals(stamp) ? decimal_unit_ : std::optional(stamp_unit_);
+  const std::optional<int64_t> stamp_ns = unit ? table_.time_ns(time_column_, *unit) : std::nullopt;
+  if (!stamp_ns) {
     return fmt::format("the time stamp '{}' is not an integer number of nanoseconds", excerpt(stamp));
   }
   row->time = Time::fromNanoseconds(*stamp_ns);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
@@ -32,21 +34,30 @@ enum class CsvContent {
 /// quantity stands and in which unit; without one they stand in the order of CsvContent, in SI units. A row
 /// that cannot be used (wrong number of columns, no number where one is due, NaN, cut off) is reported with
 /// file and line and passed over.
+///
+/// Stamps are in the unit that the header states, else whole nanoseconds, or seconds with decimals. Where a
+/// rate is given that the sensor can have, the first stamps are looked at: whole numbers that would make the
+/// sensor far too fast are taken for microseconds, milliseconds or seconds, which is reported as
+/// `stamp_unit`; so are decimals that are no seconds.
 class CsvReader {
  public:
   /// Throws InputError where the file cannot be opened, is no text, or has a header that names other
   /// quantities or an unknown unit. `diagnostics` must outlive the reader.
-  CsvReader(const std::filesystem::path& file, CsvContent content, Diagnostics* diagnostics);
+  CsvReader(const std::filesystem::path& file, CsvContent content, Diagnostics* diagnostics,
+            std::optional<PlausibleRate> rate = {});
   CsvReader(std::unique_ptr<ByteSource> bytes, const std::filesystem::path& file, CsvContent content,
             Diagnostics* diagnostics);
   /// `number_count` numbers after the stamp, in the order of the file.
-  CsvReader(const std::filesystem::path& file, int number_count, Diagnostics* diagnostics);
+  CsvReader(const std::filesystem::path& file, int number_count, Diagnostics* diagnostics,
+            std::optional<PlausibleRate> rate = {});
 
   /// The next usable row in the order of the file; false at its end.
   bool next(CsvRow* row);
 
   const std::filesystem::path& file() const { return file_; }
   int line() const { return table_.line(); }
+  /// The stamp of the row read last, as it stands in the file; valid until the next row is read.
+  std::string_view stampText() const { return table_.cell(time_column_); }
 
  private:
   struct NumberColumn {
@@ -58,14 +69,16 @@ class CsvReader {
             Diagnostics* diagnostics);
   void findColumns(CsvContent content);
   void findTimeColumn(const SensorColumns& sensors);
+  /// Looks at the first stamps of `ahead`, a reader of the same file.
+  void settleStampUnit(CsvReader ahead, PlausibleRate rate, Diagnostics* diagnostics);
   /// What is wrong with the current row, or nothing where it filled `row`.
   std::string parseRow(CsvRow* row) const;
 
   std::filesystem::path file_;
   TableReader table_;
   std::size_t time_column_ = 0;
-  TimeUnit time_unit_ = TimeUnit::Nanoseconds;
-  bool states_time_unit_ = false;
+  TimeUnit stamp_unit_ = TimeUnit::Nanoseconds;
+  std::optional<TimeUnit> decimal_unit_;  ///< of stamps with decimals; nothing where these are no stamps
   std::vector<NumberColumn> numbers_;
   std::size_t text_column_ = 0;
 };

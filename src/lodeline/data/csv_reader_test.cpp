@@ -1,5 +1,6 @@
 #include "lodeline/data/csv_reader.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -157,6 +158,42 @@ TEST_F(SensorFileTest, RefusesAHeaderThatNamesOtherQuantities) {
   EXPECT_THROW(read("t [ns],mx [furlong],my [furlong],mz [furlong]\n7,1,2,3\n", CsvContent::Magnetometer),
                InputError);
   EXPECT_THROW(read("t [fortnight],depth [m]\n7,1\n", CsvContent::Depth), InputError);
+}
+
+std::string rowsEvery(double first, double step, const char* format, int count = 60) {
+  std::string text = "#timestamp [ns],x,y\n";
+  for (int i = 0; i < count; ++i) text += fmt::format(fmt::runtime(format), first + step * i) + ",1,2\n";
+  return text;
+}
+
+class StampUnitTest : public CsvReaderTest {
+ protected:
+  /// Seconds from the first to the last row of 60 in which an IMU of 200 Hz was written.
+  double seconds(const std::string& text) {
+    recording_.write("some.csv", text);
+    CsvReader reader(recording_.path("some.csv"), 2, &diagnostics_, kInertialRate);
+    std::vector<Time> times;
+    for (CsvRow row; reader.next(&row);) times.push_back(row.time);
+    EXPECT_EQ(times.size(), 60u);
+    return times.empty() ? 0.0 : (times.back() - times.front()).seconds();
+  }
+};
+
+TEST_F(StampUnitTest, IsFoundByTheRateThatASensorCanHave) {
+  EXPECT_NEAR(seconds(rowsEvery(1.4e15, 5e6, "{:.0f}")), 0.295, 1e-6);
+  EXPECT_THAT(diagnostics_.ranked(), IsEmpty());
+  EXPECT_NEAR(seconds(rowsEvery(1.4e15, 5e3, "{:.0f}")), 0.295, 1e-6);
+  ASSERT_EQ(diagnostics_.count("stamp_unit"), 1);
+  EXPECT_THAT(diagnostics_.ranked()[0].first_message,
+              testing::AllOf(HasSubstr("some.csv"), HasSubstr("microseconds"), HasSubstr("200 Hz")));
+  EXPECT_NEAR(seconds(rowsEvery(1523, 5, "{:.0f}")), 0.295, 1e-6);
+  EXPECT_EQ(diagnostics_.count("stamp_unit"), 2);
+}
+
+TEST_F(StampUnitTest, OfDecimalsIsSecondsUnlessTheyAreTooLarge) {
+  EXPECT_NEAR(seconds(rowsEvery(1.4e9, 0.005, "{:.6f}")), 0.295, 1e-6);
+  EXPECT_NEAR(seconds(rowsEvery(1.4e18, 5e6, "{:.18e}")), 0.295, 1e-6);
+  EXPECT_NEAR(seconds(rowsEvery(1.4e12, 5.0, "{:.3f}")), 0.295, 1e-6);
 }
 
 }  // namespace

@@ -39,15 +39,6 @@ Calibration readSmallSensor(Rigid3 Calibration::*body_from_sensor, const std::st
   return calibration;
 }
 
-/// A whole file as one map, read by one of the functions below.
-template <typename Read>
-auto readFile(const std::filesystem::path& file, Diagnostics* diagnostics, const Read& read) {
-  CalibrationMap map(loadYamlFile(file), file, "");
-  auto calibration = read(&map);
-  map.reportUnknownKeys(diagnostics);
-  return calibration;
-}
-
 }  // namespace
 
 EurocImu readEurocImu(CalibrationMap* map) {
@@ -56,6 +47,7 @@ EurocImu readEurocImu(CalibrationMap* map) {
   if (map->has("T_BS")) imu.euroc_body_from_imu = map->transform("T_BS");
   imu.calibration.rate_hz = rateOrUnknown(map);
   imu.calibration.noise = readImuNoise(map);
+  imu.correction = readImuCorrection(map);
   return imu;
 }
 
@@ -66,6 +58,12 @@ CameraCalibration readEurocCamera(const std::string& name, CalibrationMap* map) 
   CameraCalibration camera;
   camera.name = name;
   readPinhole("distortion_coefficients", map, &camera);
+  if (!map->has("T_BS")) {
+    throw InputError(fmt::format(
+        "{} (camera to IMU) is missing; calibrate camera and IMU together, or add a rig file with "
+        "`{}: {{T_BS: …}}`",
+        map->at("T_BS"), name));
+  }
   camera.body_from_camera = map->transform("T_BS");
   camera.rate_hz = rateOrUnknown(map);
   camera.time_offset_to_imu_s = map->numberOr("timeshift_cam_imu", 0.0);
@@ -89,32 +87,6 @@ SonarCalibration readEurocSonar(CalibrationMap* map) {
   using Calibration = SonarCalibration;
   return readSmallSensor(&Calibration::body_from_sonar, "range_noise_std", &Calibration::range_noise_std_m,
                          map);
-}
-
-EurocImu readEurocImu(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocImu(map); });
-}
-
-EurocCameraExtras readEurocCameraExtras(const std::filesystem::path& file) {
-  CalibrationMap map(loadYamlFile(file), file, "");
-  return readEurocCameraExtras(&map);
-}
-
-CameraCalibration readEurocCamera(const std::filesystem::path& file, const std::string& name,
-                                  Diagnostics* diagnostics) {
-  return readFile(file, diagnostics, [&](CalibrationMap* map) { return readEurocCamera(name, map); });
-}
-
-MagnetometerCalibration readEurocMagnetometer(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocMagnetometer(map); });
-}
-
-PressureCalibration readEurocPressure(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocPressure(map); });
-}
-
-SonarCalibration readEurocSonar(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  return readFile(file, diagnostics, [](CalibrationMap* map) { return readEurocSonar(map); });
 }
 
 }  // namespace lodeline

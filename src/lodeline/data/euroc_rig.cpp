@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_reader.h"
-#include "lodeline/data/euroc_calibration.h"
-#include "lodeline/data/kalibr_calibration.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/data/folder_calibration.h"
+#include "lodeline/data/image_list.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -16,13 +18,16 @@ struct StreamStart {
   std::string why_empty;  ///< where there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, CsvContent content) {
+StreamStart readStart(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, content, &reported_when_read_in_earnest);
+  CsvReader reader(csv, content, &reported_when_read_in_earnest, rate);
   StreamStart start;
-  CsvRow row;
+  CsvRow row, before;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
-    start.stamps.push_back(row.time);
+    // Rows that are written twice say nothing of the rate.
+    const bool is_repeat = !start.stamps.empty() && row.time == before.time && row.numbers == before.numbers;
+    if (!is_repeat) start.stamps.push_back(row.time);
+    before = row;
   }
   if (!start.stamps.empty()) return start;
   start.why_empty = fmt::format("{}: holds no usable row", csv.string());
@@ -32,54 +37,68 @@ StreamStart readStart(const std::filesystem::path& csv, CsvContent content) {
 }
 
 /// For sensors that cannot be done without.
-std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent content, const char* advice) {
-  StreamStart start = readStart(csv, content);
+std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate,
+                                const char* advice) {
+  StreamStart start = readStart(csv, content, rate);
   if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
   return std::move(start.stamps);
 }
 
-/// Whether a sensor is to do with the default calibration, as it has none; reports it.
-bool isUncalibrated(const EurocLayout& layout, const std::string& name, Diagnostics* diagnostics) {
-  const std::filesystem::path file = layout.sensor(name) / "sensor.yaml";
-  if (layout.needs_calibration || std::filesystem::exists(file)) return false;
-  diagnostics->report(
-      Severity::Warning, name + "_uncalibrated",
-      fmt::format("{}: calibration file missing; {} is taken as it is, in body axes", file.string(), name));
-  return true;
+/// The rate that a file states, held against the stamps; a usual one where neither tells.
+void settle(const std::filesystem::path& csv, const std::vector<Time>& stamps, double usual_hz,
+            double* rate_hz, Diagnostics* diagnostics) {
+  *rate_hz = settleRate(csv.string(), stamps, *rate_hz, diagnostics);
+  if (!(*rate_hz > 0.0)) *rate_hz = usual_hz;
 }
 
-std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const KalibrFiles& kalibr,
-                                           const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
-  std::vector<CameraCalibration> chain;
-  if (kalibr.camchain) chain = readKalibrCameras(*kalibr.camchain, diagnostics);
+double settleImageRate(const EurocLayout& layout, const std::string& camera, double stated_hz,
+                       Diagnostics* diagnostics) {
+  Diagnostics reported_when_read_in_earnest;
+  ImageList list(layout.sensor(camera), &reported_when_read_in_earnest);
+  if (!list.isMade()) {
+    const std::vector<Time> stamps = requireStamps(layout.csv(camera), CsvContent::Images, kCameraRate,
+                                                   "restore it or leave this camera out (source.cameras)");
+    return settleRate(layout.csv(camera).string(), stamps, stated_hz, diagnostics);
+  }
+  std::vector<Time> stamps;
+  while (stamps.size() < kStampsForRate) {
+    const std::optional<ListedImage> image = list.next();
+    if (!image) break;
+    stamps.push_back(image->time);
+  }
+  return settleRate(list.origin().string(), stamps, stated_hz, diagnostics);
+}
+
+/// Says which cameras have no list of images. Where others have one, something is missing.
+void reportLists(const EurocLayout& layout, Diagnostics* diagnostics) {
+  const auto has_list = [&](int i) { return std::filesystem::exists(layout.csv(fmt::format("cam{}", i))); };
+  const bool is_missing = std::any_of(layout.camera_indices.begin(), layout.camera_indices.end(), has_list);
+  for (const int index : layout.camera_indices) {
+    if (has_list(index)) continue;
+    Diagnostics reported_when_read_in_earnest;
+    const std::string name = fmt::format("cam{}", index);
+    const ImageList list(layout.sensor(name), &reported_when_read_in_earnest);
+    diagnostics->report(is_missing ? Severity::Warning : Severity::Notice, "image_list_made",
+                        fmt::format("{}: missing; the list of images was made from {}",
+                                    layout.csv(name).string(), list.origin().string()));
+  }
+  for (const auto& [index, problem] : layout.cameras_without_images) {
+    diagnostics->report(Severity::Warning, "camera_left_out",
+                        fmt::format("{}; cam{} is left out", problem, index));
+  }
+}
+
+std::vector<CameraCalibration> settledCameras(const EurocLayout& layout, const Rig& described,
+                                              Diagnostics* diagnostics) {
   std::vector<CameraCalibration> cameras;
   for (const int index : layout.camera_indices) {
-    const std::string name = fmt::format("cam{}", index);
-    const std::filesystem::path yaml = layout.sensor(name) / "sensor.yaml";
     CameraCalibration camera;
-    if (kalibr.camchain) {
-      if (index >= static_cast<int>(chain.size())) {
-        throw InputError(fmt::format("{}: key '{}' is missing, but the recording has this camera",
-                                     kalibr.camchain->string(), name));
-      }
-      camera = chain[static_cast<size_t>(index)];
-      if (std::filesystem::exists(yaml)) {
-        // Kalibr knows neither rates nor masks.
-        const EurocCameraExtras extras = readEurocCameraExtras(yaml);
-        camera.rate_hz = extras.rate_hz;
-        camera.mask_file = extras.mask_file;
-      }
-    } else if (isUncalibrated(layout, name, diagnostics)) {
-      camera.name = name;
-      camera.rate_hz = 0.0;
-    } else {
-      camera = readEurocCamera(yaml, name, diagnostics);
-      camera.body_from_camera = body_from_euroc_body * camera.body_from_camera;
+    camera.name = fmt::format("cam{}", index);
+    camera.rate_hz = 0.0;
+    for (const CameraCalibration& known : described.cameras) {
+      if (known.name == camera.name) camera = known;
     }
-    const std::filesystem::path csv = layout.csv(name);
-    const std::vector<Time> stamps =
-        requireStamps(csv, CsvContent::Images, "restore it or leave this camera out (source.cameras)");
-    camera.rate_hz = settleRate(csv.string(), stamps, camera.rate_hz, diagnostics);
+    camera.rate_hz = settleImageRate(layout, camera.name, camera.rate_hz, diagnostics);
     if (!(camera.rate_hz > 0.0)) camera.rate_hz = CameraCalibration().rate_hz;
     cameras.push_back(std::move(camera));
   }
@@ -88,84 +107,58 @@ std::vector<CameraCalibration> readCameras(const EurocLayout& layout, const Kali
 
 /// A sensor that a recording may or may not have.
 template <typename Calibration>
-std::optional<Calibration> readOptional(const EurocLayout& layout, const char* name, CsvContent content,
-                                        Rigid3 Calibration::*body_from_sensor,
-                                        Calibration (*read)(const std::filesystem::path& file,
-                                                            Diagnostics* diagnostics),
-                                        const Rigid3& body_from_euroc_body, Diagnostics* diagnostics) {
+std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, CsvContent content,
+                                           const std::optional<Calibration>& described,
+                                           Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
-  const StreamStart start = readStart(csv, content);
+  const PlausibleRate rate = std::string_view(name) == "pressure0" ? kDepthRate : kMagnetometerRate;
+  const StreamStart start = readStart(csv, content, rate);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
     return std::nullopt;
   }
-  Calibration calibration;
-  if (isUncalibrated(layout, name, diagnostics)) {
-    calibration.rate_hz = 0.0;
-  } else {
-    calibration = read(layout.sensor(name) / "sensor.yaml", diagnostics);
+  if (!described && layout.needs_calibration) {
+    throw InputError(
+        fmt::format("{}: calibration file missing; write one (docs/data.md), describe {} in a rig "
+                    "file (--rig), or move its folder away",
+                    (layout.sensor(name) / "sensor.yaml").string(), name));
   }
-  calibration.*body_from_sensor = body_from_euroc_body * (calibration.*body_from_sensor);
-  calibration.rate_hz = settleRate(csv.string(), start.stamps, calibration.rate_hz, diagnostics);
-  if (!(calibration.rate_hz > 0.0)) calibration.rate_hz = Calibration().rate_hz;
+  Calibration calibration;
+  calibration.rate_hz = 0.0;
+  if (described) calibration = *described;
+  settle(csv, start.stamps, Calibration().rate_hz, &calibration.rate_hz, diagnostics);
   return calibration;
 }
 
-EurocImu readImu(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnostics* diagnostics) {
+ImuCalibration settledImu(const EurocLayout& layout, const RigFile& described, Diagnostics* diagnostics) {
   if (!layout.has_imu) return {};
-  const std::filesystem::path yaml = layout.sensor("imu0") / "sensor.yaml";
-  EurocImu imu;
-  if (!kalibr.imu && isUncalibrated(layout, "imu0", diagnostics)) {
-    imu.calibration.rate_hz = 0.0;
-  } else if (!kalibr.imu || std::filesystem::exists(yaml)) {
-    imu = readEurocImu(yaml, diagnostics);
-  }
-  if (kalibr.imu) {
-    const double euroc_rate_hz = imu.calibration.rate_hz;
-    imu.calibration = readKalibrImu(*kalibr.imu, diagnostics);
-    if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = euroc_rate_hz;
-  }
+  ImuCalibration imu;
+  imu.rate_hz = 0.0;
+  if (described.has_imu) imu = described.rig.imu;
+  const std::filesystem::path csv = layout.csv("imu0");
   const std::vector<Time> stamps =
-      requireStamps(layout.csv("imu0"), CsvContent::Imu, "the estimator cannot work without inertial data");
-  imu.calibration.rate_hz =
-      settleRate(layout.csv("imu0").string(), stamps, imu.calibration.rate_hz, diagnostics);
-  if (!(imu.calibration.rate_hz > 0.0)) imu.calibration.rate_hz = ImuCalibration().rate_hz;
+      requireStamps(csv, CsvContent::Imu, kInertialRate, "the estimator cannot work without inertial data");
+  settle(csv, stamps, ImuCalibration().rate_hz, &imu.rate_hz, diagnostics);
   return imu;
-}
-
-void reportKalibr(const EurocLayout& layout, const KalibrFiles& kalibr, Diagnostics* diagnostics) {
-  for (const auto& [file, sensor] : {std::pair(kalibr.camchain, "cam0"), std::pair(kalibr.imu, "imu0")}) {
-    if (!file || !std::filesystem::exists(layout.sensor(sensor) / "sensor.yaml")) continue;
-    diagnostics->report(Severity::Notice, "kalibr_used",
-                        fmt::format("calibration taken from {} instead of {}/sensor.yaml", file->string(),
-                                    layout.sensor(sensor).string()));
-  }
 }
 
 }  // namespace
 
 Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics) {
-  const std::filesystem::path beside =
-      std::filesystem::absolute(layout.mav0).lexically_normal().parent_path();
-  const KalibrFiles kalibr = findKalibrFiles({beside, layout.mav0});
-  reportKalibr(layout, kalibr, diagnostics);
+  return settleEurocRig(layout, readFolderCalibration(layout, diagnostics), diagnostics);
+}
 
-  const EurocImu imu = readImu(layout, kalibr, diagnostics);
-  const Rigid3 body_from_euroc_body = imu.euroc_body_from_imu.inverse();
+Rig settleEurocRig(const EurocLayout& layout, const RigFile& described, Diagnostics* diagnostics) {
+  reportLists(layout, diagnostics);
   Rig rig;
-  rig.imu = imu.calibration;
-  rig.cameras = readCameras(layout, kalibr, body_from_euroc_body, diagnostics);
-  rig.magnetometer = readOptional<MagnetometerCalibration>(
-      layout, "mag0", CsvContent::Magnetometer, &MagnetometerCalibration::body_from_magnetometer,
-      readEurocMagnetometer, body_from_euroc_body, diagnostics);
-  rig.pressure = readOptional<PressureCalibration>(layout, "pressure0", CsvContent::Depth,
-                                                   &PressureCalibration::body_from_pressure,
-                                                   readEurocPressure, body_from_euroc_body, diagnostics);
-  rig.sonar =
-      readOptional<SonarCalibration>(layout, "sonar0", CsvContent::Sonar, &SonarCalibration::body_from_sonar,
-                                     readEurocSonar, body_from_euroc_body, diagnostics);
+  rig.imu = settledImu(layout, described, diagnostics);
+  rig.cameras = settledCameras(layout, described.rig, diagnostics);
+  rig.magnetometer =
+      settledOptional(layout, "mag0", CsvContent::Magnetometer, described.rig.magnetometer, diagnostics);
+  rig.pressure = settledOptional(layout, "pressure0", CsvContent::Depth, described.rig.pressure, diagnostics);
+  rig.sonar = settledOptional(layout, "sonar0", CsvContent::Sonar, described.rig.sonar, diagnostics);
   return rig;
 }
 

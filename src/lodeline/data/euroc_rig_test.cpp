@@ -1,5 +1,6 @@
 #include "lodeline/data/euroc_rig.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -213,6 +214,32 @@ TEST_F(EurocRigTest, MeasuresRatesThatAreMissingOrWrong) {
   EXPECT_NEAR(rig.imu.rate_hz, 200.0, 1e-6);
   EXPECT_NEAR(rig.magnetometer->rate_hz, 50.0, 1e-6);
   EXPECT_EQ(diagnostics_.count("rate"), 1);
+}
+
+TEST_F(EurocRigTest, RefusesIntrinsicsThatCannotBe) {
+  const std::string good = "resolution: [16, 12]\ncamera_model: pinhole\nintrinsics: [20, 21, 8, 6]";
+  const auto intrinsics = [](const char* numbers) {
+    return fmt::format("resolution: [752, 480]\ncamera_model: pinhole\nintrinsics: [{}]", numbers);
+  };
+  recording_.replace("cam0/sensor.yaml", good, intrinsics("458.6, 457.3, 367.2, 248.4"));
+  EurocSource(recording_.folder(), {}, &diagnostics_);
+  const auto refusal = [&](const char* before, const char* numbers, const char* words) {
+    recording_.replace("cam0/sensor.yaml", intrinsics(before), intrinsics(numbers));
+    EXPECT_THAT([&] { EurocSource(recording_.folder(), {}, &diagnostics_); },
+                ThrowsMessage<InputError>(AllOf(HasSubstr("cam0/sensor.yaml"), HasSubstr(words))))
+        << numbers;
+  };
+  refusal("458.6, 457.3, 367.2, 248.4", "0.6099, 0.9528, 0.4883, 0.5175", "shares of the image's size");
+  refusal("0.6099, 0.9528, 0.4883, 0.5175", "45.8, 45.7, 367.2, 248.4", "focal length");
+  refusal("45.8, 45.7, 367.2, 248.4", "458654, 457296, 367.2, 248.4", "focal length");
+  refusal("458654, 457296, 367.2, 248.4", "458.6, 457.3, 1367.2, 248.4", "principal point");
+  refusal("458.6, 457.3, 1367.2, 248.4", "458.6, 367.2, 457.3, 948.4", "principal point");
+}
+
+TEST_F(EurocRigTest, RefusesADistortionThatLeavesLittleOfTheImage) {
+  recording_.replace("cam0/sensor.yaml", "[-0.1, 0.01, 1e-4, 2e-4]", "[-28, 7, 1e-4, 2e-4]");
+  EXPECT_THAT([&] { EurocSource(recording_.folder(), {}, &diagnostics_); },
+              ThrowsMessage<InputError>(HasSubstr("viewing ray")));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "lodeline/base/error.h"
+#include "lodeline/data/folder_calibration.h"
 #include "lodeline/data/image_loader.h"
 
 namespace lodeline {
@@ -21,34 +22,58 @@ EurocSource::EurocSource(const std::filesystem::path& data, const EurocOptions& 
     : EurocSource(findEurocLayout(data, options), diagnostics) {}
 
 EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
-    : RecordedSource(readEurocRig(layout, diagnostics)),
+    : EurocSource(layout, readFolderCalibration(layout, diagnostics), diagnostics) {}
+
+EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnostics* diagnostics)
+    : RecordedSource(settleEurocRig(layout, described, diagnostics), described.imu_correction),
       layout_(std::move(layout)),
       diagnostics_(diagnostics) {
-  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), CsvContent::Imu, diagnostics);
+  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
     if (layout_.needs_cameras && !std::filesystem::is_directory(images)) {
       throw InputError(
           fmt::format("{}: folder of images missing; unpack the recording completely", images.string()));
     }
-    cameras_.emplace_back(layout_.csv(camera.name), CsvContent::Images, diagnostics);
+    cameras_.emplace_back(layout_.sensor(camera.name), diagnostics);
   }
-  if (rig_.magnetometer) magnetometer_.emplace(layout_.csv("mag0"), CsvContent::Magnetometer, diagnostics);
-  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), CsvContent::Depth, diagnostics);
-  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics);
+  grey_ranges_.resize(cameras_.size());
+  if (rig_.magnetometer)
+    magnetometer_.emplace(layout_.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
+  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), CsvContent::Depth, diagnostics, kDepthRate);
+  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics, kMagnetometerRate);
 }
 
-std::optional<ImuSample> EurocSource::nextImu() {
+std::optional<ImuSample> EurocSource::nextRecordedImu() {
   if (!next(&imu_, &row_)) return std::nullopt;
   return ImuSample{row_.time, Vec3(row_.numbers.data()), Vec3(row_.numbers.data() + 3)};
 }
 
 std::optional<PendingImage> EurocSource::nextImage(size_t camera) {
-  if (!cameras_[camera].next(&row_)) return std::nullopt;
-  const std::string name = row_.text.empty() ? fmt::format("{}.png", row_.time.nanoseconds()) : row_.text;
-  const std::filesystem::path file = layout_.sensor(rig_.cameras[camera].name) / "data" / name;
-  return PendingImage{row_.time, file.string(), [file] { return loadGreyImage(file); },
-                      [file] { return loadStoredImage(file); }};
+  const std::optional<ListedImage> listed = cameras_[camera].next();
+  if (!listed) return std::nullopt;
+  std::optional<GreyRange>& range = grey_ranges_[camera];
+  if (!range) range = measureGreyRange(camera);
+  return PendingImage{listed->time, listed->file.string(),
+                      [file = listed->file, range = *range] { return loadGreyImage(file, range); },
+                      [file = listed->file] { return loadStoredImage(file); }};
+}
+
+GreyRange EurocSource::measureGreyRange(size_t camera) {
+  const std::string& name = rig_.cameras[camera].name;
+  Diagnostics reported_when_read_in_earnest;
+  ImageList list(layout_.sensor(name), &reported_when_read_in_earnest);
+  std::vector<std::filesystem::path> files;
+  const auto pixels = [&](size_t i) { return decodeStoredPixels(loadStoredImage(files[i]).file); };
+  while (const std::optional<ListedImage> image = list.next()) {
+    files.push_back(image->file);
+    // The rest of the list is of no interest where the images have 8 bits.
+    constexpr size_t kFirst = 8;
+    if (files.size() == kFirst && !lodeline::measureGreyRange(kFirst, pixels)) return {};
+  }
+  const std::optional<GreyRange> range = lodeline::measureGreyRange(files.size(), pixels);
+  reportGreyRange(name, range, diagnostics_);
+  return range.value_or(GreyRange());
 }
 
 std::optional<MagnetometerSample> EurocSource::nextMagnetometer() {

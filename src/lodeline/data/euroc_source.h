@@ -5,13 +5,16 @@
 
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_rig.h"
+#include "lodeline/data/grey_range.h"
+#include "lodeline/data/image_list.h"
 #include "lodeline/data/measurement_source.h"
 
 namespace lodeline {
 
 /// A recording in the EuRoC ASL layout, read as a stream: whatever its length, only a few rows are in memory.
 ///
-///     mav0/camN/data.csv       #timestamp [ns],filename      (the name may be missing: STAMP.png then)
+///     mav0/camN/data.csv       #timestamp [ns],filename      (the name may be missing: STAMP.png then;
+///                                                            without the file see ImageList)
 ///     mav0/imu0/data.csv       #timestamp [ns],w x y z [rad/s],a x y z [m/s^2]
 ///     mav0/mag0/data.csv       #timestamp [ns],m_x [T],m_y [T],m_z [T]
 ///     mav0/pressure0/data.csv  #timestamp [ns],depth [m]     (positive down)
@@ -24,7 +27,7 @@ class EurocSource : public RecordedSource {
   /// InputError as findEurocLayout() and readEurocRig() do.
   EurocSource(const std::filesystem::path& data, const EurocOptions& options, Diagnostics* diagnostics);
 
-  std::optional<ImuSample> nextImu() override;
+  std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
@@ -32,12 +35,15 @@ class EurocSource : public RecordedSource {
 
  private:
   EurocSource(EurocLayout layout, Diagnostics* diagnostics);
+  GreyRange measureGreyRange(size_t camera);
+  EurocSource(EurocLayout layout, const RigFile& described, Diagnostics* diagnostics);
   void checkMagneticUnit(const MagnetometerSample& sample);
 
   EurocLayout layout_;
   Diagnostics* diagnostics_;
   std::optional<CsvReader> imu_;
-  std::vector<CsvReader> cameras_;
+  std::vector<ImageList> cameras_;
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< of each camera, once its first image is asked for
   std::optional<CsvReader> magnetometer_;
   std::optional<CsvReader> pressure_;
   std::optional<CsvReader> sonar_;

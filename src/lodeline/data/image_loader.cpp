@@ -25,6 +25,24 @@ bool readFile(const std::filesystem::path& file, std::vector<uint8_t>* bytes) {
   return static_cast<bool>(stream);
 }
 
+bool isJpeg(std::span<const uint8_t> bytes) {
+  return bytes.size() > 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
+}
+
+/// Whether a JPEG file was cut off: decoders fill the missing rows with one grey level and say nothing. Some
+/// cameras leave out the end marker of whole images, so its absence alone means nothing.
+bool isCutOffJpeg(std::span<const uint8_t> bytes, const cv::Mat& image) {
+  constexpr size_t kTail = 4096;
+  constexpr int kRows = 8;  // of a block
+  constexpr std::array<uint8_t, 2> kEnd = {0xff, 0xd9};
+  const auto tail = bytes.last(std::min(kTail, bytes.size()));
+  if (!isJpeg(bytes) || std::search(tail.begin(), tail.end(), kEnd.begin(), kEnd.end()) != tail.end()) return false;
+  if (image.rows <= kRows) return false;
+  const uint8_t last = image.at<uint8_t>(image.rows - 1, image.cols - 1);
+  const cv::Mat rows = image.rowRange(image.rows - kRows, image.rows);
+  return cv::countNonZero(rows != last) == 0;
+}
+
 std::string whyUnreadable(const std::filesystem::path& file, std::vector<uint8_t>* bytes) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return fmt::format("{}: image missing", file.string());
@@ -39,45 +57,57 @@ bool isPng(std::span<const uint8_t> bytes) {
   return bytes.size() > kSignature.size() && std::equal(kSignature.begin(), kSignature.end(), bytes.begin());
 }
 
-cv::Mat greyFrom(const cv::Mat& pixels) {
+cv::Mat greyFrom(const cv::Mat& pixels, const GreyRange& range) {
   cv::Mat grey = pixels;
   if (pixels.channels() == 3) cv::cvtColor(pixels, grey, cv::COLOR_BGR2GRAY);
   if (pixels.channels() == 4) cv::cvtColor(pixels, grey, cv::COLOR_BGRA2GRAY);
   if (grey.depth() != CV_16U) return grey;
-  cv::Mat upper(grey.size(), CV_8UC1);
+  cv::Mat scaled(grey.size(), CV_8UC1);
   for (int row = 0; row < grey.rows; ++row) {
-    std::transform(grey.ptr<uint16_t>(row), grey.ptr<uint16_t>(row) + grey.cols, upper.ptr<uint8_t>(row),
-                   [](uint16_t value) { return static_cast<uint8_t>(value >> 8); });
+    std::transform(grey.ptr<uint16_t>(row), grey.ptr<uint16_t>(row) + grey.cols, scaled.ptr<uint8_t>(row),
+                   [&range](uint16_t value) { return range.grey(value); });
   }
-  return upper;
+  return scaled;
 }
 
-LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& name) {
+cv::Mat decodeStoredPixels(std::span<const uint8_t> bytes) {
+  try {
+    return cv::imdecode(cv::_InputArray(bytes.data(), static_cast<int>(bytes.size())), cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
+LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& name, const GreyRange& range) {
   LoadedImage result;
   const cv::_InputArray input(bytes.data(), static_cast<int>(bytes.size()));
   try {
     result.image = decodeGreyPng(bytes);
-    if (result.image.empty() && isPng(bytes)) {
+    if (result.image.empty() && !isJpeg(bytes)) {
       // Not by the decoder's own conversion: the same pixels must give the same grey in a bag.
       const cv::Mat pixels = cv::imdecode(input, cv::IMREAD_UNCHANGED);
-      if (!pixels.empty()) result.image = greyFrom(pixels);
-    } else if (result.image.empty()) {
-      result.image = cv::imdecode(input, cv::IMREAD_GRAYSCALE);
+      if (pixels.depth() == CV_8U || pixels.depth() == CV_16U) result.image = greyFrom(pixels, range);
     }
+    if (result.image.empty()) result.image = cv::imdecode(input, cv::IMREAD_GRAYSCALE);
   } catch (const cv::Exception& error) {
     result.image.release();
     result.problem = fmt::format("{}: image damaged ({})", name, error.what());
     return result;
   }
-  if (result.image.empty()) result.problem = fmt::format("{}: image damaged or of unknown kind", name);
+  if (result.image.empty()) {
+    result.problem = fmt::format("{}: image damaged or of unknown kind", name);
+  } else if (isCutOffJpeg(bytes, result.image)) {
+    result.image.release();
+    result.problem = fmt::format("{}: image damaged: the file was cut off", name);
+  }
   return result;
 }
 
-LoadedImage loadGreyImage(const std::filesystem::path& file) {
+LoadedImage loadGreyImage(const std::filesystem::path& file, const GreyRange& range) {
   std::vector<uint8_t> bytes;
   const std::string problem = whyUnreadable(file, &bytes);
   if (!problem.empty()) return {cv::Mat(), problem};
-  return decodeGreyImage(bytes, file.string());
+  return decodeGreyImage(bytes, file.string(), range);
 }
 
 StoredImage loadStoredImage(const std::filesystem::path& file) {

@@ -52,5 +52,28 @@ TEST_F(ImageLoaderTest, RefusesATruncatedImage) {
   EXPECT_THAT(loaded.problem, HasSubstr("damaged"));
 }
 
+TEST_F(ImageLoaderTest, RefusesAJpegFileThatWasCutOff) {
+  cv::Mat noise(64, 96, CV_8UC1);
+  cv::RNG(5).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  cv::imwrite(file("whole.jpg").string(), noise);
+  ASSERT_FALSE(loadGreyImage(file("whole.jpg")).image.empty());
+  std::filesystem::copy_file(file("whole.jpg"), file("cut.jpg"));
+  const auto size = std::filesystem::file_size(file("cut.jpg"));
+  std::filesystem::resize_file(file("cut.jpg"), size / 2);
+  EXPECT_TRUE(loadGreyImage(file("cut.jpg")).image.empty());
+  EXPECT_THAT(loadGreyImage(file("cut.jpg")).problem, HasSubstr("cut.jpg: image damaged"));
+  // Without its end marker alone an image is whole.
+  std::filesystem::copy_file(file("whole.jpg"), file("unmarked.jpg"));
+  std::filesystem::resize_file(file("unmarked.jpg"), size - 2);
+  EXPECT_FALSE(loadGreyImage(file("unmarked.jpg")).image.empty());
+}
+
+TEST_F(ImageLoaderTest, ScalesSixteenBitsByTheRangeInUse) {
+  cv::imwrite(file("deep.png").string(), cv::Mat(3, 5, CV_16UC1, cv::Scalar(4 * 77)));
+  EXPECT_EQ(loadGreyImage(file("deep.png"), GreyRange{0, 2}).image.at<uint8_t>(1, 1), 77);
+  cv::imwrite(file("deep.pgm").string(), cv::Mat(3, 5, CV_16UC1, cv::Scalar(4 * 77)));
+  EXPECT_EQ(loadGreyImage(file("deep.pgm"), GreyRange{0, 2}).image.at<uint8_t>(1, 1), 77);
+}
+
 }  // namespace
 }  // namespace lodeline

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
+#include "lodeline/streams/ordered_stream.h"
+
 namespace lodeline {
 namespace {
 
@@ -16,7 +20,13 @@ ImuIntervals intervalsOf(std::vector<int64_t> stamps_ms, double history_s, Diagn
     const Time time = ms(stamps_ms[next++]);
     return ImuSample{time, Vec3(time.seconds(), 0.0, 0.0), Vec3(0.0, 0.0, -time.seconds())};
   };
-  return ImuIntervals({expected, std::move(pull), diagnostics}, history_s);
+  const auto stream = std::make_shared<OrderedStream<ImuSample>>(expected, std::move(pull), diagnostics);
+  return ImuIntervals(
+      [stream]() -> std::optional<ImuSample> {
+        if (stream->peek() == nullptr) return std::nullopt;
+        return stream->pop();
+      },
+      history_s);
 }
 
 using Coverage = ImuIntervals::Coverage;
@@ -39,6 +49,21 @@ TEST(ImuIntervals, InterpolatesBothBorders) {
   EXPECT_EQ(second.front().time, ms(13));
   EXPECT_EQ(second[1].time, ms(20));
   EXPECT_NEAR(second.back().angular_velocity_B.x(), 0.037, 1e-15);
+}
+
+TEST(ImuIntervals, KeepTheLengthOfAGapThatImagesDivide) {
+  Diagnostics diagnostics;
+  ImuIntervals intervals = intervalsOf({0, 10, 110, 120}, 1.0, &diagnostics);
+  double gap_s = 0.0;
+  for (const int64_t time_ms : {50, 100}) {
+    ASSERT_EQ(intervals.readUntil(ms(time_ms)), Coverage::Covered);
+    EXPECT_NEAR(intervals.cut(ms(time_ms), &gap_s).back().gap_s, 0.1, 1e-12);
+  }
+  ASSERT_EQ(intervals.readUntil(ms(115)), Coverage::Covered);
+  const std::vector<ImuSample> last = intervals.cut(ms(115), &gap_s);
+  ASSERT_EQ(last.size(), 3u);
+  EXPECT_NEAR(last[1].gap_s, 0.1, 1e-12);
+  EXPECT_NEAR(last[2].gap_s, 0.01, 1e-12);
 }
 
 TEST(ImuIntervals, TakesAReadingAtTheBorderAsItIs) {

@@ -41,7 +41,7 @@ cam1:
   resolution: [16, 12]
 )";
 
-constexpr const char* kImu = R"(imu0:
+constexpr const char* kImuOfKalibr = R"(imu0:
   T_i_b: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
   accelerometer_noise_density: 0.004
   accelerometer_random_walk: 0.005
@@ -63,7 +63,7 @@ class KalibrTest : public testing::Test {
 
 TEST_F(KalibrTest, WinsOverSensorYamlAndSaysSo) {
   recording_.write("../camchain-imucam.yaml", kCamchain);
-  recording_.write("imu.yaml", kImu);
+  recording_.write("imu.yaml", kImuOfKalibr);
   const Rig rig = read();
   ASSERT_EQ(rig.cameras.size(), 2u);
   const CameraCalibration& camera = rig.cameras[0];
@@ -86,7 +86,7 @@ TEST_F(KalibrTest, NeedsNoSensorYamlOfCamerasAndImu) {
     std::filesystem::remove(recording_.path(file));
   }
   recording_.write("dive3-camchain-imucam.yaml", kCamchain);
-  recording_.write("../imu-dive3.yaml", std::string(kImu).substr(6));
+  recording_.write("../imu-dive3.yaml", std::string(kImuOfKalibr).substr(6));
   const Rig rig = read();
   EXPECT_NEAR(rig.cameras[1].rate_hz, 20.0, 1e-6);
   EXPECT_EQ(rig.imu.rate_hz, 201.0);
@@ -114,7 +114,7 @@ TEST_F(KalibrTest, RefusesTwoFilesOfAKind) {
 
 TEST_F(KalibrTest, RefusesWhatIsNoCamchain) {
   recording_.write("camchain-imucam.yaml", "- 1\n- 2\n");
-  EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("not Kalibr's camchain")));
+  EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("holds no sensors")));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -14,7 +14,7 @@ constexpr size_t kImagesForRate = 20;
 }  // namespace
 
 LiveSource::LiveSource(const Rig& rig, const LiveSourceOptions& options, Diagnostics* diagnostics)
-    : RecordedSource(rig), options_(options), diagnostics_(diagnostics) {
+    : RecordedSource(rig, options.imu_correction), options_(options), diagnostics_(diagnostics) {
   options_.max_images = std::max(options_.max_images, kImagesForRate);
   const auto prepare = [this](auto* inbox, const char* kind, const std::string& name, size_t limit) {
     inbox->kind = kind;
@@ -149,7 +149,7 @@ std::optional<Reading> LiveSource::take(Inbox<Reading>* inbox, bool waits_on) {
   return reading;
 }
 
-std::optional<ImuSample> LiveSource::nextImu() { return take(&imu_, true); }
+std::optional<ImuSample> LiveSource::nextRecordedImu() { return take(&imu_, true); }
 
 std::optional<PendingImage> LiveSource::nextImage(size_t camera) {
   if (camera > 0) return take(&cameras_[camera], false);

@@ -22,6 +22,8 @@ struct LiveSourceOptions {
   /// How much later than inertial readings of the same time the others may come; waiting for them delays a
   /// pose at most so long.
   double patience_s = 0.1;
+  /// See RigFile::imu_correction.
+  std::optional<ImuCorrection> imu_correction = std::nullopt;
 };
 
 /// Sensors at work as a source: whoever hears them pushes readings, from any thread and without ever waiting;
@@ -51,7 +53,8 @@ class LiveSource : public RecordedSource {
   /// Images of the first camera that wait.
   size_t backlog() const;
 
-  std::optional<ImuSample> nextImu() override;
+  bool isLive() const override { return true; }
+  std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lodeline/sensors/imu_correction.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/sensors/rig.h"
 
@@ -35,7 +36,11 @@ struct PendingImage {
   std::function<LoadedImage()> load;
   /// The same image as it is stored; sources that no recording stands behind have none.
   std::function<StoredImage()> stored = {};
+  Time recorded = {};  ///< the stamp as it was stored, whatever is done to `time`; set by the synchroniser
 };
+
+/// The same for images that are stored under the same name.
+inline uint64_t contentKey(const PendingImage& image) { return std::hash<std::string>()(image.name); }
 
 /// A recording (or a live or simulated rig) as one stream per sensor, each pulled one reading at a time in
 /// the order in which it was stored; nothing at a stream's end. Streams of sensors that the rig does not have
@@ -46,6 +51,9 @@ class MeasurementSource {
 
   /// The sensors, with the cameras in the order in which nextImage() counts them.
   virtual const Rig& rig() const = 0;
+
+  /// Whether readings come as they are measured, so that to read ahead is to wait.
+  virtual bool isLive() const { return false; }
 
   virtual std::optional<ImuSample> nextImu() = 0;
   virtual std::optional<PendingImage> nextImage(size_t camera) = 0;
@@ -58,13 +66,26 @@ class MeasurementSource {
 class RecordedSource : public MeasurementSource {
  public:
   const Rig& rig() const override { return rig_; }
+  /// The next reading, freed from what the calibration says of the IMU's axes.
+  std::optional<ImuSample> nextImu() final {
+    std::optional<ImuSample> sample = nextRecordedImu();
+    if (sample && imu_correction_) sample = imu_correction_->applied(*sample);
+    return sample;
+  }
+  /// The next reading as it was stored.
+  virtual std::optional<ImuSample> nextRecordedImu() = 0;
   /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
   void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
+  /// The same of the IMU's noise.
+  void setImuNoise(const ImuNoise& noise) { rig_.imu.noise = noise; }
 
  protected:
-  explicit RecordedSource(Rig rig) : rig_(std::move(rig)) {}
+  explicit RecordedSource(Rig rig, std::optional<ImuCorrection> imu_correction = std::nullopt)
+      : rig_(std::move(rig)), imu_correction_(imu_correction) {}
 
   Rig rig_;
+  /// Nothing where no calibration states it.
+  std::optional<ImuCorrection> imu_correction_;
 };
 
 }  // namespace lodeline

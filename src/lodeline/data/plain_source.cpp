@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "lodeline/base/error.h"
-#include "lodeline/data/stream_rate.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -46,7 +46,7 @@ bool PlainSource::readRow() {
   return true;
 }
 
-std::optional<ImuSample> PlainSource::nextImu() {
+std::optional<ImuSample> PlainSource::nextRecordedImu() {
   if (imu_.empty()) readRow();
   return takeFirst(&imu_);
 }

@@ -15,7 +15,7 @@ class PlainSource : public RecordedSource {
   /// outlive the source.
   PlainSource(const std::filesystem::path& file, Diagnostics* diagnostics);
 
-  std::optional<ImuSample> nextImu() override;
+  std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t) override { return std::nullopt; }
   std::optional<MagnetometerSample> nextMagnetometer() override;
 

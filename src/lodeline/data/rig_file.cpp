@@ -3,11 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "lodeline/base/edit_distance.h"
 #include "lodeline/base/error.h"
+#include "lodeline/data/calibration_kind.h"
+#include "lodeline/data/calibration_translation.h"
 #include "lodeline/data/euroc_calibration.h"
 #include "lodeline/data/kalibr_calibration.h"
 
@@ -19,124 +19,121 @@ constexpr double kGravity_m_per_s2 = 9.80665;
 /// in decimals survives being kept as a pressure.
 constexpr double kDepthSteps_per_m = 1e9;
 
-constexpr std::array<const char*, 4> kSingleSensors = {"imu0", "mag0", "pressure0", "sonar0"};
-
-bool isCamera(const std::string& key) {
-  return key.size() > 3 && key.starts_with("cam") &&
-         std::all_of(key.begin() + 3, key.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-bool hasAny(const YAML::Node& node, std::initializer_list<const char*> keys) {
-  return node.IsMap() &&
-         std::any_of(keys.begin(), keys.end(), [&](const char* key) { return node[key].IsDefined(); });
-}
-
-bool isKalibrs(const std::string& sensor, const YAML::Node& node) {
-  if (isCamera(sensor)) return hasAny(node, {"T_cam_imu", "T_cn_cnm1", "distortion_coeffs"});
-  return sensor == "imu0" && hasAny(node, {"update_rate", "T_i_b", "rostopic"});
-}
-
-void refuseUnknownSensor(const std::filesystem::path& file, const std::string& key, int line) {
-  std::string nearest = "cam0";
-  for (const char* sensor : kSingleSensors) {
-    if (editDistance(key, sensor) < editDistance(key, nearest)) nearest = sensor;
-  }
-  throw InputError(
-      fmt::format("{}:{}: unknown sensor '{}'; did you mean '{}'? Known are cam0, cam1, …, imu0, mag0, "
-                  "pressure0, sonar0",
-                  file.string(), line, key, nearest));
-}
-
-void collectSections(const std::filesystem::path& file, std::map<std::string, RigSection>* sections) {
-  const YAML::Node root = loadYamlFile(file);
-  const auto add = [&](const std::string& sensor, const YAML::Node& node, bool is_kalibr) {
-    const auto [known, is_new] = sections->emplace(sensor, RigSection{node, file, is_kalibr});
-    if (is_new) return;
-    throw InputError(fmt::format("{}: describes {}, which {} describes too; leave one of them out",
-                                 file.string(), sensor, known->second.file.string()));
-  };
-  // Kalibr's imu.yaml has the IMU's keys at its top.
-  if (hasAny(root, {"gyroscope_noise_density"})) return add("imu0", root, true);
-  if (!root.IsMap()) throw InputError(file.string() + ": holds no sensors; see docs/data.md for a rig file");
-  for (const auto& entry : root) {
-    const std::string sensor = entry.first.Scalar();
-    const bool known = isCamera(sensor) || std::find(kSingleSensors.begin(), kSingleSensors.end(), sensor) !=
-                                               kSingleSensors.end();
-    if (!known) refuseUnknownSensor(file, sensor, entry.first.Mark().line + 1);
-    add(sensor, entry.second, isKalibrs(sensor, entry.second));
-  }
-}
-
 /// Reads the sections one after the other, keeping the topics.
 class RigReader {
  public:
-  RigReader(RigFile* result, Diagnostics* diagnostics) : result_(result), diagnostics_(diagnostics) {}
+  RigReader(RigFile* result, const RigRequirements& requirements, Diagnostics* diagnostics)
+      : result_(result), requirements_(requirements), diagnostics_(diagnostics) {}
 
   void readAll() {
     Rig& rig = result_->rig;
-    result_->has_imu = visit("imu0", [&](CalibrationMap* map, bool is_kalibr) { readImu(map, is_kalibr); });
-    for (bool found = true; found;) {
-      const std::string name = fmt::format("cam{}", rig.cameras.size());
-      found = visit(name, [&](CalibrationMap* map, bool is_kalibr) { readCamera(name, map, is_kalibr); });
+    result_->has_imu = visit("imu0", [&](CalibrationMap* map, SectionKeys keys) { readImu(map, keys); });
+    for (const int number : cameraNumbers()) {
+      visit(fmt::format("cam{}", number),
+            [&](CalibrationMap* map, SectionKeys keys) { readCamera(number, map, keys); });
     }
-    visit("mag0", [&](CalibrationMap* map, bool) {
+    visit("mag0", [&](CalibrationMap* map, SectionKeys) {
       rig.magnetometer = readEurocMagnetometer(map);
       moveToBody(&rig.magnetometer->body_from_magnetometer);
     });
-    visit("pressure0", [&](CalibrationMap* map, bool) {
+    visit("pressure0", [&](CalibrationMap* map, SectionKeys) {
       rig.pressure = readEurocPressure(map);
       moveToBody(&rig.pressure->body_from_pressure);
       readWater(map);
     });
-    visit("sonar0", [&](CalibrationMap* map, bool) {
+    visit("sonar0", [&](CalibrationMap* map, SectionKeys) {
       rig.sonar = readEurocSonar(map);
       moveToBody(&rig.sonar->body_from_sonar);
     });
-    requireGaplessCameras();
   }
 
  private:
+  /// In the order of their numbers, which cam10 does not have among names.
+  std::vector<int> cameraNumbers() const {
+    std::vector<int> numbers;
+    for (const auto& [sensor, section] : result_->sections) {
+      if (isCameraName(sensor)) numbers.push_back(std::stoi(sensor.substr(3)));
+    }
+    std::sort(numbers.begin(), numbers.end());
+    for (size_t i = 0; requirements_.needs_all_cameras && i < numbers.size(); ++i) {
+      if (numbers[i] == static_cast<int>(i)) continue;
+      throw InputError(
+          fmt::format("{}: describes cam{} but not cam{}; cameras are counted from cam0 without gaps",
+                      result_->sections.at(fmt::format("cam{}", numbers[i])).file.string(), numbers[i], i));
+    }
+    return numbers;
+  }
+
   template <typename Read>
   bool visit(const std::string& sensor, const Read& read) {
-    const auto section = result_->sections.find(sensor);
-    if (section == result_->sections.end()) return false;
-    const auto& [node, file, is_kalibr] = section->second;
-    const bool is_whole_file = is_kalibr && sensor == "imu0" && !hasAny(loadYamlFile(file), {"imu0"});
-    CalibrationMap map(node, file, is_whole_file ? "" : sensor);
+    const auto place = result_->sections.find(sensor);
+    if (place == result_->sections.end()) return false;
+    RigSection& section = place->second;
+    const bool is_mounted = !isCameraName(sensor) || section.keys == SectionKeys::Kalibr ||
+                            section.node["T_BS"].IsDefined() || requirements_.needs_extrinsics;
+    if (!is_mounted) {
+      result_->without_extrinsics.insert(sensor);
+      section.node.reset(YAML::Clone(section.node));
+      section.node["T_BS"] = transformNode(Rigid3());
+    }
+    CalibrationMap map(section.node, section.file, section.prefix);
     for (const char* key : {"topic", "rostopic"}) {
       if (map.has(key)) result_->topics[sensor] = map.text(key);
     }
-    read(&map, is_kalibr);
-    if (is_kalibr) {
-      map.reportUnknownKeys(diagnostics_);
-    } else {
+    read(&map, section.keys);
+    if (section.keys == SectionKeys::Rig) {
       map.refuseUnknownKeys();
+    } else {
+      map.reportUnknownKeys(diagnostics_);
     }
+    section.node.reset(map.knownPart());
     return true;
   }
 
-  void readImu(CalibrationMap* map, bool is_kalibr) {
-    if (is_kalibr) {
-      result_->rig.imu = readKalibrImu(map);
-      return;
+  void readImu(CalibrationMap* map, SectionKeys keys) {
+    ImuCalibration& imu = result_->rig.imu;
+    if (keys == SectionKeys::Kalibr) {
+      const KalibrImu kalibr = readKalibrImu(map);
+      imu = kalibr.calibration;
+      result_->imu_correction = kalibr.correction;
+      body_from_kalibr_body_ = kalibr.imu_from_kalibr_body;
+      if (map->has("rate_hz") && !(imu.rate_hz > 0.0)) imu.rate_hz = map->number("rate_hz");
+      // Where a recording's own file says how its body lies to the IMU, its other sensors go by that.
+      if (map->has("T_BS")) body_from_euroc_body_ = map->transform("T_BS").inverse();
+    } else {
+      const EurocImu euroc = readEurocImu(map);
+      imu = euroc.calibration;
+      result_->imu_correction = euroc.correction;
+      body_from_euroc_body_ = euroc.euroc_body_from_imu.inverse();
     }
-    const EurocImu imu = readEurocImu(map);
-    result_->rig.imu = imu.calibration;
-    body_from_euroc_body_ = imu.euroc_body_from_imu.inverse();
+    if (!result_->imu_correction) return;
+    diagnostics_->report(
+        Severity::Notice, "imu_correction",
+        fmt::format(
+            "{}: readings of the IMU are freed from scale, misalignment and bias (up to {:.2g} % of a "
+            "reading), and their stamps moved by {:g} ms",
+            map->file().string(), 100.0 * result_->imu_correction->largestChange(),
+            1e3 * result_->imu_correction->time_offset_s));
   }
 
-  void readCamera(const std::string& name, CalibrationMap* map, bool is_kalibr) {
+  void readCamera(int number, CalibrationMap* map, SectionKeys keys) {
+    const std::string name = fmt::format("cam{}", number);
     std::vector<CameraCalibration>& cameras = result_->rig.cameras;
-    if (!is_kalibr) {
-      cameras.push_back(readEurocCamera(name, map));
-      moveToBody(&cameras.back().body_from_camera);
+    if (keys == SectionKeys::Kalibr) {
+      // Kalibr knows neither rates nor masks; they may stand beside its keys.
+      const EurocCameraExtras extras = readEurocCameraExtras(map);
+      const bool has_before = before_ && before_number_ == number - 1;
+      CameraCalibration camera = readKalibrCamera(number, has_before ? &*before_ : nullptr, map);
+      before_ = camera;
+      before_number_ = number;
+      camera.body_from_camera = body_from_kalibr_body_ * camera.body_from_camera;
+      camera.rate_hz = extras.rate_hz;
+      camera.mask_file = extras.mask_file;
+      cameras.push_back(std::move(camera));
       return;
     }
-    // Kalibr knows neither rates nor masks; they may stand beside its keys.
-    const EurocCameraExtras extras = readEurocCameraExtras(map);
-    cameras.push_back(readKalibrCamera(cameras, map));
-    cameras.back().rate_hz = extras.rate_hz;
-    cameras.back().mask_file = extras.mask_file;
+    cameras.push_back(readEurocCamera(name, map));
+    moveToBody(&cameras.back().body_from_camera);
   }
 
   void readWater(CalibrationMap* map) {
@@ -153,18 +150,12 @@ class RigReader {
     *body_from_sensor = body_from_euroc_body_ * *body_from_sensor;
   }
 
-  void requireGaplessCameras() const {
-    for (const auto& [sensor, section] : result_->sections) {
-      if (!isCamera(sensor) || std::stoul(sensor.substr(3)) < result_->rig.cameras.size()) continue;
-      throw InputError(
-          fmt::format("{}: describes {} but not cam{}; cameras are counted from cam0 without gaps",
-                      section.file.string(), sensor, result_->rig.cameras.size()));
-    }
-  }
-
   RigFile* result_;
+  RigRequirements requirements_;
   Diagnostics* diagnostics_;
-  Rigid3 body_from_euroc_body_;
+  Rigid3 body_from_euroc_body_, body_from_kalibr_body_;
+  std::optional<CameraCalibration> before_;  ///< the last of Kalibr's cameras, in Kalibr's body frame
+  int before_number_ = 0;
 };
 
 }  // namespace
@@ -179,9 +170,13 @@ double WaterColumn::pressure_Pa(double depth_m) const {
 }
 
 RigFile readRigFiles(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics) {
+  return readRig(collectRigSections(files, diagnostics), {}, diagnostics);
+}
+
+RigFile readRig(const RigSections& sections, const RigRequirements& requirements, Diagnostics* diagnostics) {
   RigFile result;
-  for (const std::filesystem::path& file : files) collectSections(file, &result.sections);
-  RigReader(&result, diagnostics).readAll();
+  result.sections = sections;
+  RigReader(&result, requirements, diagnostics).readAll();
   return result;
 }
 

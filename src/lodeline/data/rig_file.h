@@ -2,11 +2,14 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
-#include "lodeline/data/yaml_file.h"
+#include "lodeline/data/rig_sections.h"
+#include "lodeline/sensors/imu_correction.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -20,22 +23,26 @@ struct WaterColumn {
   double pressure_Pa(double depth_m) const;
 };
 
-/// One sensor's section of a rig file.
-struct RigSection {
-  YAML::Node node;
-  std::filesystem::path file;
-  bool is_kalibr = false;  ///< in Kalibr's keys, else in those of EuRoC's sensor.yaml
-};
-
 /// What is known of a rig whose recording does not say it itself.
 struct RigFile {
-  /// In the IMU's frame. A rate that is not stated is 0.
+  /// In the IMU's frame, cameras by their numbers. A rate that is not stated is 0.
   Rig rig;
   bool has_imu = false;
+  /// What a recording's inertial readings are to be freed from; nothing where no file states it.
+  std::optional<ImuCorrection> imu_correction;
   /// Topics as far as they are named, by sensor: cam0, imu0, mag0, pressure0, sonar0.
   std::map<std::string, std::string> topics;
   WaterColumn water;
-  std::map<std::string, RigSection> sections;
+  /// What it was read from, without the keys that nobody knows.
+  RigSections sections;
+  std::set<std::string> without_extrinsics;  ///< cameras; see RigRequirements
+};
+
+struct RigRequirements {
+  /// False takes cameras of which no file says how they are mounted, in the IMU's place.
+  bool needs_extrinsics = true;
+  /// False allows for cameras that are left out (cam0, cam2).
+  bool needs_all_cameras = true;
 };
 
 /// Reads one or several files that together describe a rig, one section a sensor:
@@ -46,11 +53,14 @@ struct RigFile {
 ///     pressure0: {T_BS: …, depth_noise_std: …, water_density_kg_per_m3: 1025, surface_pressure_Pa: 101325}
 ///     sonar0: {T_BS: …, range_noise_std: …}
 ///
-/// with the keys of EuRoC's sensor.yaml, or Kalibr's (camchain-imucam.yaml and imu.yaml are such files as
-/// they are, with `rostopic` for the topic). `topic` may be missing. Throws InputError for unknown keys,
-/// naming the nearest known one (in Kalibr's sections they are reported instead), for a sensor that is
-/// described twice, and for what is missing or wrong.
+/// with the keys of EuRoC's sensor.yaml, or those of Kalibr and OpenVINS, or the files of other programs (see
+/// collectRigSections). `topic` may be missing. Throws InputError for unknown keys, naming the nearest known
+/// one (in others' sections they are reported instead), for a key that is described twice, and for what is
+/// missing or wrong.
 RigFile readRigFiles(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics);
+
+/// The same from sections. A correction of inertial readings is reported as `imu_correction`.
+RigFile readRig(const RigSections& sections, const RigRequirements& requirements, Diagnostics* diagnostics);
 
 /// Leaves only the cameras that are asked for, in that order; all where `indices` is empty. Throws
 /// InputError, beginning with `name`, for a camera that the rig does not have.

@@ -148,13 +148,80 @@ TEST_F(SynchronizerTest, MissingOrDamagedImageFileStillGivesAPacket) {
 }
 
 TEST_F(SynchronizerTest, WrongResolutionNamesFileAndBothSizes) {
-  cv::imwrite(recording_.image(1, 1.05).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(0)));
+  for (int i = 0; i <= 20; ++i) {
+    cv::imwrite(recording_.image(1, 1.0 + 0.05 * i).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(0)));
+  }
   for (const bool prefetch : {false, true}) {
     SynchronizerOptions options;
     options.prefetch = prefetch;
     EXPECT_THAT([&] { readAll(options); },
-                ThrowsMessage<InputError>(
-                    AllOf(HasSubstr(testStamp(1.05)), HasSubstr("8 x 6"), HasSubstr("16 x 12"))));
+                ThrowsMessage<InputError>(AllOf(HasSubstr(testStamp(1.0)), HasSubstr("8 x 6"),
+                                                HasSubstr("16 x 12"), HasSubstr("source.cameras"))));
+  }
+}
+
+TEST_F(SynchronizerTest, ImagesOfAnotherSizeAmongOthersAreLeftOut) {
+  for (const double time_s : {1.05, 1.6, 1.65, 1.7, 1.75, 1.8, 1.85, 1.9, 1.95, 2.0}) {
+    cv::imwrite(recording_.image(0, time_s).string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(0)));
+  }
+  const std::vector<FramePacket> packets = readAll();
+  ASSERT_EQ(packets.size(), 21u);
+  EXPECT_FALSE(packets[0].images[0].empty());
+  EXPECT_TRUE(packets[1].images[0].empty());
+  EXPECT_FALSE(packets[1].images[1].empty());
+  EXPECT_TRUE(packets[20].images[0].empty());
+  EXPECT_EQ(diagnostics_.count("image_size"), 10);
+  EXPECT_THAT(firstMessage("image_size"), HasSubstr(testStamp(1.05)));
+}
+
+TEST_F(SynchronizerTest, ARepeatedImageGivesItsReadingsToTheNextPacket) {
+  for (int i = 0; i <= 20; ++i) {
+    for (const int camera : {0, 1}) {
+      cv::Mat image(12, 16, CV_8UC1);
+      cv::RNG(static_cast<uint64_t>(1 + 100 * camera + (i == 8 ? 7 : i))).fill(image, cv::RNG::UNIFORM, 0, 256);
+      cv::imwrite(recording_.image(camera, 1.0 + 0.05 * i).string(), image);
+    }
+  }
+  const std::vector<FramePacket> packets = readAll();
+  ASSERT_EQ(packets.size(), 20u);
+  EXPECT_EQ(packets[7].time, testTime(1.35));
+  EXPECT_EQ(packets[8].time, testTime(1.45));
+  EXPECT_EQ(packets[8].imu.front().time, testTime(1.35));
+  EXPECT_EQ(packets[8].imu.size(), 21u);
+  for (size_t j = 1; j < packets[8].imu.size(); ++j) {
+    EXPECT_LT(packets[8].imu[j - 1].time, packets[8].imu[j].time);
+  }
+  EXPECT_EQ(packets[8].magnetometer.size(), 5u);
+  EXPECT_EQ(diagnostics_.count("images_repeated"), 2) << "of each camera";
+}
+
+TEST_F(SynchronizerTest, ImagesOfASecondCameraKeepTheirOwnTimes) {
+  recording_.write("cam1/sensor.yaml", recording_.read("cam1/sensor.yaml") + "timeshift_cam_imu: 0.012\n");
+  const std::vector<FramePacket> packets = readAll();
+  ASSERT_EQ(packets.size(), 21u);
+  EXPECT_TRUE(diagnostics_.ranked().empty());
+  EXPECT_FALSE(packets[4].images[1].empty());
+  ASSERT_EQ(packets[4].image_delays_s.size(), 2u);
+  EXPECT_NEAR(packets[4].image_delays_s[1], 0.012, 1e-9);
+  EXPECT_EQ(packets[4].imu_ahead.front().time, packets[4].time);
+  EXPECT_EQ(packets[4].imu_ahead.back().time, testTime(1.212));
+  EXPECT_NEAR(packets[4].imu_ahead.back().angular_velocity_B.x(), 1.212, 1e-9);
+  EXPECT_EQ(packets[5].imu.front().time, testTime(1.2));
+}
+
+TEST_F(SynchronizerTest, TremblingStampsOfASecondCameraAreNoDelays) {
+  std::string list = "#timestamp [ns],filename\n";
+  for (int i = 0; i <= 20; ++i) {
+    const double time_s = 1.0 + 0.05 * i;
+    const double trembling_s = time_s + (i % 3 == 1 ? 2e-3 : i % 3 == 2 ? -1.5e-3 : 0.0);
+    list += testStamp(trembling_s) + "," + testStamp(time_s) + ".png\n";
+  }
+  recording_.write("cam1/data.csv", list);
+  const std::vector<FramePacket> packets = readAll();
+  ASSERT_EQ(packets.size(), 21u);
+  for (size_t i = 2; i < packets.size(); ++i) {
+    EXPECT_FALSE(packets[i].images[1].empty());
+    EXPECT_EQ(packets[i].image_delays_s[1], 0.0) << i;
   }
 }
 

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 
 #include "lodeline/base/edit_distance.h"
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 
 namespace lodeline {
 namespace {
@@ -23,24 +25,46 @@ std::vector<double> flatten(const YAML::Node& node) {
   return numbers;
 }
 
+/// OpenCV takes `key:value`, where YAML asks for a blank after the colon.
+std::string withBlankAfterKey(const std::string& line) {
+  const size_t start = line.find_first_not_of(' ');
+  const size_t colon = line.find(':');
+  if (start == std::string::npos || colon == std::string::npos || colon + 1 >= line.size()) return line;
+  const bool is_key = std::all_of(
+      line.begin() + static_cast<std::ptrdiff_t>(start), line.begin() + static_cast<std::ptrdiff_t>(colon),
+      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.'; });
+  if (!is_key || std::isspace(static_cast<unsigned char>(line[colon + 1])) != 0) return line;
+  return line.substr(0, colon + 1) + ' ' + line.substr(colon + 1);
+}
+
 }  // namespace
 
 YAML::Node loadYamlFile(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) {
+  const RecognisedFile recognised = recogniseFile(file);
+  if (recognised.kind == FileKind::Missing) {
     throw InputError(fmt::format("{}: calibration file missing", file.string()));
   }
+  if (!recognised.isText()) refuseFile(recognised, "a YAML file is needed here");
+  std::ifstream stream(file);
   std::string text;
+  bool is_opencv = false;
   for (std::string line; std::getline(stream, line);) {
     // OpenCV's directive lacks the blank that YAML asks for; directives say nothing we need. The empty line
     // keeps the line numbers of messages.
-    text += (line.starts_with('%') ? std::string() : line) + '\n';
+    const bool is_directive = line.starts_with('%');
+    is_opencv = is_opencv || is_directive;
+    text += (is_directive ? std::string() : is_opencv ? withBlankAfterKey(line) : line) + '\n';
   }
   try {
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}: not valid YAML: {}", file.string(), error.mark.line + 1, error.msg));
   }
+}
+
+bool hasAnyKey(const YAML::Node& node, std::initializer_list<const char*> keys) {
+  return node.IsMap() &&
+         std::any_of(keys.begin(), keys.end(), [&](const char* key) { return node[key].IsDefined(); });
 }
 
 CalibrationMap::CalibrationMap(YAML::Node node, std::filesystem::path file, std::string section)
@@ -130,6 +154,11 @@ Vec3 CalibrationMap::vector3(const std::string& key) {
   return Vec3(values.data());
 }
 
+std::optional<CalibrationMap> CalibrationMap::section(const std::string& key) {
+  if (!has(key)) return std::nullopt;
+  return CalibrationMap(node_[key], file_, section_.empty() ? key : section_ + "." + key);
+}
+
 void CalibrationMap::ignore(const std::vector<std::string>& keys) { known_.insert(keys.begin(), keys.end()); }
 
 void CalibrationMap::reportUnknownKeys(Diagnostics* diagnostics) const {
@@ -140,6 +169,14 @@ void CalibrationMap::reportUnknownKeys(Diagnostics* diagnostics) const {
         Severity::Notice, "calibration_key",
         fmt::format("{} (line {}) is not known and passed over", at(key), entry.first.Mark().line + 1));
   }
+}
+
+YAML::Node CalibrationMap::knownPart() const {
+  YAML::Node known(YAML::NodeType::Map);
+  for (const auto& entry : node_) {
+    if (known_.contains(entry.first.Scalar())) known[entry.first.Scalar()] = entry.second;
+  }
+  return known;
 }
 
 void CalibrationMap::refuseUnknownKeys() const {

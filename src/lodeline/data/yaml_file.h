@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,9 +13,13 @@
 
 namespace lodeline {
 
-/// Parses a YAML file; the headers that OpenCV writes (%YAML:1.0) are accepted. Throws InputError, with file
-/// and line, where there is no such file or its text is no YAML.
+/// Parses a YAML or JSON file; the headers that OpenCV writes (%YAML:1.0) and its `key:value` are accepted.
+/// Throws InputError, with file and line, where there is no such file, naming its kind where it is no text,
+/// or where its text is no YAML.
 YAML::Node loadYamlFile(const std::filesystem::path& file);
+
+/// Whether a node is a map with one of the keys.
+bool hasAnyKey(const YAML::Node& node, std::initializer_list<const char*> keys);
 
 /// One map of a sensor's calibration, with errors that name the file and the key. Remembers which keys were
 /// asked for, so that the others can be pointed out.
@@ -35,13 +40,15 @@ class CalibrationMap {
   Mat3 matrix3(const std::string& key);
   Vec3 vector3(const std::string& key);
   double numberOr(const std::string& key, double fallback);
+  /// The map under a key; nothing where there is no such key.
+  std::optional<CalibrationMap> section(const std::string& key);
 
   /// Adds keys that are known but not needed.
   void ignore(const std::vector<std::string>& keys);
-  /// Whether a key was asked for or ignored.
-  bool isKnown(const std::string& key) const { return known_.contains(key); }
   /// Reports every key that was neither asked for nor ignored.
   void reportUnknownKeys(Diagnostics* diagnostics) const;
+  /// The keys that were asked for or ignored, with their values.
+  YAML::Node knownPart() const;
   /// For files of our own: throws InputError for such a key, naming its line and the nearest known one.
   void refuseUnknownKeys() const;
 
@@ -49,6 +56,7 @@ class CalibrationMap {
   std::string at(const std::string& key) const;
   std::string atLine(const std::string& key) const;
   const std::filesystem::path& file() const { return file_; }
+  const YAML::Node& node() const { return node_; }
 
  private:
   YAML::Node require(const std::string& key);

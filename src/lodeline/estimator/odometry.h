@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "lodeline/data/frame_packet.h"
 #include "lodeline/estimator/baseline_watch.h"
 #include "lodeline/estimator/estimator.h"
+#include "lodeline/estimator/stereo_watch.h"
 #include "lodeline/features/front_end.h"
 
 namespace lodeline {
@@ -26,6 +29,12 @@ struct StageTimes {
   double estimator_s = 0.0;
 };
 
+/// A further camera that turns out to take its images later than their stamps say.
+struct FoundDelay {
+  size_t camera = 0;
+  double delay_s = 0.0;
+};
+
 /// The whole way from a packet of measurements to an estimate.
 class Odometry {
  public:
@@ -34,6 +43,13 @@ class Odometry {
 
   /// Adds one packet of the synchroniser; packets must come in order.
   FrameEstimate add(const FramePacket& packet);
+
+  /// A delay found since the last call, to be taken into account by whoever makes the packets
+  /// (Synchronizer::delayCamera). Without that it is reported, no more.
+  std::optional<FoundDelay> takeDelay() { return std::exchange(found_delay_, std::nullopt); }
+
+  /// Reports what can only be said of the whole run.
+  void finish() { stereo_watch_.finish(); }
 
   Estimator& estimator() { return estimator_; }
   const Estimator& estimator() const { return estimator_; }
@@ -44,20 +60,33 @@ class Odometry {
 
  private:
   /// The gyroscope's rotation over the packet; none for the first one.
-  Quat previousFromCurrent(const FramePacket& packet) const;
+  Quat previousFromCurrent(const FramePacket& packet);
+  /// Between the frame's time and those of the images; at rest before there is an estimate.
+  RigMotion motion(const FramePacket& packet) const;
+  /// That of a body that goes on turning as the estimate has it, in place of the gyroscope's where that is
+  /// doubted.
+  Quat steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const;
+  void follow(const NavigationState& state);
   /// Of each camera once.
   void reportFixedStructure(Time time);
   void reportTurnedCameras();
+  void lookForDelays(const FramePacket& packet);
 
   ImuCalibration imu_;
   FrontEnd front_end_;
   FrameTracks tracks_;
   Estimator estimator_;
   Vec3 gyroscope_bias_B_ = Vec3::Zero();
+  std::optional<NavigationState> newest_;     ///< of the last frame that has a pose
+  std::optional<NavigationState> predicted_;  ///< at the packet's time
+  Vec3 rate_B_ = Vec3::Zero();                ///< that led to newest_, rad/s
   bool first_ = true;
   std::vector<bool> fixed_structure_reported_;
   std::vector<bool> turn_reported_;  ///< of camera 1, 2, ...
   BaselineWatch baseline_watch_;
+  StereoWatch stereo_watch_;
+  std::optional<FoundDelay> found_delay_;
+  int frames_ = 0;
   Diagnostics* diagnostics_;
   StageTimes times_;
 };

@@ -5,7 +5,10 @@
 #include <Eigen/SVD>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "lodeline/base/choice.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
@@ -96,10 +99,8 @@ constexpr std::array<const char*, 4> kTypeNames = {"none", "yaw", "se3", "sim3"}
 const char* toString(AlignmentType type) { return kTypeNames.at(static_cast<std::size_t>(type)); }
 
 AlignmentType alignmentTypeFromString(const std::string& name) {
-  for (std::size_t i = 0; i < kTypeNames.size(); ++i) {
-    if (name == kTypeNames[i]) return static_cast<AlignmentType>(i);
-  }
-  throw UsageError(fmt::format("unknown alignment '{}'; known are none, yaw, se3 and sim3", name));
+  const std::vector<std::string> names(kTypeNames.begin(), kTypeNames.end());
+  return static_cast<AlignmentType>(chooseByName("alignment", name, names));
 }
 
 Rigid3 Alignment::apply(const Rigid3& estimate_world_from_body) const {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/evaluation/pose_table.h"
 #include "lodeline/evaluation/read_formats.h"
 #include "lodeline/tables/text_lines.h"
@@ -43,7 +44,8 @@ TrajectoryFormat detectFormat(const std::filesystem::path& file) {
 /// The file in a folder that holds the trajectory, most specific first.
 std::filesystem::path findInFolder(const std::filesystem::path& folder) {
   const std::filesystem::path truth = "state_groundtruth_estimate0";
-  const std::array<std::filesystem::path, 9> candidates = {
+  const std::array<std::filesystem::path, 10> candidates = {
+      "trajectory_refined.tum",
       "trajectory.tum",
       "images.bin",
       "images.txt",
@@ -101,10 +103,14 @@ TrajectoryFormat trajectoryFormatFromString(const std::string& name) {
 
 TrajectorySource findTrajectory(const std::filesystem::path& path, std::optional<TrajectoryFormat> format) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file or folder", path.string()));
+  const RecognisedFile recognised = recogniseFile(path);
+  if (recognised.kind == FileKind::Missing) {
+    throw InputError(fmt::format("{}: {}", path.string(), recognised.what));
   }
   const auto file = std::filesystem::is_directory(path, ignored) ? findInFolder(path) : path;
+  const bool is_other = !recognised.isFolder() && !recognised.isText() &&
+                        recognised.kind != FileKind::Compressed && file.extension() != ".bin";
+  if (is_other) refuseFile(recognised, "give a trajectory (TUM, KITTI, EuRoC or COLMAP)");
   return {file, format ? *format : detectFormat(file)};
 }
 

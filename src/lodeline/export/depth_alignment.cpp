@@ -29,35 +29,53 @@ std::vector<DepthReading> runDepths(const Trajectory& trajectory, size_t count) 
   return depths;
 }
 
-/// The profile between its readings; nothing outside, and in gaps of more than a minute.
-std::optional<double> depthAt(const std::vector<DepthReading>& readings, double time_s) {
-  constexpr double kMaxGap_s = 60.0;
-  const auto after = std::lower_bound(readings.begin(), readings.end(), time_s,
-                                      [](const DepthReading& r, double t) { return r.time_s < t; });
-  if (after == readings.end()) return std::nullopt;
-  if (after->time_s == time_s) return after->depth_m;
-  if (after == readings.begin()) return std::nullopt;
-  const DepthReading& before = *(after - 1);
-  const double gap_s = after->time_s - before.time_s;
-  if (gap_s > kMaxGap_s) return std::nullopt;
-  return before.depth_m + (after->depth_m - before.depth_m) * (time_s - before.time_s) / gap_s;
-}
+/// The profile between its readings, for times that increase from call to call; nothing outside, and in gaps
+/// longer than its own.
+class ProfileReader {
+ public:
+  explicit ProfileReader(const DepthProfile& profile) : profile_(profile), after_(profile.readings.begin()) {}
+
+  std::optional<double> at(double time_s) {
+    const auto end = profile_.readings.end();
+    const auto isBefore = [](const DepthReading& r, double t) { return r.time_s < t; };
+    // Steps that double find what is near in few of them.
+    std::ptrdiff_t step = 1;
+    auto from = after_;
+    while (end - from > step && from[step].time_s < time_s) {
+      from += step;
+      step *= 2;
+    }
+    after_ = std::lower_bound(from, end - from > step ? from + step + 1 : end, time_s, isBefore);
+    if (after_ == end) return std::nullopt;
+    if (after_->time_s == time_s) return after_->depth_m;
+    if (after_ == profile_.readings.begin()) return std::nullopt;
+    const DepthReading& before = *(after_ - 1);
+    const double gap_s = after_->time_s - before.time_s;
+    if (gap_s > profile_.max_gap_s) return std::nullopt;
+    return before.depth_m + (after_->depth_m - before.depth_m) * (time_s - before.time_s) / gap_s;
+  }
+
+ private:
+  const DepthProfile& profile_;
+  std::vector<DepthReading>::const_iterator after_;  ///< the first reading that is not before the last time
+};
 
 /// Compares the run with the profile at one lag.
 class LagCost {
  public:
   LagCost(const DepthProfile& profile, std::vector<DepthReading> run)
-      : readings_(profile.readings), run_(std::move(run)) {
+      : profile_(profile), run_(std::move(run)) {
     const double run_s = run_.back().time_s - run_.front().time_s;
-    const double profile_s = readings_.back().time_s - readings_.front().time_s;
+    const double profile_s = profile.readings.back().time_s - profile.readings.front().time_s;
     fewest_ = static_cast<size_t>(0.8 * std::min(1.0, profile_s / run_s) * static_cast<double>(run_.size()));
   }
 
   /// Profile less run where both are there.
   std::vector<double> differences(double lag_s) const {
     std::vector<double> result;
+    ProfileReader profile(profile_);
     for (const DepthReading& reading : run_) {
-      if (const std::optional<double> depth_m = depthAt(readings_, reading.time_s - lag_s)) {
+      if (const std::optional<double> depth_m = profile.at(reading.time_s - lag_s)) {
         result.push_back(*depth_m - reading.depth_m);
       }
     }
@@ -79,12 +97,12 @@ class LagCost {
     return sum / static_cast<double>(kept);
   }
 
-  double firstLag() const { return run_.front().time_s - readings_.back().time_s; }
-  double lastLag() const { return run_.back().time_s - readings_.front().time_s; }
+  double firstLag() const { return run_.front().time_s - profile_.readings.back().time_s; }
+  double lastLag() const { return run_.back().time_s - profile_.readings.front().time_s; }
   double runSeconds() const { return run_.back().time_s - run_.front().time_s; }
 
  private:
-  const std::vector<DepthReading>& readings_;
+  const DepthProfile& profile_;
   std::vector<DepthReading> run_;
   size_t fewest_ = 0;
 };
@@ -156,6 +174,28 @@ std::string doubtOf(const LagSearch& search, const std::vector<DepthReading>& ru
   return "";
 }
 
+/// A lag that was found must be known well, and depths must change as the run's do; a lag that was stated
+/// stands, and only a ratio that is no scale error of a run is doubted.
+std::string doubtOfFit(const DepthAlignment& fit, double run_s, bool lag_is_known) {
+  constexpr double kLeastLagSigma_s = 5.0, kLagSigmaShare = 0.02, kMostRatio = 1.33,
+                   kMostRatioAtKnownLag = 2.0;
+  constexpr double kLeastCommonShare = 0.3, kMostAboveWater_m = 0.5;
+  if (fit.start_depth_m < -kMostAboveWater_m) {
+    return fmt::format("the first pose would be {:.2f} m above the water", -fit.start_depth_m);
+  }
+  if (!lag_is_known && fit.common_s < kLeastCommonShare * run_s) {
+    return fmt::format("the profile covers {:.0f} s of the run's {:.0f} s only", fit.common_s, run_s);
+  }
+  if (!lag_is_known && fit.lag_sigma_s > std::max(kLeastLagSigma_s, kLagSigmaShare * fit.common_s)) {
+    return fmt::format("the lag is known to {:.0f} s only", fit.lag_sigma_s);
+  }
+  const double most = lag_is_known ? kMostRatioAtKnownLag : kMostRatio;
+  if (fit.slope > most || fit.slope < 1.0 / most) {
+    return fmt::format("the profile's depths change by {:.3g} m where the run's change by one", fit.slope);
+  }
+  return "";
+}
+
 }  // namespace
 
 DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajectory,
@@ -166,7 +206,11 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   if (known_lag_s) {
     result.lag_s = *known_lag_s;
   } else {
-    const double step_s = std::clamp(coarse_cost.runSeconds() / 300.0, 0.1, 1.0);
+    // Bounded work, however long the profile is.
+    constexpr double kMostLags = 1e5;
+    const double range_s = coarse_cost.lastLag() - coarse_cost.firstLag();
+    const double step_s =
+        std::max(std::clamp(coarse_cost.runSeconds() / 300.0, 0.1, 1.0), range_s / kMostLags);
     const LagSearch search = searchLags(coarse_cost, coarse_cost.firstLag(), coarse_cost.lastLag(), step_s);
     result.doubt = doubtOf(search, coarse, profile.resolution_m);
     result.lag_s =
@@ -190,14 +234,17 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   const double independent = static_cast<double>(deviations.size()) / correlationFactor(deviations);
   result.lag_sigma_s =
       result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(std::max(independent, 1.0));
+  if (result.doubt.empty())
+    result.doubt = doubtOfFit(result, fine_cost.runSeconds(), known_lag_s.has_value());
   return result;
 }
 
 std::vector<DepthComparison> compareDepths(const DepthProfile& profile, const Trajectory& trajectory,
                                            const DepthAlignment& alignment) {
   std::vector<DepthComparison> pairs;
+  ProfileReader reader(profile);
   for (const StampedPose& pose : trajectory.poses) {
-    const std::optional<double> depth_m = depthAt(profile.readings, pose.time.seconds() - alignment.lag_s);
+    const std::optional<double> depth_m = reader.at(pose.time.seconds() - alignment.lag_s);
     if (!depth_m) continue;
     pairs.push_back({pose.time, alignment.start_depth_m - pose.world_from_body.translation.z(), *depth_m});
   }

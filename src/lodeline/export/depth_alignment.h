@@ -18,14 +18,15 @@ struct DepthAlignment {
   double rms_m = 0.0;          ///< of the differences from that
   double slope = 1.0;  ///< metres of the profile per metre of the run, where the depths range widely enough
   double common_s = 0.0;  ///< time for which both are there
-  /// Why the lag may be wrong, in words; empty where there is no doubt.
+  /// Why lag or depths may be wrong, in words; empty where there is no doubt.
   std::string doubt;
 };
 
 /// Finds the lag at which the profile's course is most like the run's: least mean absolute deviation from the
 /// median difference, the worst tenth left out, over all lags at which 80 % of the shorter of both overlap;
-/// then finely around the best. `known_lag_s` takes the place of the search. Throws InputError where there is
-/// no overlap.
+/// then finely around the best. `known_lag_s` takes the place of the search.
+/// Doubted are lags that are known badly, and profiles that do not change as the run does. Throws InputError
+/// where there is no overlap.
 DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajectory,
                            std::optional<double> known_lag_s);
 

@@ -13,20 +13,23 @@ struct DepthReading {
   double depth_m = 0.0;  ///< below the surface, positive down
 };
 
-/// Depth over time from a dive computer or a diver's slate, strictly increasing in time.
+/// Depth over time of one dive from a dive computer or a diver's slate, strictly increasing in time.
 struct DepthProfile {
-  std::string name;  ///< of the file
+  std::string name;     ///< of the file
+  std::string dive;     ///< which of the file's dives this is ("lines 3 to 70"); empty where there is one
+  int dive_number = 0;  ///< the same for what several computers recorded of one dive
   std::vector<DepthReading> readings;
   double resolution_m = 0.0;  ///< smallest step between different depths that occur
+  double max_gap_s = 60.0;    ///< between readings from one to the next of which depths may be interpolated
+  bool has_unit = true;       ///< false where the file states no unit: depths count as metres
 };
 
-/// Reads a CSV file (commas, semicolons, tabs; a decimal comma with semicolons). A header names the columns
-/// by the words `time`, `elapsed`, `timestamp`, `t` or `date`, and `depth` (those of each `sample` first);
-/// units stand in brackets or follow the name: s, min, ms, ns; m, ft. Without a header the first two columns
-/// are time and depth. Times are numbers, mm:ss, h:mm:ss, or dates in ISO 8601 (UTC unless they end in an
-/// offset). Without a unit, times are seconds (numbers beyond 1e15: nanoseconds), depths metres. Depths that
-/// are nowhere positive are heights. Lines that cannot be read are reported and passed over. Throws
-/// InputError where the file is missing, no columns can be told, or fewer than 10 readings are usable.
-DepthProfile readDepthProfile(const std::filesystem::path& file, Diagnostics* diagnostics);
+/// The dives of a log: a table (profile_rows.h) or XML. Rows that cannot be read or cannot be true
+/// (profile_screen.h) are reported and passed over. Throws InputError where the file is missing, is no log
+/// that can be read, states a unit that is not known, or has no dive with 10 usable readings.
+std::vector<DepthProfile> readDepthProfiles(const std::filesystem::path& file, Diagnostics* diagnostics);
+
+/// The same dive with every depth multiplied.
+DepthProfile scaled(DepthProfile profile, double factor);
 
 }  // namespace lodeline

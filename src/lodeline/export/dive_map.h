@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +27,9 @@ struct DiveMapOptions {
   double entrance_height_sigma_m = 5.0;
   std::string crs = "auto";
   std::optional<double> turn_deg;  ///< see findNorth()
-  double start_depth_m = 0.0;      ///< of the first pose
+  std::optional<double>
+      start_depth_m;               ///< of the first pose; nothing for what the run's pressure sensor says
+  std::string start_depth_source;  ///< where that is from, in words
   double geoid_height_m = 0.0;     ///< of the level from which heights count above the ellipsoid
 
   std::optional<double> relative_sigma;  ///< of the end, by the length of the line; else as the run says
@@ -41,12 +44,14 @@ struct DiveMapOptions {
 struct DiveMap {
   std::string name, title, date;
   std::vector<std::string> team;
-  std::vector<std::string> notes;  ///< where it is from and what was assumed, a line each
+  std::vector<std::string> notes;    ///< where it is from and what was assumed, a line each
+  std::filesystem::path run_folder;  ///< as a full path
 
   North north;
   std::optional<Georeference> place;
   Vec3 place_sigma = Vec3::Zero();  ///< m, east, north, up
   double start_depth_m = 0.0;
+  std::string start_depth_source;  ///< in words
   double geoid_height_m = 0.0;
 
   Trajectory trajectory;                           ///< body in ENU

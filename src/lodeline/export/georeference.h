@@ -1,43 +1,32 @@
 #pragma once
 
 #include <GeographicLib/LocalCartesian.hpp>
-#include <string>
 
+#include "lodeline/export/map_grid.h"
 #include "lodeline/geometry/types.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
 
 namespace lodeline {
 
-/// A zone of the Universal Transverse Mercator grid on WGS 84.
-struct UtmZone {
-  int number = 0;  ///< 1 to 60
-  bool north = true;
-
-  std::string name() const;  ///< "UTM17N"
-  int epsg() const;          ///< 32617
-};
-
-/// "UTM17N", "17N", "EPSG:32617", in any case; "auto" for the zone of the place. Throws UsageError for
-/// anything else.
-UtmZone utmZone(const std::string& crs, const GeodeticPosition& place);
-
 /// Places a map in east, north, up (m, true north, origin anywhere near the ground) on the Earth.
 ///
 /// Latitude and longitude are those of the point in the plane that touches the ellipsoid's parallel surface
-/// at the origin (GeographicLib's LocalCartesian), grid coordinates are computed from these: convergence of
-/// the meridians and scale of the grid are exact at every point, not only at the origin. Heights count along
-/// the plumb line, z above the origin's height: gravity and water pressure hold an estimate to level
-/// surfaces, which bend away from the plane by 8 cm in a kilometre.
+/// at the origin (GeographicLib's LocalCartesian), grid coordinates are computed from these by PROJ:
+/// convergence of the meridians and scale of the grid are exact at every point, not only at the origin.
+/// Heights count along the plumb line, z above the origin's height: gravity and water pressure hold an
+/// estimate to level surfaces, which bend away from the plane by 8 cm in a kilometre.
 class Georeference {
  public:
-  Georeference(const GeodeticPosition& origin, const UtmZone& zone);
+  /// Throws UsageError where the origin has no coordinates on the grid, or where lengths on it differ by more
+  /// than 2 % from those on the ground.
+  Georeference(const GeodeticPosition& origin, const MapGrid& grid);
 
   const GeodeticPosition& origin() const { return origin_; }
-  const UtmZone& zone() const { return zone_; }
+  const MapGridDescription& gridDescription() const { return grid_.description(); }
 
   /// Height in the sense of the origin's.
   GeodeticPosition geodetic(const Vec3& point_ENU) const;
-  /// Easting, northing, height, m.
+  /// Easting, northing, height in metres, also where the grid counts in feet.
   Vec3 grid(const Vec3& point_ENU) const;
 
   /// Angle from true north to grid north, clockwise, at the origin: true azimuth = grid azimuth + this.
@@ -47,7 +36,7 @@ class Georeference {
 
  private:
   GeodeticPosition origin_;
-  UtmZone zone_;
+  MapGrid grid_;
   GeographicLib::LocalCartesian plane_;
   double convergence_rad_ = 0.0;
   double scale_ = 1.0;

@@ -5,16 +5,15 @@
 #include <GeographicLib/Geodesic.hpp>
 
 #include "lodeline/base/angles.h"
-#include "lodeline/base/error.h"
 
 namespace lodeline {
 namespace {
 
 TEST(Georeference, PutsTheOriginWhereItWasGiven) {
   const GeodeticPosition place = {29.83, -82.60, 10.0};
-  const Georeference reference(place, utmZone("auto", place));
-  EXPECT_EQ(reference.zone().name(), "UTM17N");
-  EXPECT_EQ(reference.zone().epsg(), 32617);
+  const Georeference reference(place, MapGrid("auto", place));
+  EXPECT_EQ(reference.gridDescription().name, "UTM17N");
+  EXPECT_EQ(reference.gridDescription().code, "EPSG:32617");
   // By PROJ 9.1: echo "-82.6 29.83" | proj +proj=utm +zone=17 +ellps=WGS84.
   const Vec3 grid = reference.grid(Vec3::Zero());
   EXPECT_NEAR(grid.x(), 345411.138, 1e-3);
@@ -24,7 +23,7 @@ TEST(Georeference, PutsTheOriginWhereItWasGiven) {
 
 TEST(Georeference, AgreesWithGeodesicsOnTheEllipsoid) {
   const GeodeticPosition place = {-33.8, 150.2, 0.0};
-  const Georeference reference(place, utmZone("auto", place));
+  const Georeference reference(place, MapGrid("auto", place));
   for (double azimuth_deg : {10.0, 120.0, 255.0}) {
     const double azimuth = azimuth_deg * kDegree;
     const GeodeticPosition position =
@@ -39,7 +38,7 @@ TEST(Georeference, AgreesWithGeodesicsOnTheEllipsoid) {
 
 TEST(Georeference, ConvergenceTurnsTrueIntoGridAzimuths) {
   const GeodeticPosition place = {29.83, -82.60, 0.0};
-  const Georeference reference(place, utmZone("auto", place));
+  const Georeference reference(place, MapGrid("auto", place));
   EXPECT_NEAR(reference.convergence_rad() / kDegree, -0.796, 1e-3);
   const Vec3 north = reference.grid(Vec3(0.0, 10.0, 0.0)) - reference.grid(Vec3::Zero());
   EXPECT_NEAR(std::atan2(north.x(), north.y()), -reference.convergence_rad(), 1e-6);
@@ -51,29 +50,16 @@ TEST(Georeference, ConvergenceTurnsTrueIntoGridAzimuths) {
 
 TEST(Georeference, KeepsHeightsAlongThePlumbLine) {
   const GeodeticPosition place = {46.0, 14.0, 500.0};
-  const Georeference reference(place, utmZone("auto", place));
+  const Georeference reference(place, MapGrid("auto", place));
   EXPECT_DOUBLE_EQ(reference.grid(Vec3(3000.0, 0.0, -40.0)).z(), 460.0);
   EXPECT_DOUBLE_EQ(reference.geodetic(Vec3(3000.0, 0.0, -40.0)).height_m, 460.0);
 }
 
 TEST(Georeference, GoesOnCountingAcrossTheEquator) {
   const GeodeticPosition place = {0.0001, 30.0, 0.0};
-  const Georeference reference(place, utmZone("auto", place));
+  const Georeference reference(place, MapGrid("auto", place));
   const double step = reference.grid(Vec3(0.0, 50.0, 0.0)).y() - reference.grid(Vec3(0.0, -50.0, 0.0)).y();
   EXPECT_NEAR(step, 100.0, 0.1);
-}
-
-TEST(UtmZone, IsReadInTheUsualSpellings) {
-  const GeodeticPosition place = {29.83, -82.60, 0.0};
-  for (const char* name : {"UTM17N", "utm17n", "17N", "EPSG:32617", "epsg:32617"}) {
-    EXPECT_EQ(utmZone(name, place).name(), "UTM17N") << name;
-  }
-  EXPECT_EQ(utmZone("EPSG:32755", place).name(), "UTM55S");
-  for (const char* name : {"", "UTM", "UTM61N", "EPSG:2154", "EPSG:", "WGS84", "NaN"}) {
-    EXPECT_THROW(utmZone(name, place), UsageError) << name;
-  }
-  EXPECT_THROW(utmZone("auto", {88.0, 0.0, 0.0}), UsageError);
-  EXPECT_THROW(Georeference(place, utmZone("UTM40N", place)), UsageError);
 }
 
 }  // namespace

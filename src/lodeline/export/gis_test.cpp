@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -108,6 +109,40 @@ TEST(Gis, IsReadByGdal) {
     EXPECT_THAT(run.output, HasSubstr("WGS 84")) << file;
     EXPECT_THAT(run.output, HasSubstr("Extent: (-82.600")) << file;
   }
+}
+
+/// The same dive with what a run may not know, and what a run must not say.
+DiveMap unsureMap() {
+  RunFolder run = test::windingDive();
+  run.uncertainties.resize(300);
+  run.uncertainties[100].covariance(0, 0) = -1.0;
+  DiveMapOptions options;
+  options.entrance = test::kDevilsEye;
+  options.crs = "EPSG:6438";
+  Diagnostics diagnostics;
+  return makeDiveMap(run, options, {}, &diagnostics);
+}
+
+TEST(Gis, FindsTheColumnsOfTheTables) {
+  LODELINE_NEEDS_PROGRAM("ogrinfo", "gdal-bin");
+  const test::TemporaryFolder folder;
+  const DiveMap map = unsureMap();
+  writeMap(map, std::nullopt, MapFormat::Csv, folder.path());
+  const auto read = [&](const std::string& file) {
+    return test::runIn(folder.path(), "ogrinfo -ro -al -so -oo AUTODETECT_TYPE=YES " + map.name + file)
+        .output;
+  };
+  const std::string stations = read("_stations.csv"), poses = read("_poses.csv");
+  EXPECT_THAT(stations, HasSubstr(fmt::format("Feature Count: {}\n", map.survey.stations.size())));
+  EXPECT_THAT(stations, HasSubstr("station: Integer"));
+  EXPECT_THAT(stations, HasSubstr("latitude [deg]: Real"));
+  EXPECT_THAT(stations, HasSubstr("grid_easting [ftUS]: Real"));
+  EXPECT_THAT(poses, HasSubstr(fmt::format("Feature Count: {}\n", map.trajectory.poses.size())));
+  EXPECT_THAT(poses, HasSubstr("timestamp [ns]: Integer64"));
+  EXPECT_THAT(poses, HasSubstr("sigma_east [m]: Real"));
+  const std::string text = posesCsv(map);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_EQ(text.find('#'), std::string::npos);
 }
 
 TEST(Gis, IsWellFormedXml) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "lodeline/base/diagnostics.h"
 #include "lodeline/geometry/types.h"
 
 namespace lodeline {
@@ -13,8 +14,9 @@ struct MapLandmark {
   int sightings = 0;
 };
 
-/// Reads `landmarks.ply` as `lodeline run` writes it. Throws InputError where it has another layout or is cut
-/// off; points that are not finite are left out.
-std::vector<MapLandmark> readLandmarkFile(const std::filesystem::path& file);
+/// Reads `landmarks.ply` as `lodeline run` writes it; points that are not finite are left out. Of a run that
+/// was killed, whose file has no count yet, no end or not even a header, gives the whole points that are
+/// there, and reports it. Throws InputError where the file has another layout.
+std::vector<MapLandmark> readLandmarkFile(const std::filesystem::path& file, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -3,54 +3,62 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <utility>
-
+#include "lodeline/base/choice.h"
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
 
 namespace lodeline {
 namespace {
 
-using NamedContent = std::pair<std::string, std::string>;
-
 bool needsPlace(MapFormat format) {
   return format == MapFormat::GeoJson || format == MapFormat::Kml || format == MapFormat::Gpx;
 }
 
-std::vector<NamedContent> colmapFiles(const DiveMap& map, const std::optional<MapImages>& images) {
+std::vector<std::string> colmapTexts(const DiveMap& map, const std::optional<MapImages>& images) {
   if (!images || images->cameras.empty()) {
     throw UsageError("--format colmap needs the cameras: name the recording with --recording DATA");
   }
   const ColmapModel model = colmapModel(map, images->cameras, images->images);
-  return {{"colmap/cameras.txt", model.cameras},
-          {"colmap/images.txt", model.images},
-          {"colmap/points3D.txt", model.points3D}};
+  return {model.cameras, model.images, model.points3D};
 }
 
-std::vector<NamedContent> contents(const DiveMap& map, const std::optional<MapImages>& images,
-                                   MapFormat format) {
-  const std::string& name = map.name;
+/// In the order of mapFileNames().
+std::vector<std::string> contents(const DiveMap& map, const std::optional<MapImages>& images,
+                                  MapFormat format) {
   switch (format) {
     case MapFormat::Survex:
-      return {{name + ".svx", survexText(map)}};
+      return {survexText(map)};
     case MapFormat::Therion:
-      return {{name + ".th", therionText(map)}, {name + ".thconfig", therionConfig(map)}};
+      return {therionText(map), therionFix(map),
+              therionConfig(map, map.name, {map.name + ".th", map.name + "_fix.th"})};
     case MapFormat::GeoJson:
-      return {{name + ".geojson", geojsonText(map)}};
+      return {geojsonText(map)};
     case MapFormat::Kml:
-      return {{name + ".kml", kmlText(map)}};
+      return {kmlText(map)};
     case MapFormat::Gpx:
-      return {{name + ".gpx", gpxText(map)}};
+      return {gpxText(map)};
     case MapFormat::Ply:
-      return {{name + ".ply", plyBytes(map)}};
+      return {plyBytes(map)};
     case MapFormat::Csv:
-      return {{name + "_stations.csv", stationsCsv(map)}, {name + "_poses.csv", posesCsv(map)}};
+      return {stationsCsv(map), posesCsv(map)};
     case MapFormat::Tum:
-      return {{name + ".tum", tumText(map)}};
+      return {tumText(map)};
     case MapFormat::Colmap:
-      return colmapFiles(map, images);
+      return colmapTexts(map, images);
   }
   return {};
+}
+
+std::vector<std::filesystem::path> writeFiles(const std::filesystem::path& folder,
+                                              const std::vector<std::string>& names,
+                                              const std::vector<std::string>& texts) {
+  std::vector<std::filesystem::path> files;
+  for (size_t i = 0; i < names.size(); ++i) {
+    files.push_back(folder / names[i]);
+    createOutputFolder(files.back().parent_path());
+    writeOutput(files.back(), texts[i]);
+  }
+  return files;
 }
 
 }  // namespace
@@ -62,11 +70,31 @@ const std::vector<std::string>& mapFormatNames() {
 }
 
 MapFormat mapFormatFromString(const std::string& name) {
-  const std::vector<std::string>& names = mapFormatNames();
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == name) return static_cast<MapFormat>(i);
+  return static_cast<MapFormat>(chooseByName("--format", name, mapFormatNames()));
+}
+
+std::vector<std::string> mapFileNames(const std::string& name, MapFormat format) {
+  switch (format) {
+    case MapFormat::Survex:
+      return {name + ".svx"};
+    case MapFormat::Therion:
+      return {name + ".th", name + "_fix.th", name + ".thconfig"};
+    case MapFormat::GeoJson:
+      return {name + ".geojson"};
+    case MapFormat::Kml:
+      return {name + ".kml"};
+    case MapFormat::Gpx:
+      return {name + ".gpx"};
+    case MapFormat::Ply:
+      return {name + ".ply"};
+    case MapFormat::Csv:
+      return {name + "_stations.csv", name + "_poses.csv"};
+    case MapFormat::Tum:
+      return {name + ".tum"};
+    case MapFormat::Colmap:
+      return {"colmap/cameras.txt", "colmap/images.txt", "colmap/points3D.txt"};
   }
-  throw UsageError(fmt::format("--format {}: one of {} is wanted", name, fmt::join(names, ", ")));
+  return {};
 }
 
 std::vector<std::filesystem::path> writeMap(const DiveMap& map, const std::optional<MapImages>& images,
@@ -75,14 +103,17 @@ std::vector<std::filesystem::path> writeMap(const DiveMap& map, const std::optio
     throw UsageError(fmt::format("--format {} needs a place on the Earth: give --entrance LAT,LON,HEIGHT",
                                  mapFormatNames()[static_cast<size_t>(format)]));
   }
-  std::vector<std::filesystem::path> files;
-  for (const auto& [name, content] : contents(map, images, format)) {
-    const std::filesystem::path file = folder / name;
-    createOutputFolder(file.parent_path());
-    writeOutput(file, content);
-    files.push_back(file);
-  }
-  return files;
+  return writeFiles(folder, mapFileNames(map.name, format), contents(map, images, format));
+}
+
+bool joinsDives(MapFormat format) { return format == MapFormat::Survex || format == MapFormat::Therion; }
+
+std::vector<std::filesystem::path> writeProject(const std::vector<DiveMap>& maps, const std::string& name,
+                                                const std::string& title, MapFormat format,
+                                                const std::filesystem::path& folder) {
+  if (format == MapFormat::Survex) return writeFiles(folder, {name + ".svx"}, {survexProject(maps, title)});
+  return writeFiles(folder, {name + ".th", name + ".thconfig"},
+                    {therionProject(maps, name, title), therionConfig(maps.front(), name, {name + ".th"})});
 }
 
 }  // namespace lodeline

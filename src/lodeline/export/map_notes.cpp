@@ -17,20 +17,38 @@ std::string angleText(double angle_deg, const char* positive, const char* negati
 
 std::string placeNote(const DiveMap& map) {
   if (!map.place) {
-    return fmt::format("place: none given; metres from the first station, which is {:.2f} m under water",
-                       map.start_depth_m);
+    return fmt::format("place: none given; metres from the first station, which is {:.2f} m under water ({})",
+                       map.start_depth_m, map.start_depth_source);
   }
   const GeodeticPosition& origin = map.place->origin();
-  return fmt::format("place: first station {}, {} (WGS 84), height {:.2f} m, {:.2f} m under water",
+  return fmt::format("place: first station {}, {} (WGS 84), height {:.2f} m, {:.2f} m under water ({})",
                      angleText(origin.latitude_deg, "N", "S"), angleText(origin.longitude_deg, "E", "W"),
-                     origin.height_m, map.start_depth_m);
+                     origin.height_m, map.start_depth_m, map.start_depth_source);
 }
 
 std::string gridNote(const Georeference& place) {
+  const MapGridDescription& grid = place.gridDescription();
   return fmt::format(
-      "grid: {} (WGS 84, EPSG:{}); convergence {:.4f} deg, scale {:.6f} at the first station, both "
-      "applied",
-      place.zone().name(), place.zone().epsg(), place.convergence_rad() / kDegree, place.scale());
+      "grid: {} ({}, {}; unit {}); convergence {:.4f} deg, scale {:.6f} at the first station, both applied",
+      grid.name, grid.title, grid.code, grid.unit, place.convergence_rad() / kDegree, place.scale());
+}
+
+/// How coordinates came from WGS 84 to the datum of the grid, and how the files for survey programs name it.
+void addDatumNotes(const MapGridDescription& grid, std::vector<std::string>* notes) {
+  if (grid.accuracy_m != 0.0) {
+    notes->push_back(fmt::format("datum: from WGS 84 by {} (PROJ), accuracy {}", grid.operation,
+                                 grid.accuracy_m ? fmt::format("{:g} m", *grid.accuracy_m) : "unknown"));
+  }
+  if (grid.metres_per_unit != 1.0) {
+    notes->push_back(fmt::format(
+        "survey programs: Survex counts in metres, so its file has this grid in metres ({}); 1 {} is "
+        "{:.10g} m",
+        grid.survex_name, grid.unit, grid.metres_per_unit));
+  }
+  if (!grid.therion_name) {
+    notes->push_back(
+        "survey programs: Therion cannot use this grid, so its file has the UTM zone of the entrance");
+  }
 }
 
 std::string sigmaNote(const Survey& survey) {
@@ -94,7 +112,10 @@ std::vector<std::string> describe(const DiveMap& map, const RunFolder& run) {
         fmt::format("heading: {:.2f} deg (one sigma, at the end)", *run.heading_sigma_rad / kDegree));
   }
   notes.push_back(placeNote(map));
-  if (map.place) notes.push_back(gridNote(*map.place));
+  if (map.place) {
+    notes.push_back(gridNote(*map.place));
+    addDatumNotes(map.place->gridDescription(), &notes);
+  }
   notes.push_back(
       fmt::format("line: {} stations, {:.2f} m", map.survey.stations.size(), map.survey.length_m()));
   notes.push_back(sigmaNote(map.survey));

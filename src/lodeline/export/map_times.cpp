@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <ctime>
 
 namespace lodeline {
@@ -16,11 +15,6 @@ std::optional<std::string> isoTime(Time time) {
   gmtime_r(&clock, &utc);
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", utc.tm_year + 1900, utc.tm_mon + 1,
                      utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, time.nanoseconds() / 1000000 % 1000);
-}
-
-std::string secondsText(Time time) {
-  const int64_t ns = time.nanoseconds();
-  return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", std::abs(ns / 1000000000), std::abs(ns % 1000000000));
 }
 
 }  // namespace lodeline

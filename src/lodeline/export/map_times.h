@@ -11,7 +11,4 @@ namespace lodeline {
 /// that counts from somewhere else.
 std::optional<std::string> isoTime(Time time);
 
-/// Seconds with nine decimals, from the integer so that no digit is lost.
-std::string secondsText(Time time);
-
 }  // namespace lodeline

@@ -1,8 +1,10 @@
 #include "lodeline/export/profile_time.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lodeline/base/csv_fields.h"
@@ -16,7 +18,7 @@ std::optional<double> parseClock(std::string_view text) {
   while (true) {
     const size_t colon = text.find(':');
     double part = 0.0;
-    if (!csv::parse(text.substr(0, colon), &part) || part < 0.0) return std::nullopt;
+    if (!csv::parse(text.substr(0, colon), &part) || !std::isfinite(part) || part < 0.0) return std::nullopt;
     parts.push_back(part);
     if (colon == std::string_view::npos) break;
     text.remove_prefix(colon + 1);
@@ -50,37 +52,68 @@ std::optional<double> takeOffset(std::string_view* clock) {
   return direction * (3600.0 * hours + 60.0 * minutes);
 }
 
-std::optional<double> parseDate(std::string_view text) {
-  if (text.size() < 16 || text[4] != '-' || text[7] != '-' || (text[10] != 'T' && text[10] != ' '))
-    return std::nullopt;
-  int year = 0;
-  unsigned month = 0, day = 0;
-  if (!csv::parse(text.substr(0, 4), &year) || !csv::parse(text.substr(5, 2), &month) ||
-      !csv::parse(text.substr(8, 2), &day)) {
-    return std::nullopt;
+/// Days since 1970 of "2026-11-21", "21.11.2026", "11/21/2026"; with strokes the month comes first unless
+/// that is no month.
+std::optional<double> parseDay(std::string_view text) {
+  int parts[3];
+  size_t lengths[3];
+  char mark = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t end = i < 2 ? text.find_first_of("-./") : text.size();
+    if (end == std::string_view::npos || !csv::parse(text.substr(0, end), &parts[i])) return std::nullopt;
+    lengths[i] = end;
+    if (i == 2) break;
+    if (i == 1 && text[end] != mark) return std::nullopt;
+    mark = text[end];
+    text.remove_prefix(end + 1);
   }
-  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
-                                         std::chrono::day(day)};
+  const bool is_year_first = lengths[0] == 4;
+  if (!is_year_first && lengths[2] != 4) return std::nullopt;
+  int year = parts[is_year_first ? 0 : 2], month = parts[1], day = parts[is_year_first ? 2 : 0];
+  if (!is_year_first && mark == '/' && day <= 12) std::swap(day, month);
+  if (!is_year_first && month > 12) std::swap(day, month);
+  if (month < 1 || day < 1) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
   if (!date.ok()) return std::nullopt;
-  std::string_view clock = csv::trimmed(text.substr(11));
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+}
+
+/// Seconds of a time of day: "10:34", "10:34:00.5", "3:04 PM", "12:00:00+02:00" (less its offset).
+std::optional<double> parseTimeOfDay(std::string_view clock) {
+  double afternoon_s = 0.0;
+  bool has_twelve_hours = false;
+  for (const auto& [mark, seconds] : {std::pair{"am", 0.0}, {"AM", 0.0}, {"pm", 43200.0}, {"PM", 43200.0}}) {
+    if (!clock.ends_with(mark)) continue;
+    clock = csv::trimmed(clock.substr(0, clock.size() - 2));
+    afternoon_s = seconds;
+    has_twelve_hours = true;
+  }
   const std::optional<double> offset_s = takeOffset(&clock);
-  // "12:00" is hours and minutes here; a clock without seconds gets them.
-  const std::string full = clock.size() == 5 ? std::string(clock) + ":00" : std::string(clock);
-  const std::optional<double> of_day_s = parseClock(full);
+  // Two numbers are hours and minutes here.
+  const bool has_seconds = std::count(clock.begin(), clock.end(), ':') == 2;
+  std::optional<double> of_day_s = parseClock(has_seconds ? std::string(clock) : std::string(clock) + ":00");
   if (!offset_s || !of_day_s) return std::nullopt;
-  const auto days = std::chrono::sys_days(date).time_since_epoch().count();
-  return 86400.0 * static_cast<double>(days) + *of_day_s - *offset_s;
+  if (has_twelve_hours && *of_day_s >= 43200.0) *of_day_s -= 43200.0;
+  return *of_day_s + afternoon_s - *offset_s;
+}
+
+std::optional<double> parseDate(std::string_view text) {
+  const size_t blank = text.find_first_of(" T");
+  const std::optional<double> day = parseDay(text.substr(0, blank));
+  if (!day) return std::nullopt;
+  if (blank == std::string_view::npos) return 86400.0 * *day;
+  const std::optional<double> of_day_s = parseTimeOfDay(csv::trimmed(text.substr(blank + 1)));
+  if (!of_day_s) return std::nullopt;
+  return 86400.0 * *day + *of_day_s;
 }
 
 }  // namespace
 
-std::optional<double> parseProfileTime(std::string_view text, double seconds_per_unit) {
-  double number = 0.0;
-  if (csv::parse(text, &number)) {
-    if (!std::isfinite(number)) return std::nullopt;
-    return number * seconds_per_unit;
-  }
+std::optional<double> parseProfileTime(std::string_view text) {
   if (std::optional<double> date = parseDate(text)) return date;
+  if (text.find_first_of("aApP") != std::string_view::npos) return parseTimeOfDay(text);
   return parseClock(text);
 }
 

@@ -9,6 +9,7 @@
 
 #include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
+#include "lodeline/base/file_kind.h"
 #include "lodeline/data/yaml_file.h"
 #include "lodeline/evaluation/read_trajectory.h"
 
@@ -27,8 +28,10 @@ Trajectory readPoses(const fs::path& folder, std::string* file, Diagnostics* dia
     options.format = TrajectoryFormat::Tum;
     return readTrajectory(folder / name, options, *diagnostics);
   }
-  throw InputError(fmt::format("{}: no trajectory.tum there; give the folder that `lodeline run -o` wrote",
-                               folder.string()));
+  const RecognisedFile recognised = recogniseFile(folder);
+  const std::string needed = "no trajectory.tum there; give the folder that `lodeline run -o` wrote";
+  if (!recognised.isFolder()) refuseFile(recognised, needed);
+  throw InputError(fmt::format("{}: {}", folder.string(), needed));
 }
 
 /// Columns of states.csv by the names in its header.
@@ -105,6 +108,14 @@ void readHeading(const nlohmann::json& json, const fs::path& file, RunFolder* ru
   }
 }
 
+/// The gauge's part of the summary stands in `pressure.gauge`, in that of older runs in `pressure` itself.
+void readStartDepth(const nlohmann::json& json, RunFolder* run) {
+  const nlohmann::json pressure = json.value("pressure", nlohmann::json::object());
+  const nlohmann::json gauge = pressure.value("gauge", pressure);
+  const auto depth = gauge.find("depth_at_origin_m");
+  if (depth != gauge.end() && depth->is_number()) run->depth_at_origin_m = depth->get<double>();
+}
+
 void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
   if (!json.contains("camera_corrections")) return;
   for (const nlohmann::json& camera : json["camera_corrections"].at("cameras")) {
@@ -131,6 +142,7 @@ void readSummary(const fs::path& file, RunFolder* run) {
     run->program = json.value("program", "");
     run->recording = json.value("data", "");
     readHeading(json, file, run);
+    readStartDepth(json, run);
     readCameraCorrections(json, run);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(
@@ -174,7 +186,8 @@ RunFolder readRunFolder(const fs::path& folder, Diagnostics* diagnostics) {
   const char* landmarks = choose("landmarks_refined.ply", "landmarks.ply");
   if (there(states, "how well positions are known is assumed"))
     run.uncertainties = readUncertainties(folder / states);
-  if (there(landmarks, "the passage has no walls")) run.landmarks = readLandmarkFile(folder / landmarks);
+  if (there(landmarks, "the passage has no walls"))
+    run.landmarks = readLandmarkFile(folder / landmarks, diagnostics);
   if (fs::exists(folder / "config.yaml")) readSite(folder / "config.yaml", &run);
   return run;
 }

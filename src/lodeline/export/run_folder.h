@@ -32,6 +32,7 @@ struct RunFolder {
   std::string recording;                    ///< as the user named it
   std::optional<GeodeticPosition> site;     ///< where the run was told
   std::string date;                         ///< YYYY-MM-DD, where the run was told
+  std::optional<double> depth_at_origin_m;  ///< of the first pose, where the run had a pressure sensor
   /// [phi, xi] (rad, m) of each camera that the run used, as in factors/calibrated_reprojection_factor.h;
   /// empty where it estimated none.
   std::vector<Eigen::Matrix<double, 6, 1>> camera_corrections;

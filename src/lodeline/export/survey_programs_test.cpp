@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <regex>
 
@@ -117,8 +118,7 @@ TEST_F(SurveyPrograms, PutEveryStationOnItsPoseToAMillimetre) {
   // A hundredfold copy of the line, from zero: centimetres of the programs are then tenths of a millimetre.
   replaceIn(map.name + ".svx", R"(\*cs [^\n]*\n)", "");
   replaceIn(map.name + ".svx", R"(\*fix 0 [^\n]*)", "*fix 0 0 0 0\n*units dx dy dz 100 metres");
-  replaceIn(map.name + ".th", R"(fix 0 (\S+) (\S+) (\S+)[^\n]*)",
-            "fix 0 $1 $2 $3\n    units dx dy dz 100 metres");
+  replaceIn(map.name + ".th", "    data cartesian", "    units dx dy dz 100 metres\n    data cartesian");
   const Stations survex = cavern(map.name), therion_stations = therion(map.name);
   ASSERT_EQ(survex.size(), map.survey.stations.size());
   ASSERT_EQ(therion_stations.size(), map.survey.stations.size());
@@ -138,6 +138,99 @@ TEST_F(SurveyPrograms, AgreeInTheSouthAndFarFromTheZonesMiddle) {
   options.crs = "UTM55S";  // not its own zone: convergence 2.5 degrees
   const DiveMap map = write(test::windingDive(), options);
   expectBothAt(map);
+}
+
+// The grid's own differences for Survex, true ones for Therion, feet as metres of the same grid.
+TEST_F(SurveyPrograms, PutEveryStationOnItsPoseOnNationalGrids) {
+  LODELINE_NEEDS_PROGRAM("cavern", "survex");
+  LODELINE_NEEDS_PROGRAM("therion", "therion");
+  struct Case {
+    const char* crs;
+    GeodeticPosition place;
+  };
+  for (const Case& c : {Case{"EPSG:6372", {20.32, -87.39, 5.0}},    // Mexico: convergence 5.2 degrees
+                        Case{"EPSG:6438", test::kDevilsEye},        // Florida, US feet
+                        Case{"EPSG:2154", {44.3, 1.7, 120.0}},      // Lambert-93
+                        Case{"EPSG:2193", {-41.0, 172.5, 700.0}},   // New Zealand
+                        Case{"EPSG:6405", {33.5, -112.0, 300.0}},   // Arizona, international feet
+                        Case{"EPSG:3765", {45.0, 15.5, 300.0}}}) {  // Croatia
+    DiveMapOptions options = devilsEye();
+    options.entrance = c.place;
+    options.crs = c.crs;
+    const DiveMap map = write(test::windingDive(), options);
+    SCOPED_TRACE(c.crs);
+    ASSERT_TRUE(map.place->gridDescription().therion_name);
+    expectBothAt(map);
+  }
+}
+
+// Survex takes any grid in metres; Therion only those that have a code.
+TEST_F(SurveyPrograms, UseTheUtmZoneWhereTherionCannotUseTheGrid) {
+  LODELINE_NEEDS_PROGRAM("cavern", "survex");
+  LODELINE_NEEDS_PROGRAM("therion", "therion");
+  DiveMapOptions options = devilsEye();
+  options.entrance = GeodeticPosition{6.5, -1.0, 200.0};
+  options.crs = "EPSG:2136";  // Ghana's grid in feet of its own
+  const DiveMap map = write(test::windingDive(), options);
+  expectAt(cavern(map.name), map);
+  options.crs = "auto";
+  options.name = "unused";
+  Diagnostics diagnostics;
+  expectAt(therion(map.name), makeDiveMap(test::windingDive(), options, {}, &diagnostics));
+}
+
+TEST_F(SurveyPrograms, JoinDivesThatBeginAtOnePlace) {
+  LODELINE_NEEDS_PROGRAM("cavern", "survex");
+  LODELINE_NEEDS_PROGRAM("therion", "therion");
+  std::vector<DiveMap> maps;
+  for (const char* name : {"first", "second", "deeper"}) {
+    DiveMapOptions options = devilsEye();
+    options.name = name;
+    if (options.name == "deeper") options.start_depth_m = 4.0;
+    maps.push_back(write(test::windingDive(), options));
+  }
+  writeProject(maps, "cave", "A cave", MapFormat::Survex, folder_.path());
+  writeProject(maps, "cave", "A cave", MapFormat::Therion, folder_.path());
+  const test::OutsideRun survex = test::runIn(folder_.path(), "LC_ALL=C.UTF-8 cavern cave.svx");
+  EXPECT_EQ(survex.exit_code, 0) << survex.output;
+  EXPECT_THAT(survex.output, Not(AnyOf(HasSubstr("warning"), HasSubstr("error"))));
+  const test::OutsideRun joined = test::runIn(folder_.path(), "therion cave.thconfig");
+  EXPECT_EQ(joined.exit_code, 0) << joined.output;
+  EXPECT_THAT(joined.output, Not(AnyOf(HasSubstr("warning"), HasSubstr("error --"))));
+  // A loop where the user knows one: two dives, one cave.
+  writeOutput(folder_.path() / "all.th",
+              "encoding utf-8\nsurvey cave\n input first.th\n input second.th\n centreline\n"
+              "  equate 0@first 0@second\n  equate 11@first 11@second\n endcentreline\nendsurvey\n");
+  writeOutput(folder_.path() / "all.thconfig", "encoding utf-8\nsource all.th\nexport model -o all.lox\n");
+  const test::OutsideRun loop = test::runIn(folder_.path(), "therion all.thconfig");
+  EXPECT_EQ(loop.exit_code, 0) << loop.output;
+  EXPECT_THAT(loop.output, HasSubstr("average loop error"));
+}
+
+// A run that lost its covariance is not a run that knows its positions exactly.
+TEST_F(SurveyPrograms, TakeNoZeroVarianceForCertainty) {
+  RunFolder run = test::windingDive();
+  const Vec3 kept = run.uncertainties[200].covariance.diagonal().cwiseSqrt();
+  for (size_t i = 201; i < run.uncertainties.size(); ++i) run.uncertainties[i].covariance.setZero();
+  run.uncertainties.back().covariance(0, 0) = -1.0;
+  Diagnostics diagnostics;
+  const DiveMap map = makeDiveMap(run, devilsEye(), {}, &diagnostics);
+  EXPECT_EQ(diagnostics.count("sigma_not_positive"), 1);
+  const double legs = std::sqrt(static_cast<double>(map.survey.legs()));
+  EXPECT_LT((map.survey.leg_sigma_ENU * legs - kept).norm(), 1e-9);
+  for (PositionUncertainty& u : run.uncertainties) u.covariance.setZero();
+  const DiveMap assumed = makeDiveMap(run, devilsEye(), {}, &diagnostics);
+  EXPECT_EQ(diagnostics.count("sigma_assumed"), 1);
+  EXPECT_NEAR(assumed.survey.leg_sigma_ENU.x() * legs, 0.01 * assumed.survey.length_m(), 1e-9);
+}
+
+TEST_F(SurveyPrograms, TakeAnEntranceThatIsKnownExactly) {
+  LODELINE_NEEDS_PROGRAM("cavern", "survex");
+  LODELINE_NEEDS_PROGRAM("therion", "therion");
+  DiveMapOptions options = devilsEye();
+  options.entrance_sigma_m = 0.0;
+  options.entrance_height_sigma_m = 0.0;
+  expectBothAt(write(test::windingDive(), options));
 }
 
 TEST_F(SurveyPrograms, TakeMagneticNorthTurnedByTheDeclination) {
@@ -163,7 +256,8 @@ TEST_F(SurveyPrograms, TakeALocalMap) {
   run.landmarks.clear();
   DiveMapOptions options;
   options.name = "Höhle 7";
-  options.title = "the \"back\" way; %x";
+  options.title = "the \"back\" way; %x\n*fix 0 1 2 3\xff";
+  options.team = {"A\nB"};
   options.start_depth_m = 3.0;
   const DiveMap map = write(run, options);
   EXPECT_EQ(map.name, "H__hle_7");

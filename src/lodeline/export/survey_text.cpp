@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lodeline/base/angles.h"
+#include "lodeline/export/write_formats.h"
 
 namespace lodeline::survey_text {
 
@@ -52,3 +53,26 @@ std::string quoted(std::string text) {
 }
 
 }  // namespace lodeline::survey_text
+
+namespace lodeline {
+
+std::vector<std::pair<std::string, std::string>> equalStarts(const std::vector<DiveMap>& maps) {
+  constexpr double kSame_m = 1e-3;
+  const auto start = [](const DiveMap& map) {
+    const Vec3 first_ENU = map.survey.stations.front().position_ENU;
+    return map.place ? map.place->grid(first_ENU) : Vec3(first_ENU - map.start_depth_m * Vec3::UnitZ());
+  };
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (size_t i = 1; i < maps.size(); ++i) {
+    const auto earlier =
+        std::find_if(maps.begin(), maps.begin() + static_cast<std::ptrdiff_t>(i), [&](const DiveMap& map) {
+          return map.place.has_value() == maps[i].place.has_value() &&
+                 (start(map) - start(maps[i])).norm() < kSame_m;
+        });
+    if (earlier != maps.begin() + static_cast<std::ptrdiff_t>(i))
+      pairs.emplace_back(earlier->name, maps[i].name);
+  }
+  return pairs;
+}
+
+}  // namespace lodeline

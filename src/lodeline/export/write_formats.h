@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lodeline/export/dive_map.h"
@@ -13,12 +14,23 @@ namespace lodeline {
 /// Survex data: the line as `*data cartesian`, which cavern takes for grid differences and never turns;
 /// splays with grid bearings; passage sizes of the stations that have all four.
 std::string survexText(const DiveMap& map);
+/// One file that includes the files of several dives on one grid and equates those that begin at one place.
+std::string survexProject(const std::vector<DiveMap>& maps, const std::string& title);
 
-/// Therion data of the same survey. Therion turns cartesian data and bearings by the convergence of the
-/// meridians at the first station: differences are given against true north.
+/// Therion data of the same survey, without its place. Therion turns cartesian data and bearings by the
+/// convergence of the meridians at the fixed station: differences are given against true north.
 std::string therionText(const DiveMap& map);
-/// A configuration for `therion` that makes model, survey list and KML from it.
-std::string therionConfig(const DiveMap& map);
+/// The place of the first station, in a file of its own: Therion refuses to equate two fixed stations.
+std::string therionFix(const DiveMap& map);
+/// Several dives as one survey; those that begin at one place are fixed once and equated.
+std::string therionProject(const std::vector<DiveMap>& maps, const std::string& name,
+                           const std::string& title);
+/// A configuration for `therion` that makes model, survey list and KML from `sources`, named `name`.
+std::string therionConfig(const DiveMap& map, const std::string& name,
+                          const std::vector<std::string>& sources);
+
+/// The dives that begin where an earlier one does, to a millimetre: pairs of names, the earlier first.
+std::vector<std::pair<std::string, std::string>> equalStarts(const std::vector<DiveMap>& maps);
 
 /// RFC 7946: longitude, latitude, height above the ellipsoid (WGS 84); line, stations, and the outline of the
 /// passage from its widths.
@@ -34,7 +46,8 @@ std::string gpxText(const DiveMap& map);
 /// the way.
 std::string plyBytes(const DiveMap& map);
 
-/// One line a pose, and one line a station.
+/// One line a pose, and one line a station. The first line is the header; what the map is made of stands in a
+/// file of its own (export_owner.h), since GIS programs take comments for a header.
 std::string posesCsv(const DiveMap& map);
 std::string stationsCsv(const DiveMap& map);
 

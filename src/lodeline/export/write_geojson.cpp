@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lodeline/base/json_text.h"
 #include "lodeline/export/map_times.h"
 #include "lodeline/export/write_formats.h"
 
@@ -93,7 +94,7 @@ std::string geojsonText(const DiveMap& map) {
   if (std::optional<Json> plan = planFeature(map)) features.push_back(std::move(*plan));
   for (size_t i = 0; i < map.survey.stations.size(); ++i) features.push_back(stationFeature(map, i));
   const Json collection = {{"type", "FeatureCollection"}, {"features", features}};
-  return collection.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonText(collection, 1) + "\n";
 }
 
 }  // namespace lodeline

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-std::string coordinates(const DiveMap& map, const Vec3& point_ENU) {
+std::string kmlCoordinates(const DiveMap& map, const Vec3& point_ENU) {
   const GeodeticPosition position = map.place->geodetic(point_ENU);
   return fmt::format("{:.9f},{:.9f},{:.3f}", position.longitude_deg, position.latitude_deg,
                      position.height_m);
@@ -16,7 +16,7 @@ std::string coordinates(const DiveMap& map, const Vec3& point_ENU) {
 std::string lineCoordinates(const DiveMap& map) {
   std::string text;
   for (const SurveyStation& station : map.survey.stations)
-    text += coordinates(map, station.position_ENU) + '\n';
+    text += kmlCoordinates(map, station.position_ENU) + '\n';
   return text;
 }
 
@@ -47,7 +47,7 @@ std::string stationPlacemark(const DiveMap& map, size_t i) {
   return fmt::format(
       "<Placemark><name>{}</name><description>depth {:.1f} m{}</description><styleUrl>#station</styleUrl>\n"
       "<Point><altitudeMode>clampToGround</altitudeMode><coordinates>{}</coordinates></Point></Placemark>\n",
-      i, map.depth_m(station.position_ENU), details, coordinates(map, station.position_ENU));
+      i, map.depth_m(station.position_ENU), details, kmlCoordinates(map, station.position_ENU));
 }
 
 constexpr const char* kStyles =

@@ -12,9 +12,9 @@ std::string survexFix(const DiveMap& map) {
   if (!map.place) {
     return fmt::format("*fix 0 0 0 {:.4f}\n", -map.start_depth_m + 0.0);
   }
-  const std::string zone = map.place->zone().name();
+  const std::string& grid = map.place->gridDescription().survex_name;
   const Vec3 first = rounded(map.place->grid(map.survey.stations.front().position_ENU));
-  return fmt::format("*cs {0}\n*cs out {0}\n*fix 0 {1:.4f} {2:.4f} {3:.4f} {4:g} {5:g} {6:g}\n", zone,
+  return fmt::format("*cs {0}\n*cs out {0}\n*fix 0 {1:.4f} {2:.4f} {3:.4f} {4:g} {5:g} {6:g}\n", grid,
                      first.x(), first.y(), first.z(), map.place_sigma.x(), map.place_sigma.y(),
                      map.place_sigma.z());
 }
@@ -69,13 +69,22 @@ std::string survexText(const DiveMap& map) {
   text += survexFix(map) + "*entrance 0\n";
   const Vec3& sigma = survey.leg_sigma_ENU;
   text += fmt::format(
-      "\n; Differences are grid differences.\n*data cartesian from to dx dy dz\n"
+      "\n; Differences are those of this very grid: for another one, export anew with --crs.\n*data "
+      "cartesian from to dx dy dz\n"
       "*sd dx {:.4f} metres\n*sd dy {:.4f} metres\n*sd dz {:.4f} metres\n",
       sigma.x(), sigma.y(), sigma.z());
   text += legs(positions, "");
   if (survey.is_closed) text += fmt::format("*equate 0 {}\n", survey.legs());
   text += survexSplays(map) + passageText(survey);
   return text + fmt::format("*end {}\n", map.name);
+}
+
+std::string survexProject(const std::vector<DiveMap>& maps, const std::string& title) {
+  std::string text = fmt::format("; {}: several dives on one grid\n", title);
+  for (const DiveMap& map : maps) text += fmt::format("*include {}\n", map.name);
+  for (const auto& [first, second] : equalStarts(maps))
+    text += fmt::format("*equate {}.0 {}.0\n", first, second);
+  return text;
 }
 
 }  // namespace lodeline

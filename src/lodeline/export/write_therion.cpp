@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "lodeline/export/survey_text.h"
 #include "lodeline/export/write_formats.h"
 
@@ -8,22 +10,41 @@ namespace {
 
 using namespace survey_text;
 
-/// Offset of a point from the first station as Therion wants it: it turns what it gets by the convergence at
-/// the first station, so grid differences are turned against that.
-Vec3 fromFirst(const DiveMap& map, const Vec3& point_ENU) {
-  const Vec3 first_ENU = map.survey.stations.front().position_ENU;
-  if (!map.place) return point_ENU - first_ENU;
-  return turnedClockwise(map.place->grid(point_ENU) - rounded(map.place->grid(first_ENU)),
-                         map.place->convergence_rad());
+/// The map's place on a grid that Therion can use: the map's own, else the UTM zone of the entrance.
+std::optional<Georeference> therionPlace(const DiveMap& map) {
+  if (!map.place || map.place->gridDescription().therion_name) return map.place;
+  return Georeference(map.place->origin(), MapGrid("auto", map.place->origin()));
 }
 
-std::string therionFix(const DiveMap& map) {
-  if (!map.place) return fmt::format("    fix 0 0 0 {:.4f}\n", -map.start_depth_m + 0.0);
-  const UtmZone& zone = map.place->zone();
-  const Vec3 first = rounded(map.place->grid(map.survey.stations.front().position_ENU));
-  return fmt::format("    cs UTM{}{}\n    fix 0 {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n", zone.number,
-                     zone.north ? "" : "S", first.x(), first.y(), first.z(), map.place_sigma.x(),
-                     map.place_sigma.y(), map.place_sigma.z());
+/// Positions for Therion, as offsets from the first station. It turns what it gets by the convergence at the
+/// fixed station, so grid differences are turned against that.
+class Offsets {
+ public:
+  explicit Offsets(const DiveMap& map)
+      : place_(therionPlace(map)), first_ENU_(map.survey.stations.front().position_ENU) {}
+
+  Vec3 operator()(const Vec3& point_ENU) const {
+    if (!place_) return point_ENU - first_ENU_;
+    return turnedClockwise(place_->grid(point_ENU) - rounded(place_->grid(first_ENU_)),
+                           place_->convergence_rad());
+  }
+
+ private:
+  std::optional<Georeference> place_;
+  Vec3 first_ENU_;
+};
+
+/// The line that puts the first station of a dive in its place.
+std::string fixLine(const DiveMap& map, const std::optional<Georeference>& place) {
+  if (!place) return fmt::format("  fix 0@{} 0 0 {:.4f}\n", map.name, -map.start_depth_m + 0.0);
+  const Vec3 first = rounded(place->grid(map.survey.stations.front().position_ENU));
+  return fmt::format("  fix 0@{} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n", map.name, first.x(), first.y(),
+                     first.z(), map.place_sigma.x(), map.place_sigma.y(), map.place_sigma.z());
+}
+
+/// "cs UTM17", or nothing for a map without a place.
+std::string csLine(const std::optional<Georeference>& place, const char* indent) {
+  return place ? fmt::format("{}cs {}\n", indent, place->gridDescription().therion_name.value()) : "";
 }
 
 /// Therion 6.1 warns of dates after 2024, where its model of declination ends, also where no declination is
@@ -34,13 +55,12 @@ std::string dateText(const DiveMap& map) {
   return fmt::format("    # date {}  (Therion 6.1 warns of dates after 2024)\n", dotted(map.date));
 }
 
-std::string therionSplays(const DiveMap& map) {
+std::string therionSplays(const DiveMap& map, const Offsets& fromFirst) {
   std::string text;
   for (size_t i = 0; i < map.survey.stations.size(); ++i) {
     const SurveyStation& station = map.survey.stations[i];
-    const Vec3 origin = fromFirst(map, station.position_ENU);
-    for (const Vec3& target : station.splays_ENU)
-      text += splay(i, ".", fromFirst(map, target) - origin, "    ");
+    const Vec3 origin = fromFirst(station.position_ENU);
+    for (const Vec3& target : station.splays_ENU) text += splay(i, ".", fromFirst(target) - origin, "    ");
   }
   if (text.empty()) return "";
   return "\n    # To the walls, from points of the map.\n    data normal from to tape compass clino\n"
@@ -67,13 +87,13 @@ std::string dimensionsText(const Survey& survey) {
 
 std::string therionText(const DiveMap& map) {
   const Survey& survey = map.survey;
+  const Offsets fromFirst(map);
   std::vector<Vec3> positions;
-  for (const SurveyStation& station : survey.stations)
-    positions.push_back(fromFirst(map, station.position_ENU));
+  for (const SurveyStation& station : survey.stations) positions.push_back(fromFirst(station.position_ENU));
   std::string text = fmt::format("encoding utf-8\n# {}\n", map.title) + comments(map, "#");
   text += fmt::format("\nsurvey {} -title {}\n  centreline\n", map.name, quoted(map.title)) + dateText(map);
   for (const std::string& name : map.team) text += fmt::format("    team {}\n", quoted(name));
-  text += therionFix(map) + "    station 0 \"entrance\" entrance\n";
+  text += "    station 0 \"entrance\" entrance\n";
   const Vec3& sigma = survey.leg_sigma_ENU;
   text += fmt::format(
       "\n    # Differences against the north named above; Therion turns them by the convergence of the "
@@ -83,17 +103,44 @@ std::string therionText(const DiveMap& map) {
       sigma.x(), sigma.y(), sigma.z());
   text += legs(positions, "    ");
   if (survey.is_closed) text += fmt::format("    equate 0 {}\n", survey.legs());
-  text += therionSplays(map) + dimensionsText(survey);
+  text += therionSplays(map, fromFirst) + dimensionsText(survey);
   return text + "  endcentreline\nendsurvey\n";
 }
 
-std::string therionConfig(const DiveMap& map) {
-  std::string text = fmt::format("encoding utf-8\nsource {}.th\n", map.name);
-  if (map.place) {
-    text += fmt::format("cs UTM{}{}\n", map.place->zone().number, map.place->zone().north ? "" : "S");
-    text += fmt::format("export model -fmt kml -o {}_therion.kml\n", map.name);
+std::string therionFix(const DiveMap& map) {
+  const std::optional<Georeference> place = therionPlace(map);
+  return fmt::format(
+      "encoding utf-8\n# Where the first station of {0} lies. A project of several dives that begin at one "
+      "place\n"
+      "# inputs this file for one of them and equates the others.\ncentreline\n{1}{2}endcentreline\n",
+      map.name, csLine(place, "  "), fixLine(map, place));
+}
+
+std::string therionProject(const std::vector<DiveMap>& maps, const std::string& name,
+                           const std::string& title) {
+  std::string text = fmt::format("encoding utf-8\nsurvey {} -title {}\n", name, quoted(title));
+  std::string equates;
+  std::set<std::string> equated;
+  for (const auto& [first, second] : equalStarts(maps)) {
+    equates += fmt::format("  equate 0@{} 0@{}\n", first, second);
+    equated.insert(second);
   }
-  return text + fmt::format("export model -o {0}.lox\nexport survey-list -o {0}_surveys.html\n", map.name);
+  for (const DiveMap& map : maps) {
+    text += fmt::format("  input {}.th\n", map.name);
+    if (!equated.contains(map.name)) text += fmt::format("  input {}_fix.th\n", map.name);
+  }
+  if (!equates.empty()) text += "  centreline\n" + equates + "  endcentreline\n";
+  return text + "endsurvey\n";
+}
+
+std::string therionConfig(const DiveMap& map, const std::string& name,
+                          const std::vector<std::string>& sources) {
+  std::string text = "encoding utf-8\n";
+  for (const std::string& source : sources) text += fmt::format("source {}\n", source);
+  const std::optional<Georeference> place = therionPlace(map);
+  text += csLine(place, "");
+  if (place) text += fmt::format("export model -fmt kml -o {}_therion.kml\n", name);
+  return text + fmt::format("export model -o {0}.lox\nexport survey-list -o {0}_surveys.html\n", name);
 }
 
 }  // namespace lodeline

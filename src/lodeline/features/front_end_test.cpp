@@ -286,5 +286,70 @@ TEST(DrawTracks, PaintsAllCamerasSideBySide) {
   EXPECT_EQ(drawTracks(front_end, {cv::Mat(), cv::Mat()}).size(), picture.size());
 }
 
+/// How far the rays that camera 1 is said to see at each frame's time are from the truth, median, px, and how
+/// many there are. Its images are those of `later` frames later; `motion_is_known`: to the front end.
+std::pair<double, size_t> rightRayError(int later, bool motion_is_known) {
+  const TestSequence& sequence = daylight().sequence;
+  FrontEnd front_end(sequence.rig(), {});
+  const std::shared_ptr<const Camera> right = front_end.cameras()[1];
+  std::vector<double> errors_px;
+  for (int i = 0; i + later < kFrames; ++i) {
+    const Rigid3 body_from_world = sequence.worldFromBody(i).inverse();
+    RigMotion motion;
+    if (motion_is_known) {
+      motion.frame_from_image_B = {Rigid3(), body_from_world * sequence.worldFromBody(i + later)};
+    }
+    const FrameTracks tracks = front_end.process(
+        TestSequence::time(i),
+        {daylight().images[static_cast<size_t>(i)][0], daylight().images[static_cast<size_t>(i + later)][1]},
+        daylight().previousFromCurrent(i), motion);
+    const std::map<TrackId, Vec2> left = pixels(tracks, 0);
+    for (const Observation& observation : tracks.observations) {
+      if (observation.camera != 1) continue;
+      const auto true_pixel = sequence.truePixel(i, 0, left.at(observation.track), i, 1);
+      if (!true_pixel) continue;
+      const auto true_ray = right->unproject(*true_pixel);
+      errors_px.push_back(right->calibration().fx_px * (*true_ray - observation.bearing_C).norm());
+    }
+  }
+  if (errors_px.empty()) return {0.0, 0};
+  std::nth_element(errors_px.begin(), errors_px.begin() + static_cast<int>(errors_px.size() / 2), errors_px.end());
+  return {errors_px[errors_px.size() / 2], errors_px.size()};
+}
+
+TEST(FrontEnd, GivesWhatAnotherCameraSawLaterAsItWouldHaveSeenItAtTheFramesTime) {
+  const auto [together_px, together] = rightRayError(0, false);
+  const auto [later_px, later] = rightRayError(1, true);
+  const auto [unknown_px, unknown] = rightRayError(1, false);
+  EXPECT_LT(together_px, 0.2);
+  EXPECT_LT(later_px, 0.3);
+  EXPECT_GT(later, 0.8 * static_cast<double>(together) * (kFrames - 1) / kFrames);
+  EXPECT_GT(unknown_px, 2.0) << "the sequence moves too little to test anything";
+}
+
+// A gyroscope in other units turns by radians what turns by hundredths.
+TEST(FrontEnd, FollowsPointsByTheOtherOpinionWhereImagesContradictTheFirst) {
+  const Recording& recording = daylight();
+  for (const double error_rad : {0.03, 0.5}) {
+    const Quat wrong = so3::exp(error_rad * Vec3(0.6, -0.6, 0.5).normalized());
+    FrontEnd right(recording.sequence.rig(), {}), deceived(recording.sequence.rig(), {}),
+        rescued(recording.sequence.rig(), {});
+    int kept_right = 0, kept_deceived = 0, kept_rescued = 0;
+    for (int i = 0; i < 6; ++i) {
+      const Time time = TestSequence::time(i);
+      const std::vector<cv::Mat>& images = recording.images[static_cast<size_t>(i)];
+      const Quat truth = recording.previousFromCurrent(i);
+      right.process(time, images, truth);
+      deceived.process(time, images, truth * wrong);
+      rescued.process(time, images, truth * wrong, truth);
+      kept_right += right.statistics().kept;
+      kept_deceived += deceived.statistics().kept;
+      kept_rescued += rescued.statistics().kept;
+    }
+    EXPECT_LT(kept_deceived, kept_right / 2) << error_rad;
+    EXPECT_GT(kept_rescued, 0.9 * kept_right) << error_rad;
+  }
+}
+
 }  // namespace
 }  // namespace lodeline

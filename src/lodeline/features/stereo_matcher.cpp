@@ -31,6 +31,40 @@ StereoMatcher::StereoMatcher(std::shared_ptr<const Camera> first, std::shared_pt
       second_from_first_by_file_(relativePose(*first_, *second_)),
       second_from_first_(second_from_first_by_file_) {}
 
+Rigid3 StereoMatcher::imageSecondFromFirst() const {
+  return frame_from_image_C_ ? frame_from_image_C_->inverse() * second_from_first_by_file_
+                             : second_from_first_by_file_;
+}
+
+void StereoMatcher::place() {
+  const Rigid3 by_file = imageSecondFromFirst();
+  const Quat turn = so3::exp(rotation_.turn());
+  second_from_first_ = Rigid3(turn * by_file.rotation, turn * by_file.translation);
+}
+
+void StereoMatcher::setMotion(const RigMotion& motion, size_t camera) {
+  const Rigid3& body_from_second = second_->calibration().body_from_camera;
+  const Mat3 second_from_body = body_from_second.rotation.conjugate().toRotationMatrix();
+  rate_C_ = second_from_body * motion.rate_B;
+  velocity_C_ = second_from_body * (motion.velocity_B + motion.rate_B.cross(body_from_second.translation));
+  const bool was_moved = frame_from_image_C_.has_value();
+  frame_from_image_C_.reset();
+  if (!motion.frame_from_image_B.empty()) {
+    frame_from_image_C_ = body_from_second.inverse() * motion.frame_from_image_B[camera] * body_from_second;
+  }
+  if (was_moved || frame_from_image_C_) place();
+}
+
+Vec3 StereoMatcher::rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const {
+  if (!frame_from_image_C_) return rays.second;
+  // The point times its inverse depth, which also holds for points at infinity.
+  const Vec3 point_C =
+      second_from_first_.rotation * rays.first + inverse_depth_per_m * second_from_first_.translation;
+  return (frame_from_image_C_->rotation * (point_C.norm() * rays.second) +
+          inverse_depth_per_m * frame_from_image_C_->translation)
+      .normalized();
+}
+
 std::optional<Vec2> StereoMatcher::projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const {
   return second_->project(second_from_first_.rotation * first_bearing +
                           inverse_depth_per_m * second_from_first_.translation);
@@ -130,11 +164,10 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
 }
 
 void StereoMatcher::learn(const std::vector<RayPair>& candidates) {
+  delay_.add(candidates, second_from_first_, second_->calibration().fx_px, rate_C_, velocity_C_);
   if (!options_.learn_rotation) return;
-  rotation_.add(candidates);
-  const Quat turn = so3::exp(rotation_.turn());
-  second_from_first_ =
-      Rigid3(turn * second_from_first_by_file_.rotation, turn * second_from_first_by_file_.translation);
+  rotation_.add(candidates, imageSecondFromFirst());
+  place();
 }
 
 std::optional<double> StereoMatcher::accept(const RayPair& candidate) const {

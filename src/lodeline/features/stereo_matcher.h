@@ -5,6 +5,7 @@
 #include "lodeline/base/angles.h"
 #include "lodeline/cameras/camera.h"
 #include "lodeline/features/match_quality.h"
+#include "lodeline/features/stereo_delay.h"
 #include "lodeline/features/stereo_rotation.h"
 #include "lodeline/features/track.h"
 
@@ -23,13 +24,23 @@ struct StereoMatcherOptions {
   double border_px = 8.0;
 };
 
+/// How the rig moves while its cameras take their images, body axes.
+struct RigMotion {
+  /// Per camera, from the body at the time of its image to the body at the frame's time; empty where all
+  /// images were taken at the frame's time.
+  std::vector<Rigid3> frame_from_image_B = {};
+  Vec3 rate_B = Vec3::Zero();      ///< rad/s
+  Vec3 velocity_B = Vec3::Zero();  ///< m/s
+};
+
 /// A point found in another camera by its looks.
 struct StereoCandidate {
   PatchWarp warp;
   RayPair rays;
 };
 
-/// Finds points of camera 0 in the image another camera of the rig took at the same time. What is found by
+/// Finds points of camera 0 in the image that another camera of the rig took at the same time, or nearly: its
+/// own motion up to the frame's time is taken into account. What is found by
 /// its looks is a candidate; all candidates of a frame together tell how the camera is turned against its
 /// file, and then which of them are matches.
 class StereoMatcher {
@@ -37,6 +48,8 @@ class StereoMatcher {
   StereoMatcher(std::shared_ptr<const Camera> first, std::shared_ptr<const Camera> second,
                 const StereoMatcherOptions& options);
 
+  /// The rig's motion between the two images; before a frame's matches are looked for.
+  void setMotion(const RigMotion& motion, size_t camera);
   /// Looks for `track.current`, expected at `track.inverse_depth_per_m` or, where that is unknown, anywhere
   /// between `min_depth_m` and infinity; `hint` is the match in the images before.
   std::optional<StereoCandidate> find(const ImagePyramid& first, const ImagePyramid& second,
@@ -47,11 +60,21 @@ class StereoMatcher {
   /// epipolar line and neither too near nor beyond infinity.
   std::optional<double> accept(const RayPair& candidate) const;
 
+  /// The ray that the second camera would have seen at the frame's time, of a point it saw on `second` at its
+  /// own time and that lies at `inverse_depth_per_m` on the ray `first`.
+  Vec3 rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const;
+
+  /// By how much later than thought the second camera takes its images.
+  StereoDelay& delay() { return delay_; }
+
   /// Rotation phi (rad, axes of the first camera) by which the second one is turned against its file:
   /// first_from_second is exp(phi) times the file's. Zero where nothing speaks against that.
   Vec3 rotationCorrection() const;
 
  private:
+  /// By file, at the times of their images.
+  Rigid3 imageSecondFromFirst() const;
+  void place();
   /// Distance of a candidate from the epipolar plane, px of the second camera.
   double epipolarErrorPx(const RayPair& rays) const;
   std::optional<Vec2> projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const;
@@ -69,7 +92,11 @@ class StereoMatcher {
   StereoMatcherOptions options_;
   double limit_px_;  ///< max_epipolar_px or what takes its place
   StereoRotation rotation_;
-  Rigid3 second_from_first_by_file_, second_from_first_;
+  StereoDelay delay_;
+  Rigid3 second_from_first_by_file_;
+  std::optional<Rigid3> frame_from_image_C_;  ///< of the second camera, where its image is of another moment
+  Vec3 rate_C_ = Vec3::Zero(), velocity_C_ = Vec3::Zero();  ///< of the second camera
+  Rigid3 second_from_first_;                                ///< at the times of their images, with the turn found
 };
 
 }  // namespace lodeline

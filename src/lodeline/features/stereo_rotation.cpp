@@ -23,8 +23,8 @@ std::optional<Vec3> epipolarNormal(const Rigid3& second_from_first, const Vec3& 
   return normal / length;
 }
 
-void StereoRotation::remember(const RayPair& pair) {
-  const std::optional<Vec3> normal = epipolarNormal(second_from_first_, pair.first);
+void StereoRotation::remember(const RayPair& pair, const Rigid3& second_from_first) {
+  const std::optional<Vec3> normal = epipolarNormal(second_from_first, pair.first);
   if (!normal) return;
   newest_.push_back({focal_px_ * normal->dot(pair.second), focal_px_ * pair.second.cross(*normal)});
   if (newest_.size() > kMost) newest_.pop_front();
@@ -51,8 +51,8 @@ double StereoRotation::medianAfter(const Vec3& turn) const {
   return *middle;
 }
 
-void StereoRotation::add(const std::vector<RayPair>& pairs) {
-  for (const RayPair& pair : pairs) remember(pair);
+void StereoRotation::add(const std::vector<RayPair>& pairs, const Rigid3& second_from_first) {
+  for (const RayPair& pair : pairs) remember(pair, second_from_first);
   if (newest_.size() < kEnough) return;
   fit();
   const double by_file_px = medianAfter(Vec3::Zero());

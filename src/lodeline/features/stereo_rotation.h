@@ -33,8 +33,10 @@ class StereoRotation {
   StereoRotation(const Rigid3& second_from_first, double focal_px, double limit_px)
       : second_from_first_(second_from_first), focal_px_(focal_px), limit_px_(limit_px) {}
 
-  /// The matches of one frame.
-  void add(const std::vector<RayPair>& pairs);
+  /// The matches of one frame. `second_from_first`: in place of the file's, where the second image was taken
+  /// at another moment.
+  void add(const std::vector<RayPair>& pairs, const Rigid3& second_from_first);
+  void add(const std::vector<RayPair>& pairs) { add(pairs, second_from_first_); }
 
   /// Whether the file's rotation would leave most matches off their planes, and this one does not.
   bool isFound() const { return found_; }
@@ -48,7 +50,7 @@ class StereoRotation {
     Vec3 slope;
     double after(const Vec3& turn) const { return std::abs(error_px - slope.dot(turn)); }
   };
-  void remember(const RayPair& pair);
+  void remember(const RayPair& pair, const Rigid3& second_from_first);
   void fit();
   double medianAfter(const Vec3& turn) const;
 

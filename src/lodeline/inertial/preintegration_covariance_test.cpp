@@ -134,6 +134,19 @@ TEST(PreintegrationGap, AddsTheUncertaintyOfMotionThatWasOnlyInterpolated) {
   EXPECT_GT(error.dot(whole.covariance().topLeftCorner<9, 9>().llt().solve(error)) / 9.0, 10.0);
 }
 
+// Images at a high rate divide a gap into steps that are short by themselves.
+TEST(PreintegrationGap, CountsForEveryPartOfIt) {
+  const auto samples = kMotion.readings(0.0, 0.01, 200.0);
+  auto within_gap = samples;
+  for (ImuSample& sample : within_gap) sample.gap_s = 1.0;
+  const PreintegrationOptions options = uninflated();
+  const Preintegration plain(samples, Vec3::Zero(), Vec3::Zero(), ImuCalibration(), options);
+  const Preintegration part(within_gap, Vec3::Zero(), Vec3::Zero(), ImuCalibration(), options);
+  const Vec15 added = (part.covariance() - plain.covariance()).diagonal();
+  const double least = std::pow(0.01 * options.gap_rate_sigma_rad_per_s, 2);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(added[kTheta + axis], least);
+}
+
 TEST(PreintegrationGap, ASlowSensorHasNone) {
   ImuCalibration slow;
   slow.rate_hz = 25.0;

@@ -45,7 +45,10 @@ void SensorNoiseAnalysis::add(Time time, const Vec3& reading) {
   }
   if (!begin_) begin_ = time;
   last_time_ = time;
-  if (period_s_ > 0.0) return take(time, reading);
+  if (period_s_ > 0.0) {
+    if (!isSpike(time, reading)) take(time, reading);
+    return;
+  }
   first_.emplace_back(time, reading);
   if (first_.size() == kReadingsForPeriod) learnPeriod();
 }
@@ -64,6 +67,18 @@ void SensorNoiseAnalysis::learnPeriod() {
   gap_limit_s_ = std::max(kGapPeriods * period_s_, kGapPauses * usual_s);
   const auto waiting = std::exchange(first_, {});
   for (const auto& [time, reading] : waiting) take(time, reading);
+}
+
+bool SensorNoiseAnalysis::isSpike(Time time, const Vec3& reading) {
+  constexpr double kFar = 100.0;  // times the scatter of a sensor that counts as still
+  constexpr int kSpikes = 2;      // more on end are no spike
+  const bool is_far = (reading - last_).norm() > kFar * sensor_.still.largest_std;
+  spikes_ = is_far ? spikes_ + 1 : 0;
+  if (!is_far || spikes_ > kSpikes) return false;
+  diagnostics_->report(Severity::Warning, sensor_.name + "_spike",
+                       fmt::format("{}: reading at {} ns lies {:.3g} {} off the one before; passed over",
+                                   sensor_.name, time.nanoseconds(), (reading - last_).norm(), sensor_.unit));
+  return true;
 }
 
 void SensorNoiseAnalysis::take(Time time, const Vec3& reading) {

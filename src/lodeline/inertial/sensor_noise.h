@@ -48,7 +48,8 @@ class SensorNoiseAnalysis {
   /// `diagnostics` must outlive the analysis.
   SensorNoiseAnalysis(AnalysedSensor sensor, Diagnostics* diagnostics);
 
-  /// A reading that is not finite, or not later than the one before, is reported and passed over.
+  /// A reading that is not finite, not later than the one before, or one of two at most that lie a hundred
+  /// times farther off than a still sensor scatters, is reported and passed over.
   void add(Time time, const Vec3& reading);
 
   /// Reports what limits the figures: a record that is short, not still, repeated, filtered, drifting. Throws
@@ -58,6 +59,7 @@ class SensorNoiseAnalysis {
 
  private:
   void learnPeriod();
+  bool isSpike(Time time, const Vec3& reading);
   void take(Time time, const Vec3& reading);
   void bridge(Time time, const Vec3& reading);
   bool holdsReadings() const;
@@ -75,6 +77,7 @@ class SensorNoiseAnalysis {
   Time last_time_;      ///< of everything added
   Time previous_time_;  ///< of what was taken
   Vec3 last_ = Vec3::Zero();
+  int spikes_ = 0;  ///< on end, up to the newest reading
   int64_t readings_ = 0;
   int64_t repeated_ = 0;                    ///< in all axes at once
   std::array<int64_t, 3> repeated_axis_{};  ///< in one axis

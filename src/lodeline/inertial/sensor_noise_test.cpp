@@ -69,6 +69,15 @@ TEST_F(SensorNoiseTest, PassesOverReadingsThatAreNone) {
   EXPECT_NEAR(noise.all.white.value, kWhite, 0.01 * kWhite);
 }
 
+TEST_F(SensorNoiseTest, PassesOverSpikes) {
+  const SensorNoise noise = analyse([](int i, Time*, Vec3* reading) {
+    if (i % 10000 == 500) reading->y() = 1e6;
+    return true;
+  });
+  EXPECT_EQ(diagnostics_.count("gyroscope_spike"), 12);
+  EXPECT_NEAR(noise.all.white.value, kWhite, 0.01 * kWhite);
+}
+
 TEST_F(SensorNoiseTest, BridgesShortGapsAndSplitsAtLongOnes) {
   // A drift that a splice of both sides would turn into a step.
   const SensorNoise noise = analyse([](int i, Time*, Vec3* reading) {

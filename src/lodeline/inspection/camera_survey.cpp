@@ -1,6 +1,7 @@
 #include "lodeline/inspection/camera_survey.h"
 
 #include <algorithm>
+#include <cstring>
 #include <opencv2/core.hpp>
 
 #include "lodeline/cameras/camera.h"
@@ -9,6 +10,7 @@
 #include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/point_following.h"
 #include "lodeline/inspection/visual_rotation.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {
@@ -52,18 +54,49 @@ class Survey {
       current.corners.emplace_back(corner.x(), corner.y());
     }
     FrameSurvey frame{pending.time, assess(pyramid), static_cast<int>(current.corners.size()), -1};
-    if (follow && previous_) compare(current, &frame);
+    const bool ends_pair = follow && previous_;
+    if (ends_pair) compare(current, &frame);
     result_->frames.push_back(frame);
+    if (ends_pair && options_.pair_interval_s > 0.0) {
+      next_pair_ = previous_->time + Duration::fromSeconds(options_.pair_interval_s);
+      previous_.reset();
+      return;
+    }
     previous_.reset();
     if (follow) previous_ = std::move(current);
   }
 
   /// Whether the next image comes too soon after the last one that was followed.
   bool isTooSoon(Time time) const {
+    if (!previous_ && next_pair_ && time < *next_pair_) return true;
     return previous_ && time > previous_->time && (time - previous_->time).seconds() < options_.least_step_s;
   }
 
+  /// Whether an image is stored with the same bytes as the one before, which is much cheaper to tell than to
+  /// decode both. A repeat shows the moment of the image before: what follows must be compared with that.
+  bool repeats(const PendingImage& pending) {
+    if (!pending.stored) return false;
+    StoredImage image = pending.stored();
+    if (!image.problem.empty()) return false;
+    const bool is_repeat = before_ && isSame(image, *before_);
+    result_->compared += before_ ? 1 : 0;
+    before_ = std::move(image);
+    if (!is_repeat) return false;
+    if (result_->identical++ == 0) result_->first_identical = pending.time;
+    return true;
+  }
+
  private:
+  static bool isSame(const StoredImage& a, const StoredImage& b) {
+    if (a.pixels.empty() || b.pixels.empty()) return a.file == b.file && !a.file.empty();
+    if (a.pixels.size() != b.pixels.size() || a.pixels.type() != b.pixels.type()) return false;
+    const size_t row_bytes = a.pixels.elemSize() * static_cast<size_t>(a.pixels.cols);
+    for (int row = 0; row < a.pixels.rows; ++row) {
+      if (std::memcmp(a.pixels.ptr(row), b.pixels.ptr(row), row_bytes) != 0) return false;
+    }
+    return true;
+  }
+
   bool hasRightSize(const cv::Mat& image) {
     if (!camera_) return true;
     if (image.cols == calibration_.width_px && image.rows == calibration_.height_px) return true;
@@ -76,11 +109,6 @@ class Survey {
 
   void compare(const Followed& current, FrameSurvey* frame) {
     if (previous_->image.size() != current.image.size()) return;
-    ++result_->compared;
-    if (cv::norm(previous_->image, current.image, cv::NORM_INF) == 0.0) {
-      ++result_->identical;
-      return;
-    }
     constexpr double kLongestStep_s = 0.3;
     const double step_s = (current.time - previous_->time).seconds();
     if (previous_->corners.empty() || !(step_s > 0.0) || step_s > kLongestStep_s) return;
@@ -109,6 +137,8 @@ class Survey {
   CornerDetector detector_;
   CameraSurvey* result_;
   std::optional<Followed> previous_;
+  std::optional<Time> next_pair_;
+  std::optional<StoredImage> before_;  ///< the image before, in the stretches that are followed
 };
 
 /// How variedly the rig turned in each stretch; readings in order of time.
@@ -134,10 +164,23 @@ std::vector<std::pair<double, SurveySpan>> rateSpans(const std::vector<ImuSample
 
 }  // namespace
 
-StreamSummary surveyStamps(MeasurementSource* source, size_t camera) {
+StreamSummary surveyStamps(MeasurementSource* source, size_t camera, Diagnostics* diagnostics) {
+  constexpr size_t kImagesAhead = 8;
+  const CameraCalibration& calibration = source->rig().cameras[camera];
   StreamSurvey stream;
-  while (const std::optional<PendingImage> image = source->nextImage(camera)) stream.add(image->time);
-  return stream.summarize(kImageGapPeriods);
+  const int jumps_before = diagnostics->count("image_clock_jump");
+  StreamExpectation expected{"image", calibration.name, calibration.rate_hz, 0.0, Duration()};
+  expected.look_ahead = kImagesAhead;
+  const auto pull = [&] {
+    std::optional<PendingImage> image = source->nextImage(camera);
+    if (image) stream.add(image->time);
+    return image;
+  };
+  OrderedStream<PendingImage> ordered(expected, pull, diagnostics);
+  while (ordered.peek() != nullptr) ordered.pop();
+  StreamSummary summary = stream.summarize(kImageGapPeriods);
+  summary.clock_jumps = diagnostics->count("image_clock_jump") - jumps_before;
+  return summary;
 }
 
 CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const StreamSummary& stream,
@@ -153,7 +196,7 @@ CameraSurvey surveyCamera(MeasurementSource* source, size_t camera, const Stream
   while (const std::optional<PendingImage> image = source->nextImage(camera)) {
     const bool follow = followed < options.most_turns && isWithin(image->time, spans);
     const bool sample = index++ % every == 0;
-    if (follow && survey.isTooSoon(image->time)) continue;
+    if (follow && (survey.repeats(*image) || survey.isTooSoon(image->time))) continue;
     if (!follow && !sample) continue;
     survey.look(*image, follow);
     if (follow) ++followed;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
 #include "lodeline/features/image_quality.h"
 #include "lodeline/inspection/stream_survey.h"
@@ -31,8 +33,9 @@ struct CameraSurvey {
   std::vector<CameraTurn> turns;
   int unreadable = 0;
   std::string first_problem;
-  int identical = 0;                            ///< images with the same pixels as the one before
-  int compared = 0;                             ///< with the one before
+  int identical = 0;  ///< images with the same pixels as the one before, in stretches in which the rig turns
+  int compared = 0;   ///< with the one before, in such stretches
+  std::optional<Time> first_identical;
   int other_size = 0;                           ///< images of another size than the calibration's
   int other_width_px = 0, other_height_px = 0;  ///< the first such size
 };
@@ -41,10 +44,12 @@ struct CameraSurveyOptions {
   int most_turns = 160;         ///< images followed to the next, over all spans
   int most_samples = 60;        ///< images looked at besides, spread over the recording
   double least_step_s = 0.045;  ///< between images that are followed
+  /// From one followed pair of images to the next; 0 where each image is followed to the next.
+  double pair_interval_s = 0.0;
 };
 
-/// Stamps of a camera's images, which are not decoded.
-StreamSummary surveyStamps(MeasurementSource* source, size_t camera);
+/// Stamps of a camera's images, which are not decoded. Reports what their order tells, as OrderedStream does.
+StreamSummary surveyStamps(MeasurementSource* source, size_t camera, Diagnostics* diagnostics);
 
 /// Looks at the images within the spans closely, and at some of the others. `stream`: of the same camera,
 /// from surveyStamps(); the source must be a fresh one.

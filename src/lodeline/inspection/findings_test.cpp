@@ -34,7 +34,8 @@ bool isNamed(const Inspection& inspection, const std::string& kind) {
 Inspection judged(const std::vector<ImuSample>& samples) {
   Readings source(samples);
   Inspection inspection;
-  inspection.imu = surveyImu(&source);
+  Diagnostics diagnostics;
+  inspection.imu = surveyImu(&source, &diagnostics);
   findings::judgeImu(&inspection);
   return inspection;
 }

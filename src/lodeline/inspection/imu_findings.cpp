@@ -91,6 +91,26 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
                         describeSignedAxes(turning.best_axes)));
 }
 
+/// What the screen of a run would leave out or convert.
+void judgeScreening(const ImuSurvey& imu, Inspection* inspection) {
+  for (const Finding& finding : imu.screening.ranked()) {
+    const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : std::string();
+    add(inspection, finding.severity, 57.0, finding.kind, finding.first_message + times);
+  }
+}
+
+/// The calibration's noise densities against those of the readings.
+void judgeNoise(Inspection* inspection) {
+  std::vector<ImuSample> samples = inspection->imu.samples;
+  for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection->rate_to_SI;
+  inspection->shown_noise = whiteNoiseOf(samples);
+  Diagnostics judgement;
+  plausibleNoise(inspection->rig.imu.noise, inspection->shown_noise, &judgement);
+  for (const Finding& finding : judgement.ranked()) {
+    add(inspection, finding.severity, 56.0, finding.kind, finding.first_message);
+  }
+}
+
 /// Without a camera to compare with: gravity turns far more slowly than rates in deg/s, read as rad/s, say.
 void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
   if (inspection->rate_to_SI != 1.0 || !imu.turning || imu.turning->correlation < 0.4) return;
@@ -120,6 +140,8 @@ void judgeImu(Inspection* inspection) {
   judgeRateUnit(imu, inspection);
   judgeRest(imu, inspection);
   judgeTurningOfGravity(imu, inspection);
+  judgeScreening(imu, inspection);
+  judgeNoise(inspection);
 }
 
 }  // namespace lodeline::findings

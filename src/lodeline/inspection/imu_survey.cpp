@@ -5,6 +5,8 @@
 
 #include "lodeline/inspection/median.h"
 #include "lodeline/inspection/signed_axes.h"
+#include "lodeline/streams/inertial_screen.h"
+#include "lodeline/streams/ordered_stream.h"
 
 namespace lodeline {
 namespace {
@@ -161,32 +163,40 @@ std::optional<GravityTurning> compareWithGravity(const std::vector<Block>& block
 
 }  // namespace
 
-ImuSurvey surveyImu(MeasurementSource* source) {
+ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics) {
   ImuSurvey survey;
   StreamSurvey stream;
   std::vector<double> forces;
-  while (const std::optional<ImuSample> sample = source->nextImu()) {
-    stream.add(sample->time, !survey.samples.empty() && isSame(*sample, survey.samples.back()));
+  std::optional<ImuSample> before;
+  StreamExpectation expected{"imu", "imu0", source->rig().imu.rate_hz, 0.0, Duration()};
+  expected.spreads_bursts = true;
+  const auto pull = [&] {
+    std::optional<ImuSample> sample = source->nextImu();
+    if (!sample) return sample;
+    stream.add(sample->time, before && isSame(*sample, *before));
     forces.push_back(sample->specific_force_B.norm());
-    survey.samples.push_back(*sample);
-  }
+    before = sample;
+    return sample;
+  };
+  OrderedStream<ImuSample> ordered(expected, pull, diagnostics);
+  while (ordered.peek() != nullptr) survey.samples.push_back(ordered.pop());
   survey.stream = stream.summarize(kGapPeriods);
+  survey.stream.clock_jumps = diagnostics->count("imu_clock_jump");
   std::vector<ImuSample>& samples = survey.samples;
   if (samples.empty()) return survey;
+  std::erase_if(samples, [](const ImuSample& sample) {
+    return !sample.angular_velocity_B.allFinite() || !sample.specific_force_B.allFinite();
+  });
   survey.gyroscope = surveyTriad(samples, &ImuSample::angular_velocity_B);
   survey.accelerometer = surveyTriad(samples, &ImuSample::specific_force_B);
   survey.median_force = median(forces);
   survey.force_to_SI = forceToSI(survey.median_force);
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const ImuSample& a, const ImuSample& b) { return a.time < b.time; });
-  samples.erase(std::unique(samples.begin(), samples.end(),
-                            [](const ImuSample& a, const ImuSample& b) { return a.time == b.time; }),
-                samples.end());
+  for (ImuSample& sample : samples) sample.specific_force_B *= survey.force_to_SI;
+  InertialScreenOptions options;
+  options.knows_rate_unit = false;
+  samples = screened(samples, options, &survey.screening);
   Vec3 mean_force = Vec3::Zero();
-  for (ImuSample& sample : samples) {
-    sample.specific_force_B *= survey.force_to_SI;
-    mean_force += sample.specific_force_B;
-  }
+  for (const ImuSample& sample : samples) mean_force += sample.specific_force_B;
   survey.up_B = mean_force.normalized();
   const std::vector<Block> blocks = blocksOf(samples);
   surveyRest(blocks, &survey);

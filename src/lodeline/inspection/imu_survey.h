@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
 #include "lodeline/inspection/stream_survey.h"
 
@@ -31,8 +32,10 @@ struct TriadSurvey {
 /// What the inertial readings look like by themselves.
 struct ImuSurvey {
   StreamSummary stream;
-  /// In order of time, each stamp once; the accelerometer in m/s^2 whatever it was recorded in.
+  /// In order of time, each stamp once, without what cannot be true; the accelerometer in m/s^2 whatever it
+  /// was recorded in.
   std::vector<ImuSample> samples;
+  Diagnostics screening;                 ///< what could not be true
   TriadSurvey gyroscope, accelerometer;  ///< in the units of the recording
   double median_force = 0.0;         ///< size of the accelerometer's readings, in the unit of the recording
   double force_to_SI = 1.0;          ///< 9.8 where they are in g
@@ -43,6 +46,7 @@ struct ImuSurvey {
   std::optional<GravityTurning> turning;  ///< where the rig turned enough
 };
 
-ImuSurvey surveyImu(MeasurementSource* source);
+/// Reports what the order of the stamps tells, as OrderedStream does.
+ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -27,9 +27,20 @@ void surveyPlain(const std::string& sensor, const Next& next, const Value& value
   inspection->others.push_back(survey);
 }
 
+/// What the order of the stamps told that the other judges do not find.
+void takeOrderFindings(const Diagnostics& diagnostics, const std::string& sensor, Inspection* inspection) {
+  for (const Finding& finding : diagnostics.ranked()) {
+    if (!finding.kind.ends_with("_clock_jump") && !finding.kind.ends_with("_bursts")) continue;
+    const Severity severity = finding.kind.ends_with("_clock_jump") ? Severity::Serious : Severity::Warning;
+    inspection->findings.push_back({severity, 78.0, sensor, finding.kind, finding.first_message});
+  }
+}
+
 std::vector<StreamSummary> readStreams(MeasurementSource* source, Inspection* inspection) {
   inspection->rig = source->rig();
-  inspection->imu = surveyImu(source);
+  Diagnostics imu_order;
+  inspection->imu = surveyImu(source, &imu_order);
+  takeOrderFindings(imu_order, "imu0", inspection);
   if (inspection->rig.pressure) {
     surveyPlain(
         "pressure0", [&] { return source->nextDepth(); },
@@ -41,7 +52,11 @@ std::vector<StreamSummary> readStreams(MeasurementSource* source, Inspection* in
         [](const SonarSample& sample) { return sample.range_m; }, inspection);
   }
   std::vector<StreamSummary> images;
-  for (size_t i = 0; i < inspection->rig.cameras.size(); ++i) images.push_back(surveyStamps(source, i));
+  for (size_t i = 0; i < inspection->rig.cameras.size(); ++i) {
+    Diagnostics image_order;
+    images.push_back(surveyStamps(source, i, &image_order));
+    takeOrderFindings(image_order, inspection->rig.cameras[i].name, inspection);
+  }
   return images;
 }
 
@@ -66,8 +81,13 @@ void compareCameras(Inspection* inspection) {
   for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection->rate_to_SI;
   const GyroscopeIntegral gyroscope(samples);
   for (size_t i = 0; i < inspection->cameras.size(); ++i) {
-    inspection->cameras[i].turning = compareTurns(inspection->cameras[i].survey.turns, gyroscope,
-                                                  inspection->rig.cameras[i].body_from_camera.rotation);
+    CameraInspection& camera = inspection->cameras[i];
+    const Quat& body_from_camera = inspection->rig.cameras[i].body_from_camera.rotation;
+    const std::vector<CameraTurn>& turns = camera.survey.turns;
+    const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+    camera.turning = compareTurns(turns, gyroscope, body_from_camera);
+    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera);
+    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera);
   }
 }
 
@@ -76,13 +96,15 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
   if (images.empty()) return;
   Diagnostics reported_before;
   const std::unique_ptr<MeasurementSource> source = open(&reported_before);
-  const double total_s = options.images.most_turns *
-                         std::max(options.images.least_step_s,
-                                  images.front().rate_hz > 0.0 ? 1.0 / images.front().rate_hz : 0.05);
+  const double period_s = images.front().rate_hz > 0.0 ? 1.0 / images.front().rate_hz : 0.05;
+  const double total_s = options.images.most_turns * std::max({options.images.least_step_s, period_s,
+                                                               0.5 * options.images.pair_interval_s});
   const std::vector<SurveySpan> spans =
       liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
   for (size_t i = 0; i < images.size(); ++i) {
-    inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, options.images), {}});
+    CameraSurveyOptions looking = options.images;
+    if (i >= options.turning_cameras) looking.most_turns = 0;
+    inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, looking), {}, {}, {}});
   }
   if (images.size() > 1 && isCalibrated(inspection->rig.cameras[0]) &&
       isCalibrated(inspection->rig.cameras[1])) {

@@ -8,12 +8,16 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/data/measurement_source.h"
+#include "lodeline/inertial/imu_noise_check.h"
 #include "lodeline/inspection/camera_survey.h"
 #include "lodeline/inspection/imu_survey.h"
 #include "lodeline/inspection/magnetometer_survey.h"
 #include "lodeline/inspection/stereo_survey.h"
 
 namespace lodeline {
+
+/// Kind of the finding that the images' stamps are off the gyroscope's by a constant time.
+inline constexpr const char* kCameraTimeOffset = "camera_time_offset";
 
 /// One thing that is wrong with a recording, or worth knowing.
 struct InspectionFinding {
@@ -36,6 +40,7 @@ struct PlainSurvey {
 struct CameraInspection {
   CameraSurvey survey;
   std::optional<TurnComparison> turning;
+  std::optional<TurnComparison> turning_early, turning_late;  ///< of the first and second half of the turns
 };
 
 /// All that was found out about a recording.
@@ -43,6 +48,7 @@ struct Inspection {
   Rig rig;
   ImuSurvey imu;
   double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be told; pi/180 where it is in deg/s
+  WhiteNoise shown_noise;   ///< of the IMU, by its readings
   std::vector<CameraInspection> cameras;
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
@@ -56,7 +62,8 @@ struct Inspection {
 
 struct InspectionOptions {
   CameraSurveyOptions images;
-  double span_s = 4.0;  ///< of the stretches that are looked at closely
+  double span_s = 4.0;          ///< of the stretches that are looked at closely
+  size_t turning_cameras = 16;  ///< whose images are followed to tell how they turn; the first ones
   std::optional<Vec3> site_field_W;
 };
 

@@ -9,6 +9,7 @@
 #include "lodeline/base/test_data.h"
 #include "lodeline/data/euroc_source.h"
 #include "lodeline/inspection/inspection_report.h"
+#include "lodeline/inspection/start_check.h"
 
 // A sound real recording, and copies of it with one fault each.
 
@@ -125,6 +126,14 @@ class InspectionTest : public testing::Test {
         text += fmt::format("{}{}", i == 0 ? "" : ", ", pose.matrix()(i / 4, i % 4));
       lines->push_back(text + "]");
     });
+  }
+
+  StartCheck checkFirstSeconds(Diagnostics* diagnostics) const {
+    EurocOptions options;
+    options.camera_indices = {0};
+    return checkStart(
+        [&](Diagnostics* unheard) { return std::make_unique<EurocSource>(folder_, options, unheard); },
+        folder_.string(), StartCheckOptions(), diagnostics);
   }
 
   std::string inspected() const {
@@ -313,6 +322,56 @@ TEST_F(InspectionTest, NamesAWrongFocalLength) {
     }
   });
   expectNamed("the focal length is wrong");
+}
+
+TEST_F(InspectionTest, NamesAWildReading) {
+  editNumbers(csv("imu0"), [](size_t row, Numbers* n) {
+    if (row == 1000) (*n)[3] = 1e6;
+  });
+  expectNamed("beyond what any inertial sensor can measure");
+}
+
+TEST_F(InspectionTest, NamesNoiseDensitiesOfNearlyZero) {
+  edit(path("imu0") / "sensor.yaml", [](Lines* lines) {
+    for (std::string& line : *lines) {
+      if (line.starts_with("gyroscope_noise_density")) line = "gyroscope_noise_density: 1.7e-10";
+      if (line.starts_with("accelerometer_noise_density")) line = "accelerometer_noise_density: 2.0e-4";
+    }
+  });
+  const std::string text = inspected();
+  EXPECT_THAT(text, HasSubstr("no gyroscope has a noise density of 1.7e-10"));
+}
+
+TEST_F(InspectionTest, StartCheckFindsNothingInTheSoundRecording) {
+  Diagnostics diagnostics;
+  const StartCheck check = checkFirstSeconds(&diagnostics);
+  EXPECT_TRUE(diagnostics.ranked().empty()) << diagnostics.ranked().front().first_message;
+  EXPECT_EQ(check.rate_to_SI, 1.0);
+  EXPECT_NEAR(check.noise.gyroscope_rad_per_s_sqrtHz, 1.0e-4, 0.3e-4);
+  EXPECT_NEAR(check.noise.accelerometer_m_per_s2_sqrtHz, 1.5e-3, 0.5e-3);
+}
+
+TEST_F(InspectionTest, StartCheckFindsAnImuInOtherAxesThanTheCameras) {
+  editNumbers(csv("imu0"),
+              [](size_t, Numbers* n) { *n = {(*n)[1], -(*n)[0], (*n)[2], (*n)[4], -(*n)[3], (*n)[5]}; });
+  Diagnostics diagnostics;
+  checkFirstSeconds(&diagnostics);
+  EXPECT_EQ(diagnostics.count("extrinsics_rotation"), 1);
+  ASSERT_EQ(diagnostics.count(kSensorsContradict), 1);
+  std::string messages;
+  for (const Finding& finding : diagnostics.ranked()) messages += finding.first_message + "\n";
+  EXPECT_THAT(messages,
+              AllOf(HasSubstr("images and gyroscope contradict each other"), HasSubstr("lodeline inspect")));
+}
+
+TEST_F(InspectionTest, StartCheckFindsAGyroscopeInDegrees) {
+  editNumbers(csv("imu0"), [](size_t, Numbers* n) {
+    for (size_t i = 0; i < 3; ++i) (*n)[i] *= 180.0 / M_PI;
+  });
+  Diagnostics diagnostics;
+  EXPECT_NEAR(checkFirstSeconds(&diagnostics).rate_to_SI, M_PI / 180.0, 1e-9);
+  EXPECT_EQ(diagnostics.count("gyroscope_unit"), 1);
+  EXPECT_EQ(diagnostics.count(kSensorsContradict), 0);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kGapPeriods = 4.0;
+constexpr double kMagnetometerGapPeriods = 4.0;
 /// Stretches over which the gyroscope alone carries the attitude; its bias turns by little in them.
 constexpr double kWindow_s = 8.0;
 /// Rows a window, so that long recordings take no longer than they need to.
@@ -194,7 +194,7 @@ MagnetometerSurvey surveyMagnetometer(MeasurementSource* source, const std::vect
     stream.add(sample->time, !readings.empty() && sample->field_M == readings.back().field_M);
     readings.push_back(*sample);
   }
-  survey.stream = stream.summarize(kGapPeriods);
+  survey.stream = stream.summarize(kMagnetometerGapPeriods);
   if (readings.empty()) return survey;
   std::vector<double> sizes;
   double squares = 0.0;

@@ -12,8 +12,8 @@
 namespace lodeline {
 namespace {
 
-/// Images taken within this are taken together, s.
-constexpr double kTogether_s = 5e-3;
+/// Images taken within this are taken together, s: what a rig moves meanwhile is little in these terms.
+constexpr double kTogether_s = 25e-3;
 constexpr int64_t kMostImages = 16;
 /// Off the epipolar line by more than calibrations of the field are, port and all; rad.
 constexpr double kOffLine_rad = 0.02;
@@ -81,7 +81,9 @@ cv::Mat grey(const PendingImage& image, const CameraCalibration& calibration) {
   return pixels.cols == calibration.width_px && pixels.rows == calibration.height_px ? pixels : cv::Mat();
 }
 
-std::vector<PointPair> matchImages(const cv::Mat& first, const cv::Mat& second, const cv::Mat& mask) {
+}  // namespace
+
+std::vector<PointPair> matchStereo(const cv::Mat& first, const cv::Mat& second, const cv::Mat& mask) {
   constexpr int kLevels = 4;
   const CornerDetector detector{CornerDetectorOptions()};
   std::vector<cv::Point2f> corners;
@@ -90,8 +92,6 @@ std::vector<PointPair> matchImages(const cv::Mat& first, const cv::Mat& second, 
   }
   return followPoints(first, second, corners);
 }
-
-}  // namespace
 
 StereoSurvey compareStereo(const CameraCalibration& first, const CameraCalibration& second,
                            const std::vector<PointPair>& points) {
@@ -139,7 +139,7 @@ std::optional<StereoSurvey> surveyStereo(MeasurementSource* source, const Stream
     const cv::Mat right = grey(*other, second);
     if (left.empty() || right.empty()) continue;
     ++images;
-    const std::vector<PointPair> found = matchImages(left, right, mask);
+    const std::vector<PointPair> found = matchStereo(left, right, mask);
     points.insert(points.end(), found.begin(), found.end());
   }
   if (images == 0) return std::nullopt;

@@ -33,6 +33,9 @@ struct StereoSurvey {
   double turn_rad = 0.0;
 };
 
+/// Corners of the first image outside of `mask`, found in the second one.
+std::vector<PointPair> matchStereo(const cv::Mat& first, const cv::Mat& second, const cv::Mat& mask);
+
 /// Looks at the first two cameras of the rig, which must be calibrated. `stream`: of the first; the source
 /// must be a fresh one. Nothing where the cameras' images are not taken together.
 std::optional<StereoSurvey> surveyStereo(MeasurementSource* source, const StreamSummary& stream);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include "lodeline/base/time_steps.h"
 #include "lodeline/inspection/findings.h"
+#include "lodeline/streams/time_span.h"
 
 namespace lodeline::findings {
 namespace {
@@ -45,12 +47,13 @@ class StreamJudge {
               "dropped; look for a driver or merge that writes readings twice",
               stream_.duplicates, stream_.readings, 100.0 * share(stream_.duplicates)));
     }
-    if (stream_.backwards > 0) {
-      add(severity(stream_.backwards), 62.0 + 10.0 * share(stream_.backwards), "stamps_out_of_order",
-          fmt::format(
-              "stamps out of order: time goes backwards {} times in {} readings ({:.2g} %), which are "
-              "dropped; sort the readings by their stamps",
-              stream_.backwards, stream_.readings, 100.0 * share(stream_.backwards)));
+    // Where a clock was set back, the readings are in order.
+    const int64_t backwards = stream_.backwards - stream_.clock_jumps;
+    if (backwards > 0) {
+      add(severity(backwards), 62.0 + 10.0 * share(backwards), "stamps_out_of_order",
+          fmt::format("stamps out of order: time goes backwards {} times in {} readings ({:.2g} %), late "
+                      "ones are dropped; sort the readings by their stamps",
+                      backwards, stream_.readings, 100.0 * share(backwards)));
     }
   }
 
@@ -88,6 +91,26 @@ class StreamJudge {
   Inspection* inspection_;
 };
 
+/// Two sensors whose readings lie at other times altogether say nothing together, however good each is.
+class OverlapJudge {
+ public:
+  explicit OverlapJudge(Inspection* inspection) : inspection_(inspection) {}
+
+  void judge(const std::string& sensor, const StreamSummary& stream, double time_offset_to_imu_s,
+             const char* offset) const {
+    const StreamSummary& imu = inspection_->imu.stream;
+    if (!imu.first || !imu.last || !stream.first || !stream.last) return;
+    const Duration to_imu = Duration::fromSeconds(time_offset_to_imu_s);
+    const std::optional<std::string> words =
+        apart(sensor, {moved(*stream.first, to_imu), moved(*stream.last, to_imu)}, "imu0",
+              {*imu.first, *imu.last}, offset);
+    if (words) inspection_->findings.push_back({Severity::Serious, 100.0, "recording", kClocksApart, *words});
+  }
+
+ private:
+  Inspection* inspection_;
+};
+
 /// Not all tools need all sensors; what cannot be done with this recording is said.
 void judgeAbsence(Inspection* inspection) {
   if (inspection->imu.stream.readings == 0) {
@@ -107,6 +130,18 @@ void judgeAbsence(Inspection* inspection) {
 
 void judgeStreams(Inspection* inspection) {
   judgeAbsence(inspection);
+  const OverlapJudge overlap(inspection);
+  for (size_t i = 0; i < inspection->cameras.size(); ++i) {
+    const CameraSurvey& camera = inspection->cameras[i].survey;
+    overlap.judge(camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s,
+                  "timeshift_cam_imu (to be added to the images' stamps)");
+  }
+  if (inspection->magnetometer)
+    overlap.judge("mag0", inspection->magnetometer->stream,
+                  inspection->rig.magnetometer->time_offset_to_imu_s,
+                  "time_offset_to_imu_s of its calibration");
+  for (const PlainSurvey& other : inspection->others)
+    overlap.judge(other.sensor, other.stream, 0.0, "its clock");
   if (inspection->imu.stream.readings > 0) {
     StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "lodeline/inspection/median.h"
+#include "lodeline/streams/stamp_bursts.h"
+#include "lodeline/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -11,7 +13,21 @@ namespace {
 /// A sensor that repeats itself for longer than this does not measure.
 constexpr double kFrozen_s = 1.0;
 
+/// The usual silence between bursts.
+double stepBetweenBursts_s(const std::vector<double>& steps_s, double period_s) {
+  std::vector<double> between_s;
+  for (const double step_s : steps_s) {
+    if (step_s > 1.5 * period_s) between_s.push_back(step_s);
+  }
+  return between_s.empty() ? 0.0 : median(between_s);
+}
+
 }  // namespace
+
+std::vector<Time> StreamSurvey::firstStamps() const {
+  const size_t count = std::min(stamps_.size(), kStampsForRate);
+  return {stamps_.begin(), stamps_.begin() + static_cast<std::ptrdiff_t>(count)};
+}
 
 void StreamSurvey::add(Time time, bool repeats) {
   if (!stamps_.empty()) {
@@ -52,14 +68,17 @@ StreamSummary StreamSurvey::summarize(double gap_periods) const {
     if (stamps[i] > stamps[i - 1]) steps_s.push_back((stamps[i] - stamps[i - 1]).seconds());
   }
   if (steps_s.size() < 2) return summary;
-  const double step_s = median(steps_s);
+  const std::optional<Duration> burst_period = burstPeriod(closed.firstStamps());
+  const double step_s = burst_period ? burst_period->seconds() : median(steps_s);
   summary.rate_hz = 1.0 / step_s;
   std::vector<double> deviations_s;
   for (const double s : steps_s) deviations_s.push_back(std::abs(s - step_s));
   summary.jitter_s = median(deviations_s);
+  double longest_step_s = gap_periods * step_s;
+  if (burst_period) longest_step_s = std::max(longest_step_s, 2.0 * stepBetweenBursts_s(steps_s, step_s));
   for (size_t i = 1; i < stamps.size(); ++i) {
     const double length_s = (stamps[i] - stamps[i - 1]).seconds();
-    if (length_s <= gap_periods * step_s) continue;
+    if (length_s <= longest_step_s) continue;
     summary.gaps.push_back({stamps[i - 1], length_s});
     summary.gap_s += length_s;
   }

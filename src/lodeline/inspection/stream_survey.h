@@ -18,11 +18,13 @@ struct StreamGap {
 /// What the stamps of one sensor look like.
 struct StreamSummary {
   int64_t readings = 0;
-  double rate_hz = 0.0;           ///< the inverse of the median step; 0 with fewer than three readings
+  double rate_hz =
+      0.0;  ///< the inverse of the median step, in bursts of the mean one; 0 with fewer than three readings
   double duration_s = 0.0;        ///< from the first to the last
   double jitter_s = 0.0;          ///< median deviation of the steps from the median step
   int64_t duplicates = 0;         ///< stamps equal to the one before
   int64_t backwards = 0;          ///< stamps before an earlier one
+  int64_t clock_jumps = 0;        ///< of these, where the clock was set back
   int64_t repeated = 0;           ///< readings equal to the one before, figure by figure
   double longest_frozen_s = 0.0;  ///< of nothing but repetition
   double frozen_share = 0.0;      ///< of the duration, in repetitions of a second or longer
@@ -41,6 +43,7 @@ class StreamSurvey {
 
  private:
   void closeFrozen();
+  std::vector<Time> firstStamps() const;
 
   std::vector<Time> stamps_;
   StreamSummary counts_;

@@ -1,6 +1,7 @@
 #include "lodeline/inspection/turn_comparison.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/geometry/so3.h"
@@ -243,8 +244,11 @@ class Comparison {
 std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
                                            const GyroscopeIntegral& gyroscope, const Quat& body_from_camera) {
   if (static_cast<int>(turns.size()) < kLeastTurns) return std::nullopt;
-  double time_s = 0.0;
-  for (const CameraTurn& turn : turns) time_s += (turn.end - turn.begin).seconds();
+  constexpr double kLongestPause_s = 0.3;
+  double time_s = (turns.back().end - turns.back().begin).seconds();
+  for (size_t i = 1; i < turns.size(); ++i) {
+    time_s += std::clamp((turns[i].begin - turns[i - 1].begin).seconds(), 0.0, kLongestPause_s);
+  }
   if (time_s < kLeastTime_s) return std::nullopt;
   return Comparison(turns, gyroscope, body_from_camera).run();
 }

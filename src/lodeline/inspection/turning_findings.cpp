@@ -23,6 +23,7 @@ class TurningJudge {
  public:
   TurningJudge(const CameraInspection& camera, const CameraCalibration& calibration, Inspection* inspection)
       : name_(camera.survey.name),
+        camera_(camera),
         calibration_(calibration),
         turning_(*camera.turning),
         inspection_(inspection) {}
@@ -70,11 +71,34 @@ class TurningJudge {
     return false;
   }
 
+  /// A clock that jumped between the two halves of the turns: one offset would be wrong for one of them.
+  bool judgeChangingOffset() {
+    const std::optional<TurnComparison>& early = camera_.turning_early;
+    const std::optional<TurnComparison>& late = camera_.turning_late;
+    if (!early || !late || early->correlation < kJudgeable || late->correlation < kJudgeable) return false;
+    const double change_s = late->time_offset_s - early->time_offset_s;
+    const double sigma_s = std::hypot(early->time_offset_sigma_s, late->time_offset_sigma_s);
+    if (std::abs(change_s) < kHarmfulOffset_s || std::abs(change_s) < kSignificant_sigmas * sigma_s)
+      return false;
+    const std::vector<CameraTurn>& turns = camera_.survey.turns;
+    const size_t middle = turns.size() / 2;
+    add(Severity::Serious, 84.0, "camera_clock_jump",
+        fmt::format("a clock jumps: the images' stamps are off the gyroscope's by {:.0f} ms until {} ns and "
+                    "by {:.0f} ms "
+                    "from {} ns on (+-{:.1f}). No single timeshift_cam_imu is right: fix the clock, or cut "
+                    "the recording "
+                    "where it jumps",
+                    -1e3 * early->time_offset_s, turns[middle - 1].end.nanoseconds(),
+                    -1e3 * late->time_offset_s, turns[middle].begin.nanoseconds(), 1e3 * sigma_s));
+    return true;
+  }
+
   void judgeOffset() {
+    if (judgeChangingOffset()) return;
     const double offset_s = turning_.time_offset_s;
     const double sigma_s = turning_.time_offset_sigma_s;
     if (std::abs(offset_s) < kHarmfulOffset_s || std::abs(offset_s) < kSignificant_sigmas * sigma_s) return;
-    add(Severity::Serious, 83.0, "camera_time_offset",
+    add(Severity::Serious, 83.0, kCameraTimeOffset,
         fmt::format("time offset: the images' stamps {} the gyroscope's by {:.0f} ms (+-{:.1f}); set "
                     "timeshift_cam_imu to "
                     "{:.4f} s or fix the clock",
@@ -137,6 +161,7 @@ class TurningJudge {
   }
 
   std::string name_;
+  const CameraInspection& camera_;
   const CameraCalibration& calibration_;
   const TurnComparison& turning_;
   Inspection* inspection_;

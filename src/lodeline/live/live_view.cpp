@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "lodeline/base/json_text.h"
 #include "lodeline/page/base64.h"
 #include "lodeline/page/report_page.h"
 #include "lodeline/page/table_json.h"
@@ -67,11 +68,14 @@ std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, 
                  {"real_time_factor", shortNumber(summary.realTimeFactor())},
                  {"heading_reference", toString(estimate.magnetometer.heading_reference)},
                  {"waiting_for", estimate.waiting_for}};
+  const std::optional<double>& north_rad = estimate.magnetometer.north_from_world_rad;
+  json["run"]["north_from_world_rad"] =
+      north_rad ? nlohmann::ordered_json(*north_rad) : nlohmann::ordered_json();
   if (!landmarks_W.empty()) {
     const auto* bytes = reinterpret_cast<const uint8_t*>(landmarks_W.data());
     json["landmarks"] = base64({bytes, landmarks_W.size() * sizeof(Eigen::Vector3f)});
   }
-  return json.dump();
+  return jsonText(json, -1);
 }
 
 LiveView::LiveView(const std::string& address, int port, const std::string& name, const std::string& data,
@@ -102,7 +106,7 @@ void LiveView::show(const FramePacket& packet, const FrameEstimate& estimate, co
   const std::vector<uint8_t> jpeg = trackPicture(packet, front_end, kPictureWidth_px);
   if (jpeg.empty()) return;
   const nlohmann::ordered_json json = {{"t_s", shortNumber(t_s)}, {"jpeg", base64(jpeg)}};
-  server_.send("picture", json.dump());
+  server_.send("picture", jsonText(json, -1));
   const Clock::time_point done = Clock::now();
   next_picture_ = done + std::max<Clock::duration>(kPicturePause, kPauseToWork * (done - now));
 }

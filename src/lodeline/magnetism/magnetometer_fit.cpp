@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "lodeline/base/choice.h"
 #include "lodeline/base/error.h"
 
 namespace lodeline {
@@ -27,7 +28,7 @@ const char* toString(IronModel model) {
 
 IronModel ironModelFromString(const std::string& name, const std::string& where) {
   for (const auto& [value, known] : kNames) {
-    if (name == known) return value;
+    if (equalIgnoringCase(name, known)) return value;
   }
   throw InputError(fmt::format("{} is '{}'; it must be full, diagonal, scale, offset or kept", where, name));
 }

@@ -36,6 +36,14 @@ TEST_F(Browser, ShowsARunAndAnswersClicks) {
   EXPECT_TRUE(passesInBrowser("one_run.mjs", pageOf({folder_.path() / "dive"}, reference)));
 }
 
+TEST_F(Browser, PrintsWholeAndIsReadableOnAPhone) {
+  test::TestRun run;
+  test::writeTestRun(folder_.path() / "dive", run);
+  test::writeTestReference(folder_.path() / "truth.tum", run);
+  const ReportReference reference = {folder_.path() / "truth.tum", AlignmentType::SE3};
+  EXPECT_TRUE(passesInBrowser("print_and_phone.mjs", pageOf({folder_.path() / "dive"}, reference)));
+}
+
 TEST_F(Browser, ComparesTwoRuns) {
   test::writeTestRun(folder_.path() / "first");
   test::TestRun shorter;

@@ -1,6 +1,7 @@
 #include "lodeline/page/report_page.h"
 
 #include "lodeline/base/error.h"
+#include "lodeline/base/json_text.h"
 #include "lodeline/page/page_template.h"
 #include "lodeline/page/run_page.h"
 
@@ -12,7 +13,7 @@ constexpr std::string_view kPlaceholder = "LODELINE_DATA";
 /// JSON that cannot end the script element it stands in.
 std::string forScript(const nlohmann::ordered_json& data) {
   // Paths and messages may hold bytes that are no UTF-8.
-  const std::string json = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string json = jsonText(data, -1);
   std::string text;
   text.reserve(json.size());
   for (const char c : json) {

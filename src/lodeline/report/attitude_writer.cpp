@@ -7,6 +7,7 @@
 
 #include "lodeline/base/angles.h"
 #include "lodeline/base/output_file.h"
+#include "lodeline/base/time_steps.h"
 
 namespace lodeline {
 namespace {}  // namespace
@@ -31,8 +32,8 @@ void AttitudeWriter::write(const AttitudeEstimate& estimate) {
   fmt::print(csv_, "{},{},{:.9f},{:.9f},{:.9f},{:.9f},{:.4f},{:.4f},{:.9g},{:.9g},{:.9g},{}\n", ns,
              toString(estimate.status), q.w(), q.x(), q.y(), q.z(), azimuth_deg(q),
              kDegreesPerRadian * estimate.heading_sigma_rad, b.x(), b.y(), b.z(), estimate.at_rest ? 1 : 0);
-  fmt::print(tum_, "{}.{:09} 0 0 0 {:.9f} {:.9f} {:.9f} {:.9f}\n", ns / 1000000000, ns % 1000000000, q.x(),
-             q.y(), q.z(), q.w());
+  fmt::print(tum_, "{} 0 0 0 {:.9f} {:.9f} {:.9f} {:.9f}\n", secondsText(estimate.time), q.x(), q.y(), q.z(),
+             q.w());
   if (!first_) first_ = estimate.time;
   last_ = estimate;
   ++count_;

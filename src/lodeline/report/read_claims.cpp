@@ -72,8 +72,11 @@ HeadingBasis readBasis(const fs::path& file) {
 
 RunClaims readClaims(const fs::path& run_folder, Diagnostics* diagnostics) {
   RunClaims claims;
-  if (!fs::exists(run_folder / "states.csv")) return claims;
-  claims.poses = readPoses(run_folder / "states.csv", diagnostics);
+  // Of the trajectory that counts: the refined one where there is one.
+  const bool is_refined = fs::exists(run_folder / "trajectory_refined.tum");
+  const fs::path states = run_folder / (is_refined ? "states_refined.csv" : "states.csv");
+  if (!fs::exists(states)) return claims;
+  claims.poses = readPoses(states, diagnostics);
   claims.basis = readBasis(run_folder / "run.json");
   return claims;
 }

@@ -235,7 +235,7 @@ TEST_F(RunFolder, FullDiskIsNoticedWhenFilesAreClosed) {
   std::filesystem::create_symlink("/dev/full", folder_ / "landmarks.ply");
   LandmarkWriter writer(folder_);
   writer.write({{7, Vec3(1, 2, 3), 4}});
-  EXPECT_THROW(writer.finish(), InputError);
+  EXPECT_THROW(writer.finish(HeadingReference::Start, std::nullopt), InputError);
   EXPECT_THROW(writeOutput("/dev/full", "text"), InputError);
 }
 

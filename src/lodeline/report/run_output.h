@@ -24,19 +24,22 @@ class RunOutput {
   /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
   RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options);
 
-  /// To be called after each packet with what became of it. Gives the landmarks that left the window and were
-  /// written. Throws InputError where writing fails.
-  std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate& estimate,
+  /// To be called after each packet with what became of it; `estimate` is null where it has no stamp of its
+  /// own. Gives the landmarks that left the window and were written. Throws InputError where writing fails.
+  std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate* estimate,
                               const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
 
-  /// Adds the landmarks that are still in the window and completes the files; gives the number of landmarks.
-  int64_t finish(const Odometry& odometry);
+  /// Adds the landmarks that are still in the window, completes the files and turns them to north where that
+  /// was found only after the first pose (WorldTurn); `last`: as after the last frame. Gives the number of
+  /// landmarks. The states' files are closed by it.
+  int64_t finish(const Odometry& odometry, const MagnetometerEstimate& last);
 
   /// Processor time that pictures have taken so far.
   double picturesSeconds() const { return pictures_s_; }
 
  private:
-  StateWriter states_;
+  std::filesystem::path folder_;
+  std::optional<StateWriter> states_;
   LandmarkWriter landmarks_;
   TimingWriter timings_;
   std::optional<MagnetometerWriter> magnetometer_;

@@ -6,10 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lodeline/base/json_text.h"
 #include "lodeline/report/findings.h"
+#include "lodeline/report/world_turn.h"
 
 namespace lodeline {
 namespace {
+
+/// Points that an image follows where there is something to see.
+constexpr int kManyTracks = 30;
 
 nlohmann::ordered_json rigJson(const RunDescription& run) {
   const Vec3& axis = run.camera_axis_B;
@@ -22,6 +27,7 @@ nlohmann::ordered_json rigJson(const RunDescription& run) {
     json["magnetometer"]["is_calibrated"] = run.magnetometer->is_calibrated;
     if (run.magnetometer->field_strength_T)
       json["magnetometer"]["field_strength_T"] = *run.magnetometer->field_strength_T;
+    if (run.site_field_W) json["magnetometer"]["site_field_strength_T"] = run.site_field_W->norm();
   }
   return json;
 }
@@ -166,8 +172,11 @@ void RunSummary::add(const FrameEstimate& estimate) {
   if (!first_time_) first_time_ = estimate.time;
   last_ = estimate;
   if (estimate.status == Status::Waiting) return;
+  if (posed_ == 0) first_pose_time_ = estimate.time;
   ++posed_;
   inertial_ += estimate.status == Status::Inertial;
+  degraded_ += estimate.status == Status::Degraded;
+  disagreeing_ += estimate.status == Status::Inertial && estimate.tracks >= kManyTracks;
   keyframes_ += estimate.is_keyframe;
   if (estimate.magnetometer.status != MagnetometerStatus::Off)
     ++magnetometer_frames_[estimate.magnetometer.status];
@@ -187,6 +196,14 @@ void RunSummary::add(const FrameEstimate& estimate) {
   }
 }
 
+std::string RunSummary::distrust() const {
+  const int contradicted = degraded_ + disagreeing_;
+  const bool at_the_end = last_.status == Status::Degraded;
+  if (!at_the_end && 2 * contradicted <= posed_) return {};
+  return fmt::format("images and inertial readings contradict each other in {} of {} frames{}", contradicted,
+                     posed_, at_the_end ? ", the last among them" : "");
+}
+
 double RunSummary::recordingSeconds() const {
   return first_time_ ? (last_.time - *first_time_).seconds() : 0.0;
 }
@@ -199,10 +216,19 @@ double RunSummary::coreMillisecondsPerFrame(double seconds) const {
   return frames_ ? 1e3 * seconds / frames_ : 0.0;
 }
 
+double RunSummary::northFoundAfter_s() const {
+  return (*last_.magnetometer.north_found - first_pose_time_).seconds();
+}
+
 std::string RunSummary::headingText() const {
   const MagnetometerEstimate& last = last_.magnetometer;
-  return fmt::format("against {}, {:.2f} deg (one sigma, at the end)", toString(last.heading_reference),
-                     last.heading_sigma_rad * 180.0 / M_PI);
+  const std::string text =
+      fmt::format("against {}, {:.2f} deg (one sigma, at the end)", toString(last.heading_reference),
+                  last.heading_sigma_rad * 180.0 / M_PI);
+  const std::optional<WorldTurn> turn = WorldTurn::of(last);
+  if (!turn) return text;
+  return text + fmt::format("; found {:.1f} s after the first pose, all files turned by {:.1f} deg to it",
+                            northFoundAfter_s(), turn->angle_rad * 180.0 / M_PI);
 }
 
 std::string RunSummary::magnetometerText() const {
@@ -237,8 +263,10 @@ std::string RunSummary::text(const Diagnostics& diagnostics) const {
   const auto line = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<20} {}\n", name, value);
   };
-  line("completion", fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone)",
-                                 100.0 * completion(), posed_, frames_, inertial_));
+  if (const std::string reason = distrust(); !reason.empty()) line("do not trust", reason);
+  line("completion",
+       fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone{})", 100.0 * completion(),
+                   posed_, recorded(), inertial_, degraded_ > 0 ? fmt::format(", {} degraded", degraded_) : ""));
   line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
                            keyframes_, map_points));
   line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
@@ -277,8 +305,11 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   nlohmann::ordered_json json = toJson(description_);
   json["interrupted"] = interrupted;
   json["frames"] = frames_;
+  json["images_recorded"] = recorded();
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
+  json["frames_degraded"] = degraded_;
+  if (const std::string reason = distrust(); !reason.empty()) json["do_not_trust"] = reason;
   if (posed_ == 0) json["waiting_for"] = last_.waiting_for;
   json["images"] = images;
   json["keyframes"] = keyframes_;
@@ -304,12 +335,17 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   const MagnetometerEstimate& magnetometer = last_.magnetometer;
   json["heading"] = {{"reference", toString(magnetometer.heading_reference)},
                      {"sigma_rad", magnetometer.heading_sigma_rad}};
+  const std::optional<WorldTurn> turn = WorldTurn::of(magnetometer);
+  if (turn) {
+    json["heading"]["north_found_after_s"] = northFoundAfter_s();
+    json["heading"]["world_turned_rad"] = turn->angle_rad;
+  }
   if (hasMagnetometer()) {
     for (const auto& [status, frames] : magnetometer_frames_)
       json["magnetometer"]["frames"][toString(status)] = frames;
   }
   if (magnetometer.field_W) {
-    const Vec3& field = *magnetometer.field_W;
+    const Vec3 field = turn ? turn->apply(*magnetometer.field_W) : *magnetometer.field_W;
     const Vec3& offset = *magnetometer.offset_B;
     json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
     json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};
@@ -320,7 +356,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   if (refinement) json["refinement"] = toJson(*refinement);
   json["findings"] = findingsJson(diagnostics);
-  return json.dump(2) + "\n";
+  return jsonText(json) + "\n";
 }
 
 }  // namespace lodeline

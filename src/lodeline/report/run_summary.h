@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@ struct RunDescription {
   double imu_rate_hz = 0.0;
   Vec3 camera_axis_B = Vec3::UnitX();  ///< where the reference camera looks
   std::vector<std::string> other_sensors;
+  std::optional<Vec3> site_field_W;  ///< of the Earth, T, where the run was told its site
   std::optional<MagnetometerCalibration> magnetometer;
   double observation_sigma_px = 0.0;
 };
@@ -47,13 +49,21 @@ class RunSummary {
   double wall_s = 0.0;
   double peak_memory_MB = 0.0;  ///< of the whole process
   int64_t images = 0;           ///< that could be read
+  int64_t recorded_images = 0;  ///< of the first camera, also those that could not be used
   int64_t map_points = 0;
   bool interrupted = false;                     ///< ended by the user before the recording did
   std::optional<RefinementSummary> refinement;  ///< of a run that was refined
 
   double recordingSeconds() const;
-  /// Share of the frames that got a pose.
-  double completion() const { return frames_ ? static_cast<double>(posed_) / frames_ : 0.0; }
+  /// Images of the first camera that were recorded; those that could not be used are no frames.
+  int64_t recorded() const { return std::max<int64_t>(recorded_images, frames_); }
+  /// Share of the recorded images that got a pose.
+  double completion() const {
+    return recorded() > 0 ? static_cast<double>(posed_) / static_cast<double>(recorded()) : 0.0;
+  }
+  /// Why the result is not to be trusted: images and inertial readings contradicted each other in most frames
+  /// or at the end. Empty otherwise.
+  std::string distrust() const;
   double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
   double pathLength_m() const { return path_m_; }
   double meanTracks() const;
@@ -68,6 +78,7 @@ class RunSummary {
  private:
   double coreMillisecondsPerFrame(double seconds) const;
   bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
+  double northFoundAfter_s() const;
   std::string headingText() const;
   std::string magnetometerText() const;
   std::string depthText() const;
@@ -79,10 +90,13 @@ class RunSummary {
   RunDescription description_;
   FrameEstimate last_;
   std::optional<Time> first_time_;
+  Time first_pose_time_;
   std::optional<Vec3> last_position_W_;
   int frames_ = 0;
   int posed_ = 0;
   int inertial_ = 0;
+  int degraded_ = 0;
+  int disagreeing_ = 0;  ///< inertial although images had much to follow
   int keyframes_ = 0;
   double path_m_ = 0.0;
   double tracks_ = 0.0;

@@ -10,6 +10,9 @@ struct ImuSample {
   Time time;
   Vec3 angular_velocity_B = Vec3::Zero();  ///< rad/s, biased
   Vec3 specific_force_B = Vec3::Zero();    ///< m/s^2, biased; +9.8 along up at rest
+  /// Time between the true readings around the step that ends here, s; 0 where the step says it itself. An
+  /// interpolated sample within a gap keeps the length of the whole gap, in which the motion is unknown.
+  double gap_s = 0.0;
 };
 
 /// One magnetometer reading in the magnetometer frame M, as the sensor gave it.

@@ -266,6 +266,7 @@ bool TableReader::next() {
     }
     split(text, separator_, &cells_);
     if (hasHeader() && !areValues(cells_)) refuseOtherHeader();
+    if (options_.rows_may_be_short && cells_.size() < column_count_) cells_.resize(column_count_);
     if (fits() && !line_.was_too_long) {
       ++fitting_rows_;
       return true;

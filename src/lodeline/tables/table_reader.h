@@ -31,6 +31,8 @@ struct TableOptions {
   /// Whether a row with another number of cells is an error, rather than passed over. A last row that was cut
   /// off never is.
   bool refuses_misfits = false;
+  /// Rows may end early; the cells that are not there are empty.
+  bool rows_may_be_short = false;
 };
 
 /// Reads a table of text row by row, whatever wrote it: UTF-8, UTF-16 or Latin-1, plain or compressed with

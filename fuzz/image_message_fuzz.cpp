@@ -1,0 +1,18 @@
+#include "fuzzed_file.h"
+#include "lodeline/bags/image_messages.h"
+#include "lodeline/data/image_loader.h"
+
+// Messages with images; the first byte says of which kind.
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace lodeline;
+  if (size == 0) return 0;
+  const std::span<const uint8_t> message(data + 1, size - 1);
+  if (data[0] & 1) {
+    const StoredImage image = messages::imagePixels(message, "fuzz");
+    if (!image.pixels.empty()) greyFrom(image.pixels);
+  } else {
+    messages::compressedImageFile(message, "fuzz");
+  }
+  return 0;
+}

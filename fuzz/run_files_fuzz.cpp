@@ -1,0 +1,14 @@
+#include "fuzzed_file.h"
+#include "lodeline/export/landmark_file.h"
+#include "lodeline/report/run_table.h"
+
+// Files of a run's folder, which may be cut off or damaged: states.csv and landmarks.ply.
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace lodeline;
+  const fuzz::FuzzedFile file(data, size, ".csv");
+  Diagnostics diagnostics;
+  fuzz::expectDocumentedErrors([&] { readRunTable(file.path(), &diagnostics); });
+  fuzz::expectDocumentedErrors([&] { readLandmarkFile(file.path(), &diagnostics); });
+  return 0;
+}

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/features/tracks.h"
+#include "lodeline/inspection/turn_comparison.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// Watches in a run whether the clocks of images and IMU keep together: the rotation of the first camera
+/// between images, from the tracked points alone, is compared with the gyroscope's over the last few seconds,
+/// as inspect() does for parts of a recording. A time offset that is far beyond what a calibration leaves, in
+/// two comparisons on end, is reported as `camera_time_offset`, and each later change of it as
+/// `camera_clock_jump`. Says nothing while the rig hardly turns. Costs less than a hundredth of a frame's
+/// time.
+class ClockMonitor {
+ public:
+  explicit ClockMonitor(const Rig& rig);
+
+  /// `imu`: the readings that lead to the frame, as in FramePacket. Frames must come in order of time.
+  /// Returns what is to be added to the stamps of the images, in s, when an offset or a change of it has just
+  /// been reported.
+  std::optional<double> add(const FrameTracks& tracks, std::span<const ImuSample> imu,
+                            Diagnostics* diagnostics);
+
+  /// To be called when the stamps of later images are moved by so much.
+  void move(double by_s);
+
+ private:
+  void addTurn(const FrameTracks& tracks);
+  void forget(Time now);
+  bool keepTogether(const GyroscopeIntegral& gyroscope) const;
+  std::optional<double> compare(Time now, Diagnostics* diagnostics);
+  void report(Time now, double offset_s, double sigma_s, Diagnostics* diagnostics);
+
+  std::string camera_;
+  Quat body_from_camera_;
+  std::map<TrackId, Vec3> rays_;  ///< of the image that the next turn begins with
+  std::optional<Time> rays_time_;
+  std::deque<CameraTurn> turns_;
+  std::deque<ImuSample> imu_;
+  std::optional<Time> next_comparison_;
+  std::optional<double> suspected_s_;  ///< by the comparison before
+  std::optional<double> offset_s_;     ///< that was reported
+};
+
+}  // namespace lodeline

@@ -1,0 +1,124 @@
+#include "lodeline/inspection/start_check.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "lodeline/base/angles.h"
+#include "lodeline/inspection/excerpt_source.h"
+
+namespace lodeline {
+namespace {
+
+/// Images are what the check costs: pairs of the first camera, spread over eight seconds, and a few others.
+constexpr int kImagesOfPairs = 72;
+constexpr int kMostSamples = 6;
+constexpr double kPairInterval_s = 0.22;
+
+using Kinds = std::array<std::string_view, 3>;
+constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
+/// Harmful findings that leave something to estimate from, or end a run by themselves.
+constexpr Kinds kOfOtherEnds = {"stream_empty", "image_size", "no_imu"};
+
+bool isOneOf(const Kinds& kinds, const std::string& kind) {
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+/// Whether the run converts the readings of which the finding speaks.
+bool isConverted(const InspectionFinding& finding, const Inspection& inspection) {
+  return (finding.kind == "gyroscope_unit" && inspection.rate_to_SI != 1.0) ||
+         (finding.kind == "accelerometer_unit" && inspection.imu.force_to_SI != 1.0);
+}
+
+/// A camera's rotation that is so wrong that a run does not find it by itself.
+bool isFarOff(const InspectionFinding& finding, const Inspection& inspection) {
+  constexpr double kFar_rad = 20.0 * kDegree;
+  return finding.kind == "extrinsics_rotation" &&
+         std::any_of(inspection.cameras.begin(), inspection.cameras.end(),
+                     [&](const CameraInspection& camera) {
+                       return camera.survey.name == finding.sensor && camera.turning &&
+                              camera.turning->misalignment_rad > kFar_rad;
+                     });
+}
+
+/// Findings that leave nothing to estimate from: axes that are exchanged, dead sensors.
+bool isHopeless(const InspectionFinding& finding, const Inspection& inspection) {
+  constexpr double kHopeless = 85.0;
+  if (isConverted(finding, inspection) || isOneOf(kOfOtherEnds, finding.kind)) return false;
+  return finding.harm >= kHopeless || isFarOff(finding, inspection);
+}
+
+const char* contradiction(const InspectionFinding& finding) {
+  if (isOneOf(kOfImagesAndGyroscope, finding.kind)) return "images and gyroscope contradict each other";
+  return finding.sensor.starts_with("cam") ? "images and calibration contradict each other"
+                                           : "the inertial readings contradict each other";
+}
+
+/// What the run does about it, beside the finding's own advice.
+const char* remedy(const InspectionFinding& finding, const Inspection& inspection) {
+  if (isConverted(finding, inspection)) return "; this run converts them";
+  if (finding.kind == "cameras_swapped") return "; where exchanged images explain it, this run puts them back";
+  if (finding.kind == "images_repeated") return "; this run leaves them out";
+  if (finding.kind == kCameraTimeOffset) {
+    return "; this run adds what it found to the images' stamps, as far as that is more than 15 ms";
+  }
+  return "";
+}
+
+void report(const InspectionFinding& finding, const Inspection& inspection, const std::string& hint,
+            Diagnostics* diagnostics) {
+  diagnostics->report(
+      finding.severity, finding.kind,
+      fmt::format("{}: {}{} ({})", finding.sensor, finding.message, remedy(finding, inspection), hint));
+  if (!isHopeless(finding, inspection)) return;
+  diagnostics->report(Severity::Serious, kSensorsContradict,
+                      fmt::format("{} ({}, {}): the result is not to be trusted ({})", contradiction(finding),
+                                  finding.sensor, finding.kind, hint));
+}
+
+/// Offsets beyond what the estimator takes care of by itself. A camera that shows none of its own has the
+/// first one's.
+std::vector<double> imageOffsets_s(const Inspection& inspection) {
+  constexpr double kLeastOffset_s = 0.015;
+  std::vector<double> offsets_s;
+  for (const CameraInspection& camera : inspection.cameras) {
+    double offset_s = offsets_s.empty() ? 0.0 : offsets_s.front();
+    for (const InspectionFinding& finding : inspection.findings) {
+      if (finding.kind != kCameraTimeOffset || finding.sensor != camera.survey.name) continue;
+      if (std::abs(camera.turning->time_offset_s) > kLeastOffset_s) offset_s = camera.turning->time_offset_s;
+    }
+    offsets_s.push_back(offset_s);
+  }
+  return offsets_s;
+}
+
+}  // namespace
+
+StartCheck checkStart(const SourceFactory& open, const std::string& data, const StartCheckOptions& options,
+                      Diagnostics* diagnostics) {
+  InspectionOptions looking;
+  looking.images.most_turns = kImagesOfPairs;
+  looking.images.most_samples = kMostSamples;
+  looking.images.pair_interval_s = kPairInterval_s;
+  looking.turning_cameras = 1;
+  const Inspection inspection = inspect(
+      [&](Diagnostics* unheard) {
+        return std::make_unique<ExcerptSource>(open(unheard), options.begin_s, options.length_s);
+      },
+      looking);
+  // Without readings at the time of the images there is nothing to compare; the run names both spans.
+  if (inspection.imu.stream.readings == 0) return {};
+  const std::string hint =
+      fmt::format("found in the first {:g} s; `lodeline inspect {}` says more", options.length_s, data);
+  for (const InspectionFinding& finding : inspection.findings) {
+    // The run screens its readings itself.
+    if (inspection.imu.screening.count(finding.kind) > 0) continue;
+    if (finding.severity == Severity::Serious) report(finding, inspection, hint, diagnostics);
+  }
+  return {imageOffsets_s(inspection), inspection.rate_to_SI, inspection.shown_noise};
+}
+
+}  // namespace lodeline
