@@ -74,7 +74,7 @@ class FolderConversion {
     const std::filesystem::path truth = layout_.csv("state_groundtruth_estimate0");
     std::optional<CsvReader> truth_reader;
     if (std::filesystem::exists(truth)) {
-      truth_reader.emplace(truth, 7, diagnostics_);
+      truth_reader.emplace(truth, CsvContent::TruePose, diagnostics_);
       streams.push_back([&] { return truePose(&*truth_reader); });
     }
     merge(streams);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <utility>
@@ -183,8 +184,11 @@ std::optional<int64_t> parseTime_ns(std::string_view text, TimeUnit unit) {
   if (!areDigits(whole) || !areDigits(digits) || (whole.empty() && digits.empty())) {
     double number = 0.0;  // with an exponent, perhaps
     if (text.starts_with('-') || !csv::parse(text, &number)) return std::nullopt;
-    const double ns = number * static_cast<double>(nanosecondsPer(unit));
-    if (!(std::abs(ns) < 9.2e18)) return std::nullopt;
+    // A double resolves today's Unix times to 0.2 us only; a long double reaches below a nanosecond.
+    const std::string digits_of_text(text);
+    const long double ns =
+        std::strtold(digits_of_text.c_str(), nullptr) * static_cast<long double>(nanosecondsPer(unit));
+    if (!(std::abs(ns) < 9.2e18L)) return std::nullopt;
     return (is_negative ? -1 : 1) * std::llround(ns);
   }
   // 64 bits of nanoseconds are a signed number: its least value has no positive counterpart.

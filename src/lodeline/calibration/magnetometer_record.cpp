@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include "lodeline/base/csv_fields.h"
 #include "lodeline/base/error.h"
 #include "lodeline/data/csv_reader.h"
 #include "lodeline/data/euroc_rig.h"
 #include "lodeline/data/folder_calibration.h"
 #include "lodeline/data/plain_csv.h"
-#include "lodeline/evaluation/text_table.h"
 #include "lodeline/streams/inertial_screen.h"
 #include "lodeline/streams/ordered_stream.h"
 #include "lodeline/streams/time_span.h"
@@ -35,7 +32,7 @@ void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* 
         Severity::Notice, "imu_noise_assumed",
         (layout.sensor("imu0") / "sensor.yaml").string() + ": missing; the noise of a usual IMU is assumed");
   }
-  CsvReader csv(layout.csv("imu0"), 6, diagnostics, kInertialRate);
+  CsvReader csv(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
   for (CsvRow row; csv.next(&row);) {
     if (!record->imu.empty() && row.time <= record->imu.back().time) {
       diagnostics->report(Severity::Warning, "imu_order",
@@ -76,21 +73,28 @@ Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) 
   if (rig.rig.magnetometer) {
     reading.record.body_from_magnetometer = rig.rig.magnetometer->body_from_magnetometer.rotation;
   }
-  CsvReader rows(csv, 3, diagnostics, kMagnetometerRate);
+  CsvReader rows(csv, CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   for (CsvRow row; rows.next(&row);) {
     reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
   }
   return reading;
 }
 
-Reading readTable(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  PlainCsv csv(file, diagnostics);
+Reading readFile(const std::filesystem::path& file, const RecordOptions& options, Diagnostics* diagnostics) {
+  PlainCsvOptions table;
+  table.is_magnetometer = true;
+  PlainCsv csv(file, diagnostics, table);
   if (!csv.hasMagnetometer()) {
-    throw InputError(file.string() + ": its header names no magnetometer columns (mx, my, mz)");
+    throw InputError(file.string() + ": names no magnetometer columns (mx, my, mz, or x, y, z)");
+  }
+  if (options.unit && csv.statesFieldUnit()) {
+    throw UsageError(file.string() +
+                     ": --unit is for files that state no unit; correct the unit in its header");
   }
   Reading reading;
-  reading.unit = FieldUnit::Tesla;
-  const bool has_imu = csv.hasGyroscope() && csv.hasAccelerometer();
+  if (csv.statesFieldUnit()) reading.unit = FieldUnit::Tesla;
+  reading.record.has_times = csv.hasTimes();
+  const bool has_imu = csv.hasTimes() && csv.hasGyroscope() && csv.hasAccelerometer();
   for (PlainReading row; csv.next(&row);) {
     if (row.field) reading.record.magnetometer.push_back({row.time, *row.field});
     if (!has_imu || !row.angular_velocity || !row.specific_force) continue;
@@ -98,79 +102,6 @@ Reading readTable(const std::filesystem::path& file, Diagnostics* diagnostics) {
     reading.record.imu.push_back({row.time, *row.angular_velocity, *row.specific_force});
   }
   return reading;
-}
-
-std::vector<double> numbersOf(std::string line) {
-  for (char& c : line) {
-    if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
-  }
-  std::istringstream words(line);
-  std::vector<double> numbers;
-  for (std::string word; words >> word;) {
-    double number = 0.0;
-    if (!csv::parse(word, &number)) return {};
-    numbers.push_back(number);
-  }
-  return numbers;
-}
-
-/// Seconds, or whole milli-, micro- or nanoseconds: told by the digits that times since 1970 have in each.
-Time timeOf(double stamp) {
-  const double size = std::abs(stamp);
-  const double ns = size > 1e16 ? 1.0 : size > 1e13 ? 1e3 : size > 1e10 ? 1e6 : 1e9;
-  return Time::fromNanoseconds(std::llround(stamp * ns));
-}
-
-Reading readRows(const std::filesystem::path& file, const std::string& text, Diagnostics* diagnostics) {
-  Reading reading;
-  std::istringstream lines(text);
-  size_t columns = 0;
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos || line.starts_with('#')) continue;
-    const std::vector<double> row = numbersOf(line);
-    if (columns == 0 && (row.size() == 3 || row.size() == 4)) columns = row.size();
-    if (row.empty() || (columns != 0 && row.size() != columns)) {
-      diagnostics->report(Severity::Warning, "csv_row",
-                          fmt::format("{}:{}: not a row of {} numbers; passed over", file.string(), number,
-                                      columns == 0 ? "3 or 4" : std::to_string(columns)));
-    } else if (columns == 0) {
-      throw InputError(
-          fmt::format("{}:{}: {} columns without a header; expected t, mx, my, mz, or mx, my, mz",
-                      file.string(), number, row.size()));
-    } else {
-      const double stamp = columns == 4 ? row[0] : 0.0;
-      const Time time = columns == 4 ? timeOf(stamp) : Time::fromNanoseconds(10'000'000LL * number);
-      reading.record.magnetometer.push_back({time, Vec3(row.data() + columns - 3)});
-    }
-  }
-  reading.record.has_times = columns == 4;
-  return reading;
-}
-
-/// Whether the first row that is no comment begins with a word.
-bool hasHeader(const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.find_first_not_of(" \t\r,") == std::string::npos) continue;
-    if (line.starts_with('#')) {
-      if (line.find(',') != std::string::npos) return true;
-      continue;
-    }
-    return numbersOf(line).empty();
-  }
-  return false;
-}
-
-Reading readFile(const std::filesystem::path& file, const RecordOptions& options, Diagnostics* diagnostics) {
-  const std::string text = readFileBytes(file);
-  if (!hasHeader(text)) return readRows(file, text, diagnostics);
-  if (options.unit) {
-    throw UsageError(file.string() +
-                     ": --unit is for files without a header; write the unit into the header, mx [uT]");
-  }
-  return readTable(file, diagnostics);
 }
 
 void cut(const RecordOptions& options, MagnetometerRecord* record) {

@@ -31,11 +31,11 @@ struct MagnetometerRecord {
 };
 
 /// Reads a folder in the EuRoC ASL layout (mav0/mag0, and mav0/imu0 where it is there; neither needs a
-/// sensor.yaml), a CSV file with a header (PlainCsv), or rows of `t mx my mz` or `mx my mz` without a header,
-/// separated by commas or blanks, perhaps compressed with gzip. A unit that is not stated is told by the
-/// field's size, and one that contradicts it is corrected, both with a warning. Throws InputError where there
-/// are no magnetometer readings, and UsageError where a part is asked for that is empty or cannot be found
-/// without times.
+/// sensor.yaml), or a table (PlainCsv): with a header, of which columns x, y, z may be the magnetometer's, or
+/// rows of `t mx my mz` or `mx my mz` without one. A unit that is not stated is told by the field's size, and
+/// one that contradicts it is corrected, both with a warning. Throws InputError where there are no
+/// magnetometer readings, and UsageError where a part is asked for that is empty or cannot be found without
+/// times.
 MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
                                           Diagnostics* diagnostics);
 

@@ -72,7 +72,7 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   CsvRow row;
   if (layout.has_imu) {
     analyses->has_gyroscope = analyses->has_accelerometer = true;
-    CsvReader imu(layout.csv("imu0"), 6, diagnostics, kInertialRate);
+    CsvReader imu(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
     for (Part part(arguments); imu.next(&row);) {
       if (!part.holds(row.time)) continue;
       analyses->gyroscope.add(row.time, Vec3(row.numbers.data()));
@@ -81,7 +81,7 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   }
   if (!std::filesystem::exists(layout.csv("mag0"))) return;
   analyses->has_magnetometer = true;
-  CsvReader magnetometer(layout.csv("mag0"), 3, diagnostics, kMagnetometerRate);
+  CsvReader magnetometer(layout.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   for (Part part(arguments); magnetometer.next(&row);) {
     if (part.holds(row.time)) analyses->magnetometer.add(row.time, Vec3(row.numbers.data()));
   }

@@ -93,8 +93,71 @@ TEST_F(CsvReaderTest, AcceptsAnEmptyFileAndRefusesAMissingOne) {
 TEST_F(CsvReaderTest, SurvivesBinaryRubbish) {
   std::string rubbish;
   for (int i = 0; i < 4096; ++i) rubbish += static_cast<char>((i * 7919 + i / 3) & 255);
-  readAll(rubbish, 2);
+  EXPECT_THROW(readAll(rubbish, 2), InputError);  // it has zero bytes
+  std::erase(rubbish, '\0');
+  readAll("1,2,3\n" + rubbish, 2);
   EXPECT_GT(diagnostics_.count("csv_row"), 0);
+}
+
+class SensorFileTest : public CsvReaderTest {
+ protected:
+  std::vector<CsvRow> read(const std::string& text, CsvContent content) {
+    CsvReader reader(bytesInMemory(text), "data.csv", content, &diagnostics_);
+    std::vector<CsvRow> rows;
+    for (CsvRow row; reader.next(&row);) rows.push_back(row);
+    return rows;
+  }
+};
+
+TEST_F(SensorFileTest, TakesColumnsByTheNamesOfTheHeader) {
+  for (const char* text :
+       {"#timestamp [ns],a_x,a_y,a_z,w_x,w_y,w_z\n7,4,5,6,1,2,3\n", "time,ax,ay,az,gx,gy,gz\n7,4,5,6,1,2,3\n",
+        "a_z,a_y,a_x,temperature,w_x,w_y,w_z,timestamp\n6,5,4,20,1,2,3,7\n",
+        "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+        "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n7,1,2,3,4,5,6\n",
+        "# some words, about the file\n7,1,2,3,4,5,6\n"}) {
+    const std::vector<CsvRow> rows = read(text, CsvContent::Imu);
+    ASSERT_EQ(rows.size(), 1u) << text;
+    EXPECT_EQ(rows[0].time.nanoseconds(), 7) << text;
+    EXPECT_THAT(rows[0].numbers, ElementsAre(1, 2, 3, 4, 5, 6)) << text;
+  }
+  const std::vector<CsvRow> field =
+      read("timestamp [ns],mz [uT],my [uT],mx [uT]\n7,30,20,10\n", CsvContent::Magnetometer);
+  ASSERT_EQ(field.size(), 1u);
+  EXPECT_NEAR(field[0].numbers[0], 1e-5, 1e-15);
+  EXPECT_NEAR(field[0].numbers[2], 3e-5, 1e-15);
+  const std::vector<CsvRow> depth =
+      read("timestamp [ms],temperature,depth [ft]\n7.5,20,10\n", CsvContent::Depth);
+  ASSERT_EQ(depth.size(), 1u);
+  EXPECT_EQ(depth[0].time.nanoseconds(), 7500000);
+  EXPECT_DOUBLE_EQ(depth[0].numbers[0], 3.048);
+  const std::vector<CsvRow> images = read("filename,timestamp [ns]\na.png,7\nb.png,8\n", CsvContent::Images);
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(images[1].text, "b.png");
+  EXPECT_EQ(images[1].time.nanoseconds(), 8);
+  const std::vector<CsvRow> truth =
+      read("#timestamp,p_x,p_y,p_z,q_x,q_y,q_z,q_w,v_x\n7,1,2,3,0.1,0.2,0.3,0.9,5\n", CsvContent::TruePose);
+  ASSERT_EQ(truth.size(), 1u);
+  EXPECT_THAT(truth[0].numbers, ElementsAre(1, 2, 3, 0.9, 0.1, 0.2, 0.3));
+  EXPECT_EQ(truth[0].text, "5");
+  EXPECT_THAT(diagnostics_.ranked(), IsEmpty());
+}
+
+TEST_F(SensorFileTest, ConvertsUnitsThatTheHeaderStates) {
+  const std::vector<CsvRow> rows =
+      read("timestamp [ns],wx [deg/s],wy [deg/s],wz [deg/s],ax [g],ay [g],az [g]\n7,180,0,0,0,0,1\n",
+           CsvContent::Imu);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_NEAR(rows[0].numbers[0], M_PI, 1e-12);
+  EXPECT_NEAR(rows[0].numbers[5], 9.80665, 1e-12);
+}
+
+TEST_F(SensorFileTest, RefusesAHeaderThatNamesOtherQuantities) {
+  EXPECT_THROW(read("t [ns],wx,wy,wz,temp,ax,ay\n7,1,2,3,4,5,6\n", CsvContent::Imu), InputError);
+  EXPECT_THROW(read("t [ns],pressure [Pa]\n7,101325\n", CsvContent::Depth), InputError);
+  EXPECT_THROW(read("t [ns],mx [furlong],my [furlong],mz [furlong]\n7,1,2,3\n", CsvContent::Magnetometer),
+               InputError);
+  EXPECT_THROW(read("t [fortnight],depth [m]\n7,1\n", CsvContent::Depth), InputError);
 }
 
 std::string rowsEvery(double first, double step, const char* format, int count = 60) {

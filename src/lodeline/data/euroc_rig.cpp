@@ -18,9 +18,9 @@ struct StreamStart {
   std::string why_empty;  ///< where there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, int number_count, PlausibleRate rate) {
+StreamStart readStart(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, number_count, &reported_when_read_in_earnest, rate);
+  CsvReader reader(csv, content, &reported_when_read_in_earnest, rate);
   StreamStart start;
   CsvRow row, before;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
@@ -37,9 +37,9 @@ StreamStart readStart(const std::filesystem::path& csv, int number_count, Plausi
 }
 
 /// For sensors that cannot be done without.
-std::vector<Time> requireStamps(const std::filesystem::path& csv, int number_count, PlausibleRate rate,
+std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate,
                                 const char* advice) {
-  StreamStart start = readStart(csv, number_count, rate);
+  StreamStart start = readStart(csv, content, rate);
   if (start.stamps.empty()) throw InputError(fmt::format("{}; {}", start.why_empty, advice));
   return std::move(start.stamps);
 }
@@ -56,8 +56,8 @@ double settleImageRate(const EurocLayout& layout, const std::string& camera, dou
   Diagnostics reported_when_read_in_earnest;
   ImageList list(layout.sensor(camera), &reported_when_read_in_earnest);
   if (!list.isMade()) {
-    const std::vector<Time> stamps = requireStamps(
-        layout.csv(camera), 0, kCameraRate, "restore it or leave this camera out (source.cameras)");
+    const std::vector<Time> stamps = requireStamps(layout.csv(camera), CsvContent::Images, kCameraRate,
+                                                   "restore it or leave this camera out (source.cameras)");
     return settleRate(layout.csv(camera).string(), stamps, stated_hz, diagnostics);
   }
   std::vector<Time> stamps;
@@ -79,8 +79,8 @@ void reportLists(const EurocLayout& layout, Diagnostics* diagnostics) {
     const std::string name = fmt::format("cam{}", index);
     const ImageList list(layout.sensor(name), &reported_when_read_in_earnest);
     diagnostics->report(is_missing ? Severity::Warning : Severity::Notice, "image_list_made",
-                        fmt::format("{}: missing; the list of images was made from {}", layout.csv(name).string(),
-                                    list.origin().string()));
+                        fmt::format("{}: missing; the list of images was made from {}",
+                                    layout.csv(name).string(), list.origin().string()));
   }
   for (const auto& [index, problem] : layout.cameras_without_images) {
     diagnostics->report(Severity::Warning, "camera_left_out",
@@ -107,22 +107,23 @@ std::vector<CameraCalibration> settledCameras(const EurocLayout& layout, const R
 
 /// A sensor that a recording may or may not have.
 template <typename Calibration>
-std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, int number_count,
+std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, CsvContent content,
                                            const std::optional<Calibration>& described,
                                            Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
   const PlausibleRate rate = std::string_view(name) == "pressure0" ? kDepthRate : kMagnetometerRate;
-  const StreamStart start = readStart(csv, number_count, rate);
+  const StreamStart start = readStart(csv, content, rate);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
     return std::nullopt;
   }
   if (!described && layout.needs_calibration) {
-    throw InputError(fmt::format("{}: calibration file missing; write one (docs/data.md), describe {} in a rig "
-                                 "file (--rig), or move its folder away",
-                                 (layout.sensor(name) / "sensor.yaml").string(), name));
+    throw InputError(
+        fmt::format("{}: calibration file missing; write one (docs/data.md), describe {} in a rig "
+                    "file (--rig), or move its folder away",
+                    (layout.sensor(name) / "sensor.yaml").string(), name));
   }
   Calibration calibration;
   calibration.rate_hz = 0.0;
@@ -138,7 +139,7 @@ ImuCalibration settledImu(const EurocLayout& layout, const RigFile& described, D
   if (described.has_imu) imu = described.rig.imu;
   const std::filesystem::path csv = layout.csv("imu0");
   const std::vector<Time> stamps =
-      requireStamps(csv, 6, kInertialRate, "the estimator cannot work without inertial data");
+      requireStamps(csv, CsvContent::Imu, kInertialRate, "the estimator cannot work without inertial data");
   settle(csv, stamps, ImuCalibration().rate_hz, &imu.rate_hz, diagnostics);
   return imu;
 }
@@ -154,9 +155,10 @@ Rig settleEurocRig(const EurocLayout& layout, const RigFile& described, Diagnost
   Rig rig;
   rig.imu = settledImu(layout, described, diagnostics);
   rig.cameras = settledCameras(layout, described.rig, diagnostics);
-  rig.magnetometer = settledOptional(layout, "mag0", 3, described.rig.magnetometer, diagnostics);
-  rig.pressure = settledOptional(layout, "pressure0", 1, described.rig.pressure, diagnostics);
-  rig.sonar = settledOptional(layout, "sonar0", 2, described.rig.sonar, diagnostics);
+  rig.magnetometer =
+      settledOptional(layout, "mag0", CsvContent::Magnetometer, described.rig.magnetometer, diagnostics);
+  rig.pressure = settledOptional(layout, "pressure0", CsvContent::Depth, described.rig.pressure, diagnostics);
+  rig.sonar = settledOptional(layout, "sonar0", CsvContent::Sonar, described.rig.sonar, diagnostics);
   return rig;
 }
 

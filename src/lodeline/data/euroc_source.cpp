@@ -28,7 +28,7 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
     : RecordedSource(settleEurocRig(layout, described, diagnostics), described.imu_correction),
       layout_(std::move(layout)),
       diagnostics_(diagnostics) {
-  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), 6, diagnostics, kInertialRate);
+  if (layout_.has_imu) imu_.emplace(layout_.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
   for (const CameraCalibration& camera : rig_.cameras) {
     const std::filesystem::path images = layout_.sensor(camera.name) / "data";
     if (layout_.needs_cameras && !std::filesystem::is_directory(images)) {
@@ -38,9 +38,10 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
     cameras_.emplace_back(layout_.sensor(camera.name), diagnostics);
   }
   grey_ranges_.resize(cameras_.size());
-  if (rig_.magnetometer) magnetometer_.emplace(layout_.csv("mag0"), 3, diagnostics, kMagnetometerRate);
-  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), 1, diagnostics, kDepthRate);
-  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), 2, diagnostics, kMagnetometerRate);
+  if (rig_.magnetometer)
+    magnetometer_.emplace(layout_.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
+  if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), CsvContent::Depth, diagnostics, kDepthRate);
+  if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics, kMagnetometerRate);
 }
 
 std::optional<ImuSample> EurocSource::nextRecordedImu() {

@@ -110,7 +110,7 @@ std::vector<Time> readTimes(const std::filesystem::path& file) {
 ImageList::ImageList(const std::filesystem::path& camera, Diagnostics* diagnostics)
     : folder_(camera / "data"), origin_(camera / "data.csv") {
   if (std::filesystem::exists(origin_)) {
-    csv_.emplace(origin_, 0, diagnostics, kCameraRate);
+    csv_.emplace(origin_, CsvContent::Images, diagnostics, kCameraRate);
   } else {
     makeList(camera);
   }

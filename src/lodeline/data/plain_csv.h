@@ -1,14 +1,16 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
-#include <fstream>
 #include <optional>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lodeline/base/diagnostics.h"
+#include "lodeline/data/sensor_columns.h"
 #include "lodeline/sensors/measurements.h"
+#include "lodeline/tables/table_reader.h"
 
 namespace lodeline {
 
@@ -20,58 +22,86 @@ struct PlainReading {
   std::optional<Vec3> field;             ///< T; also missing where only this row has none
 };
 
-/// Reads a single CSV file with a time and the readings of gyroscope, accelerometer, magnetometer, all at one
-/// rate, row by row.
+/// What the caller of PlainCsv makes of what a table leaves open.
+struct PlainCsvOptions {
+  /// The table is a magnetometer's: columns x, y, z that tell no sensor are its, the field keeps its numbers
+  /// where no unit is stated, and times may be missing.
+  bool is_magnetometer = false;
+};
+
+/// Reads a single table (TableReader) with a time and the readings of gyroscope, accelerometer, magnetometer,
+/// all at one rate, row by row.
 ///
-/// The header names the columns; units stand in brackets: `t [s], wx [deg/s], wy [deg/s], … , mx [uT]`. A
-/// name says what it is by its beginning: t, time, stamp; w, g, gyr, ang: gyroscope; a, acc, f:
-/// accelerometer; m, mag, b: magnetometer; and x, y, z by the letter at its end. Other columns are passed
-/// over. Without a header there must be a time and 3 (magnetometer), 6 (gyroscope, accelerometer) or 9
-/// numbers (all).
+/// The header names the columns (SensorColumns) and may state units: `t [s], wx [deg/s], …, MagX (µT)`.
+/// Without a header there must be a time and 3 (magnetometer), 6 (gyroscope, accelerometer) or 9 numbers
+/// (all), or rows `Raw:ax,ay,az,gx,gy,gz,mx,my,mz` as calibration programs send them.
 ///
-/// Without a unit, a time with a decimal point is in seconds, a whole number in nanoseconds; the gyroscope is
-/// in rad/s; accelerometer and magnetometer are in the unit that makes the first reading plausible on Earth,
-/// which is reported unless that is SI.
+/// Without a unit, a time with a decimal point is in seconds and a whole number in nanoseconds, unless only
+/// another unit gives a rate that a sensor can have; the gyroscope is in rad/s; accelerometer and
+/// magnetometer are in the unit that makes the median of the first readings plausible on Earth. What is not
+/// the SI unit is reported.
 class PlainCsv {
  public:
   /// Throws InputError where the file cannot be opened, has no usable row, or has a header that cannot be
   /// understood. `diagnostics` must outlive the reader.
-  PlainCsv(std::filesystem::path file, Diagnostics* diagnostics);
+  PlainCsv(const std::filesystem::path& file, Diagnostics* diagnostics, const PlainCsvOptions& options = {});
+  PlainCsv(std::unique_ptr<ByteSource> bytes, std::string name, Diagnostics* diagnostics,
+           const PlainCsvOptions& options = {});
 
   /// The next usable row; false at the end. Rows with missing, odd or non-finite numbers are reported with
   /// file and line, and passed over.
   bool next(PlainReading* reading);
 
-  bool hasGyroscope() const { return gyroscope_.isThere(); }
-  bool hasAccelerometer() const { return accelerometer_.isThere(); }
-  bool hasMagnetometer() const { return magnetometer_.isThere(); }
+  bool hasGyroscope() const { return gyroscope_.has_value(); }
+  bool hasAccelerometer() const { return accelerometer_.has_value(); }
+  bool hasMagnetometer() const { return magnetometer_.has_value(); }
+  bool hasTimes() const { return time_.has_value(); }  ///< else one reading each 10 ms
+  bool statesFieldUnit() const { return magnetometer_ && magnetometer_->unit.factor.has_value(); }
 
  private:
   /// The columns of one sensor.
-  struct Triad {
-    int column[3] = {-1, -1, -1};
-    double to_si = 0.0;  ///< 0: not known yet
-    bool isThere() const { return column[0] >= 0 && column[1] >= 0 && column[2] >= 0; }
+  struct Triad : TriadColumns {
+    double to_si = 1.0;
   };
+  /// A row that was read to decide on units.
+  struct Row {
+    std::vector<std::string> cells;
+    int line = 0;
+  };
+  /// A unit, and the sizes of a reading on Earth in it.
+  struct UnitGuess {
+    const char* name;
+    double to_si;
+    double least, most;
+  };
+  static const std::array<UnitGuess, 3> kForceGuesses;
+  static const std::array<UnitGuess, 5> kFieldGuesses;
 
-  bool nextLine();
-  void readHeader(std::string_view header);
+  void findColumns();
   void assumeColumns();
-  void guessUnits();
-  Vec3 valueOf(const Triad& triad, bool* is_good) const;
-  std::string parseFields(PlainReading* reading) const;
+  void requireKnownUnits(Quantity quantity, const std::optional<Triad>& triad) const;
+  void readFirstRows();
+  void settleTime();
+  void settleTimeUnit();
+  void settleUnits();
+  void guessUnit(std::span<const UnitGuess> guesses, const char* what, Triad* triad);
+  bool nextRow();
+  std::optional<Vec3> valueOf(const Triad& triad, const Row& row) const;
+  std::optional<Time> timeOf(const TimeColumn& time, const Row& row) const;
+  std::string parseRow(PlainReading* reading) const;
 
-  std::filesystem::path file_;
+  std::string name_;
+  PlainCsvOptions options_;
   Diagnostics* diagnostics_;
-  std::ifstream stream_;
-  std::string line_;
-  std::vector<std::string_view> fields_;
-  int line_number_ = 0;
-  size_t column_count_ = 0;
-  int time_column_ = 0;
-  double time_to_s_ = 0.0;  ///< 0: seconds with a decimal point, else nanoseconds
-  Triad gyroscope_, accelerometer_, magnetometer_;
-  bool holds_line_ = false;  ///< line_ is yet to be given out
+  TableReader table_;
+  std::vector<TimeColumn> times_;  ///< those that the header names
+  std::optional<TimeColumn> time_;
+  std::optional<Triad> gyroscope_, accelerometer_, magnetometer_;
+  std::optional<std::size_t> instance_column_;
+  std::string instance_;   ///< whose rows are used
+  std::deque<Row> first_;  ///< read already, yet to be given out
+  Row row_;
+  int64_t row_count_ = 0;
 };
 
 }  // namespace lodeline

@@ -1,5 +1,6 @@
 #include "lodeline/data/plain_csv.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -95,7 +96,8 @@ TEST_F(PlainCsvTest, PassesOverRowsThatCannotBeUsed) {
   ASSERT_EQ(readings.size(), 2U);
   EXPECT_EQ(readings[1].time.nanoseconds(), 400000000);
   EXPECT_EQ(diagnostics_.count("csv_row"), 5);
-  EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr(".csv:3"));
+  EXPECT_EQ(readings[0].field->x(), 1e-5);
+  EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr(".csv:"));
 }
 
 TEST_F(PlainCsvTest, KeepsInertialReadingsWhereTheFieldIsMissing) {
@@ -113,14 +115,64 @@ TEST_F(PlainCsvTest, KeepsInertialReadingsWhereTheFieldIsMissing) {
   EXPECT_EQ(diagnostics_.count("csv_row"), 1);
 }
 
+TEST_F(PlainCsvTest, TakesTheUnitOfTimesFromTheirNameOrTheirRate) {
+  const auto interval_ns = [this](const std::string& header, double step) {
+    std::string text = header;
+    for (int i = 0; i < 30; ++i) text += fmt::format("{},0,0,0,0,0,9.8\n", 1000 + i * step);
+    const auto readings = read(text);
+    return readings.size() < 2 ? 0 : (readings[1].time - readings[0].time).nanoseconds();
+  };
+  const std::string columns = ",gx,gy,gz,ax,ay,az\n";
+  EXPECT_EQ(interval_ns("time_ms" + columns, 10), 10'000'000);
+  EXPECT_EQ(interval_ns("TimeUS" + columns, 10000), 10'000'000);
+  EXPECT_EQ(interval_ns("t [s]" + columns, 0.25), 250'000'000);
+  EXPECT_EQ(interval_ns("timestamp" + columns, 5'000'000), 5'000'000);
+  EXPECT_EQ(diagnostics_.count("time_unit"), 0);
+  EXPECT_EQ(interval_ns("timestamp" + columns, 10), 10'000'000);  // uptime in milliseconds
+  EXPECT_EQ(interval_ns("", 5000), 5'000'000);                    // and in microseconds, without a header
+  EXPECT_EQ(diagnostics_.count("time_unit"), 2);
+}
+
+TEST_F(PlainCsvTest, AddsThePartsOfATime) {
+  const auto ros = read(
+      "Time,header.stamp.secs,header.stamp.nsecs,mx [T],my [T],mz "
+      "[T]\n9.9,1700000000,5,1e-5,0,0\n9.9,1700000000,20000005,1e-5,0,0\n");
+  ASSERT_EQ(ros.size(), 2U);
+  EXPECT_EQ(ros[0].time.nanoseconds(), 1700000000000000005);
+  const auto gps = read(
+      "GPS Week,GPS TOW,X Mag [x8006],Y Mag [x8006],Z Mag "
+      "[x8006]\n2430,300000.25,0.4,0,0\n2430,300000.5,0.4,0,0\n");
+  ASSERT_EQ(gps.size(), 2U);
+  EXPECT_EQ(gps[0].time.nanoseconds(), (2430LL * 604800 + 300000) * 1'000'000'000 + 250'000'000);
+}
+
+TEST_F(PlainCsvTest, TakesOneOfSeveralSensorsInOneTable) {
+  const auto readings = read(
+      "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ\n1000,0,1,0,0,0,0,9.8\n1000,1,2,0,0,0,0,9.8\n6000,0,1,0,0,0,0,"
+      "9.8\n6000,1,2,0,0,0,0,9.8\n");
+  ASSERT_EQ(readings.size(), 2U);
+  EXPECT_EQ(readings[1].angular_velocity->x(), 1.0);
+  EXPECT_EQ(diagnostics_.count("csv_instance"), 2);
+}
+
+TEST_F(PlainCsvTest, SkipsColumnsOfTimesThatAreNone) {
+  const auto readings = read(
+      "loggingTime(txt),time (constant),t [s],mx [T],my [T],mz [T]\n2026-11-21 "
+      "10:00,3,0.5,1e-5,0,0\n2026-11-21 10:00,3,0.6,1e-5,0,0\n");
+  ASSERT_EQ(readings.size(), 2U);
+  EXPECT_EQ(readings[1].time.nanoseconds(), 600000000);
+  expectRefused("date,mx [T],my [T],mz [T]\n2026-11-21 10:00,1e-5,0,0\n", "holds no numbers");
+}
+
 TEST_F(PlainCsvTest, RefusesWhatItCannotUnderstand) {
   expectRefused("", "no row of numbers");
   expectRefused("t,mx,my,mz\n", "no row of numbers");
   expectRefused("mx [uT],my [uT],mz [uT]\n1,2,3\n", "names no time");
   expectRefused("t [s],x,y,z\n0,1,2,3\n", "names no time and sensor");
   expectRefused("t [s],mx [furlong],my [furlong],mz [furlong]\n0,1,2,3\n", "furlong");
-  expectRefused("t [s],mx [deg/s],my [deg/s],mz [deg/s]\n0,1,2,3\n", "known for it are t ut nt gauss");
-  expectRefused("t [min],mx [T],my [T],mz [T]\n0,1,2,3\n", "'min'");
+  expectRefused("t [s],mx [deg/s],my [deg/s],mz [deg/s]\n0,1,2,3\n",
+                "known for the magnetic field are t, ut, nt, gauss");
+  expectRefused("t [fortnight],mx [T],my [T],mz [T]\n0,1,2,3\n", "'fortnight'");
   EXPECT_THROW(PlainCsv(file_.parent_path() / "absent.csv", &diagnostics_), InputError);
 }
 

@@ -111,6 +111,13 @@ PosePairs associate(const Trajectory& estimate, const Trajectory& reference,
                      "without (KITTI rows)");
   }
   const bool by_index = estimate.time_base == TimeBase::Index;
+  if (by_index && estimate.rows != reference.rows && estimate.rows != 0 && reference.rows != 0) {
+    throw InputError(
+        fmt::format("{} has {} rows without times and {} has {}; which row belongs to which is not known. "
+                    "Give trajectories "
+                    "with times, or only the rows that belong together",
+                    estimate.name, estimate.rows, reference.name, reference.rows));
+  }
   const Duration tolerance = Duration::fromSeconds(by_index ? 0.0 : options.tolerance_s);
   const Duration offset = Duration::fromSeconds(options.time_offset_s);
   const bool interpolate = options.method == AssociationMethod::Interpolate && !by_index;

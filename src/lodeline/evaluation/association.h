@@ -34,7 +34,7 @@ struct PosePairs {
 /// By time, each pose is used at most once: of several that would share a partner the closest wins; the
 /// trajectory with fewer poses chooses, so that a dense estimate against a sparse reference pairs once for
 /// each reference pose. Throws InputError when only one has times, and when nothing matches (naming both
-/// spans).
+/// spans), and when tables without times differ in their number of rows.
 PosePairs associate(const Trajectory& estimate, const Trajectory& reference,
                     const AssociationOptions& options);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodeline/base/error.h"
+#include "lodeline/evaluation/orientation_order.h"
 
 namespace lodeline {
 namespace {
@@ -91,6 +92,7 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& reference, con
   e.estimate = withZUp(estimate);
   e.reference = withZUp(reference);
   e.pairs = associate(e.estimate, e.reference, options.association);
+  checkOrientationOrder(e.pairs, diagnostics);
   e.alignment = align(options.alignment, firstPairs(e.pairs, options.alignment_pairs));
   reportAlignment(e, diagnostics);
   e.aligned_estimate = applyAlignment(e.alignment, e.pairs.estimate);

@@ -6,7 +6,9 @@
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/file_kind.h"
+#include "lodeline/evaluation/pose_table.h"
 #include "lodeline/evaluation/read_formats.h"
+#include "lodeline/tables/text_lines.h"
 
 namespace lodeline {
 namespace {
@@ -16,7 +18,8 @@ struct FormatName {
   const char* name;
 };
 
-constexpr std::array<FormatName, 5> kFormatNames = {{{TrajectoryFormat::Tum, "tum"},
+constexpr std::array<FormatName, 6> kFormatNames = {{{TrajectoryFormat::Table, "table"},
+                                                     {TrajectoryFormat::Tum, "tum"},
                                                      {TrajectoryFormat::Kitti, "kitti"},
                                                      {TrajectoryFormat::Euroc, "euroc"},
                                                      {TrajectoryFormat::ColmapText, "colmap-text"},
@@ -27,29 +30,15 @@ bool isFile(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, ignored);
 }
 
-/// Nanoseconds of a clock set to the date; seconds never have so many digits without a decimal point.
-bool looksLikeNanoseconds(const std::string& field) { return isInteger(field) && field.size() >= 15; }
-
 TrajectoryFormat detectFormat(const std::filesystem::path& file) {
   if (file.extension() == ".bin") return TrajectoryFormat::ColmapBinary;
-  const TextTable head = readTextTable(file, 1);
-  bool header_says_nanoseconds = false;  // of a clock that starts at zero, too
-  for (const std::string& comment : head.comments) {
-    header_says_nanoseconds = header_says_nanoseconds || comment.find("timestamp [ns]") != std::string::npos;
-    if (comment.find("IMAGE_ID") != std::string::npos) return TrajectoryFormat::ColmapText;
-  }
-  const std::vector<std::string>& fields = head.lines.front().fields;
   const std::string file_name = file.filename().string();
   if (file_name == "images.txt" || file_name == "images.txt.gz") return TrajectoryFormat::ColmapText;
-  const bool is_nanoseconds =
-      looksLikeNanoseconds(fields[0]) || (header_says_nanoseconds && isInteger(fields[0]));
-  if (is_nanoseconds && fields.size() >= 8) return TrajectoryFormat::Euroc;
-  if (fields.size() == 12) return TrajectoryFormat::Kitti;
-  if (fields.size() >= 8) return TrajectoryFormat::Tum;
-  throw InputError(
-      fmt::format("{}:{}: {} columns fit no known trajectory layout (TUM 8, KITTI 12, EuRoC at least "
-                  "8, COLMAP 10); name it with --format if it is one of these",
-                  file.string(), head.lines.front().number, fields.size()));
+  TextLines lines(openFile(file), file.string());
+  for (std::string_view line; lines.next(&line) && (line.empty() || line.front() == '#');) {
+    if (line.find("IMAGE_ID") != std::string_view::npos) return TrajectoryFormat::ColmapText;
+  }
+  return TrajectoryFormat::Table;
 }
 
 /// The file in a folder that holds the trajectory, most specific first.
@@ -79,12 +68,12 @@ std::filesystem::path findInFolder(const std::filesystem::path& folder) {
 Trajectory readPoses(const TrajectorySource& source, const TrajectoryReadOptions& options,
                      Diagnostics& diagnostics) {
   switch (source.format) {
+    case TrajectoryFormat::Table:
+      return readPoseTable(openFile(source.file), source.file.string(), std::nullopt, diagnostics);
     case TrajectoryFormat::Tum:
-      return readTum(source.file, diagnostics);
     case TrajectoryFormat::Kitti:
-      return readKitti(source.file, diagnostics);
     case TrajectoryFormat::Euroc:
-      return readEuroc(source.file, diagnostics);
+      return readPoseTable(openFile(source.file), source.file.string(), source.format, diagnostics);
     case TrajectoryFormat::ColmapText:
       return readColmapText(source.file, options, diagnostics);
     case TrajectoryFormat::ColmapBinary:
@@ -107,7 +96,7 @@ TrajectoryFormat trajectoryFormatFromString(const std::string& name) {
     if (name == entry.name) return entry.format;
   }
   throw UsageError(
-      fmt::format("unknown trajectory format '{}'; known are tum, kitti, euroc, colmap-text and "
+      fmt::format("unknown trajectory format '{}'; known are table, tum, kitti, euroc, colmap-text and "
                   "colmap-binary",
                   name));
 }

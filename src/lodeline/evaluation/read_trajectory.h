@@ -11,14 +11,15 @@ namespace lodeline {
 
 /// The layouts of trajectories that can be read.
 enum class TrajectoryFormat {
-  Tum,           ///< `t[s] x y z qx qy qz qw`, blanks or commas between, further columns passed over
+  Table,         ///< columns by their header, or by their number (readPoseTable)
+  Tum,           ///< `t x y z qx qy qz qw`, further columns passed over
   Kitti,         ///< 12 numbers a line: the upper 3x4 part of world_from_camera, row by row; no times
-  Euroc,         ///< `t[ns], x, y, z, qw, qx, qy, qz, ...`, the EuRoC ground truth
+  Euroc,         ///< `t, x, y, z, qw, qx, qy, qz, ...`, the EuRoC ground truth
   ColmapText,    ///< COLMAP images.txt
   ColmapBinary,  ///< COLMAP images.bin
 };
 
-/// "tum", "kitti", "euroc", "colmap-text", "colmap-binary" and back; UsageError for another name.
+/// "table", "tum", "kitti", "euroc", "colmap-text", "colmap-binary" and back; UsageError for another name.
 const char* toString(TrajectoryFormat format);
 TrajectoryFormat trajectoryFormatFromString(const std::string& name);
 
@@ -45,9 +46,10 @@ struct TrajectorySource {
 TrajectorySource findTrajectory(const std::filesystem::path& path,
                                 std::optional<TrajectoryFormat> format = std::nullopt);
 
-/// Reads a trajectory and orders it by time. A line that does not fit its layout, a quaternion that is no
-/// rotation and a file without poses throw InputError with file and line. Poses with NaN ("lost" in some
-/// references) and a last line that was cut off are passed over with a warning.
+/// Reads a trajectory and orders it by time. Tables may be in UTF-8, UTF-16 or Latin-1, with any line ends
+/// and separators (TableReader). A line that does not fit its layout, a quaternion that is no rotation and a
+/// file without poses throw InputError with file and line. Poses with NaN ("lost" in some references) and a
+/// last line that was cut off are passed over with a warning.
 Trajectory readTrajectory(const std::filesystem::path& path, const TrajectoryReadOptions& options,
                           Diagnostics& diagnostics);
 

@@ -1,7 +1,6 @@
 #include "lodeline/evaluation/text_table.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +8,14 @@
 #include <memory>
 
 #include "lodeline/base/error.h"
+#include "lodeline/tables/text_lines.h"
 
 namespace lodeline {
 namespace {
 
 std::vector<std::string> splitFields(std::string_view line) {
   std::vector<std::string> fields;
-  const char* separators = " \t,\r";
+  const char* separators = " \t,;\r";
   std::size_t begin = line.find_first_not_of(separators);
   while (begin != std::string_view::npos) {
     const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
@@ -65,48 +65,23 @@ Time TextTable::timeInNanoseconds(const TextLine& line, std::size_t column) cons
 }
 
 std::string readFileBytes(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file", path.string()));
-  }
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(fmt::format("{}: is a folder, expected a file", path.string()));
-  }
-  // zlib hands out files without its own header unchanged.
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", path.string()));
+  const std::unique_ptr<ByteSource> source = openFile(path);
   std::string bytes;
   std::vector<char> buffer(1 << 18);
-  int count = 0;
-  while ((count = gzread(file.get(), buffer.data(), static_cast<unsigned>(buffer.size()))) > 0) {
-    bytes.append(buffer.data(), static_cast<std::size_t>(count));
-  }
-  int status = Z_OK;
-  const char* reason = gzerror(file.get(), &status);
-  if (count < 0 || (status != Z_OK && status != Z_STREAM_END)) {
-    throw InputError(
-        fmt::format("{}: cannot be read ({}); the file is damaged or cut off", path.string(), reason));
+  for (std::size_t count = 0; (count = source->read(buffer.data(), buffer.size())) > 0;) {
+    bytes.append(buffer.data(), count);
   }
   return bytes;
 }
 
-TextTable readTextTable(const std::filesystem::path& path, std::size_t max_lines) {
+TextTable readTextTable(const std::filesystem::path& path) {
   TextTable table;
   table.path = path;
-  const std::string bytes = readFileBytes(path);
-  table.ends_with_newline = bytes.empty() || bytes.back() == '\n';
-  std::size_t begin = 0;
-  for (int number = 1; begin < bytes.size() && table.lines.size() < max_lines; ++number) {
-    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
-    const std::string_view text = std::string_view(bytes).substr(begin, end - begin);
-    begin = end + 1;
+  TextLines lines(openFile(path), path.string());
+  for (std::string_view text; lines.next(&text);) {
     std::vector<std::string> fields = splitFields(text);
-    if (fields.empty()) continue;
-    if (fields.front().front() == '#') {
-      table.comments.emplace_back(text);
-    } else {
-      table.lines.push_back({number, std::move(fields)});
-    }
+    if (fields.empty() || fields.front().front() == '#') continue;
+    table.lines.push_back({lines.number(), std::move(fields)});
   }
   if (table.lines.empty()) throw InputError(fmt::format("{}: holds no data lines", path.string()));
   return table;

@@ -12,17 +12,14 @@ namespace lodeline {
 /// One line of a text file with its fields, and where it stands for messages.
 struct TextLine {
   int number = 0;                   ///< counted from 1
-  std::vector<std::string> fields;  ///< separated by blanks, tabs or commas
+  std::vector<std::string> fields;  ///< separated by blanks, tabs, commas or semicolons
 };
 
-/// A text file of columns: blank lines and lines that start with '#' are left out, CRLF is accepted, and a
-/// file compressed with gzip is read as if it were plain. Everything a reader of poses needs to name file and
-/// line.
+/// A text file of columns (TextLines): blank lines and lines that start with '#' are left out. Everything a
+/// reader of poses needs to name file and line.
 struct TextTable {
   std::filesystem::path path;
-  std::vector<std::string> comments;  ///< the lines that start with '#', whole
   std::vector<TextLine> lines;
-  bool ends_with_newline = true;  ///< false: the last line may have been cut off while it was written
 
   std::string where(const TextLine& line) const;
 
@@ -41,9 +38,8 @@ struct TextTable {
 /// its compression is damaged.
 std::string readFileBytes(const std::filesystem::path& path);
 
-/// Throws InputError as readFileBytes does, and when the file has no line with data. With `max_lines` only
-/// the first so many data lines are kept.
-TextTable readTextTable(const std::filesystem::path& path, std::size_t max_lines = SIZE_MAX);
+/// Throws InputError as readFileBytes does, and when the file has no line with data.
+TextTable readTextTable(const std::filesystem::path& path);
 
 /// Seconds written as decimal text ("1403715529.112143517", "1.4e+09") as a time; false when it is no number
 /// or does not fit.

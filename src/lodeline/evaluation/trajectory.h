@@ -28,6 +28,7 @@ struct Trajectory {
   std::string name;  ///< where it was read from, for messages
   TimeBase time_base = TimeBase::Stamps;
   WorldUp up = WorldUp::Z;
+  std::size_t rows = 0;  ///< of a table without times, those that were left out included
   std::vector<StampedPose> poses;
 
   bool empty() const { return poses.empty(); }

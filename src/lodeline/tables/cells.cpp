@@ -40,7 +40,19 @@ bool hasDecimalCommasBetweenBlanks(std::string_view line) {
 }
 
 char characterOf(Separator separator) {
-  return separator == Separator::Comma ? ',' : separator == Separator::Semicolon ? ';' : '\t';
+  return separator == Separator::Semicolon ? ';' : separator == Separator::Tab ? '\t' : ',';
+}
+
+/// Whether blanks as well as commas separate numbers, as in "0.5 1,2,3".
+bool hasNumbersBetweenBlanks(std::string_view line) {
+  std::vector<std::string_view> cells;
+  std::vector<std::string> unquoted;
+  splitCells(line, Separator::Comma, &cells, &unquoted);
+  const auto hasBlank = [](std::string_view cell) { return cell.find(' ') != std::string_view::npos; };
+  if (std::none_of(cells.begin(), cells.end(), hasBlank)) return false;
+  splitCells(line, Separator::CommasAndBlanks, &cells, &unquoted);
+  return std::all_of(cells.begin(), cells.end(),
+                     [](std::string_view cell) { return numberFrom(cell).has_value(); });
 }
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
@@ -56,6 +68,13 @@ std::size_t endOfQuotes(std::string_view line, std::size_t begin) {
     }
   }
   return line.size();
+}
+
+/// The end of the run of blanks at `at`: at its last one, or at the mark behind it.
+std::size_t skipBlanksBeforeMark(std::string_view line, std::size_t at, char mark) {
+  const std::size_t next = line.find_first_not_of(" \t", at);
+  if (next == std::string_view::npos) return line.size();
+  return line[next] == mark || next == at ? next : next - 1;
 }
 
 std::string withoutQuotes(std::string_view cell) {
@@ -131,8 +150,8 @@ Separator separatorOf(std::string_view line) {
   });
   if (has_semicolon) return Separator::Semicolon;
   if (has_tab) return Separator::Tab;
-  if (has_comma && !hasDecimalCommasBetweenBlanks(line)) return Separator::Comma;
-  return Separator::Blanks;
+  if (!has_comma || hasDecimalCommasBetweenBlanks(line)) return Separator::Blanks;
+  return hasNumbersBetweenBlanks(line) ? Separator::CommasAndBlanks : Separator::Comma;
 }
 
 void splitCells(std::string_view line, Separator separator, std::vector<std::string_view>* cells,
@@ -142,6 +161,7 @@ void splitCells(std::string_view line, Separator separator, std::vector<std::str
   // Views into the strings must stay: there are never more of them than quotes.
   unquoted->reserve(static_cast<std::size_t>(std::count(line.begin(), line.end(), '"')));
   const bool by_blanks = separator == Separator::Blanks;
+  const bool ends_at_blank = separator == Separator::CommasAndBlanks;
   const char mark = characterOf(separator);
   std::size_t begin = 0;
   while (true) {
@@ -150,8 +170,12 @@ void splitCells(std::string_view line, Separator separator, std::vector<std::str
     if (by_blanks && begin >= line.size()) return;
     std::size_t end = begin;
     if (begin < line.size() && line[begin] == '"') end = endOfQuotes(line, begin);
-    while (end < line.size() && (by_blanks ? !isBlank(line[end]) : line[end] != mark)) ++end;
+    const auto ends = [&](char c) {
+      return by_blanks ? isBlank(c) : c == mark || (ends_at_blank && isBlank(c));
+    };
+    while (end < line.size() && !ends(line[end])) ++end;
     cells->push_back(unquotedCell(line.substr(begin, end - begin), unquoted));
+    if (ends_at_blank) end = skipBlanksBeforeMark(line, end, mark);
     if (end >= line.size()) return;
     begin = end + 1;
   }

@@ -8,8 +8,9 @@
 /// The cells of one line of a table.
 namespace lodeline {
 
-/// What stands between cells. Blanks: any run of blanks and tabs.
-enum class Separator { Comma, Semicolon, Tab, Blanks };
+/// What stands between cells. Blanks: any run of blanks and tabs. CommasAndBlanks: such a run, or a comma
+/// with or without blanks about it.
+enum class Separator { Comma, Semicolon, Tab, Blanks, CommasAndBlanks };
 
 inline bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -17,7 +18,8 @@ inline bool isDigit(char c) { return c >= '0' && c <= '9'; }
 std::string_view trimmed(std::string_view text);
 
 /// The separator that the line itself suggests: semicolons before tabs before commas before blanks, each
-/// outside of quotes. Commas between digits of a line of blanks are decimal commas.
+/// outside of quotes. Commas between digits of a line of blanks are decimal commas; a line of numbers may
+/// have commas and blanks.
 Separator separatorOf(std::string_view line);
 
 /// The cells of `line`, trimmed and without their quotes. A doubled quote within quotes stands for one. The

@@ -152,6 +152,7 @@ bool TableReader::readAsHeader(const Line& line, std::string_view text) {
     separator_ = separator;
     header_text_ = trimmed(line.text);
     header_line_ = line.number;
+    header_is_comment_ = commentOf(trimmed(line.text)).has_value();
     return true;
   }
   return false;
@@ -198,15 +199,17 @@ void TableReader::readUnitsBelow() {
 
 /// Rows need not be separated as the header is: COLMAP has commas in its header and blanks in its rows.
 void TableReader::settleSeparator() {
+  column_count_ = hasHeader() ? column_count_ : options_.least_columns;
   for (const Line& line : pending_) {
     std::string_view text = trimmed(line.text);
     if (text.empty() || commentOf(text)) continue;
     if (!label_.empty()) text = trimmed(text.substr(label_.size() + 1));
     const Separator likely = separatorOf(text);
     if (!hasHeader()) {
+      split(text, likely, &cells_);
+      dropEmptyAtEnd(&cells_, column_count_);
+      if (cells_.size() < column_count_) continue;
       separator_ = likely;
-      split(text, separator_, &cells_);
-      dropEmptyAtEnd(&cells_, 1);
       column_count_ = cells_.size();
       return;
     }
@@ -216,11 +219,27 @@ void TableReader::settleSeparator() {
       separator_ = separator;
       return;
     }
+    split(text, likely, &cells_);
+    if (!header_is_comment_ || cells_.size() <= column_count_) continue;
+    separator_ = likely;
+    nameFurtherColumns(cells_.size());
+    return;
   }
+}
+
+/// A comment may name the first columns only; the others have no name then.
+void TableReader::nameFurtherColumns(std::size_t count) {
+  diagnostics_->report(Severity::Notice, "csv_columns",
+                       fmt::format("{}: the header in line {} names the first {} of {} columns", name_,
+                                   header_line_, column_count_, count));
+  columns_.resize(count);
+  column_count_ = count;
 }
 
 bool TableReader::fits() {
   dropEmptyAtEnd(&cells_, column_count_);
+  if (cells_.size() + options_.optional_columns < column_count_) return false;
+  if (cells_.size() < column_count_) cells_.resize(column_count_);
   return cells_.size() == column_count_;
 }
 
@@ -230,7 +249,8 @@ bool TableReader::next() {
       line_ = std::move(pending_.front());
       pending_.pop_front();
     } else if (!takeLine(&line_)) {
-      if (fitting_rows_ == 0 && !first_misfit_.empty()) throw InputError(first_misfit_);
+      if (options_.needs_rows && fitting_rows_ == 0 && !first_misfit_.empty())
+        throw InputError(first_misfit_);
       return false;
     }
     std::string_view text = trimmed(line_.text);
@@ -269,18 +289,20 @@ void TableReader::reportMisfit() {
     passOver(fmt::format("the line is longer than {} bytes", TextLines::kLongestLine));
     return;
   }
-  const std::string due = hasHeader()
-                              ? fmt::format("the header in line {} names {}", header_line_, column_count_)
-                              : fmt::format("the first row has {}", column_count_);
-  const bool is_twice = separator_ == Separator::Comma && cells_.size() == 2 * column_count_;
+  const std::string problem = fmt::format("{} columns where {} are due", cells_.size(), column_count_);
   if (first_misfit_.empty()) {
-    first_misfit_ = fmt::format(
-        "{}: {} columns where {}, and no row has so many{}", where(), cells_.size(), due,
-        is_twice ? "; if these are decimal commas, save the table with decimal points or with semicolons "
-                   "between the columns"
-                 : "");
+    const std::string why =
+        hasHeader() ? fmt::format("; the header in line {} names {}", header_line_, column_count_) : "";
+    const bool is_twice = separator_ == Separator::Comma && cells_.size() == 2 * column_count_;
+    const char* advice = is_twice
+                             ? "; if these are decimal commas, save the table with decimal points, or with "
+                               "semicolons between the columns"
+                             : "";
+    first_misfit_ = fmt::format("{}: {}, and no row has so many{}{}", where(), problem, why, advice);
   }
-  passOver(fmt::format("{} columns where {}", cells_.size(), due));
+  const bool is_cut_off = is_cut_off_ && cells_.size() < column_count_ && fitting_rows_ > 0;
+  if (options_.refuses_misfits && !is_cut_off) throw InputError(fmt::format("{}: {}", where(), problem));
+  passOver(problem);
 }
 
 void TableReader::passOver(const std::string& problem) {

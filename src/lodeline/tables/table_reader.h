@@ -22,6 +22,15 @@ struct TableOptions {
   std::function<bool(const std::vector<ColumnName>&)> is_header;
   /// The kind of the finding for a row that is passed over.
   std::string finding = "csv_row";
+  /// Without a header, the first row of as many cells states the number of columns.
+  std::size_t least_columns = 1;
+  /// How many cells a row may lack at its end; they are empty then.
+  std::size_t optional_columns = 0;
+  /// Whether a table of which no row fits is an error, rather than a table without rows.
+  bool needs_rows = true;
+  /// Whether a row with another number of cells is an error, rather than passed over. A last row that was cut
+  /// off never is.
+  bool refuses_misfits = false;
   /// Rows may end early; the cells that are not there are empty.
   bool rows_may_be_short = false;
 };
@@ -54,11 +63,12 @@ class TableReader {
   /// know, for messages. Empty where there is none.
   const std::string& unknownHeader() const { return unknown_header_; }
 
+  Separator separator() const { return separator_; }  ///< of the rows
   /// The word before each row, as in `Raw:1,2,3`; rows with another or without are passed over. Mostly empty.
   const std::string& label() const { return label_; }
 
   /// Moves to the next row that has as many cells as there are columns; false after the last one. Throws
-  /// InputError at the end where rows were there and none of them did.
+  /// InputError at the end where rows were there and none of them did (TableOptions::needs_rows).
   bool next();
 
   std::string_view cell(std::size_t column) const { return cells_[column]; }
@@ -90,6 +100,7 @@ class TableReader {
   bool splitNames(std::string_view text, Separator separator, std::vector<ColumnName>* names);
   void readUnitsBelow();
   void settleSeparator();
+  void nameFurtherColumns(std::size_t count);
   void split(std::string_view text, Separator separator, std::vector<std::string_view>* cells);
   /// Whether cells_ are as many as the columns, after empty ones at the end are taken off.
   bool fits();
@@ -105,6 +116,7 @@ class TableReader {
   std::vector<ColumnName> columns_;
   std::string header_text_;
   int header_line_ = 0;
+  bool header_is_comment_ = false;
   std::vector<std::string> preamble_;
   std::string unknown_header_;
   std::string label_;

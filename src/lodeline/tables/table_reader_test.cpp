@@ -79,6 +79,12 @@ TEST_F(TableReaderTest, FindsTheHeaderByItsWords) {
   EXPECT_TRUE(diagnostics_.ranked().empty()) << firstMessage();
 }
 
+TEST_F(TableReaderTest, AcceptsACommentThatNamesTheFirstColumnsOnly) {
+  EXPECT_THAT(rowsOf("# time depth\n0 3.25 7\n10 -4.5 8\n"),
+              ElementsAre(ElementsAre(0.0, 3.25, 7.0), ElementsAre(10.0, -4.5, 8.0)));
+  EXPECT_EQ(diagnostics_.count("csv_columns"), 1);
+}
+
 TEST_F(TableReaderTest, TakesUnitsFromTheLineBelow) {
   const TableReader table = open("time,depth\n[ms],(ft)\n0,3.25\n");
   EXPECT_EQ(table.columns()[0].unit, "ms");
@@ -88,7 +94,7 @@ TEST_F(TableReaderTest, TakesUnitsFromTheLineBelow) {
 TEST_F(TableReaderTest, WithoutHeaderTheFirstRowStatesTheColumns) {
   EXPECT_THAT(rowsOf("# note\n0,3.25,\n10,-4.5,\n3,4,5\n7\n", false), ElementsAre(kFirst, kSecond));
   EXPECT_EQ(diagnostics_.count("csv_row"), 2);
-  EXPECT_THAT(firstMessage(), HasSubstr("table.csv:4: 3 columns where the first row has 2"));
+  EXPECT_THAT(firstMessage(), HasSubstr("table.csv:4: 3 columns where 2 are due"));
   TableReader table = open("speed,course\n1,2\n");
   EXPECT_FALSE(table.hasHeader());
   EXPECT_EQ(table.unknownHeader(), "speed,course");
@@ -116,6 +122,11 @@ TEST_F(TableReaderTest, RefusesATableOfWhichNoRowFits) {
 TEST_F(TableReaderTest, TakesDecimalCommasBetweenBlanks) {
   EXPECT_THAT(rowsOf("0,5 3,25 7\n10,0 -4,5 8\n", false),
               ElementsAre(ElementsAre(0.5, 3.25, 7.0), ElementsAre(10.0, -4.5, 8.0)));
+}
+
+TEST_F(TableReaderTest, TakesCommasAndBlanksBetweenNumbers) {
+  EXPECT_THAT(rowsOf("0.5 1,2 , 3\n0.6 4,5,6\n", false),
+              ElementsAre(ElementsAre(0.5, 1.0, 2.0, 3.0), ElementsAre(0.6, 4.0, 5.0, 6.0)));
 }
 
 TEST_F(TableReaderTest, TakesOffALabelBeforeEachRow) {

@@ -48,8 +48,6 @@ constexpr Unit kRates[] = {{"rad/s", 1.0},
                            {"degs", kDegree},
                            {"radps", 1.0},
                            {"degps", kDegree},
-                           {"rad", 1.0},
-                           {"deg", kDegree},
                            {"radian/s", 1.0},
                            {"radians/s", 1.0},
                            {"degrees/second", kDegree},
@@ -171,6 +169,9 @@ StatedUnit statedUnit(const ColumnName& column, Quantity quantity) {
   if (!column.unit.empty()) return {unitFactor(quantity, column.unit), column.unit};
   // The suffix of a name: one word, or two of a quotient. A single letter after a letter ("ts") is none.
   for (const std::string& suffix : column.suffixes) {
+    // In brackets these are angles.
+    if (quantity == Quantity::AngularRate && suffix == "rad") return {1.0, suffix};
+    if (quantity == Quantity::AngularRate && suffix == "deg") return {kDegree, suffix};
     if (const std::optional<double> factor = unitFactor(quantity, suffix)) return {factor, suffix};
   }
   return {};

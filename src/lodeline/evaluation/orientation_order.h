@@ -1,0 +1,14 @@
+#pragma once
+
+#include "lodeline/base/diagnostics.h"
+#include "lodeline/evaluation/association.h"
+
+namespace lodeline {
+
+/// Reports ("quaternion_order") where the orientations of both trajectories disagree and would agree far
+/// better if the quaternions of one were read in another order: w first in place of last, last in place of
+/// first, or inverse. Between the two any constant rotation of the world and of the body is allowed, so that
+/// a body frame of another convention is no finding.
+void checkOrientationOrder(const PosePairs& pairs, Diagnostics& diagnostics);
+
+}  // namespace lodeline
