@@ -82,8 +82,6 @@ std::optional<std::size_t> columnWith(const std::vector<ColumnName>& columns,
   return std::nullopt;
 }
 
-bool hasDecimals(std::string_view stamp) { return stamp.find('.') != std::string_view::npos; }
-
 bool hasDecimals(std::string_view stamp) { return stamp.find_first_of(".,") != std::string_view::npos; }
 
 }  // namespace
