@@ -6,10 +6,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lodeline;
   const fuzz::FuzzedFile file(data, size, ".csv");
-  for (const int numbers : {6, 0}) {
+  for (const CsvContent content : {CsvContent::Imu, CsvContent::Images}) {
     fuzz::expectDocumentedErrors([&] {
       Diagnostics diagnostics;
-      CsvReader reader(file.path(), numbers, &diagnostics);
+      CsvReader reader(file.path(), content, &diagnostics,
+                       content == CsvContent::Imu ? kInertialRate : kCameraRate);
       CsvRow row;
       while (reader.next(&row)) {
       }
