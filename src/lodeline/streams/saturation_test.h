@@ -32,7 +32,7 @@ class SaturationTest {
     double before = 0.0;
     double least = 0.0, greatest = 0.0;
     double resolution = 1e300;  ///< least change that was seen
-    double repeating = 1.0;     ///< share of readings that repeat the one before, away from both ends
+    double change = 0.0;        ///< mean size of the last changes
     End upper, lower;
     bool add(double reading);
   };
