@@ -112,6 +112,16 @@ message::TransformStamped transformMessage(const FrameEstimate& estimate, const 
   return message;
 }
 
+std::optional<message::TransformStamped> northMessage(const FrameEstimate& estimate,
+                                                      const FrameNames& names) {
+  const std::optional<double>& turn_rad = estimate.magnetometer.north_from_world_rad;
+  if (!turn_rad) return std::nullopt;
+  auto message = headed<message::TransformStamped>(estimate.time, names.map);
+  message.child_frame_id = names.world;
+  message.transform.rotation = quaternionMessage(so3::exp(*turn_rad * Vec3::UnitZ()));
+  return message;
+}
+
 message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time time, const FrameNames& names) {
   auto cloud = headed<message::PointCloud2>(time, names.world);
   using message::PointField;

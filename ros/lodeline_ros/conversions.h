@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,12 @@
 /// What the estimator knows, in the messages of ROS 1 (packages geometry_msgs, nav_msgs, sensor_msgs 1.13).
 namespace lodeline {
 
-/// Names of the frames in messages: the world (east, north, up) and the body (the IMU).
+/// Names of the frames in messages: the map (east, north, up), the world (of the first pose; never jumps) and
+/// the body (the IMU). The map is the world where north is known at the start.
 struct FrameNames {
   std::string world = "world";
   std::string body = "body";
+  std::string map = "map";
 };
 
 /// How the body turns at the time of an estimate, by the gyroscope.
@@ -33,6 +36,8 @@ message::Odometry odometryMessage(const FrameEstimate& estimate, const Turning& 
 
 message::PoseStamped poseMessage(const FrameEstimate& estimate, const FrameNames& names);
 message::TransformStamped transformMessage(const FrameEstimate& estimate, const FrameNames& names);
+/// The world in the map: a turn about the vertical to north, as known now. Nothing while north is unknown.
+std::optional<message::TransformStamped> northMessage(const FrameEstimate& estimate, const FrameNames& names);
 
 /// Points in the world, m, as x, y, z (FLOAT32) and `sightings` (UINT32), 16 bytes a point.
 message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time time, const FrameNames& names);

@@ -51,6 +51,19 @@ TEST(Conversions, OdometryIsTheBodyInTheWorld) {
   EXPECT_EQ(poseMessage(estimate, {"map", "imu"}).header.frame_id, "map");
 }
 
+TEST(Conversions, NorthIsAMapAboveAWorldThatNeverJumps) {
+  FrameEstimate estimate = someEstimate();
+  EXPECT_FALSE(northMessage(estimate, {})) << "north is unknown";
+  estimate.magnetometer.north_from_world_rad = 2.0;
+  const auto north = northMessage(estimate, {"odom", "imu", "north"});
+  ASSERT_TRUE(north);
+  EXPECT_EQ(north->header.frame_id, "north");
+  EXPECT_EQ(north->child_frame_id, "odom");
+  EXPECT_EQ(north->transform.translation.x, 0.0);
+  EXPECT_NEAR(north->transform.rotation.z, std::sin(1.0), 1e-12);
+  EXPECT_NEAR(north->transform.rotation.w, std::cos(1.0), 1e-12);
+}
+
 TEST(Conversions, PoseCovarianceIsPositionThenRotationRowByRow) {
   const FrameEstimate estimate = someEstimate();
   const message::Odometry message = odometryMessage(estimate, {}, {});

@@ -28,6 +28,7 @@ void EstimatePublisher::publish(const FramePacket& packet, const FrameEstimate& 
   if (tf_) {
     message::TFMessage transforms;
     transforms.transforms.push_back(transformMessage(estimate, names_));
+    if (auto north = northMessage(estimate, names_)) transforms.transforms.push_back(std::move(*north));
     tf_.publish(transforms);
   }
   if (!estimate.is_keyframe) return;

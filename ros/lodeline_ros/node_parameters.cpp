@@ -76,6 +76,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& node) {
   reader.read("magnetometer", &run.magnetometer);
   reader.read("site", &run.site);
   reader.read("date", &run.date);
+  reader.read("map_frame", &parameters.frames.map);
   reader.read("world_frame", &parameters.frames.world);
   reader.read("body_frame", &parameters.frames.body);
   reader.read("publish_tf", &parameters.publish_tf);

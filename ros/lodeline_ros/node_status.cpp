@@ -93,6 +93,10 @@ DiagnosticStatus NodeStatus::magnetometerStatus() const {
   if (isRejected(magnetometer.status)) status.level = DiagnosticStatus::WARN;
   addValue("gate", toString(magnetometer.status), &status);
   addValue("heading reference", toString(magnetometer.heading_reference), &status);
+  if (magnetometer.north_from_world_rad) {
+    addValue("north from world [deg]",
+             fmt::format("{:.2f}", *magnetometer.north_from_world_rad * 180.0 / std::numbers::pi), &status);
+  }
   addValue("heading sigma [deg]",
            fmt::format("{:.2f}", magnetometer.heading_sigma_rad * 180.0 / std::numbers::pi), &status);
   return status;

@@ -21,6 +21,7 @@ export interface Summary {
   rig?: { cameras?: string[]; camera_rate_hz?: number; imu_rate_hz?: number; camera_axis_B?: number[] };
   interrupted?: boolean;
   first_frame_ns?: string; // findings count their times from it
+  do_not_trust?: string;
   frames?: number;
   frames_with_pose?: number;
   completion?: number;
@@ -33,7 +34,7 @@ export interface Summary {
   real_time_factor?: number;
   core_ms_per_frame?: Record<string, number>;
   peak_memory_MB?: number;
-  heading?: { reference?: string; sigma_rad?: number };
+  heading?: { reference?: string; sigma_rad?: number; north_found_after_s?: number; world_turned_rad?: number };
   findings?: Finding[];
 }
 
@@ -79,6 +80,7 @@ export interface Magnetometer {
   table: Table;
   is_calibrated: boolean;
   field_strength_T: number | null; // that corrected readings should have
+  field_strength_from: string; // in words
 }
 
 export interface Run {

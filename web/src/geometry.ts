@@ -19,6 +19,21 @@ export function rotate(q: Quat, v: Vec3): Vec3 {
   ];
 }
 
+export function multiply(a: Quat, b: Quat): Quat {
+  const [w, x, y, z] = a;
+  return [
+    w * b[0] - x * b[1] - y * b[2] - z * b[3],
+    w * b[1] + x * b[0] + y * b[3] - z * b[2],
+    w * b[2] - x * b[3] + y * b[0] + z * b[1],
+    w * b[3] + x * b[2] - y * b[1] + z * b[0],
+  ];
+}
+
+/// A turn about the vertical, counter-clockwise seen from above.
+export function aboutVertical(angle_rad: number): Quat {
+  return [Math.cos(angle_rad / 2), 0, 0, Math.sin(angle_rad / 2)];
+}
+
 /// Compass direction, degrees clockwise from the world's y axis; null where the vector is upright.
 export function bearing(v: Vec3): number | null {
   if (Math.hypot(v[0], v[1]) < 1e-3) return null;

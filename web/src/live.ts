@@ -7,9 +7,10 @@ import { number } from "./format";
 import { kPlots } from "./plots";
 import { plotCard } from "./plot";
 import { statusCard } from "./status_strip";
-import { appendPose, makeTrack } from "./track";
+import { appendPose, makeTrack, refill } from "./track";
 import { trajectorySection } from "./trajectory_section";
 import { View } from "./view";
+import { turnNumbers, turnPoints, turnRows } from "./world_turn";
 
 /// What LiveView sends of a frame; columns have the names of states.csv.
 interface State {
@@ -17,12 +18,14 @@ interface State {
   numbers?: Record<string, number | null>;
   words: Record<string, string>;
   landmarks?: string; // new ones, base64 of 32-bit floats: x y z x y z ...
-  run: { frames: number; path_m: number; real_time_factor: number; heading_reference: string; waiting_for: string };
+  run: { frames: number; path_m: number; real_time_factor: number; heading_reference: string;
+    north_from_world_rad: number | null; waiting_for: string };
 }
 
 const kRedraw_ms = 500;
 const kMostPictures = 40;
 const kMostLandmarks = 60000;
+const kWorthTurning_rad = 0.002; // north moves a little with every frame
 const kLivePlots = ["heading", "depth", "heading-sigma", "tracks"];
 
 function emptyRun(data: PageData): Run {
@@ -71,6 +74,7 @@ export function startLive(page: Element, data: PageData): void {
   const view = new View([track]);
   const now = nowPanel();
   let landmarks: number[] = []; // x y z x y z ...
+  let turned_rad = 0; // what is shown, against the run's own world
   let follow = true;
   let dirty = false;
   append(now.node, toggle("Follow the newest pose", true, (on) => (follow = on)));
@@ -88,10 +92,18 @@ export function startLive(page: Element, data: PageData): void {
     const state = JSON.parse((event as MessageEvent<string>).data) as State;
     // After a broken connection the server tells everything from the start again.
     if (state.t_s <= (run.states.t_s[run.states.t_s.length - 1] ?? -1)) return;
+    const north_rad = state.run.north_from_world_rad ?? turned_rad;
+    if (Math.abs(north_rad - turned_rad) > kWorthTurning_rad) {
+      turnRows(run.states, north_rad - turned_rad);
+      landmarks = turnPoints(landmarks, north_rad - turned_rad);
+      turned_rad = north_rad;
+      refill(track);
+    }
+    if (state.numbers) turnNumbers(state.numbers, turned_rad);
     add(run, state);
     if (state.numbers) appendPose(track, run.states.t_s.length - 1);
     run.summary.heading = { reference: state.run.heading_reference };
-    if (state.landmarks) landmarks = added(landmarks, decodeFloats(state.landmarks));
+    if (state.landmarks) landmarks = added(landmarks, turnPoints(decodeFloats(state.landmarks), turned_rad));
     now.show(state, landmarks.length / 3);
     dirty = true;
   });
@@ -107,14 +119,14 @@ export function startLive(page: Element, data: PageData): void {
   setInterval(() => {
     if (!dirty || track.t_s.length === 0) return;
     dirty = false;
-    if (landmarks.length !== track.landmarks.length) track.landmarks = Float32Array.from(landmarks);
+    track.landmarks = Float32Array.from(landmarks);
     view.active.emit();
     if (follow) view.time.set(track.t_s[track.t_s.length - 1]);
   }, kRedraw_ms);
 }
 
 /// When there are many, every second one goes.
-function added(landmarks: number[], more: Float32Array): number[] {
+function added(landmarks: number[], more: number[]): number[] {
   landmarks.push(...more);
   return landmarks.length < 3 * kMostLandmarks ? landmarks : landmarks.filter((_, i) => Math.floor(i / 3) % 2 === 0);
 }

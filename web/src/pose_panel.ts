@@ -9,7 +9,7 @@ import type { View } from "./view";
 function figures(track: Track, pose: number): [string, string][] {
   const { states } = track.run;
   const row = track.row[pose];
-  const fixed = (v: number, digits: number) => v.toFixed(digits).replace("-", "−");
+  const fixed = (v: number, digits: number) => v.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   const position = ["x", "y", "z"].map((axis) => fixed(states.numbers[`p_${axis} [m]`][row] ?? NaN, 2)).join(", ");
   const plusMinus = (v: number | null, sigma: number | null, digits: number, unit: string) =>
     v === null ? "–" : `${fixed(v, digits)}${unit}${sigma === null ? "" : ` ± ${number(sigma, 2)}${unit}`}`;

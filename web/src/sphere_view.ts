@@ -70,7 +70,7 @@ function draw(view: View, card: HTMLElement, drawing: HTMLElement, note: HTMLEle
     scene.add(globe(Math.min(1, corrected.nearest)), dots(corrected));
     const rms = Math.sqrt(corrected.off.reduce((a, v) => a + v * v, 0) / Math.max(1, corrected.off.length));
     note.textContent = (magnetometer.is_calibrated ? "Readings after calibration" : "Readings as they are: no calibration was given") +
-      `; sphere: ${number(corrected.radius_uT)} µT${magnetometer.field_strength_T ? "" : ", their mean"}. ` +
+      `; sphere: ${number(corrected.radius_uT)} µT, ${magnetometer.field_strength_from}. ` +
       `RMS distance ${number(100 * rms, 2)} % of it. Yellow and green dots lie on it, violet ones ${100 * kGreatestOff} % or more off.`;
     render();
   };

@@ -21,7 +21,8 @@ function tiles(run: Run): Tile[] {
     },
     {
       name: "Heading, one sigma", value: `${number((180 / Math.PI) * (s.heading?.sigma_rad ?? NaN), 2)}°`,
-      detail: `from ${s.heading?.reference ?? "the first heading"}, at the end`,
+      detail: `from ${s.heading?.reference ?? "the first heading"}, at the end` +
+        (s.heading?.north_found_after_s === undefined ? "" : `; north found after ${number(s.heading.north_found_after_s, 3)} s`),
     },
     {
       name: "Reprojection", value: `${number(s.mean_reprojection_rms_px, 2)} px`,
@@ -83,6 +84,10 @@ export function findingsList(view: View): HTMLElement {
     if (run.summary.interrupted) {
       lines.unshift(findingLine({ severity: "warning", kind: "interrupted", count: 1,
         message: "The run was ended by hand before the recording was; what follows covers what was read." }, view, run));
+    }
+    if (run.summary.do_not_trust) {
+      lines.unshift(findingLine({ severity: "serious", kind: "do_not_trust", count: 1,
+        message: `The result is not to be trusted: ${run.summary.do_not_trust}.` }));
     }
     list.replaceChildren(...(lines.length ? lines : [element("li", "", "Nothing was found wrong with the data.")]));
   });

@@ -27,8 +27,15 @@ export function makeTrack(run: Run): Track {
     run, map, row: [], t_s: [], position: [], view: [], heading_deg: [], depth_m: [], headingSigma_deg: [],
     positionSigma_m: [], error_m: [], landmarks: mapped(decodeFloats(run.landmarks.xyz), map),
   };
-  for (let row = 0; row < run.states.t_s.length; ++row) appendPose(track, row);
+  refill(track);
   return track;
+}
+
+/// Works all poses out again, after the states have changed.
+export function refill(track: Track): void {
+  for (const column of [track.row, track.t_s, track.position, track.view, track.heading_deg, track.depth_m,
+    track.headingSigma_deg, track.positionSigma_m, track.error_m]) column.length = 0;
+  for (let row = 0; row < track.run.states.t_s.length; ++row) appendPose(track, row);
 }
 
 /// Takes a row of the states along, where it has a position.

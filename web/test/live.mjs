@@ -15,4 +15,12 @@ await run(async ({ page }) => {
   // One with each of the states 0 to 12.
   assert.match(await text(".now"), /Map points shown13/);
   await page.waitForSelector(".ended");
+  // A pose before north was found has turned with those after.
+  await page.$eval(".pose input", (slider) => {
+    slider.value = "2";
+    slider.dispatchEvent(new Event("input"));
+  });
+  await page.waitForFunction(() => document.querySelector(".pose .time").textContent === "0:02.0");
+  assert.match(await text(".pose .figures"), /Position2\.00, 0\.00, −0\.50 m/);
+  assert.match(await text(".pose .figures"), /Heading90\.0/);
 });

@@ -131,7 +131,8 @@ cv::Mat storedPixels(ImageForm form, std::span<const uint8_t> message) {
   return form == ImageForm::Compressed ? decodeStoredPixels(stored.file) : stored.pixels;
 }
 
-PendingImage pendingImage(ImageForm form, wire::Bytes bytes, const std::string& where, const GreyRange& range) {
+PendingImage pendingImage(ImageForm form, wire::Bytes bytes, const std::string& where,
+                          const GreyRange& range) {
   const auto message = std::make_shared<const wire::Bytes>(std::move(bytes));
   const Time stamp = stampOf(*message);
   const std::string name = fmt::format("{} at {} ns", where, stamp.nanoseconds());

@@ -9,6 +9,8 @@
 
 #include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
+#include "lodeline/calibration/axis_checks.h"
+#include "lodeline/calibration/hard_iron_change.h"
 #include "lodeline/magnetism/heading_error.h"
 #include "lodeline/magnetism/reading_screen.h"
 #include "lodeline/magnetism/world_magnetic_model.h"
@@ -50,10 +52,16 @@ UsedReadings usedReadings(const std::vector<MagnetometerSample>& samples, const 
 }
 
 InertialCalibration withInertialSensors(const MagnetometerRecord& record, const UsedReadings& used,
-                                        const IronCalibration& iron, bool has_old) {
+                                        const IronCalibration& iron, bool has_old, Diagnostics* diagnostics) {
   if (record.imu.size() < 2) throw EstimationError("the recording has no gyroscope and accelerometer");
   const std::optional<FieldAlignment> alignment = alignField(used.corrected, record.imu);
   if (!alignment) throw EstimationError("hardly any magnetometer reading lies within the IMU's times");
+  if (const auto objection = gyroscopeObjection(used.corrected, *alignment, record.imu)) {
+    diagnostics->report(
+        Severity::Serious, "gyroscope_axes",
+        *objection + "; nothing of it is used here, and a run with these readings would fail");
+    throw EstimationError(*objection);
+  }
   if (alignment->distinctness < kLeastDistinctness) {
     throw EstimationError(
         "the sensor was not turned enough, or about one axis only, to tell how it sits on the IMU");
@@ -163,13 +171,39 @@ void checkAgainstSite(const MagnetometerFit& fit, double own_strength_T, const V
   }
 }
 
+/// Widens the hard iron's covariance by how much it changed during the record, and reports a step.
+void judgeSteadiness(const std::vector<MagnetometerSample>& samples, MagnetometerCalibrationResult* result,
+                     Diagnostics* diagnostics) {
+  MagnetometerFit& fit = result->fit;
+  std::vector<CorrectedReading> readings;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (result->iron.used[i]) readings.push_back({samples[i].time, fit.corrected_M(samples[i].field_M)});
+  }
+  const HardIronChange change = findHardIronChange(readings, fit.field_strength_T);
+  const Mat3 reading_by_field = fit.iron_correction.inverse();
+  fit.covariance.block<3, 3>(fit_parameter::kHardIron, fit_parameter::kHardIron) +=
+      change.spread_T * change.spread_T * reading_by_field * reading_by_field.transpose();
+  if (!change.step) return;
+  result->hard_iron_step_T = change.step->size_T;
+  diagnostics->report(
+      Severity::Warning, "magnetometer_current",
+      fmt::format(
+          "{:.0f} s after the first reading the hard iron changed at once by {:.2f} +- {:.2f} uT: a current "
+          "on board was switched, or iron was moved. The calibration is a mean of both; repeat it with "
+          "everything as it is on the dive",
+          (change.step->time - samples.front().time).seconds(), 1e6 * change.step->size_T,
+          1e6 * change.step->sigma_T));
+}
+
 std::string verdictOf(const MagnetometerCalibrationResult& result) {
   const MagnetometerFit& fit = result.fit;
   if (fit.model == IronModel::Kept)
     return "Not calibrated: these readings are no better than the old calibration, which is kept.";
   const double degrees = fit.heading_error_rad / kDegree;
+  const bool knows_rotation = fit.body_from_magnetometer && result.inertial;
   const char* worth = degrees < 0.5 ? "Good" : degrees < 2.0 ? "Usable" : "Weak";
   std::string text = worth;
+  if (!knows_rotation) text += " for the magnetometer alone";
   switch (fit.model) {
     case IronModel::Full:
       text += ": soft and hard iron are determined";
@@ -184,9 +218,21 @@ std::string verdictOf(const MagnetometerCalibrationResult& result) {
       text += ": the offset alone is determined, from the field's known size";
       break;
   }
-  text += fit.body_from_magnetometer && result.inertial ? ", and so is the rotation to the IMU"
-                                                        : "; the rotation to the IMU is not";
-  text += fmt::format(". Expected heading error {:.2f} degrees.", degrees);
+  if (knows_rotation) {
+    text +=
+        fmt::format(", and so is the rotation to the IMU. Expected heading error {:.2f} degrees.", degrees);
+  } else {
+    text += fmt::format(
+        "; the rotation to the IMU is not. Expected heading error {:.2f} degrees if the rotation {} is "
+        "exact; each "
+        "degree that it is off costs up to {:.1f} degrees more.",
+        degrees, fit.body_from_magnetometer ? "that the recording states" : "that the rig's file states",
+        1.0 / std::cos(result.dip_rad));
+  }
+  if (fit.dip_rad && *fit.dip_rad < 0.0 && result.dip_source == "measured")
+    text +=
+        " That holds south of the magnetic equator; north of it headings are reversed, since the field dips "
+        "up.";
   if (degrees >= 2.0) text += " Repeat with more directions before relying on it.";
   return text;
 }
@@ -231,7 +277,7 @@ MagnetometerCalibrationResult calibrateMagnetometer(const MagnetometerRecord& re
   result.fit.body_from_magnetometer = record.body_from_magnetometer;
   try {
     const UsedReadings used = usedReadings(screen.usable, result.iron);
-    result.inertial = withInertialSensors(record, used, result.iron, options.old.has_value());
+    result.inertial = withInertialSensors(record, used, result.iron, options.old.has_value(), diagnostics);
     adopt(*result.inertial, iron.field_strength_T, rate_hz, &result.fit);
     // Of an error D of the axes, (D - D^T) / 2 turns them all.
     result.fit.axes_sigma_rad = imu_axes::sigmaFor(record.imu_noise) / std::sqrt(2.0);
@@ -245,6 +291,8 @@ MagnetometerCalibrationResult calibrateMagnetometer(const MagnetometerRecord& re
     result.without_inertial = error.what();
     result.fit.noise_density_T_per_sqrtHz = noiseFromResiduals(result, rate_hz);
   }
+  checkAxes(result.fit, options.site_field_ENU, record.body_from_magnetometer, diagnostics);
+  judgeSteadiness(screen.usable, &result, diagnostics);
   result.fit.heading_error_rad = headingSigma(result.fit, result.dip_rad);
   if (options.site_field_ENU) {
     const double own_strength_T =

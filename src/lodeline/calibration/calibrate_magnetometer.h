@@ -24,6 +24,7 @@ struct MagnetometerCalibrationResult {
   std::optional<InertialCalibration> inertial;  ///< with gyroscope and accelerometer
   std::string without_inertial;                 ///< why not, one sentence; empty where it is there
   std::vector<Vec3> readings;                   ///< usable, free of repetitions, as `iron.used` counts them
+  std::optional<double> hard_iron_step_T;       ///< by which the hard iron changed at once during the record
   SphereCoverage coverage;                      ///< of the final calibration
   double dip_rad = 0.0;                         ///< that heading errors are given for
   std::string dip_source;                       ///< "site", "measured" or "assumed"

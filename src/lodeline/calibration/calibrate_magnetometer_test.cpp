@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include "lodeline/base/error.h"
 #include "lodeline/calibration/calibration_report.h"
 #include "lodeline/calibration/test_turning_sensor.h"
@@ -149,6 +152,45 @@ TEST(CalibrateMagnetometer, RefusesAFrozenOrStillSensor) {
   still.motion.a.setZero();
   still.motion.b.setZero();
   EXPECT_THROW(calibrateMagnetometer(recordOf(still), {}, &diagnostics), EstimationError);
+}
+
+// Counts that flicker about one value lie on a small sphere, whatever the site's field is.
+TEST(CalibrateMagnetometer, RefusesTheFlickerOfASensorAtRest) {
+  MagnetometerRecord record = recordOf(rollingSensor(), false);
+  std::mt19937 random(1);
+  for (MagnetometerSample& sample : record.magnetometer) {
+    sample.field_M = Vec3(12e-6, -20e-6, 40e-6);
+    for (int axis = 0; axis < 3; ++axis)
+      sample.field_M[axis] += 0.15e-6 * (static_cast<int>(random() % 3) - 1);
+  }
+  CalibrationOptions with_site;
+  with_site.site_field_ENU = Vec3(0.0, 24e-6, -38e-6);
+  for (const CalibrationOptions& options : {CalibrationOptions(), with_site}) {
+    Diagnostics diagnostics;
+    EXPECT_THROW(calibrateMagnetometer(record, options, &diagnostics), EstimationError);
+  }
+}
+
+TEST(CalibrateMagnetometer, LeavesOutWildReadings) {
+  const test::TurningSensor sensor = rollingSensor();
+  const MagnetometerRecord healthy = recordOf(sensor, false);
+  Diagnostics diagnostics;
+  const MagnetometerFit expected = calibrateMagnetometer(healthy, {}, &diagnostics).fit;
+  for (const Vec3& wild_uT :
+       {Vec3(1000.0, 0.0, 0.0), Vec3(600.0, -600.0, 600.0), Vec3(2668.0, 2407.0, 2217.0),
+        Vec3(-4912.0, -4912.0, -4912.0), Vec3(1500.0, 0.0, 0.0)}) {
+    for (const size_t every : {healthy.magnetometer.size(), size_t{401}}) {
+      MagnetometerRecord record = healthy;
+      int spoilt = 0;
+      for (size_t i = every / 2; i < record.magnetometer.size(); i += every, ++spoilt)
+        record.magnetometer[i].field_M = 1e-6 * wild_uT + 1e-9 * Vec3::Constant(static_cast<double>(i));
+      const auto result = calibrateMagnetometer(record, {}, &diagnostics);
+      EXPECT_LT((result.fit.hard_iron - expected.hard_iron).cwiseAbs().maxCoeff(), 0.05e-6)
+          << wild_uT.transpose();
+      EXPECT_GE(std::count(result.iron.used.begin(), result.iron.used.end(), false), spoilt);
+      EXPECT_THAT(calibrationText(result), HasSubstr("readings did not fit"));
+    }
+  }
 }
 
 TEST(CalibrateMagnetometer, WarnsWhereTheSiteDisagrees) {

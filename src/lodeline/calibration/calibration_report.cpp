@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/base/angles.h"
@@ -90,7 +91,13 @@ std::string calibrationText(const MagnetometerCalibrationResult& result) {
   }
   text += fmt::format("  {:<18}{:.0f} % of the sphere\n", "coverage", 100.0 * fit.coverage_share);
   text += fmt::format("  {:<18}{:.3g}\n", "condition number", fit.condition_number);
-  text += fmt::format("  {:<18}{:.1f} %\n", "rejected", 100.0 * fit.rejected_share);
+  const auto left_out = std::count(result.iron.used.begin(), result.iron.used.end(), false);
+  text += fmt::format("  {:<18}{:.1f} % ({} of {} readings did not fit the ellipsoid)\n", "rejected",
+                      100.0 * fit.rejected_share, left_out, result.iron.used.size());
+  if (result.hard_iron_step_T) {
+    text += fmt::format("  {:<18}changed at once by {:.2f} uT during the record\n", "hard iron",
+                        1e6 * *result.hard_iron_step_T);
+  }
   text += fmt::format("  {:<18}{:.3f} degrees, one sigma, at a dip of {:.1f} degrees ({})\n", "heading error",
                       fit.heading_error_rad / kDegree, result.dip_rad / kDegree, result.dip_source);
   return text;
@@ -147,6 +154,7 @@ nlohmann::ordered_json calibrationJson(const MagnetometerCalibrationResult& resu
   json["coverage_percent"] = 100.0 * fit.coverage_share;
   json["condition_number"] = fit.condition_number;
   json["rejected_percent"] = 100.0 * fit.rejected_share;
+  if (result.hard_iron_step_T) json["hard_iron_step_T"] = *result.hard_iron_step_T;
   json["readings"] = fit.readings;
   json["heading_error_deg"] = fit.heading_error_rad / kDegree;
   json["heading_error_dip_deg"] = result.dip_rad / kDegree;

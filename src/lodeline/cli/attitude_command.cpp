@@ -9,6 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/base/json_text.h"
 #include "lodeline/base/output_file.h"
+#include "lodeline/calibration/axis_checks.h"
 #include "lodeline/calibration/calibration_file.h"
 #include "lodeline/cli/open_recording.h"
 #include "lodeline/data/inertial_stream.h"
@@ -38,11 +39,12 @@ struct AttitudeArguments {
 /// Opens DATA and gives its magnetometer what the command line says about it.
 template <typename Source>
 std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
-                                            const AttitudeArguments& arguments) {
+                                            const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   Rig rig = source->rig();
   if (!arguments.magnetometer_calibration.empty()) {
-    applyCalibration(readCalibrationFile(arguments.magnetometer_calibration),
-                     arguments.magnetometer_calibration, &rig);
+    const MagnetometerFit fit = readCalibrationFile(arguments.magnetometer_calibration);
+    applyCalibration(fit, arguments.magnetometer_calibration, &rig);
+    if (fit.dip_rad && arguments.site.empty()) reportNegativeDip(*fit.dip_rad, diagnostics);
   }
   if (rig.magnetometer) {
     rig.magnetometer->time_offset_to_imu_s -= arguments.magnetometer_lag_s;
@@ -54,11 +56,11 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
 std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
   if (isTableOfReadings(arguments.data)) {
-    return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments);
+    return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments, diagnostics);
   }
   EurocOptions options;
   options.with_cameras = false;
-  return prepared(openRecording(arguments.data, options, arguments.bag, diagnostics), arguments);
+  return prepared(openRecording(arguments.data, options, arguments.bag, diagnostics), arguments, diagnostics);
 }
 
 AttitudeFilterOptions filterOptions(const AttitudeArguments& arguments) {

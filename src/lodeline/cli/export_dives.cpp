@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "lodeline/base/error.h"
 #include "lodeline/base/output_file.h"
@@ -68,6 +69,11 @@ std::vector<MapFormat> wantedFormats(const ExportArguments& arguments) {
   }
   if (!is_single && arguments.output.empty()) {
     throw UsageError("several runs want one folder for their files: name it with -o");
+  }
+  std::set<std::filesystem::path> folders;
+  for (const std::string& run : arguments.runs) {
+    if (folders.insert(std::filesystem::weakly_canonical(run)).second) continue;
+    throw UsageError(fmt::format("{} is named twice: each RUN is one dive of the project", run));
   }
   return formats;
 }

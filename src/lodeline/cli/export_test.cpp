@@ -147,6 +147,9 @@ TEST_F(ExportTest, JoinsSeveralRunsOnOneGrid) {
   EXPECT_THAT(result.output, HasSubstr("UTM15N (WGS 84 / UTM zone 15N"));
   EXPECT_THAT(result.output, ::testing::Not(HasSubstr("UTM16N")));
   EXPECT_EQ(runProgram("export " + runs + " -f survex").exit_code, 2) << "no folder named";
+  const Execution twice = exportRun(test::quoted(folder_.path() / "run") + " -f survex -o maps");
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.output, HasSubstr("named twice"));
 }
 
 TEST_F(ExportTest, AppliesTheDeclinationAndSaysSo) {

@@ -25,18 +25,24 @@ RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& rec
     diagnostics->report(Severity::Warning, "refinement_not_converged",
                         "refinement: its last round ended before the cost had settled");
   }
-  StateWriter states(folder, kSuffix);
-  std::optional<Time> last;
-  for (FrameEstimate frame : refinement.frames) {
-    if (const auto stamp = result_stamps.find(frame.time); stamp != result_stamps.end())
-      frame.time = stamp->second;
-    if (last && frame.time <= *last) continue;
-    states.write(frame);
-    last = frame.time;
+  {
+    StateWriter states(folder, kSuffix);
+    std::optional<Time> last;
+    for (FrameEstimate frame : refinement.frames) {
+      if (const auto stamp = result_stamps.find(frame.time); stamp != result_stamps.end())
+        frame.time = stamp->second;
+      if (last && frame.time <= *last) continue;
+      states.write(frame);
+      last = frame.time;
+    }
   }
+  const MagnetometerEstimate& north = refinement.frames.back().magnetometer;
+  std::optional<WorldTurn> turn = WorldTurn::of(north);
+  if (turn) turn->north_found.reset();  // all frames are relative to it
+  if (turn) turnStateFiles(folder, kSuffix, *turn);
   LandmarkWriter landmarks(folder, kLandmarks);
   landmarks.write(refinement.landmarks);
-  landmarks.finish();
+  landmarks.finish(north.heading_reference, turn);
   return summary;
 }
 

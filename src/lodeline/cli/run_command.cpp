@@ -27,6 +27,12 @@ bool isNumber(const std::string& text) {
 /// Turns a run without a result into the error that explains it.
 void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
+  if (const std::string reason = summary.distrust(); !reason.empty()) {
+    throw EstimationError(
+        fmt::format("{}: {}; the result in {} is not to be trusted. `lodeline inspect {}` looks for units, "
+                    "axes, time stamps and calibrations that do not belong together",
+                    request.data, reason, request.output, request.data));
+  }
   if (summary.posed() > 0) {
     if (diagnostics.count(kSensorsContradict) == 0) return;
     throw EstimationError(
@@ -53,7 +59,7 @@ void executeRun(RunRequest request) {
   request.sample_pictures = with_report && !pageTemplate().empty();
   Diagnostics diagnostics;
   const RunSummary summary = runRecording(request, &diagnostics);
-  if (!request.quiet) fmt::print("{}\n{}", request.output, summary.text(diagnostics));
+  if (!request.quiet) fmt::print("{}\n{}", request.output, summary.text(diagnostics, request.verbose));
   if (with_report && summary.posed() > 0) {
     const std::string remark = writeRunReport(request);
     if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);
@@ -98,6 +104,7 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
   addBagOptions(&arguments->bag, command);
   command->add_flag("--overwrite", arguments->overwrite,
                     "replace the results of another run in the output folder");
+  command->add_flag("-v,--verbose", arguments->verbose, "a summary with all figures");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress and no summary");
 }
 

@@ -13,6 +13,14 @@ using ::testing::HasSubstr;
 
 class RunMagnetometer : public MagneticRoomTest {
  protected:
+  double firstHeadingError(const char* file) const {
+    const StampedPose estimate = readPoses(output_ / file).poses.front();
+    for (const StampedPose& truth : readPoses(recording_.truth).poses) {
+      if (truth.time < estimate.time - Duration::fromSeconds(1e-3)) continue;
+      return so3::log(estimate.world_from_body.rotation * truth.world_from_body.rotation.conjugate()).z();
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   int framesUsed() const { return summary()["magnetometer"]["frames"].value("used", 0); }
 };
 
@@ -134,6 +142,35 @@ TEST_F(RunMagnetometer, ThatLagsIsTakenAtItsOwnTimeWhereTheLagIsKnown) {
   expectGoodResult(runCalibrated());
   EXPECT_LT(std::abs(headingError() - prompt), 0.3 * std::abs(late - prompt));
   EXPECT_GT(std::abs(late - prompt), 0.3 * kDegree) << "the lag does not matter here";
+}
+
+TEST_F(RunMagnetometer, ThatBeginsLateTurnsTheWholeRunToNorth) {
+  const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  writeReadings([&](int reading, const Vec3& field_B) { return reading < 10 ? none : field_B; });
+  expectGoodResult(runCalibrated());
+  EXPECT_EQ(summary()["heading"]["reference"], "magnetic north");
+  EXPECT_NEAR(summary()["heading"]["north_found_after_s"].get<double>(), 0.5, 0.06);
+  EXPECT_NEAR(headingError(), 0.0, 2.0 * kDegree);
+  EXPECT_NEAR(firstHeadingError("trajectory.tum"), 0.0, 2.0 * kDegree);
+  EXPECT_NEAR(summary()["magnetometer"]["field_W_T"][0].get<double>(), 0.0, 0.1e-6);
+  EXPECT_THAT(readText(output_ / "landmarks.ply"), HasSubstr("y north (magnetic north)"));
+  EXPECT_THAT(readText(output_ / "states.csv"), HasSubstr(",north_from_world [rad],"));
+  expectGoodResult(runProgram("refine " + quoted(recording_.data) + " -o " + quoted(output_) +
+                              " --mag-calibration " + quoted(calibration_)));
+  EXPECT_NEAR(firstHeadingError("trajectory_refined.tum"), 0.0, 2.0 * kDegree);
+  EXPECT_THAT(readText(output_ / "landmarks_refined.ply"), HasSubstr("y north (magnetic north)"));
+}
+
+TEST_F(RunMagnetometer, WithoutItThePointsNameNoNorth) {
+  expectGoodResult(run());
+  EXPECT_THAT(readText(output_ / "landmarks.ply"), HasSubstr("x, y from the start heading"));
+  EXPECT_THAT(readText(output_ / "landmarks.ply"), ::testing::Not(HasSubstr("east")));
+}
+
+TEST_F(RunMagnetometer, WithLeftHandedAxesIsDoubted) {
+  writeReadings([&](int, const Vec3& field_B) { return Vec3(-field_B); });
+  expectGoodResult(runCalibrated());
+  EXPECT_EQ(findings("magnetic_field_upwards"), 1);
 }
 
 TEST_F(RunMagnetometer, WrongWordsAreUsageErrors) {

@@ -25,6 +25,7 @@ struct RunRequest {
   std::optional<int> live_port;  ///< show the run in the browser; 0 for any port
   std::string live_address = "127.0.0.1";  ///< from where that can be seen
   bool quiet = false;                      ///< no progress
+  bool verbose = false;                    ///< a summary with all figures
   bool overwrite = false;                  ///< replace the results of another run in the folder
   /// Solve for the whole recording afterwards, with states so far apart (`lodeline refine`).
   std::optional<double> refine_interval_s;

@@ -41,6 +41,7 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
   description.imu_rate_hz = rig.imu.rate_hz;
   description.camera_axis_B = rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ();
   description.magnetometer = rig.magnetometer;
+  description.site_field_W = options.odometry.estimator.magnetometer.site_field_W;
   if (rig.magnetometer) description.other_sensors.push_back("magnetometer");
   if (rig.pressure) description.other_sensors.push_back("pressure");
   if (rig.sonar) description.other_sensors.push_back("sonar");
@@ -131,7 +132,7 @@ bool RunSession::stamp(FrameEstimate* estimate) {
 
 RunSummary RunSession::finish() {
   odometry_.finish();
-  if (output_) summary_.map_points = output_->finish(odometry_);
+  if (output_) summary_.map_points = output_->finish(odometry_, summary_.last().magnetometer);
   if (output_) summary_.pictures_s = output_->picturesSeconds();
   output_.reset();  // closes what is read next
   summary_.interrupted = fetched_.has_value();
@@ -146,6 +147,7 @@ RunSummary RunSession::finish() {
     usage = ProcessUsage::now();
   }
   summary_.peak_memory_MB = usage.peak_memory_MB;
+  summary_.reportBlindStretches(diagnostics_);
   if (!folder_.empty())
     writeOutput(std::filesystem::path(folder_) / "run.json", summary_.json(*diagnostics_));
   return summary_;

@@ -59,10 +59,11 @@ CameraCalibration readEurocCamera(const std::string& name, CalibrationMap* map) 
   camera.name = name;
   readPinhole("distortion_coefficients", map, &camera);
   if (!map->has("T_BS")) {
-    throw InputError(fmt::format(
-        "{} (camera to IMU) is missing; calibrate camera and IMU together, or add a rig file with "
-        "`{}: {{T_BS: …}}`",
-        map->at("T_BS"), name));
+    throw InputError(
+        fmt::format("{} (camera to IMU) is missing: this is the calibration of a camera alone. Calibrate "
+                    "camera and IMU together (Kalibr), or add a rig file with "
+                    "`{}: {{T_BS: …}}`",
+                    map->at("T_BS"), name));
   }
   camera.body_from_camera = map->transform("T_BS");
   camera.rate_hz = rateOrUnknown(map);

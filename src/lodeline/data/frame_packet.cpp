@@ -17,7 +17,8 @@ void putBefore(std::vector<Reading> before, std::vector<Reading>* readings) {
 
 void FramePacket::prepend(FramePacket before) {
   // The reading at the common border is in both.
-  if (!before.imu.empty() && !imu.empty() && before.imu.back().time == imu.front().time) before.imu.pop_back();
+  if (!before.imu.empty() && !imu.empty() && before.imu.back().time == imu.front().time)
+    before.imu.pop_back();
   putBefore(std::move(before.imu), &imu);
   putBefore(std::move(before.magnetometer), &magnetometer);
   putBefore(std::move(before.depth), &depth);

@@ -56,9 +56,10 @@ void reportGreyRange(const std::string& camera, const std::optional<GreyRange>& 
   if (!range || (range->low == 0 && range->shift == 8)) return;
   diagnostics->report(
       Severity::Notice, "image_range",
-      fmt::format("{}: 16-bit images that use the values from {} to {}; these are scaled to 8 bits, the same for "
-                  "all images",
-                  camera, range->low, range->low + (256 << range->shift) - 1));
+      fmt::format(
+          "{}: 16-bit images that use the values from {} to {}; these are scaled to 8 bits, the same for "
+          "all images",
+          camera, range->low, range->low + (256 << range->shift) - 1));
 }
 
 }  // namespace lodeline

@@ -23,14 +23,15 @@ struct GreyRange {
   }
 };
 
-/// The range that 16-bit images use: the fewest of 8, 10, 12, 14 and 16 bits that hold all but a thousandth of
-/// the pixels (dead pixels). Where the pixels begin at three quarters of the greatest and higher, as those of
-/// thermal cameras do, the span between them and half of that on both sides. Images of other depths do not
+/// The range that 16-bit images use: the fewest of 8, 10, 12, 14 and 16 bits that hold all but a thousandth
+/// of the pixels (dead pixels). Where the pixels begin at three quarters of the greatest and higher, as those
+/// of thermal cameras do, the span between them and half of that on both sides. Images of other depths do not
 /// count; nothing where there is no 16-bit image.
 std::optional<GreyRange> measureGreyRange(const std::vector<cv::Mat>& images);
 
-/// The same of the images of a recording, at most eight of them, spread over it. `image`: pixels as stored, by
-/// number, empty where there are none. No more than the first readable image is looked at where that has 8 bits.
+/// The same of the images of a recording, at most eight of them, spread over it. `image`: pixels as stored,
+/// by number, empty where there are none. No more than the first readable image is looked at where that has 8
+/// bits.
 std::optional<GreyRange> measureGreyRange(size_t count, const std::function<cv::Mat(size_t)>& image);
 
 /// Says, as a notice, where a camera's 16-bit images use another range than all of the 16 bits.

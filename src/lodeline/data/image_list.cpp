@@ -34,8 +34,8 @@ std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& folde
   return files;
 }
 
-/// The times that texts name, all of them in one unit: that in which a camera has a rate that it can have; else
-/// nanoseconds, decimals seconds. Nothing where one of them is no number.
+/// The times that texts name, all of them in one unit: that in which a camera has a rate that it can have;
+/// else nanoseconds, decimals seconds. Nothing where one of them is no number.
 std::optional<std::vector<Time>> timesOf(const std::vector<std::string>& texts) {
   std::vector<double> numbers;
   bool has_decimals = false;
@@ -144,10 +144,10 @@ void ImageList::makeList(const std::filesystem::path& camera) {
       return;
     }
   }
-  throw InputError(
-      fmt::format("{}: missing, and no list can be made for the {} images in {}: their names are no stamps{}; "
-                  "write one row an image, '#timestamp [ns],filename', or name the images by their stamps",
-                  (camera / "data.csv").string(), files.size(), folder_.string(), seen));
+  throw InputError(fmt::format(
+      "{}: missing, and no list can be made for the {} images in {}: their names are no stamps{}; "
+      "write one row an image, '#timestamp [ns],filename', or name the images by their stamps",
+      (camera / "data.csv").string(), files.size(), folder_.string(), seen));
 }
 
 std::optional<ListedImage> ImageList::next() {

@@ -16,9 +16,9 @@ struct ListedImage {
 };
 
 /// The images of one camera folder (camN): those that its data.csv lists, in the order of the file. Without
-/// data.csv the list is made from the image files in camN/data, in order of time: where their names are stamps
-/// (an integer as data.csv would have it, or seconds with decimals), these; else the rows of a times file
-/// (timestamps.txt, times.txt) in the folder, beside it or above it, if it has one row an image.
+/// data.csv the list is made from the image files in camN/data, in order of time: where their names are
+/// stamps (an integer as data.csv would have it, or seconds with decimals), these; else the rows of a times
+/// file (timestamps.txt, times.txt) in the folder, beside it or above it, if it has one row an image.
 class ImageList {
  public:
   /// Throws InputError where there is no list and none can be made. `diagnostics` must outlive the list.

@@ -36,7 +36,8 @@ bool isCutOffJpeg(std::span<const uint8_t> bytes, const cv::Mat& image) {
   constexpr int kRows = 8;  // of a block
   constexpr std::array<uint8_t, 2> kEnd = {0xff, 0xd9};
   const auto tail = bytes.last(std::min(kTail, bytes.size()));
-  if (!isJpeg(bytes) || std::search(tail.begin(), tail.end(), kEnd.begin(), kEnd.end()) != tail.end()) return false;
+  if (!isJpeg(bytes) || std::search(tail.begin(), tail.end(), kEnd.begin(), kEnd.end()) != tail.end())
+    return false;
   if (image.rows <= kRows) return false;
   const uint8_t last = image.at<uint8_t>(image.rows - 1, image.cols - 1);
   const cv::Mat rows = image.rowRange(image.rows - kRows, image.rows);

@@ -120,7 +120,8 @@ ImageRepeats::Reference ImageRepeats::screen(FramePacket* packet) {
     View& view = views_[i];
     cv::Mat& image = packet->images[i];
     if (image.empty()) continue;
-    const bool is_repeat = !view.newest.empty() && image.size() == view.newest.size() && isRepeat(image, &view);
+    const bool is_repeat =
+        !view.newest.empty() && image.size() == view.newest.size() && isRepeat(image, &view);
     if (!is_repeat) {
       close(&view);
       view.ever_changed = !view.newest.empty();

@@ -18,12 +18,14 @@ namespace lodeline {
 /// earlier moment, so it is taken out of its packet.
 ///
 /// A repeat has the same pixels, which noise makes impossible for a camera that works. Repeats that were
-/// encoded once more differ by a little: at most a fifth of what new images of this camera differ by, although
-/// the gyroscope turned the camera by more than 2.5 px. Once three such repeats were found, the fifth alone
-/// decides. Only rows 16 apart are compared, as long as they are equal or the difference is small.
+/// encoded once more differ by a little: at most a fifth of what new images of this camera differ by,
+/// although the gyroscope turned the camera by more than 2.5 px. Once three such repeats were found, the
+/// fifth alone decides. Only rows 16 apart are compared, as long as they are equal or the difference is
+/// small.
 ///
-/// A rendered camera without noise gives equal images at rest. Where the inertial readings are at rest as well,
-/// and were not before the images became equal, equal images are observations of a rig that rests: they stay.
+/// A rendered camera without noise gives equal images at rest. Where the inertial readings are at rest as
+/// well, and were not before the images became equal, equal images are observations of a rig that rests: they
+/// stay.
 class ImageRepeats {
  public:
   /// `diagnostics` must outlive the object.

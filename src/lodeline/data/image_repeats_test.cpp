@@ -31,8 +31,8 @@ cv::Mat picture(int number, int noise_grey = 0) {
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const double level = 128 + 60 * std::sin(0.3 * (x + 2 * number)) * std::cos(0.2 * y);
-      image.at<uint8_t>(y, x) =
-          cv::saturate_cast<uint8_t>(level + (noise_grey > 0 ? random.uniform(-noise_grey, noise_grey + 1) : 0));
+      image.at<uint8_t>(y, x) = cv::saturate_cast<uint8_t>(
+          level + (noise_grey > 0 ? random.uniform(-noise_grey, noise_grey + 1) : 0));
     }
   }
   return image;

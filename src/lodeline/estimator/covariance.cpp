@@ -1,6 +1,5 @@
 #include "lodeline/estimator/covariance.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -36,19 +35,10 @@ Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<co
                              const std::vector<const double*>& eliminated_first) {
   WindowCholesky cholesky(system, eliminated_first, blocks);
   if (cholesky.factorise(0.0)) return cholesky.covarianceOfLast();
-  // Nearly singular: slower, but it finds what there is.
-  std::vector<int> rows;
-  for (const double* value : blocks) {
-    const NormalEquations::Block& block = *system.find(value);
-    for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
-  }
-  const Eigen::MatrixXd hessian = system.hessian();
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(system.size(), system.size());
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  Eigen::MatrixXd covariance = scaled.ldlt().solve(identity)(rows, rows);
-  covariance = scale(rows).asDiagonal() * covariance * scale(rows).asDiagonal();
-  return 0.5 * (covariance + covariance.transpose());
+  // Rounding of the largest informations has swallowed smaller ones, so nothing bounds what they leave open.
+  Eigen::Index size = 0;
+  for (const double* value : blocks) size += system.find(value)->tangentSize();
+  return kUnknownVariance * Eigen::MatrixXd::Identity(size, size);
 }
 
 Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame) {
@@ -93,14 +83,25 @@ JointCovariance JointCovariance::without(const double* block, const Eigen::Matri
   JointCovariance without = *this;
   const int count = static_cast<int>((told.eigenvalues().array() > least).count());
   if (count == 0) return without;
-  // (P^-1 - V J V^T)^-1 by Woodbury's identity.
-  const Eigen::MatrixXd directions = told.eigenvectors().rightCols(count);
+  // (P^-1 - V V^T)^-1 = P + P V (I - V^T P V)^-1 V^T P by Woodbury's identity. The eigenvalues of V^T P V are
+  // the shares that the information taken away has of all that is known: what is used of a robust or a moving
+  // belief, or rounding, may make them 1 or more, and the rest would be negative.
+  constexpr double kGreatestShare = 1.0 - 1e-6;
+  const Eigen::MatrixXd directions =
+      told.eigenvectors().rightCols(count) * told.eigenvalues().tail(count).cwiseSqrt().asDiagonal();
   const Eigen::MatrixXd across = matrix_.middleCols(offset, size) * directions;
-  const Eigen::MatrixXd rest = Eigen::MatrixXd(told.eigenvalues().tail(count).cwiseInverse().asDiagonal()) -
-                               directions.transpose() * across.middleRows(offset, size);
-  without.matrix_ += across * rest.ldlt().solve(across.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(directions.transpose() *
+                                                              across.middleRows(offset, size));
+  const Eigen::VectorXd rest = 1.0 - shares.eigenvalues().array().min(kGreatestShare);
+  const Eigen::MatrixXd moved = across * shares.eigenvectors();
+  without.matrix_ += moved * rest.cwiseInverse().asDiagonal() * moved.transpose();
   without.matrix_ = 0.5 * (without.matrix_ + without.matrix_.transpose()).eval();
   return without;
+}
+
+bool isCovariance(const Eigen::MatrixXd& matrix) {
+  return matrix.allFinite() && matrix.diagonal().minCoeff() > 0.0 &&
+         matrix.diagonal().maxCoeff() < kUnknownVariance;
 }
 
 JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors) {

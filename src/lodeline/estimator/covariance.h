@@ -9,11 +9,18 @@
 
 namespace lodeline {
 
+/// Stands for "not known": a sigma of a million metres, radians and so on.
+constexpr double kUnknownVariance = 1e12;
+
+/// Whether all variances are positive, finite and known.
+bool isCovariance(const Eigen::MatrixXd& matrix);
+
 /// Covariance of one frame's [dp, dtheta, dv, db_g, db_a] in a linearised window.
 Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame);
 
-/// Joint covariance of some of the blocks that a system holds, stacked in the order given. Other blocks in
-/// the order in which they are best eliminated (see WindowCholesky), as far as one is known.
+/// Joint covariance of some of the blocks that a system holds, stacked in the order given; kUnknownVariance
+/// where rounding has left the system without a positive definite Hessian. Other blocks in the order in which
+/// they are best eliminated (see WindowCholesky), as far as one is known.
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
                              const std::vector<const double*>& eliminated_first = {});
 
@@ -37,7 +44,7 @@ class JointCovariance {
   /// Of the newest frame's [dp, dtheta, dv, db_g, db_a].
   Eigen::Matrix<double, 15, 15> newest() const { return matrix_.topLeftCorner<15, 15>(); }
   /// All of it had the system not been told `information` of a known block (symmetric; negative parts of it
-  /// do not count). Something else must tell of every direction of it.
+  /// do not count). Of a direction in which nothing else is known a millionth of the information stays.
   JointCovariance without(const double* block, const Eigen::MatrixXd& information) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "lodeline/estimator/covariance.h"
 #include "lodeline/estimator/normal_equations.h"
 
 namespace lodeline {
@@ -44,12 +45,13 @@ Matrix15 carriedByInertialReadings(Window& window, const FactorMaker& factors, c
 
 void DeadReckoning::follow(Window& window, const FactorMaker& factors, bool is_blind, bool is_heading_told,
                            Matrix15* claimed) {
-  if (!is_blind || !carried_ || !window.newest().from_previous) {
+  const bool is_known = isCovariance(*claimed);
+  if ((!is_blind && is_known) || !carried_ || !window.newest().from_previous) {
     carried_ = *claimed;
     return;
   }
   carried_ = carriedByInertialReadings(window, factors, *carried_);
-  if (!claimed->allFinite()) *claimed = *carried_;
+  if (!is_known) *claimed = *carried_;
   constexpr int kHeading = 5;
   for (const int i : {0, 1, kHeading, 6, 7}) {
     if (i == kHeading && is_heading_told) continue;

@@ -14,7 +14,8 @@ namespace lodeline {
 /// micrometres. What the window knows of it is what is left when informations are subtracted that are larger
 /// by 1e14, as many digits as a number has, and comes out too large. So the covariance is carried along by
 /// itself as well, by inertial readings alone, and of horizontal position and velocity, which nothing but
-/// images tells, no less is claimed; nor of heading without a magnetometer.
+/// images tells, no less is claimed; nor of heading without a magnetometer. Where the window gives no
+/// covariance (isCovariance()), the one carried along stands for it.
 class DeadReckoning {
  public:
   /// `claimed`: by the window, of the newest frame's [dp, dtheta, dv, db_g, db_a]; widened where it

@@ -10,6 +10,7 @@
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/inertial_monitor.h"
 #include "lodeline/estimator/inertial_states.h"
 #include "lodeline/estimator/keyframe_policy.h"
 #include "lodeline/estimator/landmark_host.h"
@@ -26,6 +27,8 @@ const char* toString(Status status) {
       return "waiting";
     case Status::Tracking:
       return "tracking";
+    case Status::Degraded:
+      return "degraded";
     case Status::Inertial:
       return "inertial";
   }
@@ -53,6 +56,19 @@ void reportImplausibleBias(const FrameEstimate& estimate, const EstimatorOptions
           estimate.time.nanoseconds(), bias_m_per_s2, limit_m_per_s2));
 }
 
+/// A frame without a covariance is not to look as if it were known exactly.
+void requireCovariance(FrameEstimate* estimate, Diagnostics* diagnostics) {
+  if (isCovariance(estimate->covariance)) return;
+  estimate->covariance = kUnknownVariance * Eigen::Matrix<double, 15, 15>::Identity();
+  diagnostics->report(
+      Severity::Serious, "covariance_unknown",
+      fmt::format(
+          "at {} ns the covariance is unknown: some measurements are stated so precisely, or contradict "
+          "each other so much, that rounding hides what the others say. Sigmas of {:.0e} stand for "
+          "it. Are the noise densities of the calibration those of a real sensor?",
+          estimate->time.nanoseconds(), std::sqrt(kUnknownVariance)));
+}
+
 /// The newest keyframe's landmarks then drop what the oldest saw of them, however long the window still is.
 WindowOptions withoutCut(WindowOptions window) {
   window.keyframes_after_cut = std::numeric_limits<int>::max();
@@ -74,9 +90,15 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       scale_(rig_, options_),
       dormant_(options_.window.dormant_frames),
       rest_(rig_, options_.rest),
+      monitor_(std::make_unique<InertialMonitor>(options_, diagnostics)),
+      known_(Eigen::Matrix<double, 15, 15>::Identity()),
       unmodelled_(options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
+
+Estimator::~Estimator() = default;
+
+bool Estimator::isGyroscopeDoubted() const { return monitor_->isGyroscopeDoubted(); }
 
 FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu,
                              std::span<const MagnetometerSample> magnetometer,
@@ -103,6 +125,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   report(tracks, &estimate);
   dead_reckoning_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
                          estimate.magnetometer.field_W.has_value(), &estimate.covariance);
+  requireCovariance(&estimate, diagnostics_);
   reportImplausibleBias(estimate, options_, diagnostics_);
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;
@@ -116,6 +139,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
                      estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
                     &estimate.covariance);
+  monitor_->addTo(estimate.state.world_from_body.translation, &estimate.covariance);
   addHeadingError(estimate.magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
   estimate.magnetometer.heading_sigma_rad =
       std::hypot(std::sqrt(estimate.covariance(5, 5)), estimate.magnetometer.declination_sigma_rad);
@@ -297,6 +321,7 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
   frame->gyroscope_B = imu.back().angular_velocity_B;
   window_.add(std::move(frame));
   for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+  monitor_->check(window_, factors_, known_);
   magnetometer_.addToNewest(window_, marginalizer_);
   depth_.addToNewest(window_, marginalizer_);
 }
@@ -309,10 +334,20 @@ void Estimator::startMagnetometer() {
 }
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
-  estimate->covariance = claimedCovariance(covariance, window_, options_, factors_);
+  if (!blind_since_ && !isCovariance(covariance.newest())) {
+    diagnostics_->report(
+        Severity::Serious, "covariance_unknown",
+        fmt::format(
+            "at {} ns the window's covariance is lost in rounding; that of the frame before is carried "
+            "on by inertial readings. Are the noise densities of the calibration those of a real "
+            "sensor?",
+            estimate->time.nanoseconds()));
+  }
+  known_ = estimate->covariance = claimedCovariance(covariance, window_, options_, factors_);
   lens_trust_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
+  magnetometer_.relateToNorth(window_, &estimate->covariance);
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
@@ -353,8 +388,9 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
   for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;
   const bool first = window_.frames().size() == 1;
-  estimate->status = first || statistics.landmarks >= options_.min_landmarks_for_vision ? Status::Tracking
-                                                                                        : Status::Inertial;
+  const bool sees = first || statistics.landmarks >= options_.min_landmarks_for_vision;
+  estimate->status = !sees ? Status::Inertial : monitor_->isAlarmed() ? Status::Degraded : Status::Tracking;
+  if (newest.from_previous) estimate->inertial_doubt = newest.from_previous->doubt();
 }
 
 std::vector<MapPoint> Estimator::currentMapPoints() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,9 +23,14 @@
 
 namespace lodeline {
 
+class InertialMonitor;
+
 enum class Status {
   Waiting,   ///< not initialised; no pose
   Tracking,  ///< images and inertial readings
+  /// The same, but these contradict each other (InertialMonitor): carried on by what is more plausible, with
+  /// wider uncertainty.
+  Degraded,
   Inertial,  ///< too few landmarks are seen: carried on by inertial readings alone
 };
 const char* toString(Status status);
@@ -35,9 +41,10 @@ struct FrameEstimate {
   Status status = Status::Waiting;
   std::string waiting_for;  ///< in words, while waiting
   NavigationState state;
-  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position
-  /// and heading.
+  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position,
+  /// and to north or, while that is unknown, to the first pose's heading.
   Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
+  InertialDoubt inertial_doubt;  ///< of the readings since the frame before
   bool is_keyframe = false;
   int tracks = 0;     ///< seen in this frame
   int landmarks = 0;  ///< of which have a position
@@ -57,6 +64,7 @@ struct FrameEstimate {
 class Estimator {
  public:
   Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
+  ~Estimator();
 
   /// Adds one frame: what the front end tracked, and the inertial readings since the frame before (both ends
   /// on the frames' times; for the first frame all readings there are), and the magnetometer's and the
@@ -67,6 +75,8 @@ class Estimator {
                     std::span<const DepthSample> depth = {});
 
   bool initialized() const { return !window_.empty(); }
+  /// Whether images contradict the gyroscope at the newest frame.
+  bool isGyroscopeDoubted() const;
   const Window& window() const { return window_; }
   const Rig& rig() const { return rig_; }
   const EstimatorOptions& options() const { return options_; }
@@ -125,7 +135,9 @@ class Estimator {
   ScaleBudget scale_;
   DormantLandmarks dormant_;
   RestWatch rest_;
-  bool rests_ = false;  ///< at the newest frame
+  std::unique_ptr<InertialMonitor> monitor_;
+  Eigen::Matrix<double, 15, 15> known_;  ///< of the newest frame, before doubts that no state stands for
+  bool rests_ = false;                   ///< at the newest frame
   DeadReckoning dead_reckoning_;
   UnmodelledErrors unmodelled_;
   Window window_;

@@ -18,6 +18,9 @@ class FieldComparison {
   /// `options` must outlive it.
   explicit FieldComparison(const MagnetometerOptions& options) : options_(options) {}
 
+  /// Forgets the average.
+  void restart() { measured_W_.reset(); }
+
   /// The newest frame's mean, with noise of `white_variance_T2` per axis.
   void add(const MagnetometerMean& mean, double white_variance_T2, const Window& window);
 

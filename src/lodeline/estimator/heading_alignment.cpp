@@ -53,11 +53,30 @@ HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptio
     alignment.refusal = "true north takes the place and date of the recording";
   if (!alignment.refusal.empty()) return alignment;
   alignment.reference = wanted;
-  const double north = 0.5 * std::numbers::pi;  // azimuths count from east to north
-  const double azimuth = wanted == HeadingReference::True ? azimuthOf(*options.site_field_W) : north;
-  alignment.yaw_rad = azimuth - azimuthOf(level_field_W);
+  alignment.yaw_rad = northFromWorld(level_field_W, wanted, options);
   alignment.field_W = so3::exp(alignment.yaw_rad * Vec3::UnitZ()) * level_field_W;
   return alignment;
+}
+
+double northFromWorld(const Vec3& field_W, HeadingReference reference, const MagnetometerOptions& options) {
+  const double north = 0.5 * std::numbers::pi;  // azimuths count from east to north
+  const double azimuth = reference == HeadingReference::True ? azimuthOf(*options.site_field_W) : north;
+  return std::remainder(azimuth - azimuthOf(field_W), 2.0 * std::numbers::pi);
+}
+
+AzimuthCovariance azimuthCovariance(const Vec3& field_W, const Mat3& field,
+                                    const Eigen::Matrix<double, 15, 3>& state_field) {
+  const Vec3 by_field = Vec3::UnitZ().cross(field_W) / field_W.head<2>().squaredNorm();
+  return {by_field.dot(field * by_field), state_field * by_field};
+}
+
+void relateToNorth(const NavigationState& state, const AzimuthCovariance& azimuth,
+                   Eigen::Matrix<double, 15, 15>* covariance) {
+  Eigen::Matrix<double, 15, 1> turn = Eigen::Matrix<double, 15, 1>::Zero();
+  turn.head<9>() << Vec3::UnitZ().cross(state.world_from_body.translation), Vec3::UnitZ(),
+      Vec3::UnitZ().cross(state.velocity_W);
+  *covariance += azimuth.variance_rad2 * turn * turn.transpose() - turn * azimuth.with_state.transpose() -
+                 azimuth.with_state * turn.transpose();
 }
 
 void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior) {

@@ -23,6 +23,26 @@ struct HeadingAlignment {
 /// vertical.
 HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options);
 
+/// Turn about the vertical, rad in (-pi, pi], that takes a world in which the Earth's field is `field_W` to
+/// one whose y axis points to `reference`, magnetic or true north.
+double northFromWorld(const Vec3& field_W, HeadingReference reference, const MagnetometerOptions& options);
+
+/// How well the azimuth of the Earth's field in the world is known, about the vertical.
+struct AzimuthCovariance {
+  double variance_rad2 = 0.0;
+  /// With a state's [dp, dtheta, dv, db_g, db_a].
+  Eigen::Matrix<double, 15, 1> with_state = Eigen::Matrix<double, 15, 1>::Zero();
+};
+
+/// `field`, `state_field`: covariances of the field's state (T^2), and of a state's errors with it.
+AzimuthCovariance azimuthCovariance(const Vec3& field_W, const Mat3& field,
+                                    const Eigen::Matrix<double, 15, 3>& state_field);
+
+/// Makes a state's covariance, which is relative to the first pose's heading, relative to north: an azimuth
+/// error d of the field turns the world about its origin, e' = e - u d with u = [z x p, z, z x v, 0, 0].
+void relateToNorth(const NavigationState& state, const AzimuthCovariance& azimuth,
+                   Eigen::Matrix<double, 15, 15>* covariance);
+
 /// Turns the world under a window of which nothing has been marginalised yet, and under the prior on its
 /// first frame (startPrior), whose heading is then known to `yaw_sigma_rad` only.
 void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior);

@@ -38,6 +38,11 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
       drawn = drawDisturbances(motion, kField_W, wanted);
       drawn.passing.clear();
       return drawn;
+    case FieldTrouble::Boat: {
+      const Vec3 boat_W(12e-6, -4e-6, 3e-6);
+      drawn.wandering = {10.0, {boat_W, boat_W, boat_W, boat_W, Vec3::Zero()}};
+      return drawn;
+    }
     case FieldTrouble::Lamp:
       drawn.switched = drawLampSwitching(options.duration_s, options.seed, options.lamp_earliest_s);
       return drawn;
@@ -131,6 +136,8 @@ EstimatorOptions estimatorOptions(const HeadingTrialOptions& options) {
   return estimator;
 }
 
+double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
+
 template <typename Figure>
 double rootMeanSquare(const std::vector<HeadingSample>& samples, double begin_s, const Figure& figure) {
   double squares = 0.0;
@@ -159,6 +166,10 @@ double HeadingTrial::claimed(double begin_s) const {
   return rootMeanSquare(samples, begin_s, [](const HeadingSample& s) { return s.sigma_rad; });
 }
 
+double HeadingTrial::finishedRms(double begin_s) const {
+  return rootMeanSquare(samples, begin_s, [](const HeadingSample& s) { return s.finished_error_rad; });
+}
+
 double HeadingTrial::largest(double begin_s) const {
   double largest = 0.0;
   for (const HeadingSample& sample : samples) {
@@ -172,11 +183,12 @@ double HeadingTrial::alignedRms(double begin_s) const {
   int count = 0;
   for (const HeadingSample& sample : samples) {
     if (sample.time_s < begin_s) continue;
-    sum += sample.error_rad;
+    sum += sample.finished_error_rad;
     ++count;
   }
   const double mean = count > 0 ? sum / count : 0.0;
-  return rootMeanSquare(samples, begin_s, [mean](const HeadingSample& s) { return s.error_rad - mean; });
+  return rootMeanSquare(samples, begin_s,
+                        [mean](const HeadingSample& s) { return s.finished_error_rad - mean; });
 }
 
 double HeadingTrial::share(MagnetometerStatus status) const {
@@ -208,7 +220,12 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
   Diagnostics diagnostics;
   Estimator estimator(dive.mounted.rig, estimatorOptions(options), &diagnostics);
   double estimator_s = 0.0;
-  while (const auto frame = simulation.next()) {
+  std::optional<Time> first;
+  while (auto frame = simulation.next()) {
+    if (!first) first = frame->truth.time;
+    const double time_s = (frame->truth.time - *first).seconds();
+    const bool is_silent = options.magnetometer_pause && options.magnetometer_pause->contains(time_s);
+    if (time_s < options.magnetometer_from_s || is_silent) frame->magnetometer.clear();
     const double before_s = threadSeconds();
     const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, frame->magnetometer);
     estimator_s += threadSeconds() - before_s;
@@ -219,27 +236,29 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
 
 HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
   HeadingTrial trial;
-  std::optional<Quat> estimate_from_truth;
+  std::optional<double> first_rad;
+  std::vector<double> headings_rad;  // of the estimator's world against the truth's
+  double north_rad = 0.0;
   const Time begin = PointSimulationOptions().start;
   const auto observe = [&](const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator&) {
     if (estimate.status == Status::Waiting) return;
     const Quat& estimated = estimate.state.world_from_body.rotation;
     const Quat& truth = frame.truth.motion.world_from_body.rotation;
-    trial.reference = estimate.magnetometer.heading_reference;
-    trial.floor_T = estimate.magnetometer.floor_T.value_or(0.0);
-    if (!estimate_from_truth) {
-      estimate_from_truth = Quat::Identity();
-      if (trial.reference == HeadingReference::Start)
-        *estimate_from_truth = so3::exp(so3::log(estimated * truth.conjugate()).z() * Vec3::UnitZ());
-    }
-    const Vec3 error = so3::log(estimated * (*estimate_from_truth * truth).conjugate());
-    const double sigma_rad = estimate.magnetometer.status == MagnetometerStatus::Off
+    const MagnetometerEstimate& magnetometer = estimate.magnetometer;
+    trial.reference = magnetometer.heading_reference;
+    trial.floor_T = magnetometer.floor_T.value_or(0.0);
+    headings_rad.push_back(so3::log(estimated * truth.conjugate()).z());
+    if (!first_rad) first_rad = headings_rad.back();
+    north_rad = magnetometer.north_from_world_rad.value_or(-*first_rad);
+    const double sigma_rad = magnetometer.status == MagnetometerStatus::Off
                                  ? std::sqrt(estimate.covariance(5, 5))
-                                 : estimate.magnetometer.heading_sigma_rad;
-    trial.samples.push_back(
-        {(frame.truth.time - begin).seconds(), error.z(), sigma_rad, estimate.magnetometer.status});
+                                 : magnetometer.heading_sigma_rad;
+    trial.samples.push_back({(frame.truth.time - begin).seconds(), wrapped(headings_rad.back() + north_rad),
+                             sigma_rad, 0.0, magnetometer.status});
   };
   trial.estimator_s = runTrialDive(options, observe);
+  for (size_t i = 0; i < headings_rad.size(); ++i)
+    trial.samples[i].finished_error_rad = wrapped(headings_rad[i] + north_rad);
   return trial;
 }
 

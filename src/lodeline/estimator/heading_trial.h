@@ -25,6 +25,7 @@ enum class FieldTrouble {
   Misalignment,  ///< axes turned by 20 degrees
   Scale,         ///< corrected readings too large by half
   SwappedAxes,   ///< two axes taken for each other
+  Boat,          ///< the first 30 s beside a boat of 13 uT, from which the diver swims away within 10 s
   AsBelieved,    ///< hard iron, its walk and a wandering field, drawn from what the estimator believes
 };
 const char* toString(FieldTrouble trouble);
@@ -38,7 +39,9 @@ struct HeadingTrialOptions {
   int cameras = 2;
   std::string imu_grade = "gx5-25";  ///< of simulation/imu_model.h, with its magnetometer
   FieldTrouble trouble = FieldTrouble::None;
-  double lamp_earliest_s = 30.0;  ///< it is first switched within 90 s from then on
+  double magnetometer_from_s = 0.0;            ///< no reading before, since the first frame
+  std::optional<TimeSpan> magnetometer_pause;  ///< nor within
+  double lamp_earliest_s = 30.0;               ///< it is first switched within 90 s from then on
   EstimatorOptions estimator;
   bool honest_imu = true;  ///< the estimator takes the IMU's noise for what it is (noise_inflation 1)
   /// Flicker noise of the biases, which the estimator's model has as a random walk.
@@ -47,8 +50,9 @@ struct HeadingTrialOptions {
 
 struct HeadingSample {
   double time_s = 0.0;
-  double error_rad = 0.0;  ///< against the estimate's own reference: north, or the first heading
-  double sigma_rad = 0.0;  ///< claimed
+  double error_rad = 0.0;           ///< against the estimate's own reference: north, or the first heading
+  double sigma_rad = 0.0;           ///< claimed
+  double finished_error_rad = 0.0;  ///< against north as known at the end, as in the files of a finished run
   MagnetometerStatus status = MagnetometerStatus::Off;
 };
 
@@ -61,8 +65,10 @@ struct HeadingTrial {
   /// Root mean square over the samples from `begin_s` on.
   double rms(double begin_s = 60.0) const;
   double largest(double begin_s = 60.0) const;
+  double finishedRms(double begin_s = 60.0) const;
   double claimed(double begin_s = 60.0) const;
-  /// The same for what is left when the mean error is taken off, as by aligning the trajectory.
+  /// The same of a finished run for what is left when the mean error is taken off, as by aligning the
+  /// trajectory.
   double alignedRms(double begin_s = 60.0) const;
   /// Of the frames, with a status.
   double share(MagnetometerStatus status) const;

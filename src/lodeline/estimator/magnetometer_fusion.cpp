@@ -96,6 +96,7 @@ void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std:
 void MagnetometerFusion::start(double tilt_sigma_rad, Window* window, Prior* prior) {
   if (use_ == MagnetometerUse::Off) return;
   tilt_variance_rad2_ = tilt_sigma_rad * tilt_sigma_rad;
+  started_ = window->newest().time;
   status_ = MagnetometerStatus::NoData;
   align(window, prior);
   for (const auto& frame : window->frames()) {
@@ -107,37 +108,8 @@ void MagnetometerFusion::start(double tilt_sigma_rad, Window* window, Prior* pri
   means_.clear();
 }
 
-void MagnetometerFusion::align(Window* window, Prior* prior) {
-  Vec3 sum_W = Vec3::Zero();
-  int count = 0;
-  for (const auto& frame : window->frames()) {
-    const auto mean = means_.find(frame->time);
-    if (mean == means_.end()) continue;
-    sum_W += frame->worldFromBody().rotation * mean->second.field_B;
-    ++count;
-  }
-  const MagnetometerOptions& wanted = options_.magnetometer;
-  HeadingAlignment alignment;
-  alignment.refusal = "no magnetometer reading at the start";
-  if (count > 0) alignment = alignHeading(sum_W / count, wanted);
-  if (!alignment.refusal.empty()) {
-    diagnostics_->report(Severity::Warning, "heading_not_aligned",
-                         "heading counts from the first pose, not from north: " + alignment.refusal);
-  }
-  heading_reference_ = alignment.reference;
-  if (heading_reference_ != HeadingReference::Start) {
-    const double offset_sigma_rad =
-        std::hypot(offsetSigma(), floorSigma(alignment.field_W)) / alignment.field_W.head<2>().norm();
-    turnWorld(alignment.yaw_rad, absolute() ? wanted.start_yaw_sigma_rad : offset_sigma_rad, window, prior);
-  }
-  if (absolute() && count > 0) addStates(alignment, window, prior);
-}
-
 double MagnetometerFusion::offsetSigma() const {
-  const MagnetometerOptions& wanted = options_.magnetometer;
-  if (!calibration_.is_calibrated) return wanted.uncalibrated_offset_sigma_T;
-  return std::hypot(wanted.offset_sigma_T,
-                    calibration_.hard_iron_sigma_T.value_or(wanted.unstated_offset_sigma_T));
+  return lodeline::offsetSigma(calibration_, options_.magnetometer);
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
@@ -217,16 +189,22 @@ void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer)
   Frame& newest = window.newest();
   const auto found = means_.find(newest.time);
   status_ = MagnetometerStatus::NoData;
-  if (found == means_.end()) return;
+  if (found == means_.end()) {
+    missField(window);
+    return;
+  }
   const MagnetometerMean mean = found->second;
   means_.clear();
   if (!absolute()) {
+    findNorth(newest.worldFromBody().rotation * mean.field_B, newest.time);
     status_ = MagnetometerStatus::Used;
     newest.magnetometer = measurementOf(mean, 1.0, false);
     return;
   }
   if (MagnetometerStates(window).field == nullptr) startLate(mean, window, marginalizer);
+  findNorth(MagnetometerStates(window).field_W(), newest.time);
   judge(withoutSteps(mean, window), window, marginalizer);
+  if (takeBetterField(mean, window, marginalizer)) status_ = MagnetometerStatus::Used;
 }
 
 MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, Window& window) {
@@ -360,7 +338,7 @@ double MagnetometerFusion::axesSigma() const {
 MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   MagnetometerEstimate estimate;
   estimate.status = status_;
-  estimate.heading_reference = heading_reference_;
+  describeNorth(window, &estimate);
   if (heading_reference_ == HeadingReference::True)
     estimate.declination_sigma_rad = options_.magnetometer.declination_sigma_rad;
   const MagnetometerStates states(window);

@@ -6,6 +6,7 @@
 
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/covariance.h"
+#include "lodeline/estimator/earth_field_search.h"
 #include "lodeline/estimator/field_comparison.h"
 #include "lodeline/estimator/field_deviation.h"
 #include "lodeline/estimator/field_errors.h"
@@ -23,6 +24,13 @@ namespace lodeline {
 struct MagnetometerEstimate {
   MagnetometerStatus status = MagnetometerStatus::Off;
   HeadingReference heading_reference = HeadingReference::Start;
+  /// Turn about the vertical, rad, that takes the estimator's world to one whose y axis points to that
+  /// reference, as known now. 0 where the world was turned before the first pose; nothing while north is
+  /// unknown. The estimator's world itself is never turned after its first pose.
+  std::optional<double> north_from_world_rad;
+  double north_from_world_sigma_rad = 0.0;  ///< of that turn, relative to the first pose's heading
+  std::optional<Time> north_found;          ///< where that was only after the first pose
+  int field_epoch = 0;                      ///< counts the times that another field was taken for the Earth's
   /// Of the heading against that reference, rad: as the frame's covariance says, and the declination's.
   double heading_sigma_rad = 0.0;
   double declination_sigma_rad = 0.0;
@@ -58,6 +66,10 @@ class MagnetometerFusion {
   /// Joint covariance after the window was solved; the next frame's field is judged by it.
   void remember(JointCovariance covariance);
 
+  /// Makes the covariance of the newest frame's state, [dp, dtheta, dv, db_g, db_a] as Estimator claims it,
+  /// relative to north where that was found after the first pose; call remember() before.
+  void relateToNorth(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const;
+
   MagnetometerEstimate estimate(const Window& window) const;
 
  private:
@@ -70,6 +82,19 @@ class MagnetometerFusion {
   void align(Window* window, Prior* prior);
   /// Where the first reading comes only after the start.
   void startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  /// Looks for north in the field as it is known at `time`, if it has not been found yet.
+  void findNorth(const Vec3& field_W, Time time);
+  /// The newest frame has no field.
+  void missField(const Window& window);
+  void reportNorthMissing(Time time, const std::string& reason);
+  /// Takes another field for the Earth's where that has the better claim; true where it did.
+  bool takeBetterField(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  void takeField(const Vec3& field_W, const MagnetometerMean& mean, Window& window,
+                 Marginalizer& marginalizer);
+  AzimuthCovariance azimuth(const Window& window) const;
+  /// The field that north is found by, T.
+  Vec3 northField(const Window& window) const;
+  void describeNorth(const Window& window, MagnetometerEstimate* estimate) const;
   void addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const;
   FieldMeasurement measurementOf(const MagnetometerMean& mean, double variance_scale, bool disturbed);
   /// The mean without what currents on board have added since the start.
@@ -101,6 +126,12 @@ class MagnetometerFusion {
   FieldStep step_;
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;
+  EarthFieldSearch search_;
+  Time started_;                          ///< first pose
+  std::optional<Time> north_found_;       ///< after that
+  Vec3 relative_field_W_ = Vec3::Zero();  ///< that north was found by without a state of the field
+  int field_epoch_ = 0;
+  bool north_missing_reported_ = false;
   JointCovariance covariance_;
   double tilt_variance_rad2_ = 0.0;
   double least_tilt_variance_rad2_ = 0.0;  ///< of those with which a field was used; 0: none was

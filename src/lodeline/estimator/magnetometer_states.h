@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cmath>
+
+#include "lodeline/estimator/magnetometer_options.h"
 #include "lodeline/estimator/window.h"
+#include "lodeline/sensors/rig.h"
 
 namespace lodeline {
 
@@ -23,5 +27,12 @@ struct MagnetometerStates {
   GlobalState* offset;
   GlobalState* disturbance;
 };
+
+/// Of the hard iron that is left of a magnetometer's readings at the start of a dive, T per axis.
+inline double offsetSigma(const MagnetometerCalibration& calibration, const MagnetometerOptions& options) {
+  if (!calibration.is_calibrated) return options.uncalibrated_offset_sigma_T;
+  return std::hypot(options.offset_sigma_T,
+                    calibration.hard_iron_sigma_T.value_or(options.unstated_offset_sigma_T));
+}
 
 }  // namespace lodeline

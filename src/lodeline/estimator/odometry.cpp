@@ -54,9 +54,12 @@ Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* 
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
-  const Quat previous_from_current_B = previousFromCurrent(packet);
+  const Quat by_gyroscope = previousFromCurrent(packet);
+  const Quat steady = steadilyTurning(packet, by_gyroscope);
+  const bool is_doubted = estimator_.isGyroscopeDoubted();
   const std::vector<cv::Mat> images = stereo_watch_.arrange(packet);
-  tracks_ = front_end_.process(packet.time, images, previous_from_current_B, motion(packet));
+  tracks_ = front_end_.process(packet.time, images, is_doubted ? steady : by_gyroscope,
+                               is_doubted ? by_gyroscope : steady, motion(packet));
   if (stereo_watch_.judge(packet, images, tracks_)) {
     front_end_.forgetTracks();
     tracks_ = FrameTracks{packet.time};
@@ -68,14 +71,25 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
   times_.front_end_s += tracked_s - start_s;
   times_.estimator_s += threadSeconds() - tracked_s;
-  if (estimate.status != Status::Waiting) {
-    gyroscope_bias_B_ = estimate.state.gyroscope_bias_B;
-    newest_ = estimate.state;
-  }
+  if (estimate.status != Status::Waiting) follow(estimate.state);
   if (estimate.camera_corrections)
     baseline_watch_.add(packet.time, *estimate.camera_corrections, diagnostics_);
   first_ = false;
   return estimate;
+}
+
+void Odometry::follow(const NavigationState& state) {
+  gyroscope_bias_B_ = state.gyroscope_bias_B;
+  if (newest_) {
+    const Quat turned = newest_->world_from_body.rotation.conjugate() * state.world_from_body.rotation;
+    rate_B_ = so3::log(turned) / (state.time - newest_->time).seconds();
+  }
+  newest_ = state;
+}
+
+Quat Odometry::steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const {
+  if (!newest_ || packet.imu.empty()) return by_gyroscope;
+  return so3::exp((packet.time - packet.imu.front().time).seconds() * rate_B_);
 }
 
 void Odometry::reportFixedStructure(Time time) {
@@ -100,20 +114,19 @@ void Odometry::lookForDelays(const FramePacket& packet) {
   if (++frames_ % kEvery != 0) return;
   for (size_t i = 1; i < front_end_.cameras().size(); ++i) {
     const std::optional<StereoDelay::Estimate> found = front_end_.delay(i).estimate();
-    if (getenv("LODELINE_DELAY") && found)
-      fprintf(stderr, "delay cam%zu %.4f +- %.4f at %d\n", i, found->delay_s, found->sigma_s, frames_);
     if (!found || std::abs(found->delay_s) < kLeast_s + kSigmas * found->sigma_s) continue;
     front_end_.delay(i).restart();
     found_delay_ = FoundDelay{i, found->delay_s};
     const CameraCalibration& camera = front_end_.cameras()[i]->calibration();
     diagnostics_->report(
         Severity::Warning, "cameras_apart",
-        fmt::format("{}: at stamp {} ns its images turn out to be taken {:.1f} ms {} than those of {} that they are "
-                    "paired with; used so from there on. Trigger both cameras together, or set "
-                    "timeshift_cam_imu of {} to {:.4f} s",
-                    camera.name, packet.image_stamp.nanoseconds(), 1e3 * std::abs(found->delay_s),
-                    found->delay_s > 0.0 ? "later" : "earlier", front_end_.cameras()[0]->calibration().name,
-                    camera.name, camera.time_offset_to_imu_s + found->delay_s));
+        fmt::format(
+            "{}: at stamp {} ns its images turn out to be taken {:.1f} ms {} than those of {} that they are "
+            "paired with; used so from there on. Trigger both cameras together, or set "
+            "timeshift_cam_imu of {} to {:.4f} s",
+            camera.name, packet.image_stamp.nanoseconds(), 1e3 * std::abs(found->delay_s),
+            found->delay_s > 0.0 ? "later" : "earlier", front_end_.cameras()[0]->calibration().name,
+            camera.name, camera.time_offset_to_imu_s + found->delay_s));
   }
 }
 

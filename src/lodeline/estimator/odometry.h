@@ -63,6 +63,10 @@ class Odometry {
   Quat previousFromCurrent(const FramePacket& packet);
   /// Between the frame's time and those of the images; at rest before there is an estimate.
   RigMotion motion(const FramePacket& packet) const;
+  /// That of a body that goes on turning as the estimate has it, in place of the gyroscope's where that is
+  /// doubted.
+  Quat steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const;
+  void follow(const NavigationState& state);
   /// Of each camera once.
   void reportFixedStructure(Time time);
   void reportTurnedCameras();
@@ -73,8 +77,9 @@ class Odometry {
   FrameTracks tracks_;
   Estimator estimator_;
   Vec3 gyroscope_bias_B_ = Vec3::Zero();
-  std::optional<NavigationState> newest_;     ///< estimate of the packet before
+  std::optional<NavigationState> newest_;     ///< of the last frame that has a pose
   std::optional<NavigationState> predicted_;  ///< at the packet's time
+  Vec3 rate_B_ = Vec3::Zero();                ///< that led to newest_, rad/s
   bool first_ = true;
   std::vector<bool> fixed_structure_reported_;
   std::vector<bool> turn_reported_;  ///< of camera 1, 2, ...

@@ -51,7 +51,8 @@ bool StereoWatch::judge(const FramePacket& packet, const std::vector<cv::Mat>& i
   if (first_time_) watched_s_ = (packet.time - *first_time_).seconds();
   first_time_ = first_time_.value_or(packet.time);
   std::vector<int> counts(rig_.cameras.size());
-  for (const Observation& observation : tracks.observations) ++counts[static_cast<size_t>(observation.camera)];
+  for (const Observation& observation : tracks.observations)
+    ++counts[static_cast<size_t>(observation.camera)];
   for (size_t i = 0; i < partners_.size(); ++i) {
     Partner& partner = partners_[i];
     if (images[0].empty()) continue;
@@ -105,12 +106,15 @@ bool StereoWatch::conclude(const FramePacket& packet, const StereoSurvey& survey
     diagnostics_->report(
         Severity::Serious, "cameras_swapped",
         fmt::format(
-            "{} and {}: at {} (stamp {} ns) left and right are exchanged: {:.0f} % of the points that both see "
-            "contradict the calibration, {:.0f} % fit if each image is the other camera's; used so from there "
+            "{} and {}: at {} (stamp {} ns) left and right are exchanged: {:.0f} % of the points that both "
+            "see "
+            "contradict the calibration, {:.0f} % fit if each image is the other camera's; used so from "
+            "there "
             "on. Look at the connectors, the order of the topics or folders, and the calibration files; "
             "`lodeline inspect` tells more",
             rig_.cameras[0].name, partner.name, clockTime(packet.time - *first_time_),
-            packet.image_stamp.nanoseconds(), 100.0 * (1.0 - survey.agreement), 100.0 * survey.best_agreement));
+            packet.image_stamp.nanoseconds(), 100.0 * (1.0 - survey.agreement),
+            100.0 * survey.best_agreement));
     return true;
   }
   if (!contradicts) {
@@ -124,12 +128,13 @@ bool StereoWatch::conclude(const FramePacket& packet, const StereoSurvey& survey
   partner.is_left_out = true;
   diagnostics_->report(
       Severity::Serious, "stereo_contradicts",
-      fmt::format("{}: at {} (stamp {} ns) {:.0f} % of the points that {} sees as well contradict the "
-                  "calibration, and no exchange of the cameras explains it; its images are left out until they "
-                  "fit. Do they belong to the same moment? Is the calibration that of this rig? `lodeline "
-                  "inspect` tells more",
-                  partner.name, clockTime(packet.time - *first_time_), packet.image_stamp.nanoseconds(),
-                  100.0 * (1.0 - survey.agreement), rig_.cameras[0].name));
+      fmt::format(
+          "{}: at {} (stamp {} ns) {:.0f} % of the points that {} sees as well contradict the "
+          "calibration, and no exchange of the cameras explains it; its images are left out until they "
+          "fit. Do they belong to the same moment? Is the calibration that of this rig? `lodeline "
+          "inspect` tells more",
+          partner.name, clockTime(packet.time - *first_time_), packet.image_stamp.nanoseconds(),
+          100.0 * (1.0 - survey.agreement), rig_.cameras[0].name));
   return false;
 }
 
@@ -156,11 +161,11 @@ void StereoWatch::finish() {
     if (partner.spans == 0) continue;
     diagnostics_->report(
         Severity::Warning, "one_camera",
-        fmt::format("{} gave no matches for {:.1f} of {:.1f} s (the longest time from {} to {}): {} was alone, "
-                    "and the scale hung on the accelerometer",
-                    partner.name, partner.alone_s, watched_s_,
-                    clockTime(partner.longest.begin - *first_time_),
-                    clockTime(partner.longest.end - *first_time_), rig_.cameras[0].name));
+        fmt::format(
+            "{} gave no matches for {:.1f} of {:.1f} s (the longest time from {} to {}): {} was alone, "
+            "and the scale hung on the accelerometer",
+            partner.name, partner.alone_s, watched_s_, clockTime(partner.longest.begin - *first_time_),
+            clockTime(partner.longest.end - *first_time_), rig_.cameras[0].name));
   }
 }
 

@@ -56,7 +56,8 @@ class StereoWatch {
   };
 
   bool isDoubtful(const Partner& partner, int tracks, int matches) const;
-  std::optional<StereoSurvey> look(const FramePacket& packet, const std::vector<cv::Mat>& images, size_t camera);
+  std::optional<StereoSurvey> look(const FramePacket& packet, const std::vector<cv::Mat>& images,
+                                   size_t camera);
   bool conclude(const FramePacket& packet, const StereoSurvey& survey, size_t camera);
   void followSpan(Time time, bool is_alone, Partner* partner);
   void close(Partner* partner);

@@ -9,6 +9,7 @@
 #include "lodeline/base/error.h"
 #include "lodeline/export/map_times.h"
 #include "lodeline/export/survey_name.h"
+#include "lodeline/tables/cells.h"
 #include "lodeline/tables/text_lines.h"
 
 namespace lodeline {
@@ -116,6 +117,7 @@ std::optional<Georeference> placeOf(const std::optional<GeodeticPosition>& entra
                                     double start_depth_m) {
   if (!entrance) return std::nullopt;
   GeodeticPosition first = *entrance;
+  first.longitude_deg = std::remainder(first.longitude_deg, 360.0);
   first.height_m -= start_depth_m;
   return Georeference(first, MapGrid(crs, first));
 }
@@ -228,6 +230,7 @@ DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
   map.notes.insert(map.notes.end(), options.notes.begin(), options.notes.end());
   map.title = headerText(map.title);
   for (std::string& name : map.team) name = headerText(name);
+  std::erase_if(map.team, [](const std::string& name) { return trimmed(name).empty(); });
   for (std::string& note : map.notes) note = headerText(note);
   return map;
 }

@@ -24,9 +24,9 @@ North magneticNorth(const std::optional<GeodeticPosition>& place, const std::str
   }
   north.is_true = true;
   north.text = fmt::format(
-      "true north: the run's magnetic north, declination {:.2f} deg applied (WMM2025, "
+      "true north: the run's magnetic north, declination {:.2f} deg applied ({}, "
       "entrance, {})",
-      north.turn_rad / kDegree, date);
+      north.turn_rad / kDegree, magneticModelName(decimalYear(date)), date);
   return north;
 }
 
@@ -48,7 +48,8 @@ North findNorth(HeadingReference reference, const std::optional<GeodeticPosition
         "the run's heading counts from its start, not from north (no calibrated magnetometer): give "
         "--turn DEG, the true azimuth of the run's y axis, or leave --entrance out");
   }
-  return {0.0, false, "arbitrary: heading counts from the start of the run"};
+  return {0.0, false, "arbitrary: heading counts from the start of the run",
+          "x, y from the start heading, z up"};
 }
 
 }  // namespace lodeline

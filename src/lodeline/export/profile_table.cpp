@@ -196,7 +196,7 @@ ProfileRows readProfileTable(const std::filesystem::path& file, Diagnostics* dia
   options.rows_may_be_short = true;
   TableReader table(file, options, diagnostics);
   ProfileRows profile;
-  if (table.columnCount() == 0) return profile;
+  if (table.columnCount() == 0 && table.unknownHeader().empty()) return profile;
   const ProfileColumns columns = columnsOf(table, file.string());
   const Times times(table, columns);
   if (!times.canTell()) {

@@ -24,7 +24,7 @@ std::filesystem::path fullPath(const std::filesystem::path& folder) {
   return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-std::string lowerCase(std::string name) {
+std::string foldedCase(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   return name;
 }
@@ -32,7 +32,7 @@ std::string lowerCase(std::string name) {
 bool areDifferent(const std::vector<std::string>& names) {
   std::set<std::string> seen;
   return std::all_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return seen.insert(lowerCase(name)).second; });
+                     [&](const std::string& name) { return seen.insert(foldedCase(name)).second; });
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ TEST_F(SurveyPrograms, TakeALocalMap) {
   DiveMapOptions options;
   options.name = "Höhle 7";
   options.title = "the \"back\" way; %x\n*fix 0 1 2 3\xff";
-  options.team = {"A\nB"};
+  options.team = {"A\nB", "Jean Claude van Dijk", "O'Neil", "A/B/C", "", " "};
   options.start_depth_m = 3.0;
   const DiveMap map = write(run, options);
   EXPECT_EQ(map.name, "H__hle_7");

@@ -46,7 +46,7 @@ ColmapModel colmapModel(const DiveMap& map, const std::vector<CameraCalibration>
                    "{} {:.12g} {:.12g} {:.12g} {:.12g} {:.9f} {:.9f} {:.9f} {} {}\n\n", ++id, q.w(), q.x(),
                    q.y(), q.z(), t.x(), t.y(), t.z(), image.camera + 1, image.name);
   }
-  model.points3D = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] (none); metres east, north, up\n";
+  model.points3D = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] (none); metres " + map.north.axes + "\n";
   id = 0;
   for (const MapLandmark& landmark : map.landmarks) {
     fmt::format_to(std::back_inserter(model.points3D), "{} {:.6f} {:.6f} {:.6f} 170 160 145 0\n", ++id,

@@ -41,9 +41,8 @@ constexpr Colour kWallColour = {170, 160, 145};
 std::string header(const DiveMap& map, size_t vertices, size_t edges) {
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& note : map.notes) text += "comment " + note + "\n";
-  text +=
-      fmt::format("comment metres east, north, up from the first pose; first the {} poses, then landmarks\n",
-                  map.trajectory.size());
+  text += fmt::format("comment metres {} from the first pose; first the {} poses, then landmarks\n",
+                      map.north.axes, map.trajectory.size());
   text += fmt::format("element vertex {}\n", vertices);
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) text += fmt::format("property float {}\n", name);
   for (const char* name : {"red", "green", "blue"}) text += fmt::format("property uchar {}\n", name);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "lodeline/export/survey_text.h"
 #include "lodeline/export/write_formats.h"
@@ -55,6 +57,20 @@ std::string dateText(const DiveMap& map) {
   return fmt::format("    # date {}  (Therion 6.1 warns of dates after 2024)\n", dotted(map.date));
 }
 
+/// A name as Therion takes it: one or two words, or more with a stroke before the surname.
+std::string therionPerson(std::string name) {
+  std::replace(name.begin(), name.end(), '/', ' ');
+  std::istringstream stream(name);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  std::string person;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const bool is_surname = words.size() > 2 && i + 1 == words.size();
+    person += (i == 0 ? "" : is_surname ? "/" : " ") + words[i];
+  }
+  return person;
+}
+
 std::string therionSplays(const DiveMap& map, const Offsets& fromFirst) {
   std::string text;
   for (size_t i = 0; i < map.survey.stations.size(); ++i) {
@@ -92,7 +108,7 @@ std::string therionText(const DiveMap& map) {
   for (const SurveyStation& station : survey.stations) positions.push_back(fromFirst(station.position_ENU));
   std::string text = fmt::format("encoding utf-8\n# {}\n", map.title) + comments(map, "#");
   text += fmt::format("\nsurvey {} -title {}\n  centreline\n", map.name, quoted(map.title)) + dateText(map);
-  for (const std::string& name : map.team) text += fmt::format("    team {}\n", quoted(name));
+  for (const std::string& name : map.team) text += fmt::format("    team {}\n", quoted(therionPerson(name)));
   text += "    station 0 \"entrance\" entrance\n";
   const Vec3& sigma = survey.leg_sigma_ENU;
   text += fmt::format(

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 
 #include "lodeline/base/error.h"
 #include "lodeline/features/mask.h"
@@ -60,11 +62,13 @@ void FrontEnd::check(Time time, const std::vector<cv::Mat>& images) const {
 }
 
 FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
-                              const Quat& previous_from_current_B, const RigMotion& motion) {
+                              const Quat& previous_from_current_B, const Quat& alternative_B,
+                              const RigMotion& motion) {
   check(time, images);
   constexpr double kGap = 1.5;  // in usual intervals
   statistics_ = {};
   previous_from_current_B_ = (previous_from_current_B_ * previous_from_current_B).normalized();
+  alternative_B_ = (alternative_B_ * alternative_B).normalized();
   if (images.front().empty()) {
     statistics_.missing = true;
     return {time};
@@ -84,9 +88,11 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   if (interval_s > kGap * previous_interval_s_) {
     for (Track& track : tracks_) track.prediction_error_px.reset();
   }
-  const Quat current_from_previous_C =
-      body_from_camera_.conjugate() * previous_from_current_B_.conjugate() * body_from_camera_;
-  follow(current, current_from_previous_C.toRotationMatrix());
+  const auto ofCamera = [&](const Quat& previous_from_current) {
+    return (body_from_camera_.conjugate() * previous_from_current.conjugate() * body_from_camera_)
+        .toRotationMatrix();
+  };
+  follow(current, ofCamera(previous_from_current_B_), ofCamera(alternative_B_));
   detect(current);
   for (size_t m = 0; m < matchers_.size(); ++m) matchers_[m].setMotion(motion, m + 1);
   matchOthers(time, current, images);
@@ -94,7 +100,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   previous_ = std::move(current);
   previous_time_ = time;
   previous_interval_s_ = interval_s;
-  previous_from_current_B_ = Quat::Identity();
+  previous_from_current_B_ = alternative_B_ = Quat::Identity();
   return observations(time);
 }
 
@@ -119,36 +125,62 @@ void FrontEnd::updateQuality(const ImagePyramid& current) {
   faint_ = faint || noisy;
 }
 
-void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_previous_C) {
-  std::vector<Track> followed;
-  std::vector<Vec3> previous_bearings;
-  followed.reserve(tracks_.size());
-  for (Track& track : tracks_) {
+FrontEnd::Followed FrontEnd::follow(std::vector<Track> tracks, const ImagePyramid& current,
+                                    const Mat3& current_from_previous_C) const {
+  Followed followed;
+  followed.tracks.reserve(tracks.size());
+  for (Track& track : tracks) {
     const auto bearing = cameras_.front()->unproject(track.warp.position.cast<double>());
     if (!bearing || !tracker_.follow(previous_, current, current_from_previous_C, track) ||
-        isHidden(0, track.warp.position)) {
-      ++statistics_.lost;
+        isHidden(0, track.warp.position))
       continue;
-    }
-    followed.push_back(std::move(track));
-    previous_bearings.push_back(*bearing);
+    followed.tracks.push_back(std::move(track));
+    followed.previous_bearings.push_back(*bearing);
   }
-  tracks_ = std::move(followed);
-  rejectOutliers(previous_bearings, current_from_previous_C);
+  return followed;
+}
+
+void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_previous_C,
+                      const Mat3& alternative_C) {
+  // Less than that is within the tracker's reach.
+  constexpr double kReach_rad = 0.05;
+  const size_t before = tracks_.size();
+  const bool differ =
+      Eigen::AngleAxisd(Mat3(current_from_previous_C.transpose() * alternative_C)).angle() > kReach_rad;
+  std::vector<Track> again;
+  if (differ) again = tracks_;
+  Followed followed = follow(std::move(tracks_), current, current_from_previous_C);
+  if (differ && 2 * followed.tracks.size() < before) {
+    Followed otherwise = follow(std::move(again), current, alternative_C);
+    if (otherwise.tracks.size() > followed.tracks.size()) followed = std::move(otherwise);
+  }
+  tracks_ = std::move(followed.tracks);
+  statistics_.lost += static_cast<int>(before - tracks_.size());
+  rejectOutliers(followed.previous_bearings, current_from_previous_C, alternative_C);
   rejectCrowded();
   statistics_.kept = static_cast<int>(tracks_.size());
 }
 
-void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings,
-                              const Mat3& current_from_previous_C) {
+void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C,
+                              const Mat3& alternative_C) {
   const Camera& camera = *cameras_.front();
   std::vector<Vec3> bearings;
   for (const Track& track : tracks_) {
     // The tracker has seen to it that the pixel lies in the image; a ray may still not exist at the corners.
     bearings.push_back(camera.unproject(track.warp.position.cast<double>()).value_or(Vec3::Zero()));
   }
-  const std::vector<bool> agrees = epipolarConsensus(previous_bearings, bearings, current_from_previous_C,
-                                                     camera.calibration().fx_px, options_.consensus);
+  const auto agreeing = [&](const Mat3& rotation) {
+    return epipolarConsensus(previous_bearings, bearings, rotation, camera.calibration().fx_px,
+                             options_.consensus);
+  };
+  const auto count = [](const std::vector<bool>& which) {
+    return std::count(which.begin(), which.end(), true);
+  };
+  std::vector<bool> agrees = agreeing(current_from_previous_C);
+  if (2 * count(agrees) < std::ssize(agrees) && alternative_C != current_from_previous_C) {
+    const std::vector<bool> otherwise = agreeing(alternative_C);
+    if (count(otherwise) > count(agrees)) agrees = otherwise;
+  }
   size_t i = 0;
   const size_t removed = std::erase_if(tracks_, [&](const Track&) {
     const bool good = agrees[i] && !bearings[i].isZero();

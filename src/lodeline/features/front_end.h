@@ -56,12 +56,17 @@ class FrontEnd {
   FrontEnd(const Rig& rig, const FrontEndOptions& options);
 
   /// `images`: one 8-bit grey image per camera of the rig; empty where the camera gave none.
-  /// `previous_from_current_B`: rotation of the body between the call before and this one. Without an image
-  /// of camera 0 nothing is observed, and tracks wait for the next one. What another camera saw at another
+  /// `previous_from_current_B`: rotation of the body between the call before and this one; `alternative_B`:
+  /// another opinion of it, which counts where the images do not agree with the first. Without an image of
+  /// camera 0 nothing is observed, and tracks wait for the next one. What another camera saw at another
   /// moment, by `motion`, is given as it would have seen it at `time`. Throws InputError where an image has
   /// another size or type than the calibration says.
   FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
-                      const RigMotion& motion = {});
+                      const Quat& alternative_B, const RigMotion& motion = {});
+  FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
+                      const RigMotion& motion = {}) {
+    return process(time, images, previous_from_current_B, previous_from_current_B, motion);
+  }
 
   /// Gives up all tracks: the images so far were not those of camera 0.
   void forgetTracks();
@@ -79,8 +84,16 @@ class FrontEnd {
   void check(Time time, const std::vector<cv::Mat>& images) const;
   ImagePyramid pyramid(const cv::Mat& image) const;
   void updateQuality(const ImagePyramid& current);
-  void follow(const ImagePyramid& current, const Mat3& current_from_previous_C);
-  void rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C);
+  /// Tracks found in the current image, and their rays in the previous one.
+  struct Followed {
+    std::vector<Track> tracks;
+    std::vector<Vec3> previous_bearings;
+  };
+  Followed follow(std::vector<Track> tracks, const ImagePyramid& current,
+                  const Mat3& current_from_previous_C) const;
+  void follow(const ImagePyramid& current, const Mat3& current_from_previous_C, const Mat3& alternative_C);
+  void rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C,
+                      const Mat3& alternative_C);
   void rejectCrowded();
   bool isHidden(size_t camera, const Eigen::Vector2f& pixel) const;
   void detect(const ImagePyramid& current);
@@ -101,8 +114,9 @@ class FrontEnd {
   ImagePyramid previous_;
   bool faint_ = false;  ///< the last image was faint or noisy
   Time previous_time_;
-  double previous_interval_s_ = 0.0;                 ///< that led there
-  Quat previous_from_current_B_ = Quat::Identity();  ///< since the last image of camera 0
+  double previous_interval_s_ = 0.0;  ///< that led there
+  /// Since the last image of camera 0, by either opinion.
+  Quat previous_from_current_B_ = Quat::Identity(), alternative_B_ = Quat::Identity();
   TrackId next_id_ = 0;
   FrontEndStatistics statistics_;
 };

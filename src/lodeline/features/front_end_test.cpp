@@ -313,7 +313,8 @@ std::pair<double, size_t> rightRayError(int later, bool motion_is_known) {
     }
   }
   if (errors_px.empty()) return {0.0, 0};
-  std::nth_element(errors_px.begin(), errors_px.begin() + static_cast<int>(errors_px.size() / 2), errors_px.end());
+  std::nth_element(errors_px.begin(), errors_px.begin() + static_cast<int>(errors_px.size() / 2),
+                   errors_px.end());
   return {errors_px[errors_px.size() / 2], errors_px.size()};
 }
 
@@ -325,6 +326,28 @@ TEST(FrontEnd, GivesWhatAnotherCameraSawLaterAsItWouldHaveSeenItAtTheFramesTime)
   EXPECT_LT(later_px, 0.3);
   EXPECT_GT(later, 0.8 * static_cast<double>(together) * (kFrames - 1) / kFrames);
   EXPECT_GT(unknown_px, 2.0) << "the sequence moves too little to test anything";
+}
+
+// A gyroscope in other units turns by radians what turns by hundredths.
+TEST(FrontEnd, FollowsPointsByTheOtherOpinionWhereImagesContradictTheFirst) {
+  const Recording& recording = daylight();
+  const Quat wrong = so3::exp(0.5 * Vec3(0.6, -0.6, 0.5).normalized());
+  FrontEnd right(recording.sequence.rig(), {}), deceived(recording.sequence.rig(), {}),
+      rescued(recording.sequence.rig(), {});
+  int kept_right = 0, kept_deceived = 0, kept_rescued = 0;
+  for (int i = 0; i < 6; ++i) {
+    const Time time = TestSequence::time(i);
+    const std::vector<cv::Mat>& images = recording.images[static_cast<size_t>(i)];
+    const Quat truth = recording.previousFromCurrent(i);
+    right.process(time, images, truth);
+    deceived.process(time, images, truth * wrong);
+    rescued.process(time, images, truth * wrong, truth);
+    kept_right += right.statistics().kept;
+    kept_deceived += deceived.statistics().kept;
+    kept_rescued += rescued.statistics().kept;
+  }
+  EXPECT_LT(kept_deceived, kept_right / 2);
+  EXPECT_GT(kept_rescued, 0.9 * kept_right);
 }
 
 }  // namespace

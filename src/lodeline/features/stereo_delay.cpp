@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kEquationsOfFrame = 30, kMostEquations = 6000;
 constexpr int kLeastFrames = 30, kDelayIterations = 8;
 constexpr double kEvenError_px = 0.2;  // below which errors weigh alike
-constexpr double kNoMatch_px = 20.0;  // no match at all
+constexpr double kNoMatch_px = 20.0;   // no match at all
 constexpr double kTurnSigma_rad = 1.0 * kDegree, kDelaySigma_s = 0.1;
 constexpr double kNearest_m = 0.2;
 

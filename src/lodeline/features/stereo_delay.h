@@ -10,12 +10,12 @@ namespace lodeline {
 
 /// Estimates by how much later than its stamp says the second camera of a pair takes its images, from the
 /// distances of stereo matches to their epipolar lines. A delay d moves the second camera, between the first
-/// image and its own, by the rotation w d and the translation v d (its own axes), so a match b at inverse depth
-/// rho lies off its line by
+/// image and its own, by the rotation w d and the translation v d (its own axes), so a match b at inverse
+/// depth rho lies off its line by
 ///   e = -focal_px (w . (b x n) + rho n . v) d + focal_px (b x n) . theta,
-/// with n the unit normal of the epipolar plane and theta a constant turn of the camera against its file. w and
-/// v change from frame to frame, which tells d from theta. Minimises the sum of |e - model| over the latest
-/// matches, right and wrong ones (iteratively reweighted least squares).
+/// with n the unit normal of the epipolar plane and theta a constant turn of the camera against its file. w
+/// and v change from frame to frame, which tells d from theta. Minimises the sum of |e - model| over the
+/// latest matches, right and wrong ones (iteratively reweighted least squares).
 class StereoDelay {
  public:
   /// The matches of one frame, as `second_from_first` places them, and the second camera's motion: angular

@@ -14,8 +14,8 @@ namespace {
 constexpr double kFocal_px = 450.0, kNoise_px = 0.3;
 
 /// A pair of cameras that sways and drifts before points 1 to 8 m away; the second one takes its images
-/// `delay_s` later than the first, is turned by `turn_rad` about x against its file, and a share of the matches
-/// is wrong.
+/// `delay_s` later than the first, is turned by `turn_rad` about x against its file, and a share of the
+/// matches is wrong.
 StereoDelay watched(double delay_s, double turn_rad, double sway_rad_per_s, double wrong_share = 0.1) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -26,7 +26,8 @@ StereoDelay watched(double delay_s, double turn_rad, double sway_rad_per_s, doub
   StereoDelay delay;
   for (int frame = 0; frame < 100; ++frame) {
     const double t_s = 0.05 * frame;
-    const Vec3 rate_C = sway_rad_per_s * Vec3(std::sin(2.1 * t_s), std::sin(1.3 * t_s + 1.0), std::cos(1.7 * t_s));
+    const Vec3 rate_C =
+        sway_rad_per_s * Vec3(std::sin(2.1 * t_s), std::sin(1.3 * t_s + 1.0), std::cos(1.7 * t_s));
     const Vec3 velocity_C(0.2, 0.1 * std::sin(t_s), 0.3);
     std::vector<RayPair> pairs;
     for (int i = 0; i < 80; ++i) {

@@ -96,7 +96,7 @@ class StereoMatcher {
   Rigid3 second_from_first_by_file_;
   std::optional<Rigid3> frame_from_image_C_;  ///< of the second camera, where its image is of another moment
   Vec3 rate_C_ = Vec3::Zero(), velocity_C_ = Vec3::Zero();  ///< of the second camera
-  Rigid3 second_from_first_;                                ///< at the times of their images, with the turn found
+  Rigid3 second_from_first_;  ///< at the times of their images, with the turn found
 };
 
 }  // namespace lodeline

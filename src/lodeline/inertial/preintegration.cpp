@@ -101,6 +101,11 @@ void Preintegration::repropagate(const Vec3& gyroscope_bias_B, const Vec3& accel
   integrate();
 }
 
+void Preintegration::setDoubt(const InertialDoubt& doubt) {
+  doubt_ = doubt;
+  integrate();
+}
+
 bool Preintegration::needsRepropagation(const Vec3& gyroscope_bias_B,
                                         const Vec3& accelerometer_bias_B) const {
   return (gyroscope_bias_B - gyroscope_bias_).norm() * dt_s() > options_.max_rotation_correction_rad ||
@@ -130,6 +135,10 @@ void Preintegration::integrate() {
   covariance_.setZero();
   rotations_.assign(1, IntermediateRotation());
   for (size_t i = 0; i + 1 < samples_.size(); ++i) advance(i);
+  covariance_.diagonal().segment<3>(kGyroscopeBias).array() +=
+      doubt_.gyroscope_bias_step_rad_per_s * doubt_.gyroscope_bias_step_rad_per_s;
+  covariance_.diagonal().segment<3>(kAccelerometerBias).array() +=
+      doubt_.accelerometer_bias_step_m_per_s2 * doubt_.accelerometer_bias_step_m_per_s2;
 
   whitening_.setIdentity();
   covariance_.llt().matrixL().solveInPlace(whitening_);
@@ -197,6 +206,9 @@ Preintegration::Mat15 Preintegration::processNoise(
     noise.accelerometer +=
         alike_s * options_.gap_specific_force_sigma_m_per_s2 * options_.gap_specific_force_sigma_m_per_s2;
   }
+  noise.gyroscope += doubt_.gyroscope_density_rad_per_s_sqrtHz * doubt_.gyroscope_density_rad_per_s_sqrtHz;
+  noise.accelerometer +=
+      doubt_.accelerometer_density_m_per_s2_sqrtHz * doubt_.accelerometer_density_m_per_s2_sqrtHz;
 
   Mat15 q = Mat15::Zero();
   // The gyroscope's noise enters where its bias does; its mean over the step has variance density^2 / h.

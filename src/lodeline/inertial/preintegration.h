@@ -5,6 +5,7 @@
 
 #include "lodeline/base/time.h"
 #include "lodeline/geometry/types.h"
+#include "lodeline/inertial/inertial_doubt.h"
 #include "lodeline/inertial/rotation_increment.h"
 #include "lodeline/inertial/step_noise.h"
 #include "lodeline/sensors/measurements.h"
@@ -126,6 +127,10 @@ class Preintegration {
   /// Integrates again at the given biases.
   void repropagate(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B);
 
+  /// Integrates again with noise added to the interval.
+  void setDoubt(const InertialDoubt& doubt);
+  const InertialDoubt& doubt() const { return doubt_; }
+
   /// Rotation from body k to the body at `time`, at the bias integrated with. Throws InputError outside the
   /// interval.
   IntermediateRotation gammaAt(Time time) const;
@@ -142,6 +147,7 @@ class Preintegration {
   std::vector<ImuSample> samples_;
   ImuCalibration imu_;
   PreintegrationOptions options_;
+  InertialDoubt doubt_;
   Vec3 gyroscope_bias_;
   Vec3 accelerometer_bias_;
 

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-Vec3 rateAt(double t_s) {
+Vec3 swayRate(double t_s) {
   return {0.3 * std::sin(1.7 * t_s), 0.25 * std::sin(2.3 * t_s + 1.0), 0.35 * std::sin(1.1 * t_s + 2.0)};
 }
 
@@ -37,8 +37,9 @@ class ClockMonitorTest : public testing::Test {
     std::vector<ImuSample> imu;
     for (int i = 0; i < static_cast<int>(200 * seconds); ++i) {
       const double t_s = 0.005 * i;
-      imu.push_back({Time::fromSeconds(t_s), turning * rateAt(t_s) + Vec3(0.02, -0.01, 0.03), Vec3::UnitZ()});
-      world_from_body = world_from_body * so3::exp(turning * 0.005 * rateAt(t_s + 0.0025));
+      imu.push_back(
+          {Time::fromSeconds(t_s), turning * swayRate(t_s) + Vec3(0.02, -0.01, 0.03), Vec3::UnitZ()});
+      world_from_body = world_from_body * so3::exp(turning * 0.005 * swayRate(t_s + 0.0025));
       if (i % 10 != 0) continue;
       FrameTracks tracks;
       tracks.time = Time::fromSeconds(t_s + 0.005 + delay_s(t_s));

@@ -75,10 +75,11 @@ void judgeFiles(const CameraSurvey& camera, Inspection* inspection) {
     const double share = static_cast<double>(camera.identical) / camera.compared;
     // What follows from it looks like a wrong focal length, delay or bias.
     add(camera, share > 0.02 ? Severity::Serious : Severity::Notice, 98.0, "images_repeated",
-        fmt::format("{} of {} images are the same, pixel by pixel, as the one before (first: stamp {} ns): the "
-                    "camera hangs, or a driver or converter fills up the frame rate. A run leaves them out; "
-                    "record at the rate of the camera",
-                    camera.identical, camera.compared, camera.first_identical->nanoseconds()),
+        fmt::format(
+            "{} of {} images are the same, pixel by pixel, as the one before (first: stamp {} ns): the "
+            "camera hangs, or a driver or converter fills up the frame rate. A run leaves them out; "
+            "record at the rate of the camera",
+            camera.identical, camera.compared, camera.first_identical->nanoseconds()),
         inspection);
   }
 }

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kGapPeriods = 4.0;
+constexpr double kImuGapPeriods = 4.0;
 constexpr double kStandardGravity_m_per_s2 = 9.80665;
 /// Blocks of readings at rest, and between which gravity's turning is looked at.
 constexpr double kBlock_s = 0.25;
@@ -180,7 +180,7 @@ ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics) {
   };
   OrderedStream<ImuSample> ordered(expected, pull, diagnostics);
   while (ordered.peek() != nullptr) survey.samples.push_back(ordered.pop());
-  survey.stream = stream.summarize(kGapPeriods);
+  survey.stream = stream.summarize(kImuGapPeriods);
   survey.stream.clock_jumps = diagnostics->count("imu_clock_jump");
   std::vector<ImuSample>& samples = survey.samples;
   if (samples.empty()) return survey;

@@ -11,13 +11,19 @@
 namespace lodeline {
 namespace {
 
-/// Swims east at 1 m/s, half a metre below the start, by inertial readings at the end.
+/// Swims east at 1 m/s, half a metre below the start, by inertial readings at the end. North is found after
+/// six seconds: the estimator's world, that of the first pose, has it along its x axis.
 FrameEstimate estimateAt(int second) {
   FrameEstimate estimate;
   estimate.time = Time::fromSeconds(second);
   estimate.status = second < 12 ? Status::Tracking : Status::Inertial;
-  estimate.state.world_from_body.translation = Vec3(second, 0.0, -0.5);
-  estimate.magnetometer.heading_reference = HeadingReference::True;
+  const double north_rad = 0.5 * M_PI;
+  const Quat world_from_north(Eigen::AngleAxisd(-north_rad, Vec3::UnitZ()));
+  estimate.state.world_from_body = Rigid3(world_from_north, world_from_north * Vec3(second, 0.0, -0.5));
+  if (second >= 6) {
+    estimate.magnetometer.heading_reference = HeadingReference::True;
+    estimate.magnetometer.north_from_world_rad = north_rad;
+  }
   estimate.magnetometer.heading_sigma_rad = 2.0 * M_PI / 180.0;
   return estimate;
 }

@@ -68,6 +68,9 @@ std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, 
                  {"real_time_factor", shortNumber(summary.realTimeFactor())},
                  {"heading_reference", toString(estimate.magnetometer.heading_reference)},
                  {"waiting_for", estimate.waiting_for}};
+  const std::optional<double>& north_rad = estimate.magnetometer.north_from_world_rad;
+  json["run"]["north_from_world_rad"] =
+      north_rad ? nlohmann::ordered_json(*north_rad) : nlohmann::ordered_json();
   if (!landmarks_W.empty()) {
     const auto* bytes = reinterpret_cast<const uint8_t*>(landmarks_W.data());
     json["landmarks"] = base64({bytes, landmarks_W.size() * sizeof(Eigen::Vector3f)});

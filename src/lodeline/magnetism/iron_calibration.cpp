@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "lodeline/base/angles.h"
 #include "lodeline/base/error.h"
@@ -16,26 +17,73 @@ namespace lodeline {
 namespace {
 
 constexpr double kNominalField_T = 50e-6;
+/// A sensor's own scale may be off, but noise about one value is no field.
+constexpr double kLeastField_T = 8e-6, kMostField_T = 200e-6;
+constexpr double kLeastRadius_counts = 20.0;
 
-/// The algebraic fit refitted a few times to the three quarters of readings that it fits best, so that
-/// outliers do not decide where the refinement starts.
-std::optional<Ellipsoid> trimmedEllipsoid(std::span<const Vec3> readings) {
-  std::optional<Ellipsoid> ellipsoid = fitEllipsoid(readings);
-  constexpr int kRounds = 4;
-  for (int round = 0; ellipsoid && round < kRounds; ++round) {
-    std::vector<std::pair<double, size_t>> ranked;
-    for (size_t i = 0; i < readings.size(); ++i) {
-      const IronResidual r = ironResidual(readings[i], {ellipsoid->matrix, ellipsoid->centre});
-      ranked.emplace_back(std::abs(r.distance), i);
-    }
-    std::sort(ranked.begin(), ranked.end());
-    std::vector<Vec3> best;
-    for (size_t i = 0; i < ranked.size() * 3 / 4; ++i) best.push_back(readings[ranked[i].second]);
-    const std::optional<Ellipsoid> next = fitEllipsoid(best);
-    if (!next) break;
-    ellipsoid = next;
+using EllipsoidFit = std::optional<Ellipsoid> (*)(std::span<const Vec3>);
+
+/// An ellipsoid with the sum of squared distances of the three quarters of readings that lie nearest to it.
+struct TrimmedFit {
+  Ellipsoid ellipsoid;
+  double sum = 0.0;
+  std::vector<Vec3> nearest;
+};
+
+TrimmedFit trimmed(const Ellipsoid& ellipsoid, std::span<const Vec3> readings) {
+  std::vector<std::pair<double, size_t>> ranked;
+  for (size_t i = 0; i < readings.size(); ++i) {
+    const IronResidual r = ironResidual(readings[i], {ellipsoid.matrix, ellipsoid.centre});
+    ranked.emplace_back(std::abs(r.distance), i);
   }
-  return ellipsoid;
+  std::sort(ranked.begin(), ranked.end());
+  TrimmedFit result{ellipsoid, 0.0, {}};
+  for (size_t i = 0; i < ranked.size() * 3 / 4; ++i) {
+    result.sum += ranked[i].first * ranked[i].first;
+    result.nearest.push_back(readings[ranked[i].second]);
+  }
+  return result;
+}
+
+/// Refits the ellipsoid a few times to the readings that it fits best.
+std::optional<TrimmedFit> concentrated(EllipsoidFit fit, std::span<const Vec3> begin,
+                                       std::span<const Vec3> readings, int rounds) {
+  std::optional<Ellipsoid> ellipsoid = fit(begin);
+  if (!ellipsoid) return std::nullopt;
+  TrimmedFit best = trimmed(*ellipsoid, readings);
+  for (int round = 0; round < rounds; ++round) {
+    ellipsoid = fit(best.nearest);
+    if (!ellipsoid) break;
+    best = trimmed(*ellipsoid, readings);
+  }
+  return best;
+}
+
+/// Least trimmed squares: starts from all readings and from small random samples, of which most hold no wild
+/// reading (Rousseeuw & Van Driessen, "Computing LTS regression for large data sets", 2006). A wild reading
+/// among all of them can draw the first fit so far off that it is never left out. A sample counts where it
+/// more than halves the spread. `rounds` of refitting to the nearest readings follow. The samples are the
+/// same in every run.
+std::optional<Ellipsoid> trimmedEllipsoid(EllipsoidFit fit, std::span<const Vec3> readings, int rounds) {
+  constexpr int kSamples = 60;
+  constexpr size_t kSampleSize = 14, kMostReadings = 1000;
+  std::optional<TrimmedFit> best = concentrated(fit, readings, readings, rounds);
+  std::vector<Vec3> thinned;
+  const size_t stride = readings.size() / kMostReadings + 1;
+  for (size_t i = 0; i < readings.size(); i += stride) thinned.push_back(readings[i]);
+  std::optional<TrimmedFit> best_sample;
+  std::mt19937 random(1);
+  for (int k = 0; k < kSamples; ++k) {
+    std::vector<Vec3> sample;
+    for (size_t i = 0; i < kSampleSize; ++i) sample.push_back(thinned[random() % thinned.size()]);
+    std::optional<TrimmedFit> found = concentrated(fit, sample, thinned, 1);
+    if (found && (!best_sample || found->sum < best_sample->sum)) best_sample = std::move(found);
+  }
+  if (best_sample) {
+    const std::optional<TrimmedFit> found = concentrated(fit, best_sample->nearest, readings, rounds);
+    if (found && (!best || found->sum < 0.25 * best->sum)) best = found;
+  }
+  return best ? std::optional(best->ellipsoid) : std::nullopt;
 }
 
 /// Where each model's refinement may start; the best result counts.
@@ -43,7 +91,7 @@ std::vector<IronParameters> startsOf(IronModel model, std::span<const Vec3> read
                                      const IronCalibrationOptions& options) {
   std::vector<IronParameters> starts;
   if (model == IronModel::Full) {
-    if (const auto ellipsoid = trimmedEllipsoid(readings))
+    if (const auto ellipsoid = trimmedEllipsoid(&fitEllipsoid, readings, 4))
       starts.push_back({ellipsoid->matrix, ellipsoid->centre});
     return starts;
   }
@@ -51,7 +99,7 @@ std::vector<IronParameters> startsOf(IronModel model, std::span<const Vec3> read
   if (options.old) {
     shape = options.old->iron_correction / std::cbrt(options.old->iron_correction.determinant());
   }
-  const std::optional<Ellipsoid> sphere = fitSphere(readings);
+  const std::optional<Ellipsoid> sphere = trimmedEllipsoid(&fitSphere, readings, 0);
   if (model == IronModel::Offset) {
     const Mat3 correction = (options.old ? options.old->iron_correction : shape) / *options.field_strength_T;
     starts.push_back({correction, options.old ? options.old->hard_iron : Vec3::Zero()});
@@ -114,6 +162,17 @@ std::string objection(const IronCalibration& result, const ModelRequirement& req
   const MagnetometerFit& fit = result.fit;
   const double residual_share = fit.residual_T / fit.field_strength_T;
   const Vec3 scales = Eigen::SelfAdjointEigenSolver<Mat3>(fit.iron_correction).eigenvalues();
+  const double radius = fit.field_strength_T / std::cbrt(fit.iron_correction.determinant());
+  if (fit.raw_readings && radius < kLeastRadius_counts) {
+    return fmt::format("the readings lie within {:.1f} counts of each other; was the sensor turned?", radius);
+  }
+  if (!fit.raw_readings && !(radius > kLeastField_T && radius < kMostField_T)) {
+    return fmt::format(
+        "by the sensor's own scale the field would have {:.1f} uT where the Earth's has 22 to 67; was the "
+        "sensor "
+        "turned, away from iron?",
+        1e6 * radius);
+  }
   if (fit.coverage_share < requirement.coverage_share) {
     return fmt::format("the readings cover {:.0f} % of the sphere of directions and it takes {:.0f} %",
                        100.0 * fit.coverage_share, 100.0 * requirement.coverage_share);

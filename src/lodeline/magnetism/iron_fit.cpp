@@ -79,6 +79,15 @@ std::vector<double> distances(std::span<const Vec3> readings, const IronParamete
   return result;
 }
 
+/// Readings that are no further off than so many robust standard deviations. A perfect record must not lose
+/// readings to the last bits of its arithmetic.
+std::vector<bool> within(double sigmas, const std::vector<double>& distances) {
+  const double limit = sigmas * std::max(robustSigma(distances), 1e-9);
+  std::vector<bool> used(distances.size());
+  for (size_t i = 0; i < distances.size(); ++i) used[i] = std::abs(distances[i]) <= limit;
+  return used;
+}
+
 double conditionNumber(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) return std::numeric_limits<double>::infinity();
@@ -165,15 +174,13 @@ IronFit fitIron(std::span<const Vec3> readings, const IronParameters& start, con
 
   IronFit fit;
   fit.parameters.correction = start.correction * radius;
-  fit.used.assign(readings.size(), true);
+  // What is far off at the start would draw the first round to itself.
+  constexpr double kWild_sigmas = 20.0;
+  fit.used = within(kWild_sigmas, distances(scaled, fit.parameters));
   constexpr int kMostRounds = 30;
   for (int round = 0; round < kMostRounds; ++round) {
     fit.parameters = minimise(scaled, fit.used, fit.parameters, options);
-    const std::vector<double> r = distances(scaled, fit.parameters);
-    // A perfect record must not lose readings to the last bits of its arithmetic.
-    const double limit = options.rejection_sigmas * std::max(robustSigma(r), 1e-9);
-    std::vector<bool> used(r.size());
-    for (size_t i = 0; i < r.size(); ++i) used[i] = std::abs(r[i]) <= limit;
+    std::vector<bool> used = within(options.rejection_sigmas, distances(scaled, fit.parameters));
     const bool settled = used == fit.used;
     fit.used = std::move(used);
     if (settled) break;

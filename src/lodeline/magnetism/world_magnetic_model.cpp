@@ -4,13 +4,14 @@
 
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/SphericalHarmonic.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "lodeline/base/error.h"
-#include "lodeline/magnetism/wmm2025_coefficients.h"
+#include "lodeline/magnetism/magnetic_models.h"
 
 namespace lodeline {
 namespace {
@@ -18,16 +19,16 @@ namespace {
 /// Sums one set of Gauss coefficients (nT or nT/year) to a field.
 class HarmonicSum {
  public:
-  HarmonicSum(double GaussCoefficient::*g, double GaussCoefficient::*h)
+  HarmonicSum(const CoefficientTable& table, double GaussCoefficient::*g, double GaussCoefficient::*h)
       : c_(storage(false)), s_(storage(true)) {
-    for (const GaussCoefficient& term : kWmm2025Coefficients) {
+    for (const GaussCoefficient& term : table) {
       // GeographicLib wants columns of equal order, the sine terms without the column of order zero.
       c_[column(term.order) + term.degree - term.order] = term.*g;
       if (term.order > 0) {
-        s_[column(term.order) - (kWmm2025Degree + 1) + term.degree - term.order] = term.*h;
+        s_[column(term.order) - (kMagneticModelDegree + 1) + term.degree - term.order] = term.*h;
       }
     }
-    sum_ = GeographicLib::SphericalHarmonic(c_, s_, kWmm2025Degree, kReferenceRadius_m,
+    sum_ = GeographicLib::SphericalHarmonic(c_, s_, kMagneticModelDegree, kReferenceRadius_m,
                                             GeographicLib::SphericalHarmonic::SCHMIDT);
   }
 
@@ -44,10 +45,12 @@ class HarmonicSum {
 
  private:
   static constexpr double kReferenceRadius_m = 6371200.0;
-  static constexpr int column(int order) { return order * (kWmm2025Degree + 1) - order * (order - 1) / 2; }
+  static constexpr int column(int order) {
+    return order * (kMagneticModelDegree + 1) - order * (order - 1) / 2;
+  }
   static std::vector<double> storage(bool sine) {
-    constexpr int kTerms = (kWmm2025Degree + 1) * (kWmm2025Degree + 2) / 2;
-    return std::vector<double>(sine ? kTerms - (kWmm2025Degree + 1) : kTerms, 0.0);
+    constexpr int kTerms = (kMagneticModelDegree + 1) * (kMagneticModelDegree + 2) / 2;
+    return std::vector<double>(sine ? kTerms - (kMagneticModelDegree + 1) : kTerms, 0.0);
   }
 
   std::vector<double> c_, s_;
@@ -55,11 +58,13 @@ class HarmonicSum {
 };
 
 void check(const GeodeticPosition& p, double year) {
-  if (!(year >= kWmm2025Epoch && year <= kWmm2025Epoch + 5.0)) {
+  const double first = kMagneticModels.front().epoch;
+  const double last = kMagneticModels.back().epoch + kMagneticModel_years;
+  if (!(year >= first && year <= last)) {
     throw InputError(
-        fmt::format("the World Magnetic Model 2025 holds from 2025.0 to 2030.0, not for the year {:.3f}; "
-                    "give the field itself instead",
-                    year));
+        fmt::format("the Earth's magnetic field is known here from {:.0f} to {:.0f} (IGRF-12, then "
+                    "the World Magnetic Models up to 2025), not for the year {:.3f}",
+                    first, last, year));
   }
   if (!(std::abs(p.latitude_deg) <= 90.0 && std::abs(p.longitude_deg) <= 360.0)) {
     throw InputError(fmt::format("there is no place at latitude {} and longitude {} degrees", p.latitude_deg,
@@ -73,7 +78,16 @@ void check(const GeodeticPosition& p, double year) {
   }
 }
 
+/// The model for a year that check() has passed.
+const MagneticModel& modelOf(double year) {
+  const auto after = std::upper_bound(kMagneticModels.begin(), kMagneticModels.end(), year,
+                                      [](double y, const MagneticModel& model) { return y < model.epoch; });
+  return *std::prev(after);
+}
+
 }  // namespace
+
+const char* magneticModelName(double decimal_year) { return modelOf(decimal_year).name; }
 
 FieldElements fieldElements(const Vec3& field_ENU) {
   FieldElements e;
@@ -86,8 +100,10 @@ FieldElements fieldElements(const Vec3& field_ENU) {
 
 MagneticField worldMagneticField(const GeodeticPosition& p, double decimal_year) {
   check(p, decimal_year);
-  static const HarmonicSum main_field(&GaussCoefficient::g_nT, &GaussCoefficient::h_nT);
-  static const HarmonicSum variation(&GaussCoefficient::g_nT_per_year, &GaussCoefficient::h_nT_per_year);
+  const MagneticModel& model = modelOf(decimal_year);
+  const HarmonicSum main_field(*model.coefficients, &GaussCoefficient::g_nT, &GaussCoefficient::h_nT);
+  const HarmonicSum variation(*model.coefficients, &GaussCoefficient::g_nT_per_year,
+                              &GaussCoefficient::h_nT_per_year);
 
   Vec3 geocentric_m;
   std::vector<double> rotation(9);  // geocentric from east, north, up; row by row
@@ -96,7 +112,7 @@ MagneticField worldMagneticField(const GeodeticPosition& p, double decimal_year)
   const Mat3 geocentric_from_enu =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
   const Vec3 rate = variation.at(geocentric_m);
-  const Vec3 field = main_field.at(geocentric_m) + (decimal_year - kWmm2025Epoch) * rate;
+  const Vec3 field = main_field.at(geocentric_m) + (decimal_year - model.epoch) * rate;
   constexpr double kTeslaPerNanotesla = 1e-9;
   return {kTeslaPerNanotesla * (geocentric_from_enu.transpose() * field),
           kTeslaPerNanotesla * (geocentric_from_enu.transpose() * rate)};

@@ -28,11 +28,15 @@ struct FieldElements {
 };
 FieldElements fieldElements(const Vec3& field_ENU);
 
-/// World Magnetic Model 2025. Throws InputError where the year lies outside 2025.0 to 2030.0, for which the
-/// model was made, or the place is none: latitude beyond the poles, longitude beyond +-360, height outside
-/// -10 to 850 km (one below, eight hundred and fifty above sea level is what the model is specified for;
-/// caves and mines may be deeper).
+/// The Earth's main field by the model made for the year: IGRF-12 from 2000.0, World Magnetic Model 2015
+/// (version 2), 2020 and 2025, each from its year on (magnetic_models.h). Throws InputError where the year
+/// lies outside 2000.0 to 2030.0, or the place is none: latitude beyond the poles, longitude beyond +-360,
+/// height outside -10 to 850 km (one below, eight hundred and fifty above sea level is what the model is
+/// specified for; caves and mines may be deeper).
 MagneticField worldMagneticField(const GeodeticPosition& position, double decimal_year);
+
+/// Name of the model that worldMagneticField() takes for a year within its range: "WMM2025".
+const char* magneticModelName(double decimal_year);
 
 /// Decimal year of a calendar date (Gregorian), e.g. 2026-11-21 -> 2026.8877. Throws UsageError for a date
 /// that does not exist or is not written YYYY-MM-DD.

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
 #include "lodeline/base/error.h"
 #include "lodeline/evaluation/test_trajectories.h"
 #include "lodeline/page/page_template.h"
@@ -46,8 +50,34 @@ TEST(RunPage, HoldsWhatTheFilesOfTheRunSay) {
   EXPECT_NEAR(run["pictures"][1]["t_s"].get<double>(), 200.0 / 15.0 / 6.0, 1e-3);
   EXPECT_EQ(run["timings"]["numbers"]["estimator [s]"][3], 0.011);
   EXPECT_TRUE(run["magnetometer"]["is_calibrated"]);
-  EXPECT_NEAR(run["magnetometer"]["field_strength_T"].get<double>(), 45.5e-6, 1e-12);
+  EXPECT_NEAR(run["magnetometer"]["field_strength_T"].get<double>(), 45.532e-6, 1e-9);
   EXPECT_TRUE(run["evaluation"].is_null());
+}
+
+// Calibrated at home, dived elsewhere.
+TEST(RunPage, TakesTheSphereFromTheRunsOwnField) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  const std::filesystem::path file = folder.path() / "dive" / "run.json";
+  Diagnostics diagnostics;
+  const auto sphere = [&](const std::function<void(nlohmann::json*)>& change) {
+    nlohmann::json summary = nlohmann::json::parse(std::ifstream(file));
+    change(&summary);
+    std::ofstream(file) << summary;
+    const auto page = runPageJson(folder.path() / "dive", std::nullopt, &diagnostics)["magnetometer"];
+    return std::pair(page["field_strength_from"].get<std::string>(), page["field_strength_T"].get<double>());
+  };
+  EXPECT_EQ(sphere([](nlohmann::json*) {}).first, "the field at the site");
+  const auto estimated = sphere([](nlohmann::json* summary) {
+    (*summary)["rig"]["magnetometer"].erase("site_field_strength_T");
+    (*summary)["magnetometer"]["field_W_T"] = {0.0, 3e-5, -4e-5};
+  });
+  EXPECT_EQ(estimated.first, "the field as estimated");
+  EXPECT_NEAR(estimated.second, 50e-6, 1e-12);
+  const auto calibrated =
+      sphere([](nlohmann::json* summary) { (*summary)["magnetometer"].erase("field_W_T"); });
+  EXPECT_EQ(calibrated.first, "the field where it was calibrated");
+  EXPECT_NEAR(calibrated.second, 50e-6, 1e-12);
 }
 
 TEST(RunPage, ComparesWithAReference) {

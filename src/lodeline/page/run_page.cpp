@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -74,14 +75,28 @@ nlohmann::ordered_json optionalTable(const fs::path& file, int64_t origin_ns, Di
   return tableJson(readRunTable(file, diagnostics), origin_ns);
 }
 
+/// Size that corrected readings should have, T, and where that is from: of the field at the run's site, else
+/// as the run estimated it, else at the place of calibration.
+std::pair<nlohmann::ordered_json, const char*> fieldStrength(const nlohmann::ordered_json& summary) {
+  const auto calibration = summary.value("/rig/magnetometer"_json_pointer, nlohmann::ordered_json::object());
+  if (calibration.contains("site_field_strength_T"))
+    return {calibration["site_field_strength_T"], "the field at the site"};
+  const auto field_W = summary.value("/magnetometer/field_W_T"_json_pointer, std::vector<double>{});
+  if (field_W.size() == 3) return {std::hypot(field_W[0], field_W[1], field_W[2]), "the field as estimated"};
+  if (calibration.contains("field_strength_T"))
+    return {calibration["field_strength_T"], "the field where it was calibrated"};
+  return {nullptr, "their mean"};
+}
+
 nlohmann::ordered_json magnetometerJson(const fs::path& run, const nlohmann::ordered_json& summary,
                                         int64_t origin_ns, Diagnostics* diagnostics) {
   nlohmann::ordered_json table = optionalTable(run / "magnetometer.csv", origin_ns, diagnostics);
   if (table.is_null()) return nullptr;
-  const auto calibration = summary.value("/rig/magnetometer"_json_pointer, nlohmann::ordered_json::object());
+  const auto [strength_T, origin] = fieldStrength(summary);
   return {{"table", std::move(table)},
-          {"is_calibrated", calibration.value("is_calibrated", false)},
-          {"field_strength_T", calibration.value("field_strength_T", nlohmann::ordered_json())}};
+          {"is_calibrated", summary.value("/rig/magnetometer/is_calibrated"_json_pointer, false)},
+          {"field_strength_T", strength_T},
+          {"field_strength_from", origin}};
 }
 
 std::string nameOf(const fs::path& run) {
@@ -103,7 +118,7 @@ nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<Repo
   json["summary"] = readSummary(run / "run.json");
   json["config"] = readWhole(run / "config.yaml");
   // The page draws one sigma, not covariances, and the attitude filter has its own command.
-  json["states"] = tableJson(states, origin_ns, {"cov_pose_", "attitude_", "keyframe"});
+  json["states"] = tableJson(states, origin_ns, {"cov_", "attitude_", "keyframe"});
   json["landmarks"] =
       landmarksJson(run / (is_refined ? "landmarks_refined.ply" : "landmarks.ply"), diagnostics);
   json["pictures"] = picturesJson(run / "pictures", origin_ns);

@@ -85,8 +85,9 @@ void writeTestRun(const std::filesystem::path& folder, const TestRun& run) {
   description.imu_rate_hz = 200.0;
   MagnetometerCalibration calibration;
   calibration.is_calibrated = true;
-  calibration.field_strength_T = 45.5e-6;
+  calibration.field_strength_T = 50e-6;  // at home
   description.magnetometer = calibration;
+  description.site_field_W = Vec3(-2.7e-6, 24e-6, -38.6e-6);
   RunSummary summary(description);
   StateWriter states(folder);
   LandmarkWriter landmarks(folder);

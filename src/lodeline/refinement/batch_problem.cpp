@@ -5,6 +5,7 @@
 
 #include "lodeline/estimator/claimed_covariance.h"
 #include "lodeline/estimator/lens_trust.h"
+#include "lodeline/estimator/magnetometer_states.h"
 #include "lodeline/estimator/robust_loss.h"
 #include "lodeline/estimator/window_terms.h"
 #include "lodeline/refinement/batch_structure.h"
@@ -25,7 +26,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addStates(rig, record);
   addTracks(record);
   addGlobals(record);
-  addStartPrior(record.startPrior(), record.globals());
+  addStartPrior(rig, record);
   holdLenses(record.globals());
   believeInFilesAsBefore(record);
   addImuAxes(record.globals());
@@ -231,6 +232,16 @@ Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index, const Sky
   covariance.topRightCorner<6, 9>() = covariance.bottomLeftCorner<9, 6>().transpose();
   covariance.bottomRightCorner<9, 9>() = inverse.block(motion, motion);
   return 0.5 * (covariance + covariance.transpose());
+}
+
+AzimuthCovariance BatchProblem::azimuth(size_t index, const SkylineMatrix& inverse) const {
+  const GlobalState* field = window_.findGlobal(MagnetometerStates::kField);
+  if (field == nullptr) return {};
+  const int row = rowOf(field->value.data());
+  Eigen::Matrix<double, 15, 3> state_field;
+  state_field << inverse.block(row, rowOf(state(index).pose.data())).transpose(),
+      inverse.block(row, rowOf(state(index).motion.data())).transpose();
+  return azimuthCovariance(MagnetometerStates(window_).field_W(), inverse.block(row, row), state_field);
 }
 
 }  // namespace lodeline

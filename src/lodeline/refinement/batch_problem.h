@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lodeline/estimator/factor_list.h"
+#include "lodeline/estimator/heading_alignment.h"
 #include "lodeline/estimator/normal_equations.h"
 #include "lodeline/estimator/window.h"
 #include "lodeline/refinement/batch_landmarks.h"
@@ -69,13 +70,15 @@ class BatchProblem {
 
   /// Of a state's [dp, dtheta, dv, db_g, db_a], from the inverse of the system.
   Eigen::Matrix<double, 15, 15> covarianceOf(size_t state, const SkylineMatrix& inverse) const;
+  /// Of the field's azimuth, and with a state; zero where the field is no state.
+  AzimuthCovariance azimuth(size_t state, const SkylineMatrix& inverse) const;
 
  private:
   using GlobalValues = std::map<std::string, std::vector<double>>;
   void addStates(const Rig& rig, const ForwardRecord& record);
   void addTracks(const ForwardRecord& record);
   void addGlobals(const ForwardRecord& record);
-  void addStartPrior(const ForwardRecord::StartPrior& start, const GlobalValues& globals);
+  void addStartPrior(const Rig& rig, const ForwardRecord& record);
   /// Lenses stay as the run found them (`globals`). Free, they follow what slides in the images along a mode
   /// that is hardly known: a longer lens whose camera sits further back.
   void holdLenses(const GlobalValues& globals);

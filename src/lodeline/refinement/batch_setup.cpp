@@ -1,6 +1,7 @@
 // How a BatchProblem is made from the record of a forward run.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lodeline/estimator/camera_states.h"
 #include "lodeline/estimator/depth_states.h"
@@ -29,6 +30,27 @@ Prior walkBetween(GlobalState* begin, GlobalState* end, double sigma) {
   return prior;
 }
 
+/// Takes a block that is tied to no other out of a prior.
+void remove(const char* name, Prior* prior, std::vector<std::string>* names) {
+  Prior rest;
+  std::vector<std::string> rest_names;
+  std::vector<int> kept;
+  int row = 0;
+  for (size_t i = 0; i < names->size(); ++i) {
+    const Prior::Block& block = prior->blocks[i];
+    if ((*names)[i] != name) {
+      rest.blocks.push_back(block);
+      rest_names.push_back((*names)[i]);
+      for (int k = 0; k < block.tangentSize(); ++k) kept.push_back(row + k);
+    }
+    row += block.tangentSize();
+  }
+  rest.sqrt_information = prior->sqrt_information(kept, kept).eval();
+  rest.offset = prior->offset(kept).eval();
+  *prior = std::move(rest);
+  *names = std::move(rest_names);
+}
+
 }  // namespace
 
 void BatchProblem::addStates(const Rig& rig, const ForwardRecord& record) {
@@ -45,6 +67,8 @@ void BatchProblem::addStates(const Rig& rig, const ForwardRecord& record) {
       frame->from_previous = std::make_unique<Preintegration>(
           record.imuBetween(before.time, frame->time), before.gyroscopeBias(), before.accelerometerBias(),
           rig.imu, options_.preintegration);
+      if (const InertialDoubt doubt = record.doubtBetween(before.time, frame->time); doubt.any())
+        frame->from_previous->setDoubt(doubt);
     }
     window_.add(std::move(frame));
   }
@@ -135,12 +159,20 @@ void BatchProblem::addWalk(const Chain& chain, double walk_per_sqrt_s) {
   }
 }
 
-void BatchProblem::addStartPrior(const ForwardRecord::StartPrior& start, const GlobalValues& globals) {
+void BatchProblem::addStartPrior(const Rig& rig, const ForwardRecord& record) {
+  const ForwardRecord::StartPrior& start = record.startPrior();
+  const GlobalValues& globals = record.globals();
   Prior prior = start.prior;
+  std::vector<std::string> names = start.names;
+  // That the start's field was the Earth's turned out to be wrong.
+  if (record.frames().back().magnetometer.field_epoch > 0) {
+    remove(MagnetometerStates::kField, &prior, &names);
+    remove(MagnetometerStates::kOffset, &prior, &names);
+  }
   Frame& first = *window_.frames().front();
   std::vector<const double*> known;
   for (size_t i = 0; i < prior.blocks.size(); ++i) {
-    const std::string& name = start.names[i];
+    const std::string& name = names[i];
     double* value = nullptr;
     if (name == "pose") value = first.pose.data();
     if (name == "motion") value = first.motion.data();
@@ -166,8 +198,11 @@ void BatchProblem::addStartPrior(const ForwardRecord::StartPrior& start, const G
   };
   if (magnetometer.field && !isKnown(magnetometer.field))
     addKnowledge(magnetometer.field, options_.magnetometer.field_sigma_T);
-  if (magnetometer.offset && !isKnown(magnetometer.offset))
-    addKnowledge(magnetometer.offset, options_.magnetometer.offset_sigma_T);
+  if (magnetometer.offset && !isKnown(magnetometer.offset)) {
+    const std::vector<double> end = std::exchange(magnetometer.offset->value, {0.0, 0.0, 0.0});
+    addKnowledge(magnetometer.offset, offsetSigma(*rig.magnetometer, options_.magnetometer));
+    magnetometer.offset->value = end;
+  }
 }
 
 void BatchProblem::holdLenses(const GlobalValues& globals) {

@@ -41,6 +41,7 @@ void ForwardRecord::add(const FrameTracks& tracks, std::span<const ImuSample> im
     start(estimate, estimator);
     return;
   }
+  if (estimate.magnetometer.field_epoch != field_epoch_) forgetFields(estimate.magnetometer.field_epoch);
   const Frame& newest = estimator.window().newest();
   state.state = estimate.state;
   state.is_keyframe = estimate.is_keyframe;
@@ -65,6 +66,13 @@ void ForwardRecord::start(const FrameEstimate& estimate, const Estimator& estima
   }
   waiting_.clear();
   rememberPrior(estimator);
+}
+
+void ForwardRecord::forgetFields(int epoch) {
+  field_epoch_ = epoch;
+  fields_ = 0;
+  for (RecordedState& state : states_) state.magnetometer.reset();
+  if (newest_) newest_->magnetometer.reset();
 }
 
 void ForwardRecord::rememberPrior(const Estimator& estimator) {
@@ -122,6 +130,25 @@ std::span<const ImuSample> ForwardRecord::imuBetween(Time begin, Time end) const
   const auto last = std::lower_bound(first, imu_.end(), end, before);
   const size_t count = static_cast<size_t>(last - first) + (last != imu_.end() ? 1 : 0);
   return std::span(imu_).subspan(static_cast<size_t>(first - imu_.begin()), count);
+}
+
+InertialDoubt ForwardRecord::doubtBetween(Time begin, Time end) const {
+  const auto first =
+      std::upper_bound(frames_.begin(), frames_.end(), begin,
+                       [](Time time, const FrameEstimate& frame) { return time < frame.time; });
+  InertialDoubt sum;
+  for (auto frame = first; frame != frames_.end() && frame->time <= end; ++frame) {
+    const InertialDoubt& doubt = frame->inertial_doubt;
+    sum.gyroscope_density_rad_per_s_sqrtHz =
+        std::max(sum.gyroscope_density_rad_per_s_sqrtHz, doubt.gyroscope_density_rad_per_s_sqrtHz);
+    sum.accelerometer_density_m_per_s2_sqrtHz =
+        std::max(sum.accelerometer_density_m_per_s2_sqrtHz, doubt.accelerometer_density_m_per_s2_sqrtHz);
+    sum.gyroscope_bias_step_rad_per_s =
+        std::hypot(sum.gyroscope_bias_step_rad_per_s, doubt.gyroscope_bias_step_rad_per_s);
+    sum.accelerometer_bias_step_m_per_s2 =
+        std::hypot(sum.accelerometer_bias_step_m_per_s2, doubt.accelerometer_bias_step_m_per_s2);
+  }
+  return sum;
 }
 
 }  // namespace lodeline

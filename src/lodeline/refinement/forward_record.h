@@ -44,6 +44,9 @@ class ForwardRecord {
   /// Without gaps from the first state to the last, with a reading at every frame's time.
   std::span<const ImuSample> imuBetween(Time begin, Time end) const;
 
+  /// Noise that the run added to the readings between two moments: the greatest density, all steps together.
+  InertialDoubt doubtBetween(Time begin, Time end) const;
+
   /// The prior that the run started from. Its blocks' values are of no use any more; `name` says what each
   /// was: "pose" or "motion" of the first state, or a global state's name.
   struct StartPrior {
@@ -57,6 +60,8 @@ class ForwardRecord {
  private:
   void start(const FrameEstimate& estimate, const Estimator& estimator);
   void rememberPrior(const Estimator& estimator);
+  /// What was taken for the Earth's field was another one.
+  void forgetFields(int epoch);
   bool isState(const RecordedState& candidate) const;
   void append(RecordedState state);
 
@@ -70,6 +75,7 @@ class ForwardRecord {
   std::optional<RecordedState> newest_;  ///< the last frame, where it is no state
   int fields_ = 0, depths_ = 0;          ///< measurements used since the last state that had one
   int gauge_epoch_ = 0;
+  int field_epoch_ = 0;
 };
 
 }  // namespace lodeline

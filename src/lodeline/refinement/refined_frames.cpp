@@ -19,8 +19,10 @@ class FrameMaker {
   FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
              const ForwardRecord& record, const SkylineMatrix* inverse)
       : problem_(problem), rig_(rig), options_(options), record_(record), unmodelled_(options) {
-    for (size_t k = 0; inverse && k < problem.states(); ++k)
+    for (size_t k = 0; inverse && k < problem.states(); ++k) {
       covariances_.push_back(problem.covarianceOf(k, *inverse));
+      azimuths_.push_back(problem.azimuth(k, *inverse));
+    }
   }
 
   FrameEstimate make(const FrameEstimate& forward) {
@@ -34,6 +36,7 @@ class FrameMaker {
                                    (problem_.state(state_ + 1).time - begin.time).seconds();
     refined.state = is_state ? begin.state() : between(begin, forward.time, share);
     refined.covariance = covarianceAt(share);
+    describeNorth(share, &refined);
     addDoubtAboutUp(options_.imu_axes, &refined.covariance);
     refined.camera_corrections = cameraCorrections(problem_.window());
     refined.gyroscope_axes = gyroscopeAxes(problem_.window());
@@ -76,6 +79,35 @@ class FrameMaker {
     return (1.0 - share) * covariances_[state_] + share * covariances_[state_ + 1];
   }
 
+  /// North that the run found late counts from the first frame on.
+  void describeNorth(double share, FrameEstimate* refined) const {
+    const MagnetometerEstimate& last = record_.frames().back().magnetometer;
+    if (!last.north_found) return;
+    MagnetometerEstimate& magnetometer = refined->magnetometer;
+    magnetometer.heading_reference = last.heading_reference;
+    magnetometer.declination_sigma_rad = last.declination_sigma_rad;
+    magnetometer.axes_sigma_rad = last.axes_sigma_rad;
+    magnetometer.north_found = last.north_found;
+    magnetometer.north_from_world_rad = last.north_from_world_rad;
+    AzimuthCovariance azimuth;
+    azimuth.variance_rad2 = std::pow(last.north_from_world_sigma_rad, 2);
+    const MagnetometerStates states(problem_.window());
+    if (states.field) {
+      magnetometer.field_W = states.field_W();
+      magnetometer.north_from_world_rad =
+          northFromWorld(states.field_W(), last.heading_reference, options_.magnetometer);
+      if (!azimuths_.empty()) azimuth = azimuthAt(share);
+    }
+    magnetometer.north_from_world_sigma_rad = std::sqrt(azimuth.variance_rad2);
+    relateToNorth(refined->state, azimuth, &refined->covariance);
+  }
+
+  AzimuthCovariance azimuthAt(double share) const {
+    AzimuthCovariance at = azimuths_[state_];
+    if (share > 0.0) at.with_state += share * (azimuths_[state_ + 1].with_state - at.with_state);
+    return at;
+  }
+
   void describeMagnetometer(FrameEstimate* refined) const {
     const MagnetometerStates states(problem_.window());
     if (states.field == nullptr || !refined->magnetometer.field_W) return;
@@ -100,6 +132,7 @@ class FrameMaker {
   const ForwardRecord& record_;
   UnmodelledErrors unmodelled_;
   std::vector<Mat15> covariances_;
+  std::vector<AzimuthCovariance> azimuths_;
   size_t state_ = 0;  ///< the last one at or before the frame
 };
 

@@ -13,12 +13,13 @@ std::string findingsText(const Diagnostics& diagnostics) {
   return text;
 }
 
-nlohmann::ordered_json findingsJson(const Diagnostics& diagnostics) {
+nlohmann::ordered_json findingsJson(const Diagnostics& diagnostics,
+                                    const std::function<std::string(const std::string&)>& readable) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Finding& finding : diagnostics.ranked()) {
     json.push_back({{"severity", toString(finding.severity)},
                     {"kind", finding.kind},
-                    {"message", finding.first_message},
+                    {"message", readable ? readable(finding.first_message) : finding.first_message},
                     {"count", finding.count}});
   }
   return json;

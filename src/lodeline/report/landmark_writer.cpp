@@ -7,9 +7,18 @@
 namespace lodeline {
 namespace {
 
-constexpr const char* kBeforeCount =
-    "ply\nformat binary_little_endian 1.0\ncomment landmarks in the world frame (east, north, up), m\n"
-    "element vertex ";
+/// Padded so that what the finished header says takes the same room.
+std::string beforeCount(const std::string& world) {
+  return fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment landmarks, m, z up; {:<60}\nelement vertex ", world);
+}
+
+std::string worldOf(HeadingReference reference) {
+  if (reference == HeadingReference::True || reference == HeadingReference::Magnetic)
+    return fmt::format("x east, y north ({})", toString(reference));
+  return "x, y from the start heading, not from north";
+}
+
 constexpr const char* kAfterCount =
     "\nproperty float x\nproperty float y\nproperty float z\nproperty int sightings\nend_header\n";
 
@@ -18,16 +27,13 @@ constexpr const char* kAfterCount =
 LandmarkWriter::LandmarkWriter(const std::filesystem::path& folder, const std::string& name)
     : file_(folder / name), stream_(openOutput(file_)) {
   // Zero-padded so that the final count takes the same room.
-  fmt::print(stream_, "{}{:012}{}", kBeforeCount, 0, kAfterCount);
+  fmt::print(stream_, "{}{:012}{}", beforeCount("x, y as in trajectory.tum of a run not completed"), 0,
+             kAfterCount);
   stream_.flush();
 }
 
 LandmarkWriter::~LandmarkWriter() {
-  try {
-    finish();
-  } catch (const InputError&) {
-    // Another error is on its way already; it says more.
-  }
+  if (stream_.is_open()) writeCount();
 }
 
 void LandmarkWriter::write(const std::vector<MapPoint>& points) {
@@ -42,11 +48,35 @@ void LandmarkWriter::write(const std::vector<MapPoint>& points) {
   stream_.flush();
 }
 
-void LandmarkWriter::finish() {
-  if (!stream_.is_open()) return;
-  stream_.seekp(static_cast<std::streamoff>(std::char_traits<char>::length(kBeforeCount)));
+void LandmarkWriter::writeCount() {
+  stream_.seekp(static_cast<std::streamoff>(beforeCount("").size()));
   fmt::print(stream_, "{:012}", count_);
+}
+
+void LandmarkWriter::finish(HeadingReference reference, const std::optional<WorldTurn>& turn) {
+  if (!stream_.is_open()) return;
+  stream_.seekp(0);
+  fmt::print(stream_, "{}", beforeCount(worldOf(reference)));
+  writeCount();
   closeOutput(file_, &stream_);
+  if (turn) turnPoints(*turn);
+}
+
+void LandmarkWriter::turnPoints(const WorldTurn& turn) const {
+  constexpr std::streamoff kPointSize = 3 * sizeof(float) + sizeof(int32_t);
+  const auto first =
+      static_cast<std::streamoff>(beforeCount("").size() + std::char_traits<char>::length(kAfterCount) + 12);
+  std::fstream file(file_, std::ios::binary | std::ios::in | std::ios::out);
+  for (int64_t i = 0; i < count_; ++i) {
+    Eigen::Vector3f position;
+    file.seekg(first + i * kPointSize);
+    file.read(reinterpret_cast<char*>(position.data()), 3 * sizeof(float));
+    position = turn.apply(position.cast<double>()).cast<float>();
+    file.seekp(first + i * kPointSize);
+    file.write(reinterpret_cast<const char*>(position.data()), 3 * sizeof(float));
+  }
+  file.close();
+  if (!file) throw InputError(file_.string() + ": turning its points to north failed; is the disk full?");
 }
 
 }  // namespace lodeline

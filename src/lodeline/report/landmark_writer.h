@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "lodeline/estimator/window.h"
+#include "lodeline/report/world_turn.h"
 
 namespace lodeline {
 
 /// Writes `landmarks.ply` (binary, positions in the world in metres and the number of sightings), streaming:
-/// the count in the header is filled in by finish(), which the destructor calls too, but without throwing.
+/// finish() fills in the header. Without it the header says that the run was not completed, and the
+/// destructor fills in the count alone.
 class LandmarkWriter {
  public:
   /// Throws InputError where the folder cannot be written to.
@@ -20,11 +22,15 @@ class LandmarkWriter {
   LandmarkWriter& operator=(const LandmarkWriter&) = delete;
 
   void write(const std::vector<MapPoint>& points);
-  /// Throws InputError where not all could be written.
-  void finish();
+  /// Turns all points, where they have to be, and says in the header what x and y of their world are. Throws
+  /// InputError where not all could be written.
+  void finish(HeadingReference reference, const std::optional<WorldTurn>& turn);
   int64_t count() const { return count_; }
 
  private:
+  void writeCount();
+  void turnPoints(const WorldTurn& turn) const;
+
   std::filesystem::path file_;
   std::ofstream stream_;
   int64_t count_ = 0;

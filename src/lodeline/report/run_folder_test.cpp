@@ -94,8 +94,8 @@ TEST_F(RunFolder, SummaryTellsWhatBecameOfTheMagnetometer) {
   const auto json = nlohmann::json::parse(summary.json({}));
   EXPECT_EQ(json["heading"]["reference"], "true north");
   EXPECT_EQ(json["magnetometer"]["frames"]["norm"], 2);
-  const std::string text = summary.text({});
-  EXPECT_NE(text.find("against true north, 0.50 deg"), std::string::npos);
+  const std::string text = summary.text({}, true);
+  EXPECT_NE(text.find("0.50 deg against true north"), std::string::npos);
   EXPECT_NE(text.find("used 33.3 %, norm 66.7 %; heading owes little to it"), std::string::npos);
 }
 
@@ -136,7 +136,7 @@ TEST_F(RunFolder, SummaryTellsOfDepthAndWhatCarriedTheScale) {
   EXPECT_NEAR(json["scale"]["stereo"]["share"], 0.6, 1e-12);
   EXPECT_NEAR(json["scale"]["stereo"]["sigma_without"], 0.01, 1e-12);
   EXPECT_NEAR(json["scale"]["depth"]["sigma_alone"], 0.02, 1e-12);
-  EXPECT_NE(summary.text({}).find("60 % by stereo (alone 0.8 %), 30 % by accelerometer"), std::string::npos);
+  EXPECT_NE(summary.text({}, true).find("60 % by stereo (alone 0.8 %), 30 % by accelerometer"), std::string::npos);
 }
 
 TEST_F(RunFolder, WaitingFramesAreNotWritten) {
@@ -235,7 +235,7 @@ TEST_F(RunFolder, FullDiskIsNoticedWhenFilesAreClosed) {
   std::filesystem::create_symlink("/dev/full", folder_ / "landmarks.ply");
   LandmarkWriter writer(folder_);
   writer.write({{7, Vec3(1, 2, 3), 4}});
-  EXPECT_THROW(writer.finish(), InputError);
+  EXPECT_THROW(writer.finish(HeadingReference::Start, std::nullopt), InputError);
   EXPECT_THROW(writeOutput("/dev/full", "text"), InputError);
 }
 

@@ -5,7 +5,7 @@
 namespace lodeline {
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options)
-    : states_(folder), landmarks_(folder), timings_(folder) {
+    : folder_(folder), states_(folder), landmarks_(folder), timings_(folder) {
   if (rig.magnetometer) magnetometer_.emplace(folder, *rig.magnetometer);
   if (options.draw_tracks_s) track_pictures_.emplace(folder, *options.draw_tracks_s);
   if (options.sample_pictures) sample_pictures_.emplace(folder);
@@ -13,7 +13,7 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const 
 
 std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEstimate* estimate,
                                        const std::optional<AttitudeEstimate>& attitude, Odometry* odometry) {
-  if (estimate != nullptr) states_.write(*estimate, attitude);
+  if (estimate != nullptr) states_->write(*estimate, attitude);
   std::vector<MapPoint> finished = odometry->estimator().takeMapPoints();
   landmarks_.write(finished);
   if (magnetometer_) magnetometer_->write(packet);
@@ -25,9 +25,12 @@ std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEst
   return finished;
 }
 
-int64_t RunOutput::finish(const Odometry& odometry) {
+int64_t RunOutput::finish(const Odometry& odometry, const MagnetometerEstimate& last) {
+  const std::optional<WorldTurn> turn = WorldTurn::of(last);
   landmarks_.write(odometry.estimator().currentMapPoints());
-  landmarks_.finish();
+  landmarks_.finish(last.heading_reference, turn);
+  states_.reset();
+  if (turn) turnStateFiles(folder_, "", *turn);
   return landmarks_.count();
 }
 

@@ -29,14 +29,17 @@ class RunOutput {
   std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate* estimate,
                               const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
 
-  /// Adds the landmarks that are still in the window and completes the files; gives the number of landmarks.
-  int64_t finish(const Odometry& odometry);
+  /// Adds the landmarks that are still in the window, completes the files and turns them to north where that
+  /// was found only after the first pose (WorldTurn); `last`: as after the last frame. Gives the number of
+  /// landmarks. The states' files are closed by it.
+  int64_t finish(const Odometry& odometry, const MagnetometerEstimate& last);
 
   /// Processor time that pictures have taken so far.
   double picturesSeconds() const { return pictures_s_; }
 
  private:
-  StateWriter states_;
+  std::filesystem::path folder_;
+  std::optional<StateWriter> states_;
   LandmarkWriter landmarks_;
   TimingWriter timings_;
   std::optional<MagnetometerWriter> magnetometer_;

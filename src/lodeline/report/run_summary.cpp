@@ -8,9 +8,15 @@
 
 #include "lodeline/base/json_text.h"
 #include "lodeline/report/findings.h"
+#include "lodeline/report/readable_times.h"
+#include "lodeline/report/summary_lines.h"
+#include "lodeline/report/world_turn.h"
 
 namespace lodeline {
 namespace {
+
+/// Points that an image follows where there is something to see.
+constexpr int kManyTracks = 30;
 
 nlohmann::ordered_json rigJson(const RunDescription& run) {
   const Vec3& axis = run.camera_axis_B;
@@ -23,6 +29,7 @@ nlohmann::ordered_json rigJson(const RunDescription& run) {
     json["magnetometer"]["is_calibrated"] = run.magnetometer->is_calibrated;
     if (run.magnetometer->field_strength_T)
       json["magnetometer"]["field_strength_T"] = *run.magnetometer->field_strength_T;
+    if (run.site_field_W) json["magnetometer"]["site_field_strength_T"] = run.site_field_W->norm();
   }
   return json;
 }
@@ -166,9 +173,13 @@ void RunSummary::add(const FrameEstimate& estimate) {
   ++frames_;
   if (!first_time_) first_time_ = estimate.time;
   last_ = estimate;
+  blind_.add(estimate);
   if (estimate.status == Status::Waiting) return;
+  if (posed_ == 0) first_pose_time_ = estimate.time;
   ++posed_;
   inertial_ += estimate.status == Status::Inertial;
+  degraded_ += estimate.status == Status::Degraded;
+  disagreeing_ += estimate.status == Status::Inertial && estimate.tracks >= kManyTracks;
   keyframes_ += estimate.is_keyframe;
   if (estimate.magnetometer.status != MagnetometerStatus::Off)
     ++magnetometer_frames_[estimate.magnetometer.status];
@@ -188,6 +199,19 @@ void RunSummary::add(const FrameEstimate& estimate) {
   }
 }
 
+std::string RunSummary::distrust() const {
+  const int contradicted = degraded_ + disagreeing_;
+  const bool at_the_end = last_.status == Status::Degraded;
+  if (!at_the_end && 2 * contradicted <= posed_) return {};
+  return fmt::format("images and inertial readings contradict each other in {} of {} frames{}", contradicted,
+                     posed_, at_the_end ? ", the last among them" : "");
+}
+
+void RunSummary::reportBlindStretches(Diagnostics* diagnostics) const {
+  constexpr double kLeast_s = 0.5;
+  if (first_time_) blind_.report(*first_time_, kLeast_s, diagnostics);
+}
+
 double RunSummary::recordingSeconds() const {
   return first_time_ ? (last_.time - *first_time_).seconds() : 0.0;
 }
@@ -200,10 +224,16 @@ double RunSummary::coreMillisecondsPerFrame(double seconds) const {
   return frames_ ? 1e3 * seconds / frames_ : 0.0;
 }
 
+double RunSummary::northFoundAfter_s() const {
+  return (*last_.magnetometer.north_found - first_pose_time_).seconds();
+}
+
+bool RunSummary::hasNorth() const { return WorldTurn::of(last_.magnetometer).has_value(); }
+
 std::string RunSummary::headingText() const {
-  const MagnetometerEstimate& last = last_.magnetometer;
-  return fmt::format("against {}, {:.2f} deg (one sigma, at the end)", toString(last.heading_reference),
-                     last.heading_sigma_rad * 180.0 / M_PI);
+  return fmt::format("{} found {:.1f} s after the first pose; all files are turned by {:.1f} deg to it",
+                     toString(last_.magnetometer.heading_reference), northFoundAfter_s(),
+                     WorldTurn::of(last_.magnetometer)->angle_rad * 180.0 / M_PI);
 }
 
 std::string RunSummary::magnetometerText() const {
@@ -233,54 +263,82 @@ std::optional<ScaleInformation> RunSummary::scaleInformation() const {
   return ScaleInformation{scale_.stereo / posed_, scale_.accelerometer / posed_, scale_.depth / posed_};
 }
 
-std::string RunSummary::text(const Diagnostics& diagnostics) const {
-  std::string text;
-  const auto line = [&](const char* name, const std::string& value) {
-    text += fmt::format("  {:<20} {}\n", name, value);
-  };
-  line("completion", fmt::format("{:.1f} % ({} of {} frames, {} by inertial readings alone)",
-                                 100.0 * completion(), posed_, recorded(), inertial_));
-  line("path", fmt::format("{:.2f} m in {:.1f} s, {} keyframes, {} landmarks", path_m_, recordingSeconds(),
-                           keyframes_, map_points));
-  line("tracks", fmt::format("{:.0f} a frame, {:.0f} of them landmarks", meanTracks(), meanLandmarks()));
-  line("reprojection",
-       fmt::format("{:.2f} px rms ({:.2f} sigma)",
-                   meanReprojection_sigmas() * description_.observation_sigma_px, meanReprojection_sigmas()));
-  if (posed_ > 0) {
-    const Eigen::VectorXd sigma = last_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    line("end uncertainty", fmt::format("{:.3f} m, heading {:.2f} deg (one sigma)", sigma.head<3>().norm(),
-                                        sigma[5] * 180.0 / M_PI));
-  }
-  if (last_.camera_corrections) line("calibration", describe(*last_.camera_corrections));
-  if (last_.gyroscope_axes) line("inertial", describe("gyroscope", *last_.gyroscope_axes));
-  if (last_.accelerometer_axes) line("inertial", describe("accelerometer", *last_.accelerometer_axes));
-  line("time",
-       fmt::format("{:.1f} s, {:.1f} x real time, {:.1f} core-ms a frame (files {:.1f}, front end {:.1f}, "
-                   "estimator {:.1f}, pictures {:.1f})",
-                   wall_s, realTimeFactor(), coreMillisecondsPerFrame(process_s),
-                   coreMillisecondsPerFrame(filesSeconds()), coreMillisecondsPerFrame(front_end_s),
-                   coreMillisecondsPerFrame(estimator_s), coreMillisecondsPerFrame(pictures_s)));
-  line("memory", fmt::format("{:.0f} MB at most", peak_memory_MB));
-  if (posed_ > 0) line("heading", headingText());
-  if (hasMagnetometer()) line("magnetometer", magnetometerText());
-  if (!depth_frames_.empty()) line("pressure", depthText());
-  if (const auto scale = scaleInformation()) line("scale", describe(*scale));
-  if (refinement) line("refinement", describe(*refinement));
-  if (interrupted) line("interrupted", "the recording goes on; results cover what was read");
+std::string RunSummary::completionText() const {
+  std::string text = fmt::format("{:.1f} % ({} of {} images gave a pose of their own", 100.0 * completion(),
+                                 posed_ - inertial_ - degraded_, recorded());
+  if (inertial_ > 0) text += fmt::format("; {} by inertial readings alone", inertial_);
+  if (degraded_ > 0) text += fmt::format("; {} degraded", degraded_);
+  return text + ")";
+}
+
+std::string RunSummary::uncertaintyText() const {
+  const Eigen::VectorXd sigma = last_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return fmt::format(
+      "{:.3f} m, heading {:.2f} deg against the first pose, {:.2f} deg against {} (one sigma, at the end)",
+      sigma.head<3>().norm(), sigma[5] * 180.0 / M_PI, last_.magnetometer.heading_sigma_rad * 180.0 / M_PI,
+      toString(last_.magnetometer.heading_reference));
+}
+
+void RunSummary::addDetails(SummaryLines* lines) const {
+  lines->add("map", fmt::format("{} keyframes, {} landmarks; {:.0f} of {:.0f} tracks a frame are landmarks",
+                                keyframes_, map_points, meanLandmarks(), meanTracks()));
+  if (last_.camera_corrections) lines->add("calibration", describe(*last_.camera_corrections));
+  if (last_.gyroscope_axes) lines->add("inertial", describe("gyroscope", *last_.gyroscope_axes));
+  if (last_.accelerometer_axes) lines->add("inertial", describe("accelerometer", *last_.accelerometer_axes));
+  if (hasMagnetometer()) lines->add("magnetometer", magnetometerText());
+  if (!depth_frames_.empty()) lines->add("pressure", depthText());
+  if (const auto scale = scaleInformation()) lines->add("scale", describe(*scale));
+  lines->add(
+      "time",
+      fmt::format(
+          "{:.1f} s; core-ms a frame: files {:.1f}, front end {:.1f}, estimator {:.1f}, pictures {:.1f}",
+          wall_s, coreMillisecondsPerFrame(filesSeconds()), coreMillisecondsPerFrame(front_end_s),
+          coreMillisecondsPerFrame(estimator_s), coreMillisecondsPerFrame(pictures_s)));
+}
+
+std::string RunSummary::text(const Diagnostics& diagnostics, bool with_details) const {
+  SummaryLines lines;
+  if (const std::string reason = distrust(); !reason.empty()) lines.add("do not trust", reason);
+  if (refinement) lines.add("refinement", describe(*refinement));
+  lines.add("completion", completionText());
+  lines.add("path", fmt::format("{:.2f} m in {}", path_m_, clockText(recordingSeconds())));
+  if (posed_ > 0) lines.add("uncertainty", uncertaintyText());
+  if (posed_ > 0 && hasNorth()) lines.add("heading", headingText());
+  lines.add("images", fmt::format("{:.0f} tracks a frame, {:.2f} px rms ({:.2f} sigma)", meanTracks(),
+                                  meanReprojection_sigmas() * description_.observation_sigma_px,
+                                  meanReprojection_sigmas()));
+  lines.add("cost", fmt::format("{:.1f} core-ms a frame, {:.1f} x real time, {:.0f} MB",
+                                coreMillisecondsPerFrame(process_s), realTimeFactor(), peak_memory_MB));
+  if (with_details) addDetails(&lines);
+  if (interrupted) lines.add("interrupted", "the recording goes on; results cover what was read");
   for (const Finding& finding : diagnostics.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : "";
-    line(toString(finding.severity), finding.first_message + times);
+    lines.add(toString(finding.severity), readable(finding.first_message) + times);
   }
-  return text;
+  return lines.text();
+}
+
+std::string RunSummary::readable(const std::string& message) const {
+  return first_time_ ? withReadableTimes(message, *first_time_) : message;
 }
 
 std::string RunSummary::json(const Diagnostics& diagnostics) const {
   nlohmann::ordered_json json = toJson(description_);
   json["interrupted"] = interrupted;
+  if (first_time_) json["first_frame_ns"] = std::to_string(first_time_->nanoseconds());
   json["frames"] = frames_;
   json["images_recorded"] = recorded();
   json["frames_with_pose"] = posed_;
   json["frames_inertial"] = inertial_;
+  json["frames_degraded"] = degraded_;
+  if (const std::string reason = distrust(); !reason.empty()) json["do_not_trust"] = reason;
+  json["blind_stretches"] = nlohmann::ordered_json::array();
+  for (const BlindStretch& stretch : blind_.stretches()) {
+    json["blind_stretches"].push_back({{"start_ns", std::to_string(stretch.start.nanoseconds())},
+                                       {"duration_s", stretch.seconds()},
+                                       {"sigma_start_m", stretch.sigma_start_m},
+                                       {"sigma_end_m", stretch.sigma_end_m}});
+  }
   if (posed_ == 0) json["waiting_for"] = last_.waiting_for;
   json["images"] = images;
   json["keyframes"] = keyframes_;
@@ -306,12 +364,17 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   const MagnetometerEstimate& magnetometer = last_.magnetometer;
   json["heading"] = {{"reference", toString(magnetometer.heading_reference)},
                      {"sigma_rad", magnetometer.heading_sigma_rad}};
+  const std::optional<WorldTurn> turn = WorldTurn::of(magnetometer);
+  if (turn) {
+    json["heading"]["north_found_after_s"] = northFoundAfter_s();
+    json["heading"]["world_turned_rad"] = turn->angle_rad;
+  }
   if (hasMagnetometer()) {
     for (const auto& [status, frames] : magnetometer_frames_)
       json["magnetometer"]["frames"][toString(status)] = frames;
   }
   if (magnetometer.field_W) {
-    const Vec3& field = *magnetometer.field_W;
+    const Vec3 field = turn ? turn->apply(*magnetometer.field_W) : *magnetometer.field_W;
     const Vec3& offset = *magnetometer.offset_B;
     json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
     json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};
@@ -321,7 +384,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   if (refinement) json["refinement"] = toJson(*refinement);
-  json["findings"] = findingsJson(diagnostics);
+  json["findings"] = findingsJson(diagnostics, [this](const std::string& m) { return readable(m); });
   return jsonText(json) + "\n";
 }
 

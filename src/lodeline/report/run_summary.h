@@ -10,6 +10,7 @@
 #include "lodeline/base/diagnostics.h"
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/refinement/refine.h"
+#include "lodeline/report/blind_stretches.h"
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -25,9 +26,12 @@ struct RunDescription {
   double imu_rate_hz = 0.0;
   Vec3 camera_axis_B = Vec3::UnitX();  ///< where the reference camera looks
   std::vector<std::string> other_sensors;
+  std::optional<Vec3> site_field_W;  ///< of the Earth, T, where the run was told its site
   std::optional<MagnetometerCalibration> magnetometer;
   double observation_sigma_px = 0.0;
 };
+
+class SummaryLines;
 
 /// Gathers the figures of a run frame by frame.
 class RunSummary {
@@ -56,24 +60,38 @@ class RunSummary {
   double recordingSeconds() const;
   /// Images of the first camera that were recorded; those that could not be used are no frames.
   int64_t recorded() const { return std::max<int64_t>(recorded_images, frames_); }
-  /// Share of the recorded images that got a pose.
+  /// Share of the recorded images from which a pose was estimated; frames that inertial readings alone carry,
+  /// or that contradict these, do not count.
   double completion() const {
-    return recorded() > 0 ? static_cast<double>(posed_) / static_cast<double>(recorded()) : 0.0;
+    const int seen = posed_ - inertial_ - degraded_;
+    return recorded() > 0 ? static_cast<double>(seen) / static_cast<double>(recorded()) : 0.0;
   }
+  /// Why the result is not to be trusted: images and inertial readings contradicted each other in most frames
+  /// or at the end. Empty otherwise.
+  std::string distrust() const;
   double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
   double pathLength_m() const { return path_m_; }
   double meanTracks() const;
   double meanLandmarks() const;
   double meanReprojection_sigmas() const;
 
-  /// A screenful for people.
-  std::string text(const Diagnostics& diagnostics) const;
+  /// Reports stretches of at least half a second without usable images as the finding `blind_stretch`.
+  void reportBlindStretches(Diagnostics* diagnostics) const;
+  /// A few lines for people, wrapped, then the findings; `with_details`: all figures.
+  std::string text(const Diagnostics& diagnostics, bool with_details = false) const;
   /// run.json: the same and more for programs.
   std::string json(const Diagnostics& diagnostics) const;
 
  private:
   double coreMillisecondsPerFrame(double seconds) const;
   bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
+  double northFoundAfter_s() const;
+  bool hasNorth() const;
+  std::string completionText() const;
+  std::string uncertaintyText() const;
+  void addDetails(SummaryLines* lines) const;
+  /// With stamps as times since the first frame.
+  std::string readable(const std::string& message) const;
   std::string headingText() const;
   std::string magnetometerText() const;
   std::string depthText() const;
@@ -83,12 +101,16 @@ class RunSummary {
   double filesSeconds() const { return process_s - front_end_s - estimator_s - pictures_s; }
 
   RunDescription description_;
+  BlindStretches blind_;
   FrameEstimate last_;
   std::optional<Time> first_time_;
+  Time first_pose_time_;
   std::optional<Vec3> last_position_W_;
   int frames_ = 0;
   int posed_ = 0;
   int inertial_ = 0;
+  int degraded_ = 0;
+  int disagreeing_ = 0;  ///< inertial although images had much to follow
   int keyframes_ = 0;
   double path_m_ = 0.0;
   double tracks_ = 0.0;

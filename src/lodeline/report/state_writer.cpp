@@ -8,6 +8,7 @@
 
 #include "lodeline/base/output_file.h"
 #include "lodeline/base/time_steps.h"
+#include "lodeline/estimator/covariance.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -29,23 +30,23 @@ void append(fmt::memory_buffer& line, const Vec3& v) {
 constexpr const char* kAttitudeHeader =
     ",attitude_q_w,attitude_q_x,attitude_q_y,attitude_q_z,attitude_sigma_heading [rad],attitude_status";
 
-/// One sigma of a variance that rounding may have made negative; nan stays nan.
-double sigma(double variance) { return variance < 0.0 ? 0.0 : std::sqrt(variance); }
+/// One sigma; of a variance that is none, the sigma that stands for "not known". nan stays nan.
+double sigma(double variance) { return std::sqrt(variance <= 0.0 ? kUnknownVariance : variance); }
 
 constexpr const char* kMagnetometerHeader =
     ",sigma_heading [rad],magnetometer,field_x [T],field_y [T],field_z [T],offset_x [T],offset_y "
-    "[T],offset_z "
-    "[T]";
+    "[T],offset_z [T],north_from_world [rad]";
 
 constexpr const char* kDepthHeader = ",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s]";
 
-/// Header of the pose covariance's upper triangle, [p, theta] in world axes.
+/// Header of the pose covariance's upper triangle, [p, theta] in world axes, and of the covariance of v_x and
+/// v_y.
 std::string covarianceHeader() {
   std::string header;
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) header += fmt::format(",cov_pose_{}{}", row, column);
   }
-  return header;
+  return header + ",cov_v_01";
 }
 
 /// What is not estimated is nan.
@@ -55,6 +56,8 @@ void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& ma
                  toString(magnetometer.status));
   append(line, magnetometer.field_W.value_or(unknown));
   append(line, magnetometer.offset_B.value_or(unknown));
+  fmt::format_to(std::back_inserter(line), ",{:.9g}",
+                 magnetometer.north_from_world_rad.value_or(unknown.x()));
 }
 
 /// What is not estimated is nan.
@@ -110,6 +113,7 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
       fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(row, column));
     }
   }
+  fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(6, 7));
   appendMagnetometer(line, estimate.magnetometer);
   return line;
 }
