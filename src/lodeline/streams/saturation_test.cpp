@@ -7,7 +7,7 @@ namespace lodeline {
 
 bool SaturationTest::End::add(double before, double reading, const Axis& axis) {
   constexpr int kPlateaus = 3, kLongStay = 10;
-  constexpr double kAway = 0.1, kSteps = 3.0, kWide = 20.0, kSeldom = 0.35;
+  constexpr double kAway = 0.1, kSteps = 3.0, kWide = 20.0, kFine = 2.0;
   if (reading > value) {
     *this = End();
     value = reading;
@@ -25,7 +25,7 @@ bool SaturationTest::End::add(double before, double reading, const Axis& axis) {
     ++plateaus;
     away = 0.0;
   }
-  if (stay >= kLongStay && axis.repeating < kSeldom) plateaus = kPlateaus;
+  if (stay >= kLongStay && axis.change > kFine * axis.resolution) plateaus = kPlateaus;
   return plateaus >= kPlateaus;
 }
 
@@ -38,9 +38,7 @@ bool SaturationTest::Axis::add(double reading) {
   least = std::min(least, reading);
   greatest = std::max(greatest, reading);
   constexpr double kOf = 0.03;
-  const bool repeats = reading == before;
-  if (!repeats || (reading != least && reading != greatest))
-    repeating += kOf * ((repeats ? 1.0 : 0.0) - repeating);
+  if (reading != before) change += kOf * (std::abs(reading - before) - change);
   const bool at_upper = upper.add(before, reading, *this);
   const bool at_lower = lower.add(-before, -reading, *this);
   before = reading;

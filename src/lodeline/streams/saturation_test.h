@@ -7,9 +7,9 @@
 namespace lodeline {
 
 /// Finds readings at the end of a sensor's range. An axis is taken for saturated at its greatest (or least)
-/// reading once it has stayed there, figure by figure, for ten readings although it hardly ever repeats
-/// itself elsewhere, which noise forbids. Or it stayed there thrice, came there each time by a step larger
-/// than it resolves, and went far away in between: peaks of motion differ in height and are round. A reading
+/// reading once it has stayed there, figure by figure, for ten readings although its changes are otherwise
+/// larger than twice what it resolves. Or it stayed there thrice, came there each time by a step larger than
+/// it resolves, and went far away in between: peaks of motion differ in height and are round. A reading
 /// beyond such an end shows that it was none.
 class SaturationTest {
  public:
@@ -32,7 +32,7 @@ class SaturationTest {
     double before = 0.0;
     double least = 0.0, greatest = 0.0;
     double resolution = 1e300;  ///< least change that was seen
-    double repeating = 1.0;     ///< share of readings that repeat the one before, away from both ends
+    double change = 0.0;        ///< mean size of the last changes
     End upper, lower;
     bool add(double reading);
   };
