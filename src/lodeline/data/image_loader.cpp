@@ -29,7 +29,7 @@ bool isJpeg(std::span<const uint8_t> bytes) {
   return bytes.size() > 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
 }
 
-/// Whether a JPEG file was cut off: decoders fill the missing rows with one grey level and say nothing. Some
+/// Whether a JPEG file was cut off: the decoder fills up with one row and says nothing. Some
 /// cameras leave out the end marker of whole images, so its absence alone means nothing.
 bool isCutOffJpeg(std::span<const uint8_t> bytes, const cv::Mat& image) {
   constexpr size_t kTail = 4096;
@@ -39,9 +39,11 @@ bool isCutOffJpeg(std::span<const uint8_t> bytes, const cv::Mat& image) {
   if (!isJpeg(bytes) || std::search(tail.begin(), tail.end(), kEnd.begin(), kEnd.end()) != tail.end())
     return false;
   if (image.rows <= kRows) return false;
-  const uint8_t last = image.at<uint8_t>(image.rows - 1, image.cols - 1);
-  const cv::Mat rows = image.rowRange(image.rows - kRows, image.rows);
-  return cv::countNonZero(rows != last) == 0;
+  const cv::Mat last = image.row(image.rows - 1);
+  for (int row = image.rows - kRows; row < image.rows; ++row) {
+    if (cv::countNonZero(image.row(row) != last) > 0) return false;
+  }
+  return true;
 }
 
 std::string whyUnreadable(const std::filesystem::path& file, std::vector<uint8_t>* bytes) {
