@@ -29,19 +29,30 @@ bool isJpeg(std::span<const uint8_t> bytes) {
   return bytes.size() > 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
 }
 
-/// Whether a JPEG file was cut off: decoders fill the missing rows with one grey level and say nothing. Some
-/// cameras leave out the end marker of whole images, so its absence alone means nothing.
-bool isCutOffJpeg(std::span<const uint8_t> bytes, const cv::Mat& image) {
+constexpr std::array<uint8_t, 2> kJpegEnd = {0xff, 0xd9};
+
+bool hasEnd(std::span<const uint8_t> jpeg) {
   constexpr size_t kTail = 4096;
-  constexpr int kRows = 8;  // of a block
-  constexpr std::array<uint8_t, 2> kEnd = {0xff, 0xd9};
-  const auto tail = bytes.last(std::min(kTail, bytes.size()));
-  if (!isJpeg(bytes) || std::search(tail.begin(), tail.end(), kEnd.begin(), kEnd.end()) != tail.end())
-    return false;
+  const auto tail = jpeg.last(std::min(kTail, jpeg.size()));
+  return std::search(tail.begin(), tail.end(), kJpegEnd.begin(), kJpegEnd.end()) != tail.end();
+}
+
+/// Whether the last rows of blocks are of one grey level, with which a decoder fills what is missing.
+bool endsFilledUp(const cv::Mat& image) {
+  constexpr int kRows = 8;
   if (image.rows <= kRows) return false;
-  const uint8_t last = image.at<uint8_t>(image.rows - 1, image.cols - 1);
   const cv::Mat rows = image.rowRange(image.rows - kRows, image.rows);
-  return cv::countNonZero(rows != last) == 0;
+  return cv::countNonZero(rows != image.at<uint8_t>(image.rows - 1, image.cols - 1)) == 0;
+}
+
+/// A JPEG file without its end marker: some cameras leave it out of whole images, and it is missing where a
+/// file was cut off.
+LoadedImage decodeUnendedJpeg(std::span<const uint8_t> bytes, const std::string& name) {
+  std::vector<uint8_t> ended(bytes.begin(), bytes.end());
+  ended.insert(ended.end(), kJpegEnd.begin(), kJpegEnd.end());
+  LoadedImage result{cv::imdecode(ended, cv::IMREAD_GRAYSCALE), {}};
+  if (!result.image.empty() && !endsFilledUp(result.image)) return result;
+  return {cv::Mat(), fmt::format("{}: image damaged: the file was cut off", name)};
 }
 
 std::string whyUnreadable(const std::filesystem::path& file, std::vector<uint8_t>* bytes) {
@@ -83,6 +94,7 @@ LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& n
   LoadedImage result;
   const cv::_InputArray input(bytes.data(), static_cast<int>(bytes.size()));
   try {
+    if (isJpeg(bytes) && !hasEnd(bytes)) return decodeUnendedJpeg(bytes, name);
     result.image = decodeGreyPng(bytes);
     if (result.image.empty() && !isJpeg(bytes)) {
       // Not by the decoder's own conversion: the same pixels must give the same grey in a bag.
@@ -95,12 +107,7 @@ LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& n
     result.problem = fmt::format("{}: image damaged ({})", name, error.what());
     return result;
   }
-  if (result.image.empty()) {
-    result.problem = fmt::format("{}: image damaged or of unknown kind", name);
-  } else if (isCutOffJpeg(bytes, result.image)) {
-    result.image.release();
-    result.problem = fmt::format("{}: image damaged: the file was cut off", name);
-  }
+  if (result.image.empty()) result.problem = fmt::format("{}: image damaged or of unknown kind", name);
   return result;
 }
 
