@@ -291,11 +291,9 @@ std::optional<SonarSample> BagSource::nextSonar() {
     const auto echoes = nextReading(&sonar_, is_scan ? messages::parseLaserScan : messages::parseRange);
     if (!echoes) return std::nullopt;
     echoes_.assign(echoes->begin(), echoes->end());
-    for (SonarSample& echo : echoes_) {
-      const Duration since_first = echo.time - echoes->front().time;
-      restamp(sonar_, &echo);
-      echo.time = echo.time + since_first;
-    }
+    SonarSample first = echoes->front();
+    restamp(sonar_, &first);
+    for (SonarSample& echo : echoes_) echo.time = first.time + (echo.time - echoes->front().time);
   }
   const SonarSample echo = echoes_.front();
   echoes_.pop_front();

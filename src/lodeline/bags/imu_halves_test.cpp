@@ -92,7 +92,7 @@ class SplitBagTest : public testing::Test {
       EXPECT_NEAR(sample->specific_force_B.z(), 9.8, 1e-12);
       ++count;
     }
-    EXPECT_EQ(count, 97);
+    EXPECT_EQ(count, 98) << "those between the first and the last reading of the accelerometer";
     EXPECT_NEAR(source.rig().imu.rate_hz, 200.0, 1e-6);
     EXPECT_EQ(diagnostics_.count("imu_united"), 1);
   }

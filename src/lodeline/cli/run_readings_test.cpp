@@ -205,8 +205,8 @@ TEST_F(RunReadings, AnAccelerometerInGIsConvertedWithWords) {
       std::istringstream fields(lines[i]);
       std::string row, field;
       for (int column = 0; std::getline(fields, field, ','); ++column) {
-        row +=
-            (column == 0 ? "" : ",") + (column > 3 ? fmt::format("{}", std::stod(field) / 9.80665) : field);
+        if (column > 0) row += ',';
+        row += column > 3 ? fmt::format("{}", std::stod(field) / 9.80665) : field;
       }
       lines[i] = row;
     }
