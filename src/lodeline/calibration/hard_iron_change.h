@@ -26,7 +26,8 @@ struct HardIronChange {
     double sigma_T = 0.0;  ///< of its largest component
   };
   std::optional<Step> step;
-  double spread_T = 0.0;  ///< of four stretches' offsets, one sigma per axis, beyond their noise; 0 if not significant
+  double spread_T =
+      0.0;  ///< of four stretches' offsets, one sigma per axis, beyond their noise; 0 if not significant
 };
 
 /// `field_strength_T`: that corrected readings should have. In order of time.

@@ -62,7 +62,8 @@ void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) 
                            std::min(width, height) > 20.0;
   if (is_relative) {
     throw InputError(fmt::format(
-        "{}: [{:g}, {:g}, {:g}, {:g}] look like shares of the image's size, but pixels are due; multiply fx and "
+        "{}: [{:g}, {:g}, {:g}, {:g}] look like shares of the image's size, but pixels are due; multiply fx "
+        "and "
         "cx by {}, fy and cy by {}",
         map.at("intrinsics"), camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, width, height));
   }
@@ -83,7 +84,8 @@ void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) 
 }
 
 /// Refuses a distortion under which less than half of the image has viewing rays.
-void checkDistortion(const std::string& key, const CalibrationMap& map, const CameraCalibration& calibration) {
+void checkDistortion(const std::string& key, const CalibrationMap& map,
+                     const CameraCalibration& calibration) {
   const std::shared_ptr<const Camera> camera = makeCamera(calibration);
   constexpr int kSteps = 8;
   int seen = 0;
@@ -95,10 +97,10 @@ void checkDistortion(const std::string& key, const CalibrationMap& map, const Ca
   }
   const double share = seen / ((kSteps + 1.0) * (kSteps + 1.0));
   if (share >= 0.5) return;
-  throw InputError(
-      fmt::format("{}: under this distortion only {:.0f} % of the image have a viewing ray; are model and order "
-                  "of the coefficients right (radtan: k1, k2, p1, p2; equidistant: k1, k2, k3, k4)?",
-                  map.at(key), 100.0 * share));
+  throw InputError(fmt::format(
+      "{}: under this distortion only {:.0f} % of the image have a viewing ray; are model and order "
+      "of the coefficients right (radtan: k1, k2, p1, p2; equidistant: k1, k2, k3, k4)?",
+      map.at(key), 100.0 * share));
 }
 
 }  // namespace

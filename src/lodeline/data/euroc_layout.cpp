@@ -60,12 +60,11 @@ std::vector<int> findCameras(const EurocOptions& options, EurocLayout* found) {
   for (const int index : options.camera_indices) {
     if (std::find(present.begin(), present.end(), index) != present.end()) continue;
     const auto broken = layout.cameras_without_images.find(index);
-    throw InputError(fmt::format(
-        "{}, but camera {} was asked for; the recording has cameras [{}]",
-        broken != layout.cameras_without_images.end()
-            ? broken->second
-            : layout.csv(fmt::format("cam{}", index)).string() + ": missing",
-        index, fmt::join(present, ", ")));
+    throw InputError(fmt::format("{}, but camera {} was asked for; the recording has cameras [{}]",
+                                 broken != layout.cameras_without_images.end()
+                                     ? broken->second
+                                     : layout.csv(fmt::format("cam{}", index)).string() + ": missing",
+                                 index, fmt::join(present, ", ")));
   }
   if (present.empty() && options.needs_cameras) {
     if (!layout.cameras_without_images.empty()) {

@@ -49,11 +49,12 @@ struct EurocLayout {
 /// or, with neither needed, no camera, IMU or magnetometer.
 EurocLayout findEurocLayout(const std::filesystem::path& data, const EurocOptions& options);
 
-/// Reads the calibration of every sensor that has a `data.csv` (a camera: images that can be listed; see readFolderCalibration). The body frame of
-/// the result is the IMU frame, also where EuRoC's body is another. Rates that no file states, or that
-/// contradict the stamps, are measured. Optional sensors whose CSV has no usable row are left out with a
-/// warning. Rig::imu keeps its defaults where the recording has no IMU. Throws InputError naming file and key
-/// for a calibration that is absent or incomplete, and for a camera or IMU without data.
+/// Reads the calibration of every sensor that has a `data.csv` (a camera: images that can be listed; see
+/// readFolderCalibration). The body frame of the result is the IMU frame, also where EuRoC's body is another.
+/// Rates that no file states, or that contradict the stamps, are measured. Optional sensors whose CSV has no
+/// usable row are left out with a warning. Rig::imu keeps its defaults where the recording has no IMU. Throws
+/// InputError naming file and key for a calibration that is absent or incomplete, and for a camera or IMU
+/// without data.
 Rig readEurocRig(const EurocLayout& layout, Diagnostics* diagnostics);
 
 /// The same from a calibration that readFolderCalibration() has read.

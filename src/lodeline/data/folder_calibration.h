@@ -19,8 +19,9 @@ namespace lodeline {
 /// it, told
 ///    by its content, where there is one only (`calibration_found`).
 ///
-/// Throws InputError, naming the files that were looked at and what to give, where a camera or the IMU has none and
-/// `layout.needs_calibration`; otherwise such sensors are left out and reported (`imu0_uncalibrated`, …).
+/// Throws InputError, naming the files that were looked at and what to give, where a camera or the IMU has
+/// none and `layout.needs_calibration`; otherwise such sensors are left out and reported
+/// (`imu0_uncalibrated`, …).
 RigFile readFolderCalibration(const EurocLayout& layout, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -83,7 +83,8 @@ std::vector<ImuSample> ImuIntervals::ahead(Time time) {
   for (size_t i = 0; i < buffer_.size(); ++i) {
     if (buffer_[i].time <= border_.time) continue;
     if (buffer_[i].time >= time) {
-      interval.push_back(buffer_[i].time == time ? buffer_[i] : interpolate(interval.back(), buffer_[i], time));
+      interval.push_back(buffer_[i].time == time ? buffer_[i]
+                                                 : interpolate(interval.back(), buffer_[i], time));
       break;
     }
     interval.push_back(buffer_[i]);

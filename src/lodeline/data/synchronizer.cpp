@@ -198,10 +198,9 @@ std::optional<PendingImage> Synchronizer::partnerOf(const PendingImage& referenc
     const PendingImage orphan = stream.pop();
     // Those from before the part of the recording that is used never had a chance of a partner.
     if (!last_packet_time_) continue;
-    diagnostics_->report(
-        Severity::Notice, "image_without_partner",
-        fmt::format("{}: no image of {} within {:g} ms has it as the nearest; passed over", orphan.name,
-                    source_->rig().cameras[0].name, tolerance.seconds() * 1e3));
+    diagnostics_->report(Severity::Notice, "image_without_partner",
+                         fmt::format("{}: no image of {} within {:g} ms has it as the nearest; passed over",
+                                     orphan.name, source_->rig().cameras[0].name, tolerance.seconds() * 1e3));
   }
   if (stream.peek() != nullptr && stream.peek()->time <= reference.time + tolerance) return stream.pop();
   diagnostics_->report(
@@ -257,9 +256,9 @@ void Synchronizer::storeImage(size_t camera, const PendingImage& pending, Loaded
     packet->images[camera] = std::move(loaded.image);
     return;
   }
-  const std::string problem = fmt::format("{}: image is {} x {} px but the calibration of {} says {} x {}",
-                                          pending.name, loaded.image.cols, loaded.image.rows, expected.name,
-                                          expected.width_px, expected.height_px);
+  const std::string problem =
+      fmt::format("{}: image is {} x {} px but the calibration of {} says {} x {}", pending.name,
+                  loaded.image.cols, loaded.image.rows, expected.name, expected.width_px, expected.height_px);
   if (history.other_size++ == 0) history.size_problem = problem;
   diagnostics_->report(Severity::Warning, "image_size", problem + "; carrying on without such images");
   constexpr int kEnough = 5;
@@ -269,10 +268,10 @@ void Synchronizer::storeImage(size_t camera, const PendingImage& pending, Loaded
 void Synchronizer::checkSizes() const {
   for (const CameraHistory& history : histories_) {
     if (history.right_size > 0 || history.other_size == 0) continue;
-    throw InputError(
-        fmt::format("{}; calibrate at the size of the recording, scale intrinsics and resolution, or leave the "
-                    "camera out (source.cameras)",
-                    history.size_problem));
+    throw InputError(fmt::format(
+        "{}; calibrate at the size of the recording, scale intrinsics and resolution, or leave the "
+        "camera out (source.cameras)",
+        history.size_problem));
   }
 }
 

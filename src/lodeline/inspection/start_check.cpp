@@ -60,7 +60,8 @@ const char* contradiction(const InspectionFinding& finding) {
 /// What the run does about it, beside the finding's own advice.
 const char* remedy(const InspectionFinding& finding, const Inspection& inspection) {
   if (isConverted(finding, inspection)) return "; this run converts them";
-  if (finding.kind == "cameras_swapped") return "; where exchanged images explain it, this run puts them back";
+  if (finding.kind == "cameras_swapped")
+    return "; where exchanged images explain it, this run puts them back";
   if (finding.kind == "images_repeated") return "; this run leaves them out";
   if (finding.kind == kCameraTimeOffset) {
     return "; this run adds what it found to the images' stamps, as far as that is more than 15 ms";

@@ -136,7 +136,8 @@ TEST_F(RunFolder, SummaryTellsOfDepthAndWhatCarriedTheScale) {
   EXPECT_NEAR(json["scale"]["stereo"]["share"], 0.6, 1e-12);
   EXPECT_NEAR(json["scale"]["stereo"]["sigma_without"], 0.01, 1e-12);
   EXPECT_NEAR(json["scale"]["depth"]["sigma_alone"], 0.02, 1e-12);
-  EXPECT_NE(summary.text({}, true).find("60 % by stereo (alone 0.8 %), 30 % by accelerometer"), std::string::npos);
+  EXPECT_NE(summary.text({}, true).find("60 % by stereo (alone 0.8 %), 30 % by accelerometer"),
+            std::string::npos);
 }
 
 TEST_F(RunFolder, WaitingFramesAreNotWritten) {
