@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kFocalLength_px = 450.0, kNoise_px = 0.3;
+constexpr double kDelayFocal_px = 450.0, kDelayNoise_px = 0.3;
 
 /// A pair of cameras that sways and drifts before points 1 to 8 m away; the second one takes its images
 /// `delay_s` later than the first, is turned by `turn_rad` about x against its file, and a share of the
@@ -39,10 +39,10 @@ StereoDelay watched(double delay_s, double turn_rad, double sway_rad_per_s, doub
       Vec3 ray = at_second / at_second.z();
       const bool is_wrong = uniform(random) < -1.0 + 2.0 * wrong_share;
       for (int axis = 0; axis < 2; ++axis)
-        ray[axis] += (is_wrong ? 8.0 : kNoise_px) * normal(random) / kFocalLength_px;
+        ray[axis] += (is_wrong ? 8.0 : kDelayNoise_px) * normal(random) / kDelayFocal_px;
       pairs.push_back({point_C1.normalized(), ray.normalized()});
     }
-    delay.add(pairs, second_from_first, kFocalLength_px, rate_C, velocity_C);
+    delay.add(pairs, second_from_first, kDelayFocal_px, rate_C, velocity_C);
   }
   return delay;
 }
@@ -79,7 +79,7 @@ TEST(StereoDelay, IsVagueWithoutMotion) {
       const Vec3 ray(0.3 * normal(random), 0.3 * normal(random), 1.0);
       pairs.push_back({ray.normalized(), (ray + Vec3(-0.02, 0.0007 * normal(random), 0.0)).normalized()});
     }
-    resting.add(pairs, second_from_first, kFocalLength_px, Vec3::Constant(1e-4), Vec3::Zero());
+    resting.add(pairs, second_from_first, kDelayFocal_px, Vec3::Constant(1e-4), Vec3::Zero());
   }
   const auto found = resting.estimate();
   ASSERT_TRUE(found);
