@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <thread>
 
@@ -33,7 +34,11 @@ class LiveSourceTest : public testing::Test {
   void pushImu(double from_s, double to_s) {
     for (int64_t ms = std::llround(from_s * 1e3); ms < std::llround(to_s * 1e3); ms += 5) {
       ImuSample sample;
-      sample.time = at(1e-3 * static_cast<double>(ms));
+      const double time_s = 1e-3 * static_cast<double>(ms);
+      sample.time = at(time_s);
+      // A sensor that repeats itself would be taken for a dead one.
+      sample.angular_velocity_B = 0.1 * Vec3(std::sin(5.0 * time_s), std::cos(5.0 * time_s), 0.3);
+      sample.specific_force_B = Vec3(0.2 * std::sin(3.0 * time_s), 0.0, 9.8 + 0.1 * std::cos(3.0 * time_s));
       source_->push(sample);
     }
   }
