@@ -14,9 +14,9 @@ namespace lodeline {
 namespace {
 
 /// Images are what the check costs: pairs of the first camera, spread over seven seconds, and a few others.
-constexpr int kImagesOfPairs = 68;
+constexpr int kImagesOfPairs = 88;
 constexpr int kMostSamples = 6;
-constexpr double kPairInterval_s = 0.19;
+constexpr double kPairInterval_s = 0.15;
 
 using Kinds = std::array<std::string_view, 3>;
 constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
