@@ -214,6 +214,15 @@ std::vector<SurveySpan> liveliestSpans(const std::vector<ImuSample>& samples, co
   std::vector<std::pair<double, SurveySpan>> spans = rateSpans(samples, images, span_s);
   std::stable_sort(spans.begin(), spans.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
+  // The liveliest of each half comes first: what changed in mid-recording shows between them.
+  const Time middle = *images.first + Duration::fromSeconds(0.5 * images.duration_s);
+  const auto startsLate = [&](const auto& span) { return span.second.begin >= middle; };
+  if (!spans.empty()) {
+    const bool is_late = startsLate(spans.front());
+    const auto other = std::find_if(spans.begin(), spans.end(),
+                                    [&](const auto& span) { return startsLate(span) != is_late; });
+    if (other != spans.end()) std::rotate(spans.begin() + 1, other, other + 1);
+  }
   for (size_t i = 0; i < spans.size() && static_cast<double>(i) * span_s < total_s; ++i) {
     chosen.push_back(spans[i].second);
   }

@@ -86,8 +86,9 @@ void compareCameras(Inspection* inspection) {
     const std::vector<CameraTurn>& turns = camera.survey.turns;
     const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
     camera.turning = compareTurns(turns, gyroscope, body_from_camera);
-    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera);
-    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera);
+    constexpr TurnLimits kHalf = {12, 3.0};  // a change of the offset must be plain to count
+    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera, kHalf);
+    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera, kHalf);
   }
 }
 

@@ -64,7 +64,7 @@ const char* remedy(const InspectionFinding& finding, const Inspection& inspectio
     return "; where exchanged images explain it, this run puts them back";
   if (finding.kind == "images_repeated") return "; this run leaves them out";
   if (finding.kind == kCameraTimeOffset) {
-    return "; this run adds what it found to the images' stamps, as far as that is more than 15 ms";
+    return "; this run adds what it found to the images' stamps, where that is steady and more than 15 ms";
   }
   return "";
 }
@@ -80,6 +80,14 @@ void report(const InspectionFinding& finding, const Inspection& inspection, cons
                                   finding.sensor, finding.kind, hint));
 }
 
+/// Whether both halves of a camera's turns show the same offset to the gyroscope. A clock that jumps between
+/// them gives a mean that is right for neither.
+bool isSteady(const CameraInspection& camera) {
+  constexpr double kSame_s = 0.008;
+  return camera.turning_early && camera.turning_late &&
+         std::abs(camera.turning_early->time_offset_s - camera.turning_late->time_offset_s) < kSame_s;
+}
+
 /// Offsets beyond what the estimator takes care of by itself. A camera that shows none of its own has the
 /// first one's.
 std::vector<double> imageOffsets_s(const Inspection& inspection) {
@@ -89,7 +97,8 @@ std::vector<double> imageOffsets_s(const Inspection& inspection) {
     double offset_s = offsets_s.empty() ? 0.0 : offsets_s.front();
     for (const InspectionFinding& finding : inspection.findings) {
       if (finding.kind != kCameraTimeOffset || finding.sensor != camera.survey.name) continue;
-      if (std::abs(camera.turning->time_offset_s) > kLeastOffset_s) offset_s = camera.turning->time_offset_s;
+      if (std::abs(camera.turning->time_offset_s) > kLeastOffset_s && isSteady(camera))
+        offset_s = camera.turning->time_offset_s;
     }
     offsets_s.push_back(offset_s);
   }

@@ -10,9 +10,6 @@
 namespace lodeline {
 namespace {
 
-constexpr int kLeastTurns = 25;
-/// Over a shorter time a rig turns so smoothly that anything correlates with anything, somewhat shifted.
-constexpr double kLeastTime_s = 4.0;
 constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
 /// A camera that turns less than this (root mean square) shows nothing.
@@ -58,15 +55,19 @@ struct Moments {
 class Comparison {
  public:
   Comparison(const std::vector<CameraTurn>& turns, const GyroscopeIntegral& gyroscope,
-             const Quat& body_from_camera)
-      : turns_(turns), gyroscope_(gyroscope), body_from_camera_(body_from_camera), use_(turns.size(), true) {}
+             const Quat& body_from_camera, int least_turns)
+      : turns_(turns),
+        gyroscope_(gyroscope),
+        body_from_camera_(body_from_camera),
+        least_turns_(least_turns),
+        use_(turns.size(), true) {}
 
   std::optional<TurnComparison> run() {
     double offset_s = bestOffset_s();
     rejectOutliers(offset_s);
     offset_s = bestOffset_s();
     const std::vector<Pair> pairs = pairsAt(offset_s);
-    if (static_cast<int>(pairs.size()) < kLeastTurns) return std::nullopt;
+    if (static_cast<int>(pairs.size()) < least_turns_) return std::nullopt;
     const Moments moments(pairs);
     TurnComparison result;
     const auto count = static_cast<double>(pairs.size());
@@ -98,7 +99,7 @@ class Comparison {
   double correlationAt(double offset_s) const {
     const std::vector<Pair> pairs = pairsAt(offset_s);
     // Fewer turns within the readings correlate better by chance.
-    if (static_cast<int>(pairs.size()) < kLeastTurns || 2 * pairs.size() < turns_.size()) return 0.0;
+    if (static_cast<int>(pairs.size()) < least_turns_ || 2 * pairs.size() < turns_.size()) return 0.0;
     return Moments(pairs).correlation();
   }
 
@@ -236,21 +237,23 @@ class Comparison {
   const std::vector<CameraTurn>& turns_;
   const GyroscopeIntegral& gyroscope_;
   Quat body_from_camera_;
+  int least_turns_;
   std::vector<bool> use_;
 };
 
 }  // namespace
 
 std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
-                                           const GyroscopeIntegral& gyroscope, const Quat& body_from_camera) {
-  if (static_cast<int>(turns.size()) < kLeastTurns) return std::nullopt;
+                                           const GyroscopeIntegral& gyroscope, const Quat& body_from_camera,
+                                           const TurnLimits& limits) {
+  if (static_cast<int>(turns.size()) < limits.turns) return std::nullopt;
   constexpr double kLongestPause_s = 0.3;
   double time_s = (turns.back().end - turns.back().begin).seconds();
   for (size_t i = 1; i < turns.size(); ++i) {
     time_s += std::clamp((turns[i].begin - turns[i - 1].begin).seconds(), 0.0, kLongestPause_s);
   }
-  if (time_s < kLeastTime_s) return std::nullopt;
-  return Comparison(turns, gyroscope, body_from_camera).run();
+  if (time_s < limits.time_s) return std::nullopt;
+  return Comparison(turns, gyroscope, body_from_camera, limits.turns).run();
 }
 
 }  // namespace lodeline

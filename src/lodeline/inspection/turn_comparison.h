@@ -41,9 +41,17 @@ struct TurnComparison {
   double explained_at_best = 0.0;
 };
 
+/// What turns must amount to. Over a shorter time a rig turns so smoothly that anything correlates with
+/// anything, somewhat shifted.
+struct TurnLimits {
+  int turns = 25;
+  double time_s = 4.0;
+};
+
 /// Nothing where too few turns lie within the gyroscope's readings, they last too short a time, or the camera
 /// hardly turned.
 std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
-                                           const GyroscopeIntegral& gyroscope, const Quat& body_from_camera);
+                                           const GyroscopeIntegral& gyroscope, const Quat& body_from_camera,
+                                           const TurnLimits& limits = {});
 
 }  // namespace lodeline
