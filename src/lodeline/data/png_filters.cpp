@@ -52,13 +52,13 @@ using Block = std::array<Bytes, kLanes>;
 
 /// Byte j of vector i becomes byte i of vector j: four perfect shuffles of all bytes.
 inline __attribute__((always_inline)) void transpose(Block* block) {
-  constexpr Bytes kLow{0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23};
-  constexpr Bytes kHigh{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31};
   for (int round = 0; round < 4; ++round) {
     const Block from = *block;
     for (size_t i = 0; i < kLanes / 2; ++i) {
-      (*block)[2 * i] = __builtin_shuffle(from[i], from[i + kLanes / 2], kLow);
-      (*block)[2 * i + 1] = __builtin_shuffle(from[i], from[i + kLanes / 2], kHigh);
+      (*block)[2 * i] = __builtin_shufflevector(from[i], from[i + kLanes / 2], 0, 16, 1, 17, 2, 18, 3, 19, 4,
+                                                20, 5, 21, 6, 22, 7, 23);
+      (*block)[2 * i + 1] = __builtin_shufflevector(from[i], from[i + kLanes / 2], 8, 24, 9, 25, 10, 26, 11,
+                                                    27, 12, 28, 13, 29, 14, 30, 15, 31);
     }
   }
 }
@@ -85,8 +85,8 @@ inline __attribute__((always_inline)) void stepAbreast(const Masks& is, const ui
     for (size_t r = 0; r < kLanes; ++r) std::memcpy(&block[r], rows[r] + first, kLanes);
     transpose(&block);
     for (size_t i = 0; i < kLanes; ++i) {
-      constexpr Bytes kNextLane{16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
-      const Bytes up = __builtin_shuffle(left, Bytes{above[first + i]}, kNextLane);
+      const Bytes up = __builtin_shufflevector(left, Bytes{above[first + i]}, 16, 0, 1, 2, 3, 4, 5, 6, 7, 8,
+                                               9, 10, 11, 12, 13, 14);
       left = block[i] + predicted<kAnyPaeth>(is, left, up, up_left);
       up_left = up;
       block[i] = left;

@@ -16,7 +16,7 @@ T paeth(T left, T up, T up_left) {
   const T less = to_left < to_up ? to_left : to_up;
   const T more = to_left < to_up ? to_up : to_left;
   const auto is_between = (left < up_left) != (up < up_left);
-  return is_between & (more - less < less) ? up_left : nearer;
+  return (is_between & (more - less < less)) ? up_left : nearer;
 }
 
 /// Undoes the filters of an image of one byte per pixel. `filtered` holds `height` rows of a filter type and

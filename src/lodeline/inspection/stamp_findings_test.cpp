@@ -29,13 +29,8 @@ class StampSource : public MeasurementSource {
     rig_.cameras.front().name = "cam0";
     rig_.cameras.front().width_px = 32;
     rig_.cameras.front().height_px = 32;
-<<<<<<< HEAD
     rig_.cameras.front().fx_px = rig_.cameras.front().fy_px = 40.0;
     rig_.cameras.front().cx_px = rig_.cameras.front().cy_px = 15.5;
-=======
-    rig_.cameras.front().fx_px = rig_.cameras.front().fy_px = 30.0;
-    rig_.cameras.front().cx_px = rig_.cameras.front().cy_px = 16.0;
->>>>>>> time
   }
   const Rig& rig() const override { return rig_; }
   std::optional<ImuSample> nextImu() override {
