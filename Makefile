@@ -33,7 +33,7 @@ test: everything check-format
 # wrote, and those that the rest computes with. The layers from the estimator up take longer to build so than all of
 # these, and the estimator's tests work through whole simulated scenes.
 SANITIZED = base geometry cameras inertial data bags features factors evaluation
-test-sanitized: dependencies fuzz
+test-sanitized: dependencies
 	cmake --preset asan
 	cmake --build --preset asan --target $(SANITIZED:%=%_test)
 	ctest --test-dir build/asan --output-on-failure -j2 -L fast -R "^($$(echo $(SANITIZED) | tr ' ' '|'))_test"
