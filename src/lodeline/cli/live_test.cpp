@@ -84,7 +84,7 @@ TEST_F(Live, TakesAnyPortForNoughtAndADefaultForNone) {
 
 TEST_F(Live, DoesNotTakeTheRecordingForAPort) {
   const std::string data = quoted(recording_.data);
-  const std::string output = "-q --no-report -o " + quoted(output_);
+  const std::string output = "-q --no-report --overwrite -o " + quoted(output_);
   // Any order of the arguments; with the default port, which may be in use, only the parsing is looked at.
   for (const std::string& command :
        {"run --live 0 " + data + " " + output, "run " + data + " " + output + " --live 0",

@@ -134,9 +134,8 @@ TEST_F(RunReadings, TimeGoingBackwardsIsReportedWithBothStamps) {
   expectGoodResult(result, kRoomImages - 1);
   EXPECT_GE(findings("imu_disorder"), 1);
   EXPECT_EQ(findings("image_disorder"), 1);
-  EXPECT_THAT(result.output, AllOf(HasSubstr("time goes backwards"),
-                                   HasSubstr(fmt::format("from stamp {} ns to {} ns", roomImageStamp_ns(12),
-                                                         roomImageStamp_ns(11)))));
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("time goes backwards"), HasSubstr("from stamp 0:00.600 to 0:00.550")));
 }
 
 TEST_F(RunReadings, RepeatedStampIsReported) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <cmath>
 
 #include <algorithm>
 #include <fstream>
@@ -28,6 +29,10 @@ class LongSource : public MeasurementSource {
   std::optional<ImuSample> nextImu() override {
     if (imu_count >= 1800 * 200) return std::nullopt;
     ImuSample sample;
+    // A sensor that repeats itself would be taken for a dead one.
+    const double phase = 0.05 * static_cast<double>(imu_count);
+    sample.angular_velocity_B = Vec3(0.1 * std::sin(phase), 0.1 * std::cos(phase), 0.02);
+    sample.specific_force_B = Vec3(0.2 * std::cos(phase), 0.1, 9.8 + 0.1 * std::sin(phase));
     sample.time = Time::fromNanoseconds(imu_count++ * 5'000'000);
     return sample;
   }

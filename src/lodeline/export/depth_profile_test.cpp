@@ -72,7 +72,7 @@ TEST_F(DepthProfileTest, PassesOverWhatItCannotUse) {
 }
 
 TEST_F(DepthProfileTest, RefusesWhatIsNoProfile) {
-  expectRefusal("", "only 0 usable readings");
+  expectRefusal("", "no columns of time and depth");
   expectRefusal(rows("time,pressure\n", "{0},{0}\n"), "'depth [m]'");
   expectRefusal("time,depth\n1,2\n2,3\n", "only 2 usable readings");
   EXPECT_THROW(readDepthProfiles("/nowhere.csv", &diagnostics_), InputError);

@@ -96,7 +96,7 @@ std::string stationsCsv(const DiveMap& map) {
 std::string tumText(const DiveMap& map) {
   std::string text;
   for (const std::string& note : map.notes) text += "# " + note + "\n";
-  text += "# timestamp [s] x y z qx qy qz qw, body in " + map.north.axes + "\n";
+  text += "# body in " + map.north.axes + "\n# timestamp [s] x y z qx qy qz qw\n";
   for (const StampedPose& pose : map.trajectory.poses) {
     const Vec3& p = pose.world_from_body.translation;
     const Quat q = so3::canonical(pose.world_from_body.rotation);

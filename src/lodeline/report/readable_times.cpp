@@ -9,11 +9,12 @@
 
 namespace lodeline {
 
-std::string clockText(double seconds) {
-  const auto tenths = static_cast<int64_t>(std::llround(std::abs(seconds) * 10.0));
-  const char* sign = seconds < 0.0 && tenths > 0 ? "-" : "";
-  const int64_t hours = tenths / 36000, minutes = tenths / 600 % 60;
-  const std::string rest = fmt::format("{:02}.{}", tenths / 10 % 60, tenths % 10);
+std::string clockText(double seconds, int decimals) {
+  const int64_t unit = decimals == 1 ? 10 : 1000;
+  const auto units = static_cast<int64_t>(std::llround(std::abs(seconds) * static_cast<double>(unit)));
+  const char* sign = seconds < 0.0 && units > 0 ? "-" : "";
+  const int64_t whole_s = units / unit, hours = whole_s / 3600, minutes = whole_s / 60 % 60;
+  const std::string rest = fmt::format("{:02}.{:0{}}", whole_s % 60, units % unit, decimals);
   if (hours > 0) return fmt::format("{}{}:{:02}:{}", sign, hours, minutes, rest);
   return fmt::format("{}{}:{}", sign, minutes, rest);
 }
@@ -30,7 +31,7 @@ std::string withReadableTimes(const std::string& message, Time origin) {
     const bool is_stamp = csv::parse(match->str(1), &stamp_ns);
     // As doubles, whose difference cannot overflow.
     const double since_s = (static_cast<double>(stamp_ns) - static_cast<double>(origin.nanoseconds())) * 1e-9;
-    text += is_stamp && std::abs(since_s) < kDay_s ? clockText(since_s) : match->str();
+    text += is_stamp && std::abs(since_s) < kDay_s ? clockText(since_s, 3) : match->str();
   }
   return text.append(end, message.end());
 }

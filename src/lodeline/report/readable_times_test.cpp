@@ -18,9 +18,9 @@ TEST(ReadableTimes, ClockHasMinutesAndHours) {
 TEST(ReadableTimes, StampsOfTheRecordingBecomeTimesSinceItsStart) {
   const Time origin = Time::fromNanoseconds(1403636580013555584);
   EXPECT_EQ(withReadableTimes("cam1: no image within 5 ms of stamp 1403636596413555584 ns", origin),
-            "cam1: no image within 5 ms of stamp 0:16.4");
+            "cam1: no image within 5 ms of stamp 0:16.400");
   EXPECT_EQ(withReadableTimes("from 1403636581013555584 ns to 1403636582013555584 ns", origin),
-            "from 0:01.0 to 0:02.0");
+            "from 0:01.000 to 0:02.000");
 }
 
 TEST(ReadableTimes, OtherNumbersStay) {
