@@ -1,6 +1,7 @@
 #include "lodeline/cli/run_command.h"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -18,6 +19,7 @@ namespace lodeline {
 namespace {
 
 constexpr int kLivePort = 8642;
+constexpr size_t kTerminalWidth = 96;  ///< of the values of the summary
 
 bool isNumber(const std::string& text) {
   return !text.empty() &&
@@ -59,7 +61,9 @@ void executeRun(RunRequest request) {
   request.sample_pictures = with_report && !pageTemplate().empty();
   Diagnostics diagnostics;
   const RunSummary summary = runRecording(request, &diagnostics);
-  if (!request.quiet) fmt::print("{}\n{}", request.output, summary.text(diagnostics, request.verbose));
+  if (!request.quiet)
+    fmt::print("{}\n{}", request.output,
+               summary.text(diagnostics, request.verbose, isatty(STDOUT_FILENO) ? kTerminalWidth : 0));
   if (with_report && summary.posed() > 0) {
     const std::string remark = writeRunReport(request);
     if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);

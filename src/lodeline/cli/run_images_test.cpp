@@ -81,7 +81,7 @@ TEST_F(RunImages, AllImagesMissingIsBadInput) {
   }
   const Execution result = run();
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, AllOf(HasSubstr("bad input"), HasSubstr("no image"), HasSubstr("run.json"),
+  EXPECT_THAT(result.output, AllOf(HasSubstr("bad input"), HasSubstr("no image"),
                                    HasSubstr(recording_.image(0, 0).string())));
   EXPECT_EQ(findings("image_unreadable"), 2 * kRoomImages);
 }
@@ -148,7 +148,7 @@ TEST_F(RunImages, EveryImageTwiceIsNamedAndLeavesTheResultAsItIs) {
   }
   const Execution result = run();
   expectGoodResult(result);
-  EXPECT_EQ(findings("images_repeated"), 2 * (kRoomImages - 1));
+  EXPECT_EQ(findings("images_repeated"), 2 * (kRoomImages - 1) + 1) << "one of them before the run";
   EXPECT_THAT(result.output, HasSubstr("repeats the one before"));
 }
 
@@ -202,7 +202,7 @@ TEST_F(RunImages, OtherSizesFromMidRunOnAreNamedAndBridged) {
   }
   const Execution result = run();
   expectGoodResult(result);
-  EXPECT_EQ(findings("image_size"), kRoomImages - 15);
+  EXPECT_EQ(findings("image_size"), kRoomImages - 15 + 1) << "one of them before the run";
   EXPECT_EQ(findings("one_camera"), 1) << "the second half hangs on the left camera";
 }
 

@@ -48,6 +48,8 @@ bool isFarOff(const InspectionFinding& finding, const Inspection& inspection) {
 bool isHopeless(const InspectionFinding& finding, const Inspection& inspection) {
   constexpr double kHopeless = 85.0;
   if (isConverted(finding, inspection) || isOneOf(kOfOtherEnds, finding.kind)) return false;
+  // The run leaves out the one and puts back the other.
+  if (finding.kind == "images_repeated" || finding.kind == "cameras_swapped") return false;
   return finding.harm >= kHopeless || isFarOff(finding, inspection);
 }
 

@@ -296,8 +296,8 @@ void RunSummary::addDetails(SummaryLines* lines) const {
           coreMillisecondsPerFrame(estimator_s), coreMillisecondsPerFrame(pictures_s)));
 }
 
-std::string RunSummary::text(const Diagnostics& diagnostics, bool with_details) const {
-  SummaryLines lines;
+std::string RunSummary::text(const Diagnostics& diagnostics, bool with_details, size_t value_width) const {
+  SummaryLines lines(value_width);
   if (const std::string reason = distrust(); !reason.empty()) lines.add("do not trust", reason);
   if (refinement) lines.add("refinement", describe(*refinement));
   lines.add("completion", completionText());

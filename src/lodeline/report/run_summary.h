@@ -77,8 +77,8 @@ class RunSummary {
 
   /// Reports stretches of at least half a second without usable images as the finding `blind_stretch`.
   void reportBlindStretches(Diagnostics* diagnostics) const;
-  /// A few lines for people, wrapped, then the findings; `with_details`: all figures.
-  std::string text(const Diagnostics& diagnostics, bool with_details = false) const;
+  /// A few lines for people, then the findings; `with_details`: all figures. `value_width`: of SummaryLines.
+  std::string text(const Diagnostics& diagnostics, bool with_details = false, size_t value_width = 0) const;
   /// run.json: the same and more for programs.
   std::string json(const Diagnostics& diagnostics) const;
 

@@ -65,7 +65,8 @@ TEST(RunSummary, FindingsNameTimesSinceTheFirstFrame) {
   Diagnostics diagnostics;
   diagnostics.report(Severity::Warning, "image_missing", "no image at 101500000000 ns");
   EXPECT_THAT(summary.text(diagnostics), testing::HasSubstr("no image at 0:01.5"));
-  EXPECT_EQ(nlohmann::json::parse(summary.json(diagnostics))["findings"][0]["message"], "no image at 0:01.500");
+  EXPECT_EQ(nlohmann::json::parse(summary.json(diagnostics))["findings"][0]["message"],
+            "no image at 0:01.500");
 }
 
 TEST(RunSummary, DistrustsARunThatEndsInAContradiction) {

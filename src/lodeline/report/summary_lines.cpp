@@ -7,10 +7,11 @@
 namespace lodeline {
 
 void SummaryLines::add(const std::string& name, const std::string& value) {
-  constexpr size_t kNameWidth = 14, kValueWidth = 96;
+  constexpr size_t kNameWidth = 14;
+  const size_t width = value_width_ > 0 ? value_width_ : value.size() + 1;
   std::string first = fmt::format("  {:<{}} ", name, kNameWidth);
   for (size_t begin = 0; begin < value.size();) {
-    size_t end = std::min(begin + kValueWidth, value.size());
+    size_t end = std::min(begin + width, value.size());
     if (end < value.size()) {
       const size_t blank = value.rfind(' ', end);
       // A word that is longer than a line stays whole.

@@ -9,14 +9,14 @@ namespace lodeline {
 namespace {
 
 TEST(SummaryLines, ShortValuesTakeALine) {
-  SummaryLines lines;
+  SummaryLines lines(96);
   lines.add("path", "5.37 m");
   lines.add("a name that is long", "value");
   EXPECT_EQ(lines.text(), "  path           5.37 m\n  a name that is long value\n");
 }
 
 TEST(SummaryLines, LongValuesAreWrappedBetweenWords) {
-  SummaryLines lines;
+  SummaryLines lines(96);
   std::string value;
   for (int i = 0; i < 60; ++i) {
     if (i > 0) value += ' ';
