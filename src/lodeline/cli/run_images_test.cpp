@@ -35,7 +35,7 @@ TEST_F(RunImages, ImageMissingInTheListOfTheOtherCameraIsReported) {
   const Execution result = run();
   expectGoodResult(result);
   EXPECT_EQ(findings("image_missing"), 1);
-  EXPECT_THAT(result.output, AllOf(HasSubstr("cam1"), HasSubstr(fmt::format("{}", roomImageStamp_ns(9)))));
+  EXPECT_THAT(result.output, AllOf(HasSubstr("cam1"), HasSubstr("0:00.450")));
 }
 
 TEST_F(RunImages, CorruptImageIsNamedAndBridged) {
@@ -185,7 +185,7 @@ TEST_F(RunImages, CamerasExchangedInMidRunArePutBack) {
   const Execution result = run();
   expectGoodResult(result);
   EXPECT_EQ(findings("cameras_swapped"), 1);
-  EXPECT_THAT(result.output, HasSubstr(fmt::format("stamp {} ns", roomImageStamp_ns(15))));
+  EXPECT_THAT(result.output, HasSubstr("stamp 0:00.750"));
 }
 
 TEST_F(RunImages, AMissingListOfTheRightCameraIsMadeFromTheNamesOfItsImages) {

@@ -155,7 +155,7 @@ TEST_F(RunMagnetometer, ThatBeginsLateTurnsTheWholeRunToNorth) {
   EXPECT_NEAR(summary()["magnetometer"]["field_W_T"][0].get<double>(), 0.0, 0.1e-6);
   EXPECT_THAT(readText(output_ / "landmarks.ply"), HasSubstr("y north (magnetic north)"));
   EXPECT_THAT(readText(output_ / "states.csv"), HasSubstr(",north_from_world [rad],"));
-  expectGoodResult(runProgram("refine " + quoted(recording_.data) + " -o " + quoted(output_) +
+  expectGoodResult(runProgram("refine " + quoted(recording_.data) + " --overwrite -o " + quoted(output_) +
                               " --mag-calibration " + quoted(calibration_)));
   EXPECT_NEAR(firstHeadingError("trajectory_refined.tum"), 0.0, 2.0 * kDegree);
   EXPECT_THAT(readText(output_ / "landmarks_refined.ply"), HasSubstr("y north (magnetic north)"));
