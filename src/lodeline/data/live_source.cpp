@@ -16,7 +16,7 @@ constexpr size_t kImagesForRate = 20;
 LiveSource::LiveSource(const Rig& rig, const LiveSourceOptions& options, Diagnostics* diagnostics)
     : RecordedSource(rig, options.imu_correction), options_(options), diagnostics_(diagnostics) {
   options_.max_images = std::max(options_.max_images, kImagesForRate);
-  const auto prepare = [this](auto* inbox, const char* kind, const std::string& name, size_t limit) {
+  const auto prepare = [](auto* inbox, const char* kind, const std::string& name, size_t limit) {
     inbox->kind = kind;
     inbox->name = name;
     inbox->limit = limit;
