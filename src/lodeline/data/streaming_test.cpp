@@ -40,13 +40,21 @@ class LongSource : public MeasurementSource {
     if (magnetometer_count >= 1800 * 100) return std::nullopt;
     return MagnetometerSample{Time::fromNanoseconds(magnetometer_count++ * 10'000'000), Vec3(2e-5, 0, 0)};
   }
+  /// An image that no other moment has: equal images would be left out as repeats.
+  static cv::Mat pattern(int64_t moment) {
+    cv::Mat image(2, 2, CV_8UC1);
+    for (int i = 0; i < 4; ++i) {
+      image.data[i] = static_cast<uint8_t>((moment * 37 * (i + 1)) % 251);
+    }
+    return image;
+  }
   std::optional<PendingImage> nextImage(size_t camera) override {
     int64_t& count = image_count[camera];
     // The images begin after a minute, so that a history has to be kept and cut.
     const Time time = Time::fromNanoseconds(60'000'000'000 + count * 66'666'667);
     if (time.seconds() > 1799.0) return std::nullopt;
     ++count;
-    return PendingImage{time, "made up", [] { return LoadedImage{cv::Mat::zeros(2, 2, CV_8UC1), ""}; }};
+    return PendingImage{time, "made up", [count] { return LoadedImage{pattern(count), ""}; }};
   }
 
   int64_t imu_count = 0;
