@@ -53,7 +53,7 @@ class LongSource : public MeasurementSource {
     // The images begin after a minute, so that a history has to be kept and cut.
     const Time time = Time::fromNanoseconds(60'000'000'000 + count * 66'666'667);
     // At the end of the images the rest of the readings is read at once.
-    if (time.seconds() > 1799.93) return std::nullopt;
+    if (time.seconds() > 1799.95) return std::nullopt;
     ++count;
     return PendingImage{time, "made up", [count] { return LoadedImage{pattern(count), ""}; }};
   }
