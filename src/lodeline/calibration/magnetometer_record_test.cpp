@@ -131,5 +131,77 @@ TEST_F(MagnetometerRecordTest, ExplainsWhatItCannotRead) {
   EXPECT_EQ(diagnostics_.count("csv_row"), 3);
 }
 
+/// A table of readings of a 45 uT field: `header`, then `row` for each with the fields {s} {ms} {us} {ns} of
+/// the time, {x} {y} {z} in `per_uT` of the unit.
+struct TableLayout {
+  const char* what;
+  const char* header;
+  const char* row;
+  double per_uT;
+};
+
+TEST_F(MagnetometerRecordTest, ReadsTheTablesOfTelephonesAutopilotsAndSpreadsheets) {
+  const std::vector<TableLayout> layouts = {
+      {"phyphox, Android",
+       "\"Time (s)\",\"Magnetic field x (\u00b5T)\",\"Magnetic field y (\u00b5T)\",\"Magnetic field z "
+       "(\u00b5T)\","
+       "\"Absolute field (\u00b5T)\"\n",
+       "{s:e},{x:e},{y:e},{z:e},45\n", 1.0},
+      {"phyphox, iOS", "\"Time (s)\",\"X (\u00b5T)\",\"Y (\u00b5T)\",\"Z (\u00b5T)\"\n",
+       "{s:e},{x:e},{y:e},{z:e}\n", 1.0},
+      {"Sensor Logger", "time,seconds_elapsed,z,y,x\n", "{ns},{s},{z},{y},{x}\n", 1.0},
+      {"PX4", "timestamp,timestamp_sample,device_id,x,y,z,temperature,error_count\n",
+       "{us},{us},396825,{x},{y},{z},35.2,0\n", 0.01},
+      {"MotionCal", "", "Raw:4,17,8183,-1,-3,1,{x:.0f},{y:.0f},{z:.0f}\n", 10.0},
+      {"SensorConnect",
+       "DATA_START\nGPS TFlags,GPS Week,GPS TOW,X Accel [x8004],Y Accel [x8004],Z Accel [x8004],X Gyro "
+       "[x8005],"
+       "Y Gyro [x8005],Z Gyro [x8005],X Mag [x8006],Y Mag [x8006],Z Mag [x8006]\n",
+       "6,2430,{s},0,0,1,0,0,0,{x},{y},{z}\n", 0.01},
+      {"AndroSensor",
+       "ACCELEROMETER X (m/s\xB2),ACCELEROMETER Y (m/s\xB2),ACCELEROMETER Z (m/s\xB2),GYROSCOPE X (rad/s),"
+       "GYROSCOPE Y (rad/s),GYROSCOPE Z (rad/s),MAGNETIC FIELD X (\xB5T),MAGNETIC FIELD Y (\xB5T),"
+       "MAGNETIC FIELD Z (\xB5T),Time since start in ms \n",
+       "0,0,9.8,0,0,0,{x},{y},{z},{ms}\n", 1.0},
+      {"a spreadsheet's byte order mark", "\xEF\xBB\xBFt [s],mx [uT],my [uT],mz [uT]\n", "{s},{x},{y},{z}\n",
+       1.0},
+      {"Xsens",
+       "// General information:\n//  MT Manager version: 2022.0\n// Update Rate: 100.0Hz\n"
+       "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z,Mag_X,Mag_Y,Mag_Z\n",
+       "1,{us},0,0,9.8,0,0,0,{x},{y},{z}\n", 1.0},
+  };
+  for (const TableLayout& layout : layouts) {
+    std::string text = layout.header;
+    int i = 0;
+    for (const Vec3& reading : test::cloud({}, 100)) {
+      const Vec3 m = 45.0 * layout.per_uT * reading;
+      const int ms = 20 * i++;
+      // SampleTimeFine counts 0.1 ms.
+      const int64_t us = std::string(layout.what) == "Xsens" ? 10LL * ms : 5'000'000LL + 1000LL * ms;
+      text += fmt::format(fmt::runtime(layout.row), fmt::arg("s", 0.001 * ms), fmt::arg("ms", ms),
+                          fmt::arg("us", us), fmt::arg("ns", 1'795'000'000'000'000'000LL + 1'000'000LL * ms),
+                          fmt::arg("x", m.x()), fmt::arg("y", m.y()), fmt::arg("z", m.z()));
+    }
+    folder_.write("table.csv", text);
+    const MagnetometerRecord record = read("table.csv");
+    ASSERT_EQ(record.magnetometer.size(), 100u) << layout.what;
+    const Vec3 expected_T = 45e-6 * test::cloud({}, 100)[7];
+    EXPECT_LT((record.magnetometer[7].field_M - expected_T).norm(), 0.1e-6) << layout.what;
+    if (record.has_times) {
+      EXPECT_NEAR((record.magnetometer[7].time - record.magnetometer[6].time).seconds(), 0.02, 1e-6)
+          << layout.what;
+    }
+    EXPECT_EQ(record.has_times, std::string(layout.what) != "MotionCal");
+  }
+}
+
+TEST_F(MagnetometerRecordTest, ReadsSemicolonsAndDecimalCommas) {
+  std::string text = "t [s];mx [uT];my [uT];mz [uT]\n0,00;12,5;-3;40\n0,02;12,5;-3;40\n";
+  folder_.write("table.csv", text);
+  const MagnetometerRecord record = read("table.csv");
+  ASSERT_EQ(record.magnetometer.size(), 2u);
+  EXPECT_NEAR(record.magnetometer[1].field_M.x(), 12.5e-6, 1e-15);
+}
+
 }  // namespace
 }  // namespace lodeline

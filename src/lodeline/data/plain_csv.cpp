@@ -108,9 +108,12 @@ void PlainCsv::assumeColumns() {
   };
   const std::size_t count = table_.columnCount();
   if (count == 9 && (table_.label() == "Raw" || table_.label() == "Uni")) {
-    accelerometer_ = at(0);
-    gyroscope_ = at(3);
+    // Accelerometer and gyroscope stand before it; without times they are of no use.
     magnetometer_ = at(6);
+    diagnostics_->report(
+        Severity::Notice, "csv_columns",
+        fmt::format("{}: rows of 9 numbers after '{}:'; the last three are taken for the magnetometer", name_,
+                    table_.label()));
     return;
   }
   times_.push_back({0, "column 1", {}, 1, {}, {}, 0});

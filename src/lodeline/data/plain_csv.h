@@ -34,7 +34,8 @@ struct PlainCsvOptions {
 ///
 /// The header names the columns (SensorColumns) and may state units: `t [s], wx [deg/s], …, MagX (µT)`.
 /// Without a header there must be a time and 3 (magnetometer), 6 (gyroscope, accelerometer) or 9 numbers
-/// (all), or rows `Raw:ax,ay,az,gx,gy,gz,mx,my,mz` as calibration programs send them.
+/// (all), or rows `Raw:ax,ay,az,gx,gy,gz,mx,my,mz` as calibration programs send them (the magnetometer is
+/// used).
 ///
 /// Without a unit, a time with a decimal point is in seconds and a whole number in nanoseconds, unless only
 /// another unit gives a rate that a sensor can have; the gyroscope is in rad/s; accelerometer and
