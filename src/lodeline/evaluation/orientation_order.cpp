@@ -5,6 +5,10 @@
 #include <Eigen/SVD>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
+
+#include "lodeline/evaluation/alignment.h"
 
 namespace lodeline {
 namespace {
@@ -13,6 +17,7 @@ constexpr std::size_t kMostPairs = 300;
 constexpr std::size_t kFewestPairs = 10;
 constexpr double kDoubtful = 10.0 * M_PI / 180.0;  ///< rms (rad) from which on another order is tried
 constexpr double kFarBetter = 0.2;                 ///< of that rms
+constexpr double kSameRms = 1e-3;                  ///< rad; of two that fit as well the first counts
 
 using Rotations = std::vector<Mat3>;
 
@@ -37,13 +42,14 @@ Mat3 nearestRotation(const Mat3& matrix) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Rms angle (rad) between a_i and W b_i B for the best constant rotations W and B, found in turns.
-double disagreement(const Rotations& a, const Rotations& b) {
-  Mat3 world = Mat3::Identity(), body = Mat3::Identity();
-  for (int iteration = 0; iteration < 15; ++iteration) {
+/// Rms angle (rad) between a_i and W b_i B for the best constant rotation B, and for the given W or the best
+/// one, found in turns.
+double disagreement(const Rotations& a, const Rotations& b, const std::optional<Mat3>& known_world) {
+  Mat3 world = known_world.value_or(Mat3::Identity()), body = Mat3::Identity();
+  for (int iteration = 0; iteration < (known_world ? 1 : 15); ++iteration) {
     Mat3 sum = Mat3::Zero();
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * (b[i] * body).transpose();
-    world = nearestRotation(sum);
+    if (!known_world) world = nearestRotation(sum);
     sum.setZero();
     for (std::size_t i = 0; i < a.size(); ++i) sum += (world * b[i]).transpose() * a[i];
     body = nearestRotation(sum);
@@ -66,29 +72,49 @@ Rotations rotationsOf(const std::vector<Rigid3>& poses, Read read) {
   return rotations;
 }
 
+/// What is wrong with the order; empty where nothing is, or nothing else fits.
+std::string findingOf(const PosePairs& pairs, const std::optional<Mat3>& estimate_from_reference) {
+  const auto asRead = [](const Quat& q) { return q; };
+  const Rotations estimate = rotationsOf(pairs.estimate, asRead);
+  const Rotations reference = rotationsOf(pairs.reference, asRead);
+  const double as_read = disagreement(estimate, reference, estimate_from_reference);
+  if (as_read < kDoubtful) return {};
+  double best = kFarBetter * as_read;
+  std::string finding;
+  const auto consider = [&](double rms, const char* which, const Reading& reading) {
+    if (rms > best - kSameRms) return;
+    best = rms;
+    finding = fmt::format(
+        "the orientations disagree by {:.1f} deg rms; with the quaternions of the {} read as {} by {:.2f} "
+        "deg: "
+        "check the order of the columns of both files and --format",
+        as_read * 180.0 / M_PI, which, reading.what, rms * 180.0 / M_PI);
+  };
+  // Between equal frames, one file read wrongly and the other read as wrongly agree: the estimate goes first.
+  for (const Reading& reading : kReadings) {
+    const Rotations other = rotationsOf(pairs.estimate, reading.read);
+    consider(disagreement(other, reference, estimate_from_reference), "estimate", reading);
+  }
+  for (const Reading& reading : kReadings) {
+    const Rotations other = rotationsOf(pairs.reference, reading.read);
+    consider(disagreement(estimate, other, estimate_from_reference), "reference", reading);
+  }
+  return finding;
+}
+
 }  // namespace
 
 void checkOrientationOrder(const PosePairs& pairs, Diagnostics& diagnostics) {
   if (pairs.size() < kFewestPairs) return;
-  const auto asRead = [](const Quat& q) { return q; };
-  const Rotations estimate = rotationsOf(pairs.estimate, asRead);
-  const Rotations reference = rotationsOf(pairs.reference, asRead);
-  const double as_read = disagreement(estimate, reference);
-  if (as_read < kDoubtful) return;
-  double best = kFarBetter * as_read;
+  // Turns about one axis and their inverses differ by constant rotations only: the positions must fix the
+  // world.
+  const Alignment by_positions = align(AlignmentType::SE3, pairs);
   std::string finding;
-  for (const Reading& reading : kReadings) {
-    const auto consider = [&](double rms, const char* which) {
-      if (rms >= best) return;
-      best = rms;
-      finding = fmt::format(
-          "the orientations disagree by {:.1f} deg rms; with the quaternions of the {} read as {} by "
-          "{:.2f} deg: check the order of its columns and --format",
-          as_read * 180.0 / M_PI, which, reading.what, rms * 180.0 / M_PI);
-    };
-    consider(disagreement(rotationsOf(pairs.estimate, reading.read), reference), "estimate");
-    consider(disagreement(estimate, rotationsOf(pairs.reference, reading.read)), "reference");
+  if (!by_positions.rotation_from_orientations) {
+    const Quat& reference_from_estimate = by_positions.reference_from_estimate.rotation;
+    finding = findingOf(pairs, Mat3(reference_from_estimate.conjugate().toRotationMatrix()));
   }
+  if (finding.empty()) finding = findingOf(pairs, std::nullopt);
   if (!finding.empty()) diagnostics.report(Severity::Warning, "quaternion_order", finding);
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lodeline {
 namespace {
 
@@ -20,8 +22,9 @@ PosePairs pairsWith(Read read) {
                    Quat(Eigen::AngleAxisd(0.5 * std::sin(t), Vec3::UnitX())) *
                    Quat(Eigen::AngleAxisd(0.4 * std::cos(1.7 * t), Vec3::UnitY()));
     pairs.time.push_back(Time::fromSeconds(t));
-    pairs.reference.emplace_back(q, Vec3(t, 0, 0));
-    pairs.estimate.emplace_back(read(world * q * body), Vec3(t, 0, 0));
+    const Vec3 position_m(std::cos(t), std::sin(1.3 * t), 0.3 * t);
+    pairs.reference.emplace_back(q, position_m);
+    pairs.estimate.emplace_back(read(world * q * body), world * position_m);
   }
   return pairs;
 }
@@ -52,6 +55,24 @@ TEST(OrientationOrder, NamesTheOrderThatFits) {
   PosePairs swapped = pairsWith(mistakenForWFirst);
   std::swap(swapped.estimate, swapped.reference);
   EXPECT_THAT(findingOf(swapped), HasSubstr("reference read as w last"));
+}
+
+TEST(OrientationOrder, IsFoundForTurnsAboutOneAxisByThePositions) {
+  const auto pairsOfOneAxis = [](auto read) {
+    PosePairs pairs;
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.1 * i;
+      const Rigid3 pose(Quat(Eigen::AngleAxisd(0.3 + 0.2 * t, Vec3(0.1, -0.2, 1.0).normalized())),
+                        Vec3(std::cos(t), std::sin(1.3 * t), 0.3 * t + 0.2 * std::sin(3.0 * t)));
+      pairs.time.push_back(Time::fromSeconds(t));
+      pairs.reference.push_back(pose);
+      pairs.estimate.emplace_back(read(pose.rotation), pose.translation);
+    }
+    return pairs;
+  };
+  EXPECT_EQ(findingOf(pairsOfOneAxis([](const Quat& q) { return q; })), "");
+  EXPECT_THAT(findingOf(pairsOfOneAxis([](const Quat& q) { return Quat(q.x(), q.y(), q.z(), q.w()); })),
+              HasSubstr("estimate read as w last"));
 }
 
 }  // namespace
