@@ -135,6 +135,7 @@ void allan(const AllanArguments& arguments) {
   Diagnostics diagnostics;
   Analyses analyses(&diagnostics);
   refuseBagOptions(arguments.data, arguments.bag);
+  refuseRigOfFolder(arguments.data, arguments.bag);
   if (isTableOfReadings(arguments.data)) {
     readFile(arguments, &diagnostics, &analyses);
   } else if (isBag(arguments.data)) {

@@ -52,7 +52,7 @@ TEST_F(AllanTest, ReadsABagLikeAFolder) {
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(test::readJson(folder_.path() / "bag.json")["sensors"],
             test::readJson(folder_.path() / "folder.json")["sensors"]);
-  EXPECT_EQ(runProgram("allan " + file("bench") + " --rig " + file("bench.rig.yaml")).exit_code, 0);
+  EXPECT_EQ(runProgram("allan " + file("bench") + " --rig " + file("bench.rig.yaml")).exit_code, 2);
 }
 
 TEST_F(AllanTest, EndsWithOneWhereThereIsNothingToAnalyse) {

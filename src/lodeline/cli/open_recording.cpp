@@ -72,6 +72,12 @@ bool isTableOfReadings(const std::filesystem::path& data) {
   return true;
 }
 
+void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments) {
+  if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data)) return;
+  throw UsageError(
+      fmt::format("--rig is for ROS bags here; {} is {}", data.string(), recogniseFile(data).what));
+}
+
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
   if (isBag(data)) return;
   const bool is_for_bags = !bag_arguments.topics.empty() || bag_arguments.use_received_times;

@@ -41,6 +41,9 @@ bool isTableOfReadings(const std::filesystem::path& data);
 /// folder.
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments);
 
+/// Throws UsageError for rig files with a folder, for commands that take its sensors as they are.
+void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments);
+
 /// Opens a bag for its readings alone: without images, and sensors of which no rig file tells have the
 /// default calibration. Throws as BagSource does; `diagnostics` must outlive the source.
 std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
