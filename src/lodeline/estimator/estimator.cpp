@@ -21,20 +21,6 @@
 
 namespace lodeline {
 
-const char* toString(Status status) {
-  switch (status) {
-    case Status::Waiting:
-      return "waiting";
-    case Status::Tracking:
-      return "tracking";
-    case Status::Degraded:
-      return "degraded";
-    case Status::Inertial:
-      return "inertial";
-  }
-  return "unknown";
-}
-
 namespace {
 
 /// A bias that no accelerometer has: a start of one camera that was a false minimum, or readings that are not
