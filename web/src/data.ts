@@ -24,6 +24,9 @@ export interface Summary {
   do_not_trust?: string;
   frames?: number;
   frames_with_pose?: number;
+  frames_inertial?: number;
+  frames_degraded?: number;
+  images_recorded?: number;
   completion?: number;
   path_m?: number;
   duration_s?: number;

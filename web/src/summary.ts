@@ -2,7 +2,7 @@
 
 import { element } from "./dom";
 import { alignmentName, duration, number } from "./format";
-import type { Finding, Run } from "./data";
+import type { Finding, Run, Summary } from "./data";
 import type { View } from "./view";
 
 interface Tile {
@@ -11,13 +11,22 @@ interface Tile {
   detail: string;
 }
 
+/// How many images gave a pose, and how many poses came about otherwise.
+function completionDetail(s: Summary): string {
+  const inertial = s.frames_inertial ?? 0;
+  const degraded = s.frames_degraded ?? 0;
+  return [`${(s.frames_with_pose ?? 0) - inertial - degraded} of ${s.images_recorded ?? s.frames ?? 0} images`,
+    inertial ? `${inertial} frames by inertial readings alone` : null,
+    degraded ? `${degraded} degraded` : null].filter(Boolean).join("; ");
+}
+
 function tiles(run: Run): Tile[] {
   const s = run.summary;
   const list: Tile[] = [
     { name: "Path", value: `${number(s.path_m)} m`, detail: `in ${duration(s.duration_s ?? 0)}` },
     {
       name: "Completion", value: `${number(100 * (s.completion ?? 0), 3)} %`,
-      detail: `${s.frames_with_pose ?? 0} of ${s.frames ?? 0} frames`,
+      detail: completionDetail(s),
     },
     {
       name: "Heading, one sigma", value: `${number((180 / Math.PI) * (s.heading?.sigma_rad ?? NaN), 2)}°`,

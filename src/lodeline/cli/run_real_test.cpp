@@ -237,7 +237,8 @@ TEST_F(Mh01Program, MemoryDoesNotGrowWithTime) {
     const std::filesystem::path output = run(variant, fmt::format("run{}", passes), "--no-report");
     const nlohmann::json summary = readJson(output / "run.json");
     EXPECT_GE(summary["frames"], 280 * passes);
-    EXPECT_GE(summary["completion"], 0.99);
+    // The velocity leaps where the recording turns round, which counts as a contradiction.
+    EXPECT_GE(summary["frames_with_pose"], 0.99 * summary["frames"].get<double>());
     EXPECT_LE(summary["frames_inertial"], 0.01 * summary["frames"].get<double>());
     return summary["peak_memory_MB"].get<double>();
   };
