@@ -96,7 +96,7 @@ export function findingsList(view: View): HTMLElement {
     }
     if (run.summary.do_not_trust) {
       lines.unshift(findingLine({ severity: "serious", kind: "do_not_trust", count: 1,
-        message: `The result is not to be trusted: ${run.summary.do_not_trust}.` }));
+        message: `The result is not to be trusted: ${run.summary.do_not_trust}.` }, view, run));
     }
     list.replaceChildren(...(lines.length ? lines : [element("li", "", "Nothing was found wrong with the data.")]));
   });
