@@ -5,7 +5,8 @@
          [--seeds 1 2 3] [--repeat 1] [--seconds 5] [--only REGEX] [--most N] [--cameras 1] [--markdown FILE]
 
 RECORDING is a stereo folder in the EuRoC ASL layout with truth (state_groundtruth_estimate0). Ends with exit code 1
-where a run broke the contract (judge.py says which breaches there are); `wrong_told` alone is allowed --allow-told times.
+where a run broke the contract (judge.py says which breaches there are); `wrong_told` is allowed --allow-told times, and
+`untold`, which is not wrong, is counted in the table only.
 Recordings of breaches stay in FOLDER. Python 3 without further packages.
 """
 import argparse
@@ -121,7 +122,8 @@ def main():
     print(text)
     if options.markdown:
         Path(options.markdown).write_text(text)
-    breaches = [kind for row in rows for kind in row["breaches"]]
+    # What is untold and not wrong either (an axis turned round that read nothing) is in the table alone.
+    breaches = [kind for row in rows for kind in row["breaches"] if kind != "untold"]
     told = breaches.count("wrong_told")
     return 1 if told > options.allow_told or len(breaches) > told else 0
 

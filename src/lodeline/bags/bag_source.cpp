@@ -290,6 +290,7 @@ std::optional<SonarSample> BagSource::nextSonar() {
         sonar_.topic != nullptr && sonar_.topic->connection.type == messages::kLaserScan.name;
     const auto echoes = nextReading(&sonar_, is_scan ? messages::parseLaserScan : messages::parseRange);
     if (!echoes) return std::nullopt;
+    if (echoes->empty()) continue;
     echoes_.assign(echoes->begin(), echoes->end());
     SonarSample first = echoes->front();
     restamp(sonar_, &first);
