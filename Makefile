@@ -32,7 +32,7 @@ test: everything check-format
 # The fast tests of these layers under address and undefined-behaviour sanitizers: those that read what others
 # wrote, and those that the rest computes with. The layers from the estimator up take longer to build so than all of
 # these, and the estimator's tests work through whole simulated scenes.
-SANITIZED = base geometry cameras inertial data bags features factors evaluation
+SANITIZED = base tables streams geometry cameras inertial data bags features factors evaluation
 test-sanitized: dependencies
 	cmake --preset asan
 	cmake --build --preset asan --target $(SANITIZED:%=%_test)

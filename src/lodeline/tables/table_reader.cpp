@@ -90,7 +90,10 @@ std::string TableReader::where() const { return fmt::format("{}:{}", name_, line
 bool TableReader::takeLine(Line* line) {
   std::string_view text;
   if (!lines_.next(&text)) return false;
-  *line = {std::string(text), lines_.number(), lines_.wasTooLong(), lines_.hadNoEnd()};
+  line->text.assign(text);  // keeps its memory from row to row
+  line->number = lines_.number();
+  line->was_too_long = lines_.wasTooLong();
+  line->is_cut_off = lines_.hadNoEnd();
   return true;
 }
 

@@ -76,7 +76,10 @@ class TableReader {
   std::optional<double> number(std::size_t column) const { return numberFrom(cells_[column]); }
   /// The cell as a time in `unit`, exact to the nanosecond.
   std::optional<int64_t> time_ns(std::size_t column, TimeUnit unit) const {
-    return parseTime_ns(withDecimalPoint(cells_[column]), unit);
+    const std::string_view cell = cells_[column];
+    // A cell of digits and points is as it should be, and no text has to be made of it.
+    const bool is_plain = cell.find_first_not_of("0123456789.+-eE") == std::string_view::npos;
+    return is_plain ? parseTime_ns(cell, unit) : parseTime_ns(withDecimalPoint(cell), unit);
   }
 
   int line() const { return line_number_; }
