@@ -29,14 +29,16 @@ test: everything check-format
 	ctest --test-dir build/release --output-on-failure -j2
 	@grep -A1 ': Skipped$$' build/release/Testing/Temporary/LastTest.log || true
 
-# The fast tests of these layers under address and undefined-behaviour sanitizers: those that read what others
-# wrote, and those that the rest computes with. The layers from the estimator up take longer to build so than all of
-# these, and the estimator's tests work through whole simulated scenes.
+# Built with Clang under address and undefined-behaviour sanitizers: the fast tests of these layers, and the fuzzers of
+# all readers, each for ten seconds on its corpus. The layers are those that read what others wrote, and those that the
+# rest computes with. The layers from the estimator up take longer to build so than all of these, and the estimator's
+# tests work through whole simulated scenes.
 SANITIZED = base tables streams geometry cameras inertial data bags features factors evaluation
 test-sanitized: dependencies
-	cmake --preset asan
-	cmake --build --preset asan --target $(SANITIZED:%=%_test)
-	ctest --test-dir build/asan --output-on-failure -j2 -L fast -R "^($$(echo $(SANITIZED) | tr ' ' '|'))_test"
+	cmake --preset sanitized
+	cmake --build --preset sanitized --target lodeline_fuzzers $(SANITIZED:%=%_test)
+	ctest --test-dir build/sanitized --output-on-failure -j2 -L 'fast|fuzz' \
+	  -R "^(fuzz\.|($$(echo $(SANITIZED) | tr ' ' '|'))_test)"
 
 # Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
 faults: build
@@ -44,9 +46,9 @@ faults: build
 
 # Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
 fuzz: dependencies
-	cmake --preset fuzz
-	cmake --build --preset fuzz --target lodeline_fuzzers
-	ctest --test-dir build/fuzz --output-on-failure -j2 -L fuzz
+	cmake --preset sanitized
+	cmake --build --preset sanitized --target lodeline_fuzzers
+	ctest --test-dir build/sanitized --output-on-failure -j2 -L fuzz
 
 bench: everything
 	./scripts/benchmark.sh

@@ -13,7 +13,7 @@ packages=(
   libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
   python3-roslaunch  # roscore, for the node's test
   python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program, for the tests
-  clang-14 libclang-rt-14-dev  # the fuzzers of the readers
+  clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
   gnuplot-nox
   libcpp-httplib-dev
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes

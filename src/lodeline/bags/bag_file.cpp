@@ -15,8 +15,9 @@ constexpr size_t kMessageAtOnce = 1024;
 
 std::vector<BagTopic> collectTopics(BagContents contents) {
   std::vector<BagTopic> topics;
-  for (auto& [number, connection] : contents.connections) {
-    std::vector<BagEntry>& entries = contents.entries[number];
+  for (const auto& numbered : contents.connections) {
+    const auto& connection = numbered.second;
+    std::vector<BagEntry>& entries = contents.entries[numbered.first];
     if (entries.empty()) continue;
     auto topic = std::find_if(topics.begin(), topics.end(), [&](const BagTopic& known) {
       return known.connection.topic == connection.topic && known.connection.type == connection.type &&

@@ -104,7 +104,7 @@ std::string whyUnusable(const Parsed& image, const Encoding* encoding) {
       image.height > kGreatestSide_px) {
     return fmt::format("its size {} x {} makes no sense", image.width, image.height);
   }
-  const size_t row = image.width * size_t{CV_ELEM_SIZE(encoding->type)};
+  const size_t row = image.width * static_cast<size_t>(CV_ELEM_SIZE(encoding->type));
   const bool fits = image.step >= row && image.step % CV_ELEM_SIZE1(encoding->type) == 0 &&
                     image.data.size() >= size_t{image.step} * (image.height - 1) + row;
   if (fits) return {};

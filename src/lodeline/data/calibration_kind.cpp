@@ -67,7 +67,8 @@ const char* otherKind(const YAML::Node& root) {
 }  // namespace
 
 bool isCameraName(const std::string& key) {
-  return key.size() > 3 && key.size() < 7 && key.starts_with("cam") &&
+  const bool has_leading_zero = key.size() > 4 && key[3] == '0';
+  return key.size() > 3 && key.size() < 7 && key.starts_with("cam") && !has_leading_zero &&
          std::all_of(key.begin() + 3, key.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 

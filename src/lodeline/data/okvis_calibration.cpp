@@ -78,7 +78,7 @@ TranslatedSections translateOkvis(CalibrationMap* root) {
   for (size_t i = 0; i < cameras.size(); ++i) {
     CalibrationMap map(cameras[i], root->file(), fmt::format("cameras[{}]", i));
     YAML::Node camera = okvisCamera(&map);
-    if (delay) camera["timeshift_cam_imu"] = fmt::format("{}", 0.0 - std::stod(*delay));
+    if (delay) camera["timeshift_cam_imu"] = fmt::format("{}", 0.0 - YAML::Node(*delay).as<double>());
     if (rate) camera["rate_hz"] = *rate;
     sections[fmt::format("cam{}", i)] = camera;
   }

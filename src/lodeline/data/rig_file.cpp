@@ -70,8 +70,8 @@ class RigReader {
     if (place == result_->sections.end()) return false;
     RigSection& section = place->second;
     const bool is_mounted = !isCameraName(sensor) || section.keys == SectionKeys::Kalibr ||
-                            section.node["T_BS"].IsDefined() || requirements_.needs_extrinsics;
-    if (!is_mounted) {
+                            hasAnyKey(section.node, {"T_BS"}) || requirements_.needs_extrinsics;
+    if (!is_mounted && section.node.IsMap()) {
       result_->without_extrinsics.insert(sensor);
       section.node.reset(YAML::Clone(section.node));
       section.node["T_BS"] = transformNode(Rigid3());

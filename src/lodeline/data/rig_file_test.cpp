@@ -93,6 +93,11 @@ TEST_F(RigFileTest, RefusesContradictionsAndGaps) {
   EXPECT_THAT(refusal({"- a list\n"}), HasSubstr("holds no sensors"));
 }
 
+TEST_F(RigFileTest, RefusesSectionsThatAreNoMaps) {
+  EXPECT_THAT(refusal({imu_ + "cam0: 7\n"}), HasSubstr("rig0.yaml"));
+  EXPECT_THAT(refusal({imu_ + "cam00: {}\n"}), HasSubstr("cam00"));
+}
+
 TEST_F(RigFileTest, DepthInDecimalsSurvivesBeingAPressure) {
   const WaterColumn water;
   for (const double depth_m : {0.0, 7.48, 12.345678, -0.25, 101.000001}) {

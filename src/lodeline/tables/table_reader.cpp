@@ -223,11 +223,24 @@ void TableReader::settleSeparator() {
       return;
     }
     split(text, likely, &cells_);
+    if (header_is_comment_ && separator_ == Separator::Blanks && cells_.size() < column_count_) {
+      takeHeaderAsProse();
+      settleSeparator();
+      return;
+    }
     if (!header_is_comment_ || cells_.size() <= column_count_) continue;
     separator_ = likely;
     nameFurtherColumns(cells_.size());
     return;
   }
+}
+
+/// A sentence may hold the words of a header: `# timestamp in seconds, then x y z and qx qy qz qw`.
+void TableReader::takeHeaderAsProse() {
+  preamble_.push_back(std::move(header_text_));
+  header_text_.clear();
+  header_is_comment_ = false;
+  columns_.clear();
 }
 
 /// A comment may name the first columns only; the others have no name then.

@@ -103,6 +103,7 @@ class TableReader {
   bool splitNames(std::string_view text, Separator separator, std::vector<ColumnName>* names);
   void readUnitsBelow();
   void settleSeparator();
+  void takeHeaderAsProse();
   void nameFurtherColumns(std::size_t count);
   void split(std::string_view text, Separator separator, std::vector<std::string_view>* cells);
   /// Whether cells_ are as many as the columns, after empty ones at the end are taken off.

@@ -85,6 +85,10 @@ TEST_F(TableReaderTest, AcceptsACommentThatNamesTheFirstColumnsOnly) {
   EXPECT_EQ(diagnostics_.count("csv_columns"), 1);
 }
 
+TEST_F(TableReaderTest, TakesACommentOfMoreWordsThanColumnsAsProse) {
+  EXPECT_THAT(rowsOf("# each line has a time and a depth\n0 3.25\n10 -4.5\n"), ElementsAre(kFirst, kSecond));
+}
+
 TEST_F(TableReaderTest, TakesUnitsFromTheLineBelow) {
   const TableReader table = open("time,depth\n[ms],(ft)\n0,3.25\n");
   EXPECT_EQ(table.columns()[0].unit, "ms");
