@@ -1,6 +1,7 @@
 # The front door. Every target installs what it lacks and builds first.
 .PHONY: build everything fuzz faults dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
+CODE = src apps studies examples ros fuzz
 
 # The program and the library; `everything` has the tests, benchmarks and studies as well.
 build: dependencies
@@ -33,7 +34,7 @@ test: everything check-format
 # all readers, each for ten seconds on its corpus. The layers are those that read what others wrote, and those that the
 # rest computes with. The layers from the estimator up take longer to build so than all of these, and the estimator's
 # tests work through whole simulated scenes.
-SANITIZED = base tables streams geometry cameras inertial data bags features factors evaluation
+SANITIZED = util tables streams geometry cameras magnetometer imu ahrs io rosbag1 frontend factors evaluation
 test-sanitized: dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers $(SANITIZED:%=%_test)
@@ -62,10 +63,10 @@ package: build
 	cd build/release && cpack
 
 format:
-	clang-format-14 -i $$(find src examples ros -name '*.h' -o -name '*.cpp')
+	clang-format-14 -i $$(find $(CODE) -name '*.h' -o -name '*.cpp')
 
 check-format:
-	clang-format-14 --dry-run --Werror $$(find src examples ros -name '*.h' -o -name '*.cpp')
+	clang-format-14 --dry-run --Werror $$(find $(CODE) -name '*.h' -o -name '*.cpp')
 
 clean:
 	rm -rf build demo

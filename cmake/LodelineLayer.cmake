@@ -19,6 +19,7 @@ if(LODELINE_WARNINGS_AS_ERRORS)
   target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
 target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
+                                                      $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                                       $<INSTALL_INTERFACE:include>)
 if(LODELINE_SANITIZERS)
   # Checks of every reference for null and alignment take nearly half of the time to compile. The address sanitizer stops
@@ -29,28 +30,70 @@ if(LODELINE_SANITIZERS)
 endif()
 lodeline_export(options)
 
-# lodeline_layer(NAME [SOURCES ...] [DEPENDS layer-or-library ...] [TESTS ...] [REAL_TESTS ...] [ALONE ...])
+# The .cpp files of a layer's folder and FOLDERS whose names match a regular expression.
+function(lodeline_files result regex)
+  set(found)
+  foreach(folder IN LISTS ARGN)
+    file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+    list(APPEND found ${files})
+  endforeach()
+  list(FILTER found INCLUDE REGEX ${regex})
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# lodeline_layer(NAME [FOLDERS ...] [DEPENDS layer-or-library ...] [EXCLUDE ...] [TEST_FOLDERS ...] [TEST_SOURCES ...]
+#                [ALONE ...])
 #
-# One layer of the library: target lodeline_NAME from SOURCES (an interface library when there are none), linked
-# against lower layers (by layer name) and outside libraries (by target name). TESTS are fast, need no data and
-# run under the sanitizers too; REAL_TESTS read recordings and skip themselves where these are missing. ALONE are those
-# of all of these that a build of several files at a time leaves to themselves, since local names of theirs are those of
-# their neighbours, or since they take as long as a dozen others.
+# One layer of the library: target lodeline_NAME (an interface library when it has no sources), linked against lower
+# layers (by layer name) and outside libraries (by target name). It is made of all .cpp files in the folder of its
+# CMakeLists.txt and in FOLDERS, which are listed from the bottom up. What a file is, its name says:
+#
+#   *_real_test.cpp     tests that read recordings, and skip themselves where these are missing
+#   *_browser_test.cpp, *_benchmark.cpp, main.cpp     no part of the layer
+#   *_test.cpp          fast tests, which need no data and run under the sanitizers too
+#   test_*.cpp          helpers of both kinds of tests
+#
+# TEST_FOLDERS hold tests and helpers only. TEST_SOURCES are helpers from elsewhere. EXCLUDE are names to leave out.
+# ALONE are files that a build of several files at a time leaves to themselves: local names of theirs are those of
+# their neighbours, or they take as long as a dozen others.
 function(lodeline_layer name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;REAL_TESTS;ALONE" ${ARGN})
-  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  cmake_parse_arguments(ARG "" "" "FOLDERS;DEPENDS;EXCLUDE;TEST_FOLDERS;TEST_SOURCES;ALONE" ${ARGN})
+  lodeline_files(sources ".*" . ${ARG_FOLDERS})
+  list(FILTER sources EXCLUDE REGEX "(/test_[a-z0-9_]+|_test|_benchmark|/main)\\.cpp$")
+  foreach(excluded IN LISTS ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX "/${excluded}$")
+  endforeach()
+  set(test_folders . ${ARG_FOLDERS} ${ARG_TEST_FOLDERS})
+  lodeline_files(helpers "/test_[a-z0-9_]+\\.cpp$" ${test_folders})
+  list(FILTER helpers EXCLUDE REGEX "_test\\.cpp$")
+  foreach(excluded IN LISTS ARG_EXCLUDE)
+    list(FILTER helpers EXCLUDE REGEX "/${excluded}$")
+  endforeach()
+  lodeline_files(tests "_test\\.cpp$" ${test_folders})
+  set(real_tests ${tests})
+  list(FILTER real_tests INCLUDE REGEX "_real_test\\.cpp$")
+  list(FILTER tests EXCLUDE REGEX "(_real|browser)_test\\.cpp$")
+  set(all_files ${sources} ${tests} ${real_tests})
+  foreach(alone IN LISTS ARG_ALONE)
+    set(place ${all_files})
+    list(FILTER place INCLUDE REGEX "/${alone}$")
+    if(NOT place)
+      message(FATAL_ERROR "layer '${name}' has no file '${alone}' to compile alone")
+    endif()
+    set_source_files_properties(${place} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
   set(links)
   foreach(dependency IN LISTS ARG_DEPENDS)
     if(TARGET lodeline_${dependency})
       list(APPEND links lodeline_${dependency})
-    elseif(dependency MATCHES "^[a-z]+$")
+    elseif(dependency MATCHES "^[a-z0-9]+$")
       message(FATAL_ERROR "layer '${name}' depends on '${dependency}', which is not below it")
     else()
       list(APPEND links ${dependency})
     endif()
   endforeach()
-  if(ARG_SOURCES)
-    add_library(lodeline_${name} STATIC ${ARG_SOURCES})
+  if(sources)
+    add_library(lodeline_${name} STATIC ${sources})
     target_link_libraries(lodeline_${name} PUBLIC lodeline_options ${links})
     if("CLI11::CLI11" IN_LIST links)
       lodeline_use_precompiled(lodeline_${name} commands)
@@ -66,11 +109,11 @@ function(lodeline_layer name)
   if(NOT LODELINE_BUILD_TESTS)
     return()
   endif()
-  if(ARG_TESTS)
-    lodeline_test(${name}_test fast ${name} ${ARG_TESTS})
+  if(tests)
+    lodeline_test(${name}_test fast ${name} ${tests} ${helpers} ${ARG_TEST_SOURCES})
   endif()
-  if(ARG_REAL_TESTS)
-    lodeline_test(${name}_real_test real ${name} ${ARG_REAL_TESTS})
+  if(real_tests)
+    lodeline_test(${name}_real_test real ${name} ${real_tests} ${helpers} ${ARG_TEST_SOURCES})
   endif()
 endfunction()
 

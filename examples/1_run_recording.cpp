@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "lodeline/data/euroc_source.h"
-#include "lodeline/data/synchronizer.h"
 #include "lodeline/estimator/odometry.h"
+#include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/io/synchronizer/synchronizer.h"
 
 int main(int argc, char** argv) try {
   if (argc != 2) {

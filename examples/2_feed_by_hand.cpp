@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "lodeline/estimator/estimator.h"
-#include "lodeline/simulation/point_dive.h"
+#include "simulation/dive/point_dive.h"
 
 int main() try {
   // A rig is cameras and IMU with their calibrations; yours comes from your own files.

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "lodeline/magnetism/iron_calibration.h"
+#include "lodeline/magnetometer/iron/iron_calibration.h"
 
 int main() try {
   // reading = A^-1 field + h, T.

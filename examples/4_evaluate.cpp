@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "lodeline/evaluation/evaluation_report.h"
-#include "lodeline/evaluation/read_trajectory.h"
+#include "lodeline/evaluation/figures/evaluation_report.h"
+#include "lodeline/evaluation/trajectory/read_trajectory.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/export/depth_profile.h"
+#include "lodeline/output/survey/profile/depth_profile.h"
 
 // Depth profiles of dive computers: tables and logs in XML.
 

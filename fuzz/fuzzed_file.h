@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-#include "lodeline/base/error.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline::fuzz {
 

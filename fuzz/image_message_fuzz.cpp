@@ -1,6 +1,6 @@
 #include "fuzzed_file.h"
-#include "lodeline/bags/image_messages.h"
-#include "lodeline/data/image_loader.h"
+#include "lodeline/io/images/image_loader.h"
+#include "lodeline/io/rosbag1/image_messages.h"
 
 // Messages with images; the first byte says of which kind.
 

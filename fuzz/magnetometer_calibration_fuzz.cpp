@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/calibration/calibration_file.h"
+#include "lodeline/magnetometer/calibration/calibration_file.h"
 
 // The magnetometer's calibration file.
 

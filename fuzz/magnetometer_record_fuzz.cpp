@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/calibration/magnetometer_record.h"
+#include "lodeline/magnetometer/calibration/magnetometer_record.h"
 
 // Readings for a magnetometer calibration: tables, bare rows, compressed or not.
 

@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/data/plain_csv.h"
+#include "lodeline/io/csv/plain_csv.h"
 
 // A table of readings with named columns, as loggers and phones write it.
 

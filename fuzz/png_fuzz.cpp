@@ -1,12 +1,13 @@
 #include "fuzzed_file.h"
-#include "lodeline/data/grey_png.h"
+#include "lodeline/io/images/grey_png.h"
 
 // The decoder of grey PNG images. An image larger than 64 megapixels is nothing that a camera writes; such
 // headers are passed over, since filling it takes the fuzzer's time.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   constexpr size_t kEndOfSize = 24;
-  if (size >= kEndOfSize && (data[16] | data[17] | (data[18] & 0xE0) | data[20] | data[21] | (data[22] & 0xE0)) != 0)
+  if (size >= kEndOfSize &&
+      (data[16] | data[17] | (data[18] & 0xE0) | data[20] | data[21] | (data[22] & 0xE0)) != 0)
     return 0;
   lodeline::decodeGreyPng({data, size});
   return 0;

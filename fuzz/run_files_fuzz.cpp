@@ -1,6 +1,6 @@
 #include "fuzzed_file.h"
-#include "lodeline/export/landmark_file.h"
-#include "lodeline/report/run_table.h"
+#include "lodeline/output/files/run_table.h"
+#include "lodeline/output/survey/run/landmark_file.h"
 
 // Files of a run's folder, which may be cut off or damaged: states.csv and landmarks.ply.
 

@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/data/csv_reader.h"
+#include "lodeline/io/euroc/csv_reader.h"
 
 // Rows of a sensor in the EuRoC ASL layout: readings (imu0) and lists of images (cam0).
 

@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/base/settings.h"
+#include "lodeline/util/settings/settings.h"
 
 // Configuration files.
 

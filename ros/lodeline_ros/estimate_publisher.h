@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "lodeline/data/frame_packet.h"
 #include "lodeline/estimator/odometry.h"
+#include "lodeline/io/synchronizer/frame_packet.h"
 #include "lodeline_ros/conversions.h"
 
 namespace lodeline {

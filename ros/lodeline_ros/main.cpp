@@ -8,11 +8,11 @@
 #include <opencv2/core/utility.hpp>
 #include <thread>
 
-#include "lodeline/base/error.h"
-#include "lodeline/cli/report_command.h"
-#include "lodeline/cli/run_recording.h"
-#include "lodeline/cli/run_session.h"
-#include "lodeline/cli/stop_request.h"
+#include "apps/lodeline/report_command.h"
+#include "lodeline/pipeline/run_recording.h"
+#include "lodeline/pipeline/run_session.h"
+#include "lodeline/pipeline/stop_request.h"
+#include "lodeline/util/error.h"
 #include "lodeline_ros/estimate_publisher.h"
 #include "lodeline_ros/node_parameters.h"
 #include "lodeline_ros/node_status.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "lodeline/base/edit_distance.h"
-#include "lodeline/base/error.h"
+#include "lodeline/util/edit_distance.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

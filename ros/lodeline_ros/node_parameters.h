@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/cli/run_request.h"
-#include "lodeline/data/live_source.h"
+#include "lodeline/io/synchronizer/live_source.h"
+#include "lodeline/pipeline/run_request.h"
 #include "lodeline_ros/conversions.h"
 
 namespace lodeline {

@@ -11,12 +11,12 @@
 #include <memory>
 #include <sstream>
 
-#include "lodeline/bags/bag_file.h"
-#include "lodeline/bags/topic_choice.h"
-#include "lodeline/base/test_data.h"
-#include "lodeline/cli/test_program.h"
-#include "lodeline/evaluation/read_trajectory.h"
-#include "lodeline/evaluation/test_trajectories.h"
+#include "apps/lodeline/tests/test_program.h"
+#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/evaluation/trajectory/test_trajectories.h"
+#include "lodeline/io/rosbag1/bag_file.h"
+#include "lodeline/io/rosbag1/topic_choice.h"
+#include "lodeline/util/files/test_data.h"
 #include "lodeline_ros/message_types.h"
 #include "lodeline_ros/raw_message.h"
 #include "lodeline_ros/test_process.h"

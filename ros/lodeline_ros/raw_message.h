@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "lodeline/bags/wire.h"
+#include "lodeline/io/rosbag1/wire.h"
 
 namespace lodeline {
 

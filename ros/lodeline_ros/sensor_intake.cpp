@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "lodeline/bags/checked_reading.h"
-#include "lodeline/bags/image_messages.h"
-#include "lodeline/bags/messages.h"
-#include "lodeline/base/error.h"
+#include "lodeline/io/rosbag1/checked_reading.h"
+#include "lodeline/io/rosbag1/image_messages.h"
+#include "lodeline/io/rosbag1/messages.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

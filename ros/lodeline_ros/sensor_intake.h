@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/data/live_source.h"
-#include "lodeline/data/rig_file.h"
+#include "lodeline/io/calibration/rig_file.h"
+#include "lodeline/io/synchronizer/live_source.h"
 #include "lodeline_ros/raw_message.h"
 
 namespace lodeline {

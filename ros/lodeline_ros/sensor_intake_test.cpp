@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lodeline/base/error.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
-#include "lodeline/base/error.h"
 #include "lodeline/cameras/equidistant_camera.h"
 #include "lodeline/cameras/radial_tangential_camera.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "lodeline/base/error.h"
 #include "lodeline/cameras/camera.h"
 #include "lodeline/cameras/equidistant_camera.h"
 #include "lodeline/cameras/radial_tangential_camera.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/data/frame_packet.h"
-#include "lodeline/inertial/attitude_filter.h"
+#include "lodeline/ahrs/attitude_filter.h"
+#include "lodeline/io/synchronizer/frame_packet.h"
 
 namespace lodeline {
 

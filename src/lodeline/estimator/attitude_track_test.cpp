@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lodeline/inertial/gravity.h"
+#include "lodeline/imu/gravity.h"
 
 namespace lodeline {
 namespace {

@@ -6,18 +6,18 @@
 #include <limits>
 #include <utility>
 
-#include "lodeline/base/error.h"
-#include "lodeline/estimator/camera_states.h"
-#include "lodeline/estimator/claimed_covariance.h"
-#include "lodeline/estimator/covariance.h"
-#include "lodeline/estimator/inertial_monitor.h"
-#include "lodeline/estimator/inertial_states.h"
-#include "lodeline/estimator/keyframe_policy.h"
-#include "lodeline/estimator/landmark_host.h"
-#include "lodeline/estimator/landmarks.h"
-#include "lodeline/estimator/robust_loss.h"
-#include "lodeline/estimator/start.h"
-#include "lodeline/estimator/window_update.h"
+#include "lodeline/estimator/initialization/start.h"
+#include "lodeline/estimator/monitoring/inertial_monitor.h"
+#include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/estimator/problem/robust_loss.h"
+#include "lodeline/estimator/solver/window_update.h"
+#include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/estimator/state/inertial_states.h"
+#include "lodeline/estimator/uncertainty/claimed_covariance.h"
+#include "lodeline/estimator/visual/keyframe_policy.h"
+#include "lodeline/estimator/visual/landmark_host.h"
+#include "lodeline/estimator/visual/landmarks.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 

@@ -5,21 +5,21 @@
 #include <span>
 #include <string>
 
-#include "lodeline/base/diagnostics.h"
-#include "lodeline/estimator/camera_states.h"
-#include "lodeline/estimator/dead_reckoning.h"
-#include "lodeline/estimator/depth_fusion.h"
-#include "lodeline/estimator/dormant_landmarks.h"
-#include "lodeline/estimator/factor_list.h"
-#include "lodeline/estimator/lens_trust.h"
-#include "lodeline/estimator/magnetometer_fusion.h"
-#include "lodeline/estimator/marginalizer.h"
-#include "lodeline/estimator/mono_initializer.h"
-#include "lodeline/estimator/options.h"
-#include "lodeline/estimator/rest_watch.h"
-#include "lodeline/estimator/scale_budget.h"
-#include "lodeline/estimator/unmodelled_errors.h"
-#include "lodeline/estimator/window.h"
+#include "lodeline/estimator/initialization/mono_initializer.h"
+#include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
+#include "lodeline/estimator/options/options.h"
+#include "lodeline/estimator/pressure/depth_fusion.h"
+#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/self_calibration/lens_trust.h"
+#include "lodeline/estimator/solver/marginalizer.h"
+#include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/estimator/state/window.h"
+#include "lodeline/estimator/uncertainty/dead_reckoning.h"
+#include "lodeline/estimator/uncertainty/scale_budget.h"
+#include "lodeline/estimator/uncertainty/unmodelled_errors.h"
+#include "lodeline/estimator/visual/dormant_landmarks.h"
+#include "lodeline/estimator/zero_velocity/rest_watch.h"
+#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

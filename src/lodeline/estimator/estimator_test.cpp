@@ -8,8 +8,8 @@
 #include <functional>
 #include <set>
 
-#include "lodeline/base/error.h"
-#include "lodeline/estimator/test_scene.h"
+#include "lodeline/estimator/trials/scene.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

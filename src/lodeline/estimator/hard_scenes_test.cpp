@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "lodeline/estimator/test_scene.h"
+#include "lodeline/estimator/trials/scene.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "lodeline/base/angles.h"
-#include "lodeline/base/thread_clock.h"
-#include "lodeline/estimator/inertial_states.h"
+#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/inertial/propagation.h"
+#include "lodeline/imu/propagation.h"
+#include "lodeline/util/angles.h"
+#include "lodeline/util/thread_clock.h"
 
 namespace lodeline {
 namespace {

@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/data/frame_packet.h"
-#include "lodeline/estimator/baseline_watch.h"
 #include "lodeline/estimator/estimator.h"
-#include "lodeline/estimator/stereo_watch.h"
-#include "lodeline/features/front_end.h"
+#include "lodeline/estimator/monitoring/stereo_watch.h"
+#include "lodeline/estimator/self_calibration/baseline_watch.h"
+#include "lodeline/frontend/front_end.h"
+#include "lodeline/io/synchronizer/frame_packet.h"
 
 namespace lodeline {
 

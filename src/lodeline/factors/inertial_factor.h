@@ -3,7 +3,7 @@
 #include <ceres/cost_function.h>
 
 #include "lodeline/factors/parameters.h"
-#include "lodeline/inertial/preintegration.h"
+#include "lodeline/imu/preintegration.h"
 
 namespace lodeline {
 

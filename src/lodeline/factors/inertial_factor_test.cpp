@@ -7,7 +7,7 @@
 #include <random>
 
 #include "lodeline/factors/numeric_jacobian.h"
-#include "lodeline/inertial/test_motion.h"
+#include "lodeline/imu/test_motion.h"
 
 namespace lodeline {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <Eigen/SVD>
 
-#include "lodeline/base/error.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "lodeline/base/error.h"
 #include "lodeline/geometry/rigid3.h"
+#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

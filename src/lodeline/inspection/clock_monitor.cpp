@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lodeline/inspection/inspection.h"
-#include "lodeline/inspection/visual_rotation.h"
+#include "lodeline/inspection/survey/visual_rotation.h"
 
 namespace lodeline {
 namespace {

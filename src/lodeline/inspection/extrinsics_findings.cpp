@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "lodeline/base/angles.h"
 #include "lodeline/inspection/findings.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline::findings {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/survey/camera_words.h"
 
 namespace lodeline::findings {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "lodeline/base/angles.h"
 #include "lodeline/inspection/findings.h"
-#include "lodeline/inspection/signed_axes.h"
+#include "lodeline/inspection/survey/signed_axes.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline::findings {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/base/angles.h"
-#include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/survey/camera_words.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {
@@ -103,9 +103,8 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
   const std::vector<SurveySpan> spans =
       liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
   for (size_t i = 0; i < images.size(); ++i) {
-    CameraSurveyOptions looking = options.images;
-    if (i >= options.turning_cameras) looking.most_turns = 0;
-    inspection->cameras.push_back({surveyCamera(source.get(), i, images[i], spans, looking), {}, {}, {}});
+    inspection->cameras.push_back(
+        {surveyCamera(source.get(), i, images[i], spans, options.images), {}, {}, {}});
   }
   if (images.size() > 1 && isCalibrated(inspection->rig.cameras[0]) &&
       isCalibrated(inspection->rig.cameras[1])) {

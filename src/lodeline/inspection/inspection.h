@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/base/diagnostics.h"
-#include "lodeline/data/measurement_source.h"
-#include "lodeline/inertial/imu_noise_check.h"
-#include "lodeline/inspection/camera_survey.h"
-#include "lodeline/inspection/imu_survey.h"
-#include "lodeline/inspection/magnetometer_survey.h"
-#include "lodeline/inspection/stereo_survey.h"
+#include "lodeline/imu/noise/imu_noise_check.h"
+#include "lodeline/inspection/survey/camera_survey.h"
+#include "lodeline/inspection/survey/imu_survey.h"
+#include "lodeline/inspection/survey/magnetometer_survey.h"
+#include "lodeline/inspection/survey/stereo_survey.h"
+#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 
@@ -62,8 +62,7 @@ struct Inspection {
 
 struct InspectionOptions {
   CameraSurveyOptions images;
-  double span_s = 4.0;          ///< of the stretches that are looked at closely
-  size_t turning_cameras = 16;  ///< whose images are followed to tell how they turn; the first ones
+  double span_s = 4.0;  ///< of the stretches that are looked at closely
   std::optional<Vec3> site_field_W;
 };
 

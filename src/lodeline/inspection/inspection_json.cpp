@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/inspection_report.h"
+#include "lodeline/inspection/survey/camera_words.h"
 
 namespace lodeline {
 namespace {

@@ -6,10 +6,10 @@
 #include <functional>
 #include <sstream>
 
-#include "lodeline/base/test_data.h"
-#include "lodeline/data/euroc_source.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/inspection/start_check.h"
+#include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/util/files/test_data.h"
 
 // A sound real recording, and copies of it with one fault each.
 

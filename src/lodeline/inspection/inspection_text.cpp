@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/base/angles.h"
-#include "lodeline/inspection/camera_words.h"
 #include "lodeline/inspection/inspection_report.h"
-#include "lodeline/inspection/median.h"
+#include "lodeline/inspection/survey/camera_words.h"
+#include "lodeline/inspection/survey/median.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "lodeline/base/angles.h"
 #include "lodeline/inspection/findings.h"
-#include "lodeline/inspection/signed_axes.h"
-#include "lodeline/magnetism/world_magnetic_model.h"
+#include "lodeline/inspection/survey/signed_axes.h"
+#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline::findings {
 namespace {

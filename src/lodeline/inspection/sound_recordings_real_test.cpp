@@ -7,9 +7,9 @@
 #include <fstream>
 #include <memory>
 
-#include "lodeline/base/test_data.h"
-#include "lodeline/data/plain_source.h"
 #include "lodeline/inspection/inspection_report.h"
+#include "lodeline/io/csv/plain_source.h"
+#include "lodeline/util/files/test_data.h"
 
 // Sound recordings without images, of other makers and other sensors: nothing may be found wrong with them.
 

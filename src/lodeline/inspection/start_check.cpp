@@ -7,16 +7,18 @@
 #include <cmath>
 #include <string_view>
 
-#include "lodeline/base/angles.h"
-#include "lodeline/inspection/excerpt_source.h"
+#include "lodeline/inspection/survey/excerpt_source.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {
 
-/// Images are what the check costs: pairs of the first camera, spread over seven seconds, and a few others.
+/// Images are what the check costs: pairs of every camera, spread over seven seconds, and a few others.
 constexpr int kImagesOfPairs = 88;
 constexpr int kMostSamples = 6;
 constexpr double kPairInterval_s = 0.15;
+/// Offsets of images to the gyroscope that the run corrects, and differences of them between cameras.
+constexpr double kLeastOffset_s = 0.015;
 
 using Kinds = std::array<std::string_view, 3>;
 constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
@@ -66,7 +68,9 @@ const char* remedy(const InspectionFinding& finding, const Inspection& inspectio
     return "; where exchanged images explain it, this run puts them back";
   if (finding.kind == "images_repeated") return "; this run leaves them out";
   if (finding.kind == kCameraTimeOffset) {
-    return "; this run adds what it found to the images' stamps, where that is steady and more than 15 ms";
+    return "; this run adds what it found to the images' stamps, where that is steady and more than 15 ms; "
+           "poses "
+           "keep the stamps as they were recorded";
   }
   return "";
 }
@@ -90,19 +94,27 @@ bool isSteady(const CameraInspection& camera) {
          std::abs(camera.turning_early->time_offset_s - camera.turning_late->time_offset_s) < kSame_s;
 }
 
-/// Offsets beyond what the estimator takes care of by itself. A camera that shows none of its own has the
-/// first one's.
+/// The offset to the gyroscope that a camera shows, where it is beyond what the estimator takes care of by
+/// itself; otherwise 0.
+double shownOffset_s(const CameraInspection& camera, const Inspection& inspection) {
+  const bool is_found = std::any_of(
+      inspection.findings.begin(), inspection.findings.end(), [&](const InspectionFinding& finding) {
+        return finding.kind == kCameraTimeOffset && finding.sensor == camera.survey.name;
+      });
+  const bool is_large = is_found && std::abs(camera.turning->time_offset_s) > kLeastOffset_s;
+  return is_large && isSteady(camera) ? camera.turning->time_offset_s : 0.0;
+}
+
+/// A camera whose images lag behind the first one's has its own offset; otherwise both have the same one.
 std::vector<double> imageOffsets_s(const Inspection& inspection) {
-  constexpr double kLeastOffset_s = 0.015;
   std::vector<double> offsets_s;
   for (const CameraInspection& camera : inspection.cameras) {
-    double offset_s = offsets_s.empty() ? 0.0 : offsets_s.front();
-    for (const InspectionFinding& finding : inspection.findings) {
-      if (finding.kind != kCameraTimeOffset || finding.sensor != camera.survey.name) continue;
-      if (std::abs(camera.turning->time_offset_s) > kLeastOffset_s && isSteady(camera))
-        offset_s = camera.turning->time_offset_s;
-    }
-    offsets_s.push_back(offset_s);
+    const CameraInspection& first = inspection.cameras.front();
+    const bool is_apart =
+        camera.turning && first.turning && isSteady(camera) &&
+        std::abs(camera.turning->time_offset_s - first.turning->time_offset_s) > kLeastOffset_s;
+    const bool has_own = offsets_s.empty() || is_apart;
+    offsets_s.push_back(has_own ? shownOffset_s(camera, inspection) : offsets_s.front());
   }
   return offsets_s;
 }
@@ -115,7 +127,6 @@ StartCheck checkStart(const SourceFactory& open, const std::string& data, const 
   looking.images.most_turns = kImagesOfPairs;
   looking.images.most_samples = kMostSamples;
   looking.images.pair_interval_s = kPairInterval_s;
-  looking.turning_cameras = 1;
   const Inspection inspection = inspect(
       [&](Diagnostics* unheard) {
         return std::make_unique<ExcerptSource>(open(unheard), options.begin_s, options.length_s);

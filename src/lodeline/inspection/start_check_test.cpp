@@ -7,8 +7,8 @@
 #include <functional>
 #include <random>
 
-#include "lodeline/base/angles.h"
-#include "lodeline/inspection/excerpt_source.h"
+#include "lodeline/inspection/survey/excerpt_source.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "lodeline/base/time_steps.h"
 #include "lodeline/inspection/findings.h"
-#include "lodeline/streams/time_span.h"
+#include "lodeline/io/streams/time_span.h"
+#include "lodeline/util/time/time_steps.h"
 
 namespace lodeline::findings {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "lodeline/base/angles.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/inspection/findings.h"
-#include "lodeline/inspection/signed_axes.h"
+#include "lodeline/inspection/survey/signed_axes.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline::findings {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/base/time.h"
 #include "lodeline/geometry/types.h"
+#include "lodeline/util/time/time.h"
 
 namespace lodeline {
 

@@ -1,0 +1,192 @@
+#include "apps/lodeline/calibrate_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+#include "lodeline/evaluation/figures/plots.h"
+#include "lodeline/magnetometer/calibration/calibration_file.h"
+#include "lodeline/magnetometer/calibration/calibration_plots.h"
+#include "lodeline/magnetometer/calibration/calibration_report.h"
+#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/output/report/findings.h"
+#include "lodeline/pipeline/open_recording.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/file_kind.h"
+#include "lodeline/util/files/output_file.h"
+#include "lodeline/util/json_text.h"
+
+namespace lodeline {
+namespace {
+
+const char* const kCalibrateFooter =
+    R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
+ROS 1 bag (--rig may be missing; the noise of a usual IMU is assumed then),
+a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
+How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
+while rolling the rig over; 60 to 90 s. docs/magnetometer_calibration.md explains every figure.
+Examples:
+  lodeline calibrate magnetometer dive1 -o mag.yaml --to 90 --site 29.83,-82.60,20 --date 2026-11-21
+  lodeline calibrate magnetometer cloud.txt --unit mG -o mag.yaml --plots plots
+  lodeline calibrate magnetometer after.yaml --compare before.yaml
+Ends with 3, and writes nothing, where the readings cannot calibrate the magnetometer.)";
+
+struct CalibrateArguments {
+  std::string data;
+  BagArguments bag;
+  std::string output;
+  std::string unit;
+  double from_s = 0.0;
+  std::optional<double> to_s;
+  std::vector<double> site;
+  std::string date;
+  std::string old;
+  std::string compare;
+  std::string json;
+  std::string plots;
+};
+
+std::optional<Vec3> siteField_ENU(const CalibrateArguments& arguments) {
+  if (arguments.site.empty() && arguments.date.empty()) return std::nullopt;
+  if (arguments.site.empty() || arguments.date.empty()) {
+    throw UsageError(
+        "--site LAT,LON,HEIGHT and --date YYYY-MM-DD belong together: the Earth's field depends on both");
+  }
+  const GeodeticPosition site{arguments.site[0], arguments.site[1], arguments.site[2]};
+  return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
+}
+
+RecordOptions recordOptions(const CalibrateArguments& arguments) {
+  RecordOptions options;
+  options.from_s = arguments.from_s;
+  options.to_s = arguments.to_s;
+  if (arguments.unit.empty()) return options;
+  options.unit = fieldUnitFromString(arguments.unit);
+  if (!options.unit) {
+    throw UsageError(fmt::format("--unit {}: must be T, uT, nT, mG, G or raw", arguments.unit));
+  }
+  return options;
+}
+
+double comparisonDip_rad(const std::optional<Vec3>& site_field_ENU, const MagnetometerFit& first,
+                         const MagnetometerFit& second) {
+  if (site_field_ENU) return fieldElements(*site_field_ENU).inclination_rad;
+  if (second.dip_rad) return *second.dip_rad;
+  return first.dip_rad.value_or(std::numbers::pi / 3.0);
+}
+
+void requireComparable(const MagnetometerFit& first, const MagnetometerFit& second, const std::string& file) {
+  if (first.raw_readings != second.raw_readings) {
+    throw InputError(file +
+                     ": one calibration is for raw counts and the other for tesla; they cannot be compared");
+  }
+  if (!(first.field_strength_T > 0.0 && second.field_strength_T > 0.0)) {
+    throw InputError(file + ": a comparison needs key 'field_strength_T' in both calibrations");
+  }
+}
+
+MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
+  refuseBagOptions(arguments.data, arguments.bag);
+  refuseRigOfFolder(arguments.data, arguments.bag);
+  const bool is_packed = recogniseFile(arguments.data).kind == FileKind::Compressed;
+  if (is_packed || isTableOfReadings(arguments.data) || !isBag(arguments.data)) {
+    return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
+  }
+  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
+  return readMagnetometerRecord(*bag, arguments.data, bag->rigFile().sections.contains("mag0"),
+                                recordOptions(arguments), diagnostics);
+}
+
+bool isCalibrationFile(const std::filesystem::path& path) {
+  return path.extension() == ".yaml" || path.extension() == ".yml";
+}
+
+void calibrate(const CalibrateArguments& arguments) {
+  const std::optional<Vec3> site_field_ENU = siteField_ENU(arguments);
+  std::optional<MagnetometerFit> first;
+  if (!arguments.compare.empty()) first = readCalibrationFile(arguments.compare);
+  nlohmann::ordered_json json;
+  std::string text;
+  MagnetometerFit fit;
+  Diagnostics diagnostics;
+  if (isCalibrationFile(arguments.data)) {
+    if (!first)
+      throw UsageError(arguments.data + " is a calibration already; --compare says with which to compare it");
+    fit = readCalibrationFile(arguments.data);
+  } else {
+    CalibrationOptions options;
+    options.site_field_ENU = site_field_ENU;
+    if (!arguments.old.empty()) options.old = readCalibrationFile(arguments.old);
+    const MagnetometerRecord record = readRecord(arguments, &diagnostics);
+    MagnetometerCalibrationResult result;
+    try {
+      result = calibrateMagnetometer(record, options, &diagnostics);
+    } catch (const EstimationError&) {
+      fmt::print(stderr, "{}", findingsText(diagnostics));
+      throw;
+    }
+    fit = result.fit;
+    if (!arguments.output.empty()) writeCalibrationFile(fit, arguments.output);
+    if (!arguments.plots.empty())
+      drawFigures({cloudFigure(result), coverageFigure(result)}, arguments.plots, diagnostics);
+    json = calibrationJson(result);
+    text = calibrationText(result);
+  }
+  if (first) {
+    requireComparable(*first, fit, arguments.compare);
+    const double dip_rad = comparisonDip_rad(site_field_ENU, *first, fit);
+    json["comparison"] = comparisonJson(*first, fit, dip_rad);
+    text += comparisonText(*first, fit, dip_rad);
+  }
+  json["findings"] = findingsJson(diagnostics);
+  if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(json) + "\n");
+  fmt::print("{}{}", text, findingsText(diagnostics));
+}
+
+void addMagnetometerCommand(CLI::App& calibrate_command) {
+  const auto arguments = std::make_shared<CalibrateArguments>();
+  CLI::App* command = calibrate_command.add_subcommand(
+      "magnetometer",
+      "Soft iron, hard iron, rotation to the IMU and lag, with their uncertainties and a verdict");
+  command
+      ->add_option("DATA", arguments->data,
+                   "recording, ROS 1 bag, CSV file or, with --compare, a calibration")
+      ->required();
+  addBagOptions(&arguments->bag, command);
+  command->add_option("-o,--output", arguments->output,
+                      "calibration file, for `lodeline run --mag-calibration`");
+  command->add_option(
+      "--unit", arguments->unit,
+      "of a file without header: T, uT, nT, mG, G or raw; told by the field's size where not given");
+  command->add_option("--from", arguments->from_s, "use readings from this second of the recording on")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", arguments->to_s, "use readings up to this second")->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--site", arguments->site,
+          "LAT,LON,HEIGHT in degrees and metres: scales to the field of the World Magnetic Model there")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--date", arguments->date, "YYYY-MM-DD, with --site");
+  command->add_option("--old", arguments->old,
+                      "calibration to fall back on where the readings say too little");
+  command->add_option("--compare", arguments->compare,
+                      "calibration to compare with, e.g. that from before the dive");
+  command->add_option("--json", arguments->json, "write all figures to this file");
+  command->add_option("--plots", arguments->plots, "folder for pictures of the readings and of the coverage");
+  command->footer(kCalibrateFooter);
+  command->callback([arguments] { calibrate(*arguments); });
+}
+
+}  // namespace
+
+void addCalibrateCommand(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("calibrate", "Calibrate a sensor from readings");
+  command->require_subcommand(1);
+  addMagnetometerCommand(*command);
+}
+
+}  // namespace lodeline

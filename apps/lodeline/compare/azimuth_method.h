@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lodeline/evaluation/trajectory/trajectory.h"
+#include "lodeline/pipeline/run_recording.h"
+
+namespace lodeline {
+
+/// Corrects a finished trajectory by the magnetometer of its recording (correctHeadingByAzimuth), to true
+/// north where the request names site and date, else to magnetic north, and writes it to `folder` as
+/// trajectory.tum. Throws InputError where the recording has no calibrated magnetometer or no reading.
+Trajectory makeAzimuthRun(const RunRequest& request, const Trajectory& odometry,
+                          const std::filesystem::path& folder);
+
+}  // namespace lodeline

@@ -1,0 +1,193 @@
+#include "apps/lodeline/compare/compare_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "apps/lodeline/compare/compared_run.h"
+#include "apps/lodeline/shared/interruption.h"
+#include "apps/lodeline/simulate/simulate_command.h"
+#include "lodeline/evaluation/figures/comparison_report.h"
+#include "lodeline/evaluation/figures/plots.h"
+#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/output/report/findings.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/output_file.h"
+#include "lodeline/util/json_text.h"
+
+namespace lodeline {
+namespace {
+
+const char* const kCompareFooter =
+    R"(Methods: off (images and inertial readings alone), paper and absolute (docs/magnetometer.md), azimuth (the finished
+trajectory of off, its heading corrected by the 20 s running median of the field's azimuth).
+Runs of a scenario differ by the noise of its sensors, with the same images; runs of a folder by the front end's seed.
+Bags are turned into folders first, as by `lodeline convert`, in OUT/recordings or the folder of --recordings.
+Results: compare.json, compare.md, plots and one folder a run. Given again, the command makes only what is missing.
+Examples:
+  lodeline compare demo --realism field -o demo_compared
+  lodeline compare dive1 dive2 --methods off,absolute --runs 1 --mag-calibration mag.yaml -o compared
+  lodeline compare cave1_short --realism field --cameras 1 -o left_camera)";
+
+/// Poses and their times of what the recording calls true.
+Trajectory readTruth(const std::filesystem::path& data) {
+  Diagnostics diagnostics;
+  try {
+    return readTrajectory(data, {}, diagnostics);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: methods are compared by ground truth, which it lacks ({})",
+                                 data.string(), error.what()));
+  }
+}
+
+/// The path that the truth goes while images are used.
+double pathBetween_m(Trajectory truth, Time begin, Time end) {
+  std::erase_if(truth.poses, [&](const StampedPose& pose) { return pose.time < begin || pose.time > end; });
+  return pathLength(truth);
+}
+
+/// Recordings of one name in different folders would write to one place.
+std::string distinctName(const std::string& name, const std::vector<ComparedRecording>& others) {
+  const auto isTaken = [&](const std::string& wanted) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const ComparedRecording& other) { return other.name == wanted; });
+  };
+  std::string distinct = name;
+  for (int number = 2; isTaken(distinct); ++number) distinct = fmt::format("{}_{}", name, number);
+  return distinct;
+}
+
+/// False where the user stopped a run.
+bool makeRuns(const ComparisonInput& input, const ComparisonRequest& request, ComparedRecording* recording) {
+  const Trajectory truth = readTruth(input.seeds.front().data);
+  recording->name = input.name;
+  recording->extent =
+      fmt::format("{}: {}, {:.1f} m, {} run{} a method", input.origin, input.extent,
+                  pathBetween_m(truth, input.expected_stamps.front(), input.expected_stamps.back()),
+                  input.seeds.size(), input.seeds.size() == 1 ? "" : "s");
+  for (const std::string& method : request.methods) {
+    recording->methods.push_back({method, {}});
+    for (const ComparisonSeed& seed : input.seeds) {
+      if (!request.run.quiet) fmt::print(stderr, "{}: {}, {}\n", input.name, method, seed.name);
+      const auto run = makeComparedRun(input, seed, method, request.output / input.name, truth);
+      if (!run) return false;
+      recording->methods.back().runs.push_back(*run);
+    }
+  }
+  return true;
+}
+
+void writeResults(const std::vector<ComparedRecording>& recordings, const ComparisonRequest& request) {
+  Diagnostics diagnostics;
+  std::vector<gnuplot::Figure> figures;
+  nlohmann::ordered_json json;
+  json["program"] = fmt::format("lodeline {}", LODELINE_VERSION);
+  std::string markdown;
+  for (const ComparedRecording& recording : recordings) {
+    for (gnuplot::Figure figure : {trajectoriesFigure(recording), relativeYawFigure(recording)}) {
+      if (!figure.commands.empty()) figures.push_back(std::move(figure));
+    }
+    json["recordings"].push_back(comparisonJson(recording));
+    markdown += (markdown.empty() ? "" : "\n") + comparisonMarkdown(recording);
+    fmt::print("{}\n", comparisonTable(recording));
+  }
+  drawFigures(figures, request.output / "plots", diagnostics);
+  json["findings"] = findingsJson(diagnostics);
+  writeOutput(request.output / "compare.json", jsonText(json) + "\n");
+  writeOutput(request.output / "compare.md", markdown);
+  fmt::print("{}", findingsText(diagnostics));
+}
+
+bool hasTrajectory(const ComparedRecording& recording) {
+  return std::any_of(recording.methods.begin(), recording.methods.end(),
+                     [](const ComparedMethod& method) { return meansOf(method).runs > 0; });
+}
+
+void checkRequest(const ComparisonRequest& request) {
+  if (request.methods.empty())
+    throw UsageError("--methods: name at least one of off, paper, absolute, azimuth");
+  for (const std::string& method : request.methods) {
+    if (!isComparedMethod(method)) {
+      throw UsageError(
+          fmt::format("--methods {}: no such method; there are off, paper, absolute and azimuth", method));
+    }
+  }
+  if (request.run.site.empty() != request.run.date.empty()) {
+    throw UsageError("true north takes both place and date: --site LAT,LON,HEIGHT --date YYYY-MM-DD");
+  }
+}
+
+void compare(ComparisonRequest request) {
+  checkRequest(request);
+  if (request.cameras > 0) {
+    request.run.overrides.push_back(request.cameras == 1 ? "source.cameras=[0]" : "source.cameras=[0, 1]");
+  }
+  createOutputFolder(request.output);
+  std::vector<ComparedRecording> recordings;
+  for (const std::string& name : request.inputs) {
+    ComparisonInput input;
+    ComparedRecording recording;
+    bool finished = prepareComparison(name, request, &input);
+    input.name = distinctName(input.name, recordings);
+    finished = finished && makeRuns(input, request, &recording);
+    if (!finished) throw Interruption("the same command goes on from there");
+    recordings.push_back(std::move(recording));
+  }
+  writeResults(recordings, request);
+  for (const ComparedRecording& recording : recordings) {
+    if (!hasTrajectory(recording)) {
+      throw EstimationError(recording.name + ": no run gave a trajectory; the table says why");
+    }
+  }
+}
+
+void addRunOptions(CLI::App* command, ComparisonRequest* request) {
+  RunRequest& run = request->run;
+  command->add_option("-c,--config", run.config, "YAML configuration of all runs");
+  command->add_option("-s,--set", run.overrides, "one setting of all runs, KEY=VALUE");
+  command->add_option("--mag-calibration", run.magnetometer_calibration,
+                      "what `lodeline calibrate magnetometer` wrote; scenarios calibrate their own rig");
+  command->add_option("--site", run.site,
+                      "LAT,LON,HEIGHT (degrees, m), for true north; scenarios know theirs");
+  command->add_option("--date", run.date, "YYYY-MM-DD of the recording, for true north");
+  command->add_option("--cameras", request->cameras, "use the first so many; default all")
+      ->check(CLI::Range(1, 2));
+  command->add_flag("-q,--quiet", run.quiet, "no progress");
+}
+
+}  // namespace
+
+void addCompareCommand(CLI::App& program) {
+  const auto request = std::make_shared<ComparisonRequest>();
+  request->methods = {"off", "paper", "absolute", "azimuth"};
+  CLI::App* command = program.add_subcommand(
+      "compare", "Compare methods of using the magnetometer on recordings with ground truth");
+  command
+      ->add_option("DATA|SCENARIO", request->inputs,
+                   "folders in the EuRoC ASL layout or ROS 1 bags, with ground truth, or scenarios of "
+                   "`lodeline simulate`")
+      ->required();
+  command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
+      ->required();
+  command->add_option("--methods", request->methods, "comma-separated")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--runs", request->runs, "runs of each method")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  addRunOptions(command, request.get());
+  addBagOptions(&request->run.bag, command);
+  command->add_option("--recordings", request->recordings,
+                      "folder of simulated recordings, NAME_REALISM each; default OUT/recordings");
+  command->add_flag(
+      "!--no-rendering", request->render,
+      "render no images: where a simulated recording is unfinished, compare on the part there is");
+  command->add_option("--threads", request->threads, "for rendering (all cores)");
+  addScenarioOptions(command, &request->changes);
+  command->footer(kCompareFooter);
+  command->callback([request] { compare(*request); });
+}
+
+}  // namespace lodeline

@@ -1,0 +1,149 @@
+#include "apps/lodeline/compare/compared_run.h"
+
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "apps/lodeline/compare/azimuth_method.h"
+#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/evaluation/trajectory/text_table.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/output_file.h"
+
+namespace lodeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kDoneFile = "made_from.txt";
+
+/// Tells one build of the program from another (FNV-1a over its own file).
+uint64_t programFingerprint() {
+  uint64_t hash = 14695981039346656037u;
+  for (const char byte : readFileBytes("/proc/self/exe")) {
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211u;
+  }
+  return hash;
+}
+
+/// Whatever the result depends on, for telling whether a run was made already.
+std::string identity(const RunRequest& request) {
+  RunSettings options;
+  Settings settings;
+  applyRequest(request, &settings, &options);
+  std::ostringstream text;
+  static const uint64_t program = programFingerprint();
+  text << fmt::format("lodeline {}, build {:016x}\n", LODELINE_VERSION, program)
+       << fs::weakly_canonical(request.data).string() << "\n";
+  const fs::path mav0 = fs::is_directory(fs::path(request.data) / "mav0") ? fs::path(request.data) / "mav0"
+                                                                          : fs::path(request.data);
+  for (const char* sensor : {"cam0", "cam1", "imu0", "mag0", "pressure0"}) {
+    for (const char* file : {"data.csv", "sensor.yaml"}) {
+      const fs::path path = mav0 / sensor / file;
+      std::error_code missing;
+      const auto size = fs::file_size(path, missing);
+      if (!missing) text << sensor << "/" << file << ": " << size << " bytes\n";
+    }
+  }
+  settings.write(text);
+  if (!options.magnetometer_calibration.empty()) text << readFileBytes(options.magnetometer_calibration);
+  for (const std::string& file : request.bag.rig_files) text << readFileBytes(file);
+  return text.str();
+}
+
+nlohmann::json readSummary(const fs::path& folder) {
+  return nlohmann::json::parse(readFileBytes(folder / "run.json"));
+}
+
+/// Whether the folder holds the whole run; someone may have run into it since, and not to the end.
+bool isDone(const fs::path& folder, const std::string& made_from) {
+  if (!fs::exists(folder / kDoneFile) || readFileBytes(folder / kDoneFile) != made_from) return false;
+  if (!fs::exists(folder / "run.json")) return false;
+  constexpr bool kThrow = false;  // a file that was cut short is that of no whole run either
+  const auto summary = nlohmann::json::parse(readFileBytes(folder / "run.json"), nullptr, kThrow);
+  return summary.is_object() && !summary.value("interrupted", true);
+}
+
+/// False where the user stopped the run.
+bool estimate(const RunRequest& request) {
+  const fs::path folder = request.output;
+  const std::string made_from = identity(request);
+  if (isDone(folder, made_from)) return true;
+  std::error_code ignored;
+  fs::remove(folder / kDoneFile, ignored);
+  Diagnostics diagnostics;
+  if (runRecording(request, &diagnostics).interrupted) return false;
+  writeOutput(folder / kDoneFile, made_from);
+  return true;
+}
+
+/// The heading of a run by what its summary says of it. Methods are held against each other and a corrected
+/// azimuth here, so that magnetic north counts as north, with its declination as an error of all of them.
+HeadingBasis basisOf(const nlohmann::json& summary) {
+  const std::string reference = summary.value("/heading/reference"_json_pointer, std::string());
+  return reference.find("north") != std::string::npos ? HeadingBasis::North : HeadingBasis::Start;
+}
+
+Trajectory readPoses(const fs::path& folder) {
+  Diagnostics diagnostics;
+  return readTrajectory(folder / "trajectory.tum", {}, diagnostics);
+}
+
+void judge(const Trajectory& trajectory, const Trajectory& truth, HeadingBasis basis,
+           const ComparisonInput& input, ComparedRun* run) {
+  EvaluationOptions options;
+  options.association.method = AssociationMethod::Interpolate;
+  // Truth at a few hertz will do for a swimmer; an image is still told from its neighbours by half a period.
+  options.association.tolerance_s = 0.02;
+  options.expected_stamps = input.expected_stamps;
+  Diagnostics diagnostics;
+  run->errors = computeRunErrors(trajectory, truth, basis, options, diagnostics);
+  run->completion = run->errors->completion.share;
+}
+
+}  // namespace
+
+bool isComparedMethod(const std::string& name) {
+  return name == "off" || name == "paper" || name == "absolute" || name == "azimuth";
+}
+
+std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
+                                           const std::string& method, const fs::path& input_folder,
+                                           const Trajectory& truth) {
+  const bool by_azimuth = method == "azimuth";
+  RunRequest request = input.run;
+  request.data = seed.data.string();
+  request.magnetometer = by_azimuth ? "off" : method;
+  request.overwrite = true;
+  request.overrides.push_back(fmt::format("front_end.seed={}", seed.feature_seed));
+  const auto folderOf = [&](const std::string& name) {
+    std::string folder = name + "_" + seed.name;
+    for (char& c : folder) c = c == ' ' ? '_' : c;
+    return input_folder / folder;
+  };
+  request.output = folderOf(request.magnetometer).string();
+  ComparedRun run;
+  run.seed = seed.name;
+  try {
+    if (!estimate(request)) return std::nullopt;
+    const nlohmann::json summary = readSummary(request.output);
+    run.core_ms_per_frame = summary.value("/core_ms_per_frame/total"_json_pointer, 0.0);
+    if (summary.value("frames_with_pose", 0) == 0) {
+      run.failure = fmt::format("no pose after {} frames; still waiting for {}", summary.value("frames", 0),
+                                summary.value("waiting_for", std::string("images")));
+      return run;
+    }
+    Trajectory trajectory = readPoses(request.output);
+    if (by_azimuth) trajectory = makeAzimuthRun(request, trajectory, folderOf(method));
+    judge(trajectory, truth, by_azimuth ? HeadingBasis::North : basisOf(summary), input, &run);
+  } catch (const InputError& error) {
+    run.failure = error.what();
+  } catch (const EstimationError& error) {
+    run.failure = error.what();
+  }
+  return run;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/lodeline/compare/comparison_input.h"
+#include "lodeline/evaluation/errors/comparison.h"
+
+namespace lodeline {
+
+/// The methods that `lodeline compare` knows: "off", "paper" and "absolute" are models of the magnetometer in
+/// the window, "azimuth" is the finished "off" trajectory corrected by correctHeadingByAzimuth().
+bool isComparedMethod(const std::string& name);
+
+/// Makes one run of a method in its folder, unless it is there already from the same recording, settings,
+/// calibration and program, and judges it against the recording's ground truth. A run that comes to nothing
+/// says why in `failure`. Nothing where the user stopped it. `input_folder`: the results of this recording,
+/// one folder a method and seed.
+std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
+                                           const std::string& method,
+                                           const std::filesystem::path& input_folder,
+                                           const Trajectory& truth);
+
+}  // namespace lodeline

@@ -1,0 +1,95 @@
+#include "apps/lodeline/export/export_command.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/lodeline/export/export_dives.h"
+
+namespace lodeline {
+namespace {
+
+void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
+  command
+      ->add_option(
+          "--entrance", arguments->entrance,
+          "LAT,LON,HEIGHT (WGS 84 degrees, m) of the water's surface above the first pose; without it, "
+          "the run's own --site, else a map in metres")
+      ->delimiter(',')
+      ->expected(1, 3);
+  command
+      ->add_option("--entrance-sigma", arguments->entrance_sigma,
+                   "HORIZONTAL,VERTICAL (m): how well that is known")
+      ->delimiter(',')
+      ->expected(2)
+      ->capture_default_str();
+  command->add_option(
+      "--start-depth", arguments->map.start_depth_m,
+      "m of the first pose under that surface; without it, the depth profile's, else that of the "
+      "run's pressure sensor, else 0");
+  command
+      ->add_option("--geoid-height", arguments->map.geoid_height_m,
+                   "m of the level that HEIGHT counts from above the WGS 84 ellipsoid; for GeoJSON")
+      ->capture_default_str();
+  command
+      ->add_option("--crs", arguments->map.crs,
+                   "grid: a UTM zone (UTM17N) or a national grid (EPSG:6372); auto: the entrance's UTM zone")
+      ->capture_default_str();
+  command->add_option("--date", arguments->map.date, "YYYY-MM-DD; without it, the run's or its stamps'");
+  command->add_option(
+      "--turn", arguments->map.turn_deg,
+      "degrees clockwise that turn the run's world to true north, in place of the declination");
+}
+
+void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
+  DiveMapOptions& map = arguments->map;
+  command->add_option("--name", map.name,
+                      "of survey and files; without it, the run folder's; with several runs, of the project");
+  command->add_option("--title", map.title, "of the survey");
+  command->add_option("--team", map.team, "a person; once for each");
+  command->add_option("--spacing", map.stations.spacing_m, "m between stations on a straight way")
+      ->check(CLI::Range(0.5, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--relative-sigma", map.relative_sigma,
+                   "uncertainty of the end by the length of the line, as 0.01; without it, the run's own")
+      ->check(CLI::Range(1e-6, 1.0));
+  command->add_flag(
+      "--closed", map.is_closed,
+      "the dive ended exactly where it began: equate both and let the program spread the misclosure");
+  command->add_flag("--no-splays", arguments->no_splays, "leave the legs to the walls out");
+  command->add_option(
+      "--recording", arguments->recording,
+      "the run's recording, a folder or a ROS 1 bag: its sonar adds walls; COLMAP takes cameras "
+      "and images from it");
+  addBagOptions(&arguments->bag, command);
+}
+
+}  // namespace
+
+void addExportCommand(CLI::App& program) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = program.add_subcommand(
+      "export", "A run as files for surveyors and map makers: Survex, Therion, GIS, 3-D");
+  command->add_option("RUN", arguments->runs, "folders that `lodeline run` wrote; several make one project")
+      ->required();
+  command
+      ->add_option("-f,--format", arguments->formats,
+                   "survex, therion, geojson, kml, gpx, ply, csv, tum, colmap; several with commas")
+      ->delimiter(',');
+  command->add_option("-o,--output", arguments->output, "folder for the files; without it, RUN/export");
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace files of another dive that have the same names");
+  addPlaceOptions(command, arguments.get());
+  addSurveyOptions(command, arguments.get());
+  addDepthOptions(command, &arguments->depth);
+  command->footer(
+      "Every file begins with where it is from, which north it uses and what was applied.\n"
+      "Examples:\n"
+      "  lodeline export out --format survex,therion,kml --entrance 29.83,-82.60,10 --date 2026-11-21\n"
+      "  lodeline export out --format csv,ply -o map\n"
+      "  lodeline export dive1 dive2 --format therion --name cave -o map --entrance 29.83,-82.60,10\n"
+      "  lodeline export out --format survex --depth-profile computer.csv --correct-depth");
+  command->callback([arguments] { exportRuns(*arguments); });
+}
+
+}  // namespace lodeline

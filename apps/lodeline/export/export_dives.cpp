@@ -1,0 +1,185 @@
+#include "apps/lodeline/export/export_dives.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "apps/lodeline/shared/place_argument.h"
+#include "lodeline/output/report/findings.h"
+#include "lodeline/output/survey/formats/map_files.h"
+#include "lodeline/output/survey/formats/recording_images.h"
+#include "lodeline/output/survey/formats/recording_walls.h"
+#include "lodeline/output/survey/map/export_owner.h"
+#include "lodeline/output/survey/map/survey_name.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/output_file.h"
+
+namespace lodeline {
+namespace {
+
+/// What the recording adds to the run.
+struct RecordingParts {
+  std::optional<MapImages> images;
+  std::vector<Vec3> walls_W;
+};
+
+/// One dive, ready to be written.
+struct ExportedDive {
+  DiveMap map;
+  RecordingParts recording;
+  std::string depth_comparison;  ///< text of its table; empty without a depth profile
+};
+
+RecordingParts readRecording(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
+                             const RunFolder& run, Diagnostics* diagnostics) {
+  RecordingParts parts;
+  if (arguments.recording.empty()) return parts;
+  EurocOptions options;
+  options.with_cameras = std::find(formats.begin(), formats.end(), MapFormat::Colmap) != formats.end();
+  const std::unique_ptr<RecordedSource> source =
+      openRecording(arguments.recording, options, arguments.bag, diagnostics);
+  parts.walls_W = sonarWalls(*source, run.trajectory, diagnostics);
+  if (options.with_cameras) parts.images = recordingImages(*source, run, diagnostics);
+  return parts;
+}
+
+DiveMapOptions mapOptions(const ExportArguments& arguments) {
+  DiveMapOptions options = arguments.map;
+  if (!arguments.entrance.empty()) options.entrance = placeFromWords(arguments.entrance, "--entrance");
+  options.entrance_sigma_m = arguments.entrance_sigma[0];
+  options.entrance_height_sigma_m = arguments.entrance_sigma[1];
+  options.start_depth_source = "by --start-depth";
+  if (arguments.no_splays) options.passage.splay_sectors = 0;
+  return options;
+}
+
+std::vector<MapFormat> wantedFormats(const ExportArguments& arguments) {
+  std::vector<MapFormat> formats;
+  for (const std::string& name : arguments.formats) formats.push_back(mapFormatFromString(name));
+  if (formats.empty() && arguments.depth.file.empty()) {
+    throw UsageError("nothing to do: name formats with --format, or a --depth-profile to compare with");
+  }
+  const bool is_single = arguments.runs.size() == 1;
+  if (!is_single && (!arguments.depth.file.empty() || !arguments.recording.empty())) {
+    throw UsageError(
+        "--depth-profile and --recording belong to one dive: export each RUN by itself with them");
+  }
+  if (!is_single && arguments.output.empty()) {
+    throw UsageError("several runs want one folder for their files: name it with -o");
+  }
+  std::set<std::filesystem::path> folders;
+  for (const std::string& run : arguments.runs) {
+    if (folders.insert(std::filesystem::weakly_canonical(run)).second) continue;
+    throw UsageError(fmt::format("{} is named twice: each RUN is one dive of the project", run));
+  }
+  return formats;
+}
+
+ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
+                      const std::string& run_folder, DiveMapOptions options, Diagnostics* diagnostics) {
+  ExportedDive dive;
+  RunFolder run = readRunFolder(run_folder, diagnostics);
+  if (!arguments.depth.file.empty())
+    dive.depth_comparison = applyDepthProfile(arguments.depth, &run, &options, diagnostics);
+  dive.recording = readRecording(arguments, formats, run, diagnostics);
+  dive.map = makeDiveMap(run, options, dive.recording.walls_W, diagnostics);
+  return dive;
+}
+
+/// All dives on the grid of the first one: survey programs cannot join what lies on several.
+std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
+                                    Diagnostics* diagnostics) {
+  DiveMapOptions options = mapOptions(arguments);
+  std::vector<ExportedDive> dives;
+  if (arguments.runs.size() == 1) {
+    dives.push_back(makeDive(arguments, formats, arguments.runs.front(), options, diagnostics));
+    return dives;
+  }
+  const std::vector<std::string> names = surveyNames({arguments.runs.begin(), arguments.runs.end()});
+  for (size_t i = 0; i < names.size(); ++i) {
+    options.name = names[i];
+    options.title.clear();
+    dives.push_back(makeDive(arguments, formats, arguments.runs[i], options, diagnostics));
+    const std::optional<Georeference>& place = dives.back().map.place;
+    if (place) options.crs = place->gridDescription().code;
+  }
+  return dives;
+}
+
+std::filesystem::path outputFolder(const ExportArguments& arguments) {
+  if (!arguments.output.empty()) return arguments.output;
+  return std::filesystem::path(arguments.runs.front()) / "export";
+}
+
+std::string depthTableName(const DiveMap& map) { return map.name + "_depth_profile.csv"; }
+
+void expectOwnFolder(const ExportedDive& dive, const std::vector<MapFormat>& formats,
+                     const std::filesystem::path& folder) {
+  std::vector<std::string> names = {depthTableName(dive.map)};
+  for (MapFormat format : formats) {
+    for (const std::string& name : mapFileNames(dive.map.name, format)) names.push_back(name);
+  }
+  expectOwnFiles(folder, dive.map, names);
+}
+
+void writeDive(const ExportedDive& dive, const std::vector<MapFormat>& formats,
+               const std::filesystem::path& folder, std::vector<std::filesystem::path>* files) {
+  for (MapFormat format : formats) {
+    for (const auto& file : writeMap(dive.map, dive.recording.images, format, folder)) files->push_back(file);
+  }
+  createOutputFolder(folder);
+  if (!dive.depth_comparison.empty()) {
+    files->push_back(folder / depthTableName(dive.map));
+    writeOutput(files->back(), dive.depth_comparison);
+  }
+  files->push_back(folder / notesFileName(dive.map.name));
+  writeOutput(files->back(), notesText(dive.map));
+}
+
+/// As stated, else "cave"; none of the dives' names.
+std::string projectName(const ExportArguments& arguments, const std::vector<DiveMap>& maps) {
+  std::string name = surveyName(arguments.map.name.empty() ? "cave" : arguments.map.name);
+  const auto isTaken = [&](const DiveMap& map) { return map.name == name; };
+  while (std::any_of(maps.begin(), maps.end(), isTaken)) name += "_project";
+  return name;
+}
+
+/// The files that join several dives, for the formats that can.
+void writeProjects(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
+                   const std::vector<ExportedDive>& dives, const std::filesystem::path& folder,
+                   std::vector<std::filesystem::path>* files) {
+  std::vector<DiveMap> maps;
+  for (const ExportedDive& dive : dives) maps.push_back(dive.map);
+  const std::string name = projectName(arguments, maps);
+  const std::string title = arguments.map.title.empty() ? name : arguments.map.title;
+  for (MapFormat format : formats) {
+    if (!joinsDives(format)) continue;
+    for (const auto& file : writeProject(maps, name, title, format, folder)) files->push_back(file);
+  }
+}
+
+}  // namespace
+
+void exportRuns(const ExportArguments& arguments) {
+  const std::vector<MapFormat> formats = wantedFormats(arguments);
+  Diagnostics diagnostics;
+  const std::vector<ExportedDive> dives = makeDives(arguments, formats, &diagnostics);
+  const std::filesystem::path folder = outputFolder(arguments);
+  if (!arguments.overwrite) {
+    for (const ExportedDive& dive : dives) expectOwnFolder(dive, formats, folder);
+  }
+  std::vector<std::filesystem::path> files;
+  for (const ExportedDive& dive : dives) writeDive(dive, formats, folder, &files);
+  if (dives.size() > 1) writeProjects(arguments, formats, dives, folder, &files);
+  for (const ExportedDive& dive : dives) {
+    if (dives.size() > 1) fmt::print("{}:\n", dive.map.name);
+    for (const std::string& note : dive.map.notes) fmt::print("{}\n", note);
+  }
+  for (const std::filesystem::path& file : files) fmt::print("written: {}\n", file.string());
+  fmt::print("{}", findingsText(diagnostics));
+}
+
+}  // namespace lodeline

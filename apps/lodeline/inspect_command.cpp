@@ -1,0 +1,89 @@
+#include "apps/lodeline/inspect_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+
+#include "lodeline/inspection/inspection_report.h"
+#include "lodeline/io/csv/plain_source.h"
+#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/pipeline/open_recording.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/output_file.h"
+#include "lodeline/util/json_text.h"
+
+namespace lodeline {
+namespace {
+
+struct InspectArguments {
+  std::string data;
+  BagArguments bag;
+  std::string json;
+  std::vector<double> site;
+  std::string date;
+};
+
+std::optional<Vec3> siteField(const InspectArguments& arguments) {
+  if (arguments.site.empty() != arguments.date.empty()) {
+    throw UsageError("--site and --date belong together: the field changes with both");
+  }
+  if (arguments.site.empty()) return std::nullopt;
+  const GeodeticPosition site{arguments.site[0], arguments.site[1], arguments.site[2]};
+  return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
+}
+
+/// Also recordings that nothing could be estimated from.
+std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
+                                                   Diagnostics* diagnostics) {
+  if (isTableOfReadings(arguments.data)) {
+    refuseBagOptions(arguments.data, arguments.bag);
+    return std::make_unique<PlainSource>(arguments.data, diagnostics);
+  }
+  EurocOptions options;
+  options.needs_cameras = options.needs_imu = options.needs_calibration = false;
+  return openRecording(arguments.data, options, arguments.bag, diagnostics);
+}
+
+void inspectRecording(const InspectArguments& arguments) {
+  cv::setNumThreads(1);
+  InspectionOptions options;
+  options.site_field_W = siteField(arguments);
+  const Inspection inspection =
+      inspect([&](Diagnostics* diagnostics) { return openWhatThereIs(arguments, diagnostics); }, options);
+  if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(inspectionJson(inspection)) + "\n");
+  fmt::print("{}", inspectionText(inspection));
+}
+
+}  // namespace
+
+void addInspectCommand(CLI::App& program) {
+  const auto arguments = std::make_shared<InspectArguments>();
+  CLI::App* command =
+      program.add_subcommand("inspect", "Tell what is wrong with a recording, the most harmful first");
+  command
+      ->add_option("DATA", arguments->data,
+                   "folder with mav0 (EuRoC ASL layout), a ROS 1 bag, or a CSV file of IMU readings")
+      ->required();
+  addBagOptions(&arguments->bag, command);
+  command->add_option("--json", arguments->json, "write all figures to this file");
+  command
+      ->add_option("--site", arguments->site,
+                   "LATITUDE,LONGITUDE,HEIGHT (deg, deg, m): compare the field with that of the place")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--date", arguments->date, "YYYY-MM-DD, with --site");
+  command->footer(
+      "Units, rates, gaps, order, axes, extrinsics, focal lengths, time offsets, image quality. "
+      "docs/inspect.md tells\n"
+      "what each finding means.\n"
+      "Examples:\n"
+      "  lodeline inspect dive1\n"
+      "  lodeline inspect dive1.bag --rig rig.yaml --json inspection.json --site 29.83,-82.60,0 --date "
+      "2026-11-21");
+  command->callback([arguments] { inspectRecording(*arguments); });
+}
+
+}  // namespace lodeline

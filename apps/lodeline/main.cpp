@@ -1,0 +1,96 @@
+#include <fmt/core.h>
+#include <glog/logging.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/lodeline/allan_command.h"
+#include "apps/lodeline/attitude_command.h"
+#include "apps/lodeline/calibrate_command.h"
+#include "apps/lodeline/calibration_file_commands.h"
+#include "apps/lodeline/compare/compare_command.h"
+#include "apps/lodeline/convert_command.h"
+#include "apps/lodeline/evaluate_command.h"
+#include "apps/lodeline/export/export_command.h"
+#include "apps/lodeline/inspect_command.h"
+#include "apps/lodeline/refine_command.h"
+#include "apps/lodeline/report_command.h"
+#include "apps/lodeline/run_command.h"
+#include "apps/lodeline/shared/arguments.h"
+#include "apps/lodeline/shared/interruption.h"
+#include "apps/lodeline/simulate/simulate_command.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/printable_text.h"
+
+namespace {
+
+// The contract with scripts: what ended the program can be told from its exit code.
+enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3, kInterrupted = 130 };
+
+int fail(const char* kind, const std::exception& error, ExitCode code) {
+  fmt::print(stderr, "{}: {}\n", kind, lodeline::printableText(error.what()));
+  return code;
+}
+
+/// Ceres logs through glog. Its warnings tell of steps that it recovers from; what matters to the user is in
+/// the run's findings.
+void quietSolverLog(const char* program) {
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_ERROR;
+  google::InitGoogleLogging(program);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  quietSolverLog(argv[0]);
+  CLI::App program("Lodeline: where a camera rig went and which way it faced, from images and inertial data");
+  program.name("lodeline");
+  program.set_version_flag("--version", "lodeline " LODELINE_VERSION);
+  program.require_subcommand(1);
+  program.footer("`lodeline COMMAND --help` explains a command, with examples.");
+  lodeline::addRunCommand(program);
+  lodeline::addRefineCommand(program);
+  lodeline::addEvaluateCommand(program);
+  lodeline::addCompareCommand(program);
+  lodeline::addExportCommand(program);
+  lodeline::addReportCommand(program);
+  lodeline::addSimulateCommand(program);
+  lodeline::addAllanCommand(program);
+  lodeline::addAttitudeCommand(program);
+  lodeline::addCalibrateCommand(program);
+  lodeline::addConvertCommand(program);
+  lodeline::addConvertCalibrationCommand(program);
+  lodeline::addRigTemplateCommand(program);
+  lodeline::addInspectCommand(program);
+  try {
+    std::vector<std::string> arguments =
+        lodeline::withJoinedPlaces(lodeline::completeLiveOption({argv + 1, argv + argc}));
+    lodeline::refuseUnknownWords(program, arguments);
+    std::reverse(arguments.begin(), arguments.end());  // which is how CLI11 takes them
+    program.parse(std::move(arguments));
+    return kGood;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kGood : kBadUsage;
+  } catch (const lodeline::InputError& error) {
+    return fail("bad input", error, kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A path that cannot be followed: links in a circle, missing rights, too many open files.
+    const auto reason = error.path1().string() + ": " + error.code().message();
+    return fail("bad input", lodeline::InputError(reason), kBadInput);
+  } catch (const lodeline::UsageError& error) {
+    return fail("bad usage", error, kBadUsage);
+  } catch (const lodeline::EstimationError& error) {
+    return fail("estimation failed", error, kEstimationFailed);
+  } catch (const lodeline::Interruption& error) {
+    return fail("interrupted", error, kInterrupted);
+  } catch (const std::exception& error) {
+    return fail("unexpected failure", error, kEstimationFailed);
+  }
+}

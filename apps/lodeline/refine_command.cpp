@@ -1,0 +1,32 @@
+#include "apps/lodeline/refine_command.h"
+
+#include <memory>
+
+#include "apps/lodeline/run_command.h"
+#include "lodeline/batch/forward_record.h"
+
+namespace lodeline {
+
+void addRefineCommand(CLI::App& program) {
+  auto arguments = std::make_shared<RunRequest>();
+  arguments->refine_interval_s = ForwardRecord::kStateInterval_s;
+  CLI::App* command = program.add_subcommand(
+      "refine", "Run, then solve for the whole trajectory and map at once: the best there is for a survey");
+  addRunOptions(arguments.get(), command);
+  command
+      ->add_option("--state-interval", *arguments->refine_interval_s,
+                   "longest time between two states of the solution; 0 makes every image one")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 5.0))
+      ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  lodeline refine dive1 -o dive1_result\n"
+      "  lodeline refine dive1 -o dive1_result --mag-calibration mag.yaml\n"
+      "  lodeline export dive1_result --format survex\n"
+      "Results: those of `lodeline run`, and trajectory_refined.tum, states_refined.csv and\n"
+      "landmarks_refined.ply, which `lodeline export` takes in place of the others.");
+  command->callback([arguments] { executeRun(*arguments); });
+}
+
+}  // namespace lodeline

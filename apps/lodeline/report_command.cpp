@@ -1,0 +1,80 @@
+#include "apps/lodeline/report_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "lodeline/output/report/findings.h"
+#include "lodeline/output/report/page/page_template.h"
+#include "lodeline/output/report/page/report_page.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/output_file.h"
+
+namespace lodeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<fs::path> runs;
+  std::string reference;
+  std::string align = "se3";
+  std::string output = "report.html";
+};
+
+void reportCommand(const Arguments& arguments) {
+  Diagnostics diagnostics;
+  std::optional<ReportReference> reference;
+  if (!arguments.reference.empty()) {
+    reference = {arguments.reference, alignmentTypeFromString(arguments.align)};
+  }
+  const std::string page = reportPage(arguments.runs, reference, &diagnostics);
+  writeOutput(arguments.output, page);
+  fmt::print("{}: {:.1f} MB, {} run{}\n{}", arguments.output, 1e-6 * static_cast<double>(page.size()),
+             arguments.runs.size(), arguments.runs.size() > 1 ? "s" : "", findingsText(diagnostics));
+}
+
+}  // namespace
+
+std::string writeRunReport(const RunRequest& request) {
+  if (pageTemplate().empty()) {
+    return "report.html left out: this program was built without npm, which bundles the page";
+  }
+  const fs::path folder = request.output;
+  const std::optional<fs::path> truth = referenceOfRecording(request.data);
+  Diagnostics ignored;  // files just written are whole
+  std::optional<ReportReference> reference;
+  if (truth) reference = {*truth, AlignmentType::SE3};
+  std::string page;
+  std::string remark;
+  try {
+    page = reportPage({folder}, reference, &ignored);
+  } catch (const InputError& error) {
+    if (!reference) throw;
+    remark = fmt::format("without the recording's ground truth: {}", error.what());
+    page = reportPage({folder}, std::nullopt, &ignored);
+  }
+  writeOutput(folder / "report.html", page);
+  return remark;
+}
+
+void addReportCommand(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("report", "Show runs in one page for the browser");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("RUN", arguments->runs, "output folders of `lodeline run`; several are compared")
+      ->required();
+  command->add_option("--reference", arguments->reference,
+                      "trajectory taken as true, in any layout that `lodeline evaluate` reads");
+  command->add_option("--align", arguments->align, "none, yaw, se3 or sim3")->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "file to write")->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  lodeline report dive1_result -o dive1.html\n"
+      "  lodeline report with_mag without_mag --reference dive1/truth.tum --align none -o comparison.html\n"
+      "The page is one file that works without a network; docs/report.md tells what it shows.");
+  command->callback([arguments] { reportCommand(*arguments); });
+}
+
+}  // namespace lodeline

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+#include "lodeline/pipeline/run_request.h"
+
+namespace lodeline {
+
+/// What `lodeline run` and `lodeline refine` have in common: recording, output folder and settings.
+/// `arguments` must outlive the command.
+void addRunOptions(RunRequest* arguments, CLI::App* command);
+
+/// Runs, prints the summary and writes the report. Throws InputError, UsageError and EstimationError.
+void executeRun(RunRequest request);
+
+/// `lodeline run DATA -o OUT`: from a recording to a trajectory, its uncertainty and a map. Its callback
+/// throws InputError, UsageError, EstimationError and Interruption.
+void addRunCommand(CLI::App& program);
+
+/// The command line with `--live` as `--live=PORT`, whether a number follows or not. An option whose value
+/// may be left out would take whatever follows for its value, as the recording in `run --live dive1`.
+std::vector<std::string> completeLiveOption(std::vector<std::string> arguments);
+
+}  // namespace lodeline

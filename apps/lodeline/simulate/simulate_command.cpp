@@ -1,0 +1,95 @@
+#include "apps/lodeline/simulate/simulate_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "apps/lodeline/shared/interruption.h"
+#include "apps/lodeline/simulate/simulate_recording.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+struct SimulateArguments {
+  std::string scenario;
+  std::string output;
+  ScenarioChanges changes;
+  int threads = 0;
+  bool quiet = false;
+  bool list_effects = false;
+};
+
+std::string footer() {
+  std::string text = "Scenarios:\n";
+  for (const Scenario& s : scenarios()) text += fmt::format("  {:<14}{}\n", s.name, s.description);
+  text +=
+      "\nExamples:\n"
+      "  lodeline simulate demo -o demo --realism field\n"
+      "  lodeline simulate cave1_short -o dive --metres 60 --effect flat_port=on\n"
+      "  lodeline simulate figure_eight -o calibration --seed 7\n\n"
+      "An interrupted simulation goes on where it stopped when the same command is given again.";
+  return text;
+}
+
+void printEffects() {
+  fmt::print("{:<26}{:<7}{:<7}{}\n", "effect", "clean", "field", "what it does");
+  for (const EffectDescription& d : effectDescriptions()) {
+    fmt::print("{:<26}{:<7}{:<7}{}\n", d.name, d.in_clean ? "on" : "off", d.in_field ? "on" : "off", d.what);
+  }
+}
+
+void simulate(const SimulateArguments& arguments) {
+  if (arguments.list_effects) return printEffects();
+  if (arguments.scenario.empty()) throw UsageError("name a scenario; `lodeline simulate --help` lists them");
+  if (arguments.output.empty()) throw UsageError("name the folder to write to with -o");
+  const Scenario scenario = makeScenario(arguments.scenario, arguments.changes);
+  const RecordingSummary summary =
+      simulateRecording(scenario, arguments.output, {.threads = arguments.threads, .quiet = arguments.quiet});
+  if (!summary.complete) {
+    throw Interruption(fmt::format("{} of {} images are in {}; the same command goes on from there",
+                                   summary.images.done, summary.images.total, arguments.output));
+  }
+  fmt::print("{}: {:.1f} s, {:.1f} m, {} images in {}\n", scenario.name, summary.duration_s,
+             summary.path_length_m, summary.images.total, arguments.output);
+}
+
+}  // namespace
+
+void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
+  ScenarioChanges& c = *changes;
+  command->add_option("--seconds", c.seconds, "duration; given alone, the length follows");
+  command->add_option("--metres", c.metres, "length of the path; given alone, the duration follows");
+  command->add_option("--seed", c.seed, "of everything random (1)");
+  command->add_option("--realism", c.realism, "clean, or field: what a diver delivers (clean)");
+  command->add_option("--effect", c.effects, "NAME=on or NAME=off, repeatable; see --list-effects");
+  command->add_option("--width", c.width_px, "of the images, px; the height follows as 3/4 (640)");
+  command->add_option("--height", c.height_px, "of the images, px");
+  command->add_option("--camera-rate-hz", c.camera_rate_hz, "images a second (15)");
+  command->add_option("--imu-rate-hz", c.imu_rate_hz, "inertial readings a second (200)");
+  command->add_option("--magnetometer-rate-hz", c.magnetometer_rate_hz,
+                      "magnetometer readings a second (50)");
+  command->add_option("--imu", c.imu_grade, "gx5-25, gv7 or consumer");
+  command->add_flag("--starts-moving", c.starts_moving, "begin in mid-swim instead of at rest");
+}
+
+void addSimulateCommand(CLI::App& program) {
+  auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* command =
+      program.add_subcommand("simulate", "Make a recording of a simulated dive with exact truth");
+  ScenarioChanges& c = arguments->changes;
+  command->add_option("SCENARIO", arguments->scenario, "what to simulate, see below");
+  command->add_option("-o,--output", arguments->output, "folder to write: mav0 (EuRoC layout) and truth");
+  addScenarioOptions(command, &c);
+  command->add_option("--cameras", c.cameras, "1 or 2");
+  command->add_flag("--no-images", c.no_images, "write everything but the images");
+  command->add_option("--threads", arguments->threads, "for rendering (all cores)");
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--list-effects", arguments->list_effects, "print all effects and end");
+  command->footer(footer());
+  command->callback([arguments] { simulate(*arguments); });
+}
+
+}  // namespace lodeline

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "simulation/dive/scenario.h"
+
+namespace lodeline {
+
+/// `lodeline simulate SCENARIO -o DIR`: a recording of a simulated dive with exact truth. Its callback throws
+/// InputError and UsageError.
+void addSimulateCommand(CLI::App& program);
+
+/// Options that change a scenario, but for the number of cameras and the choice to leave images out.
+void addScenarioOptions(CLI::App* command, ScenarioChanges* changes);
+
+}  // namespace lodeline

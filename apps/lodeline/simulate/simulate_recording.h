@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "simulation/dive/recording.h"
+
+namespace lodeline {
+
+struct SimulationRun {
+  int threads = 0;     ///< for rendering; 0 for all cores
+  bool quiet = false;  ///< no progress on the terminal
+};
+
+/// Simulates a scenario into a folder, or goes on with one that was interrupted, showing progress; Ctrl-C
+/// ends it early (RecordingSummary::complete is false then). Throws as recordScenario() does.
+RecordingSummary simulateRecording(const Scenario& scenario, const std::filesystem::path& folder,
+                                   const SimulationRun& run);
+
+}  // namespace lodeline

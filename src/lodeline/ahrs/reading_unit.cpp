@@ -1,0 +1,56 @@
+#include "lodeline/ahrs/reading_unit.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lodeline {
+namespace {
+
+constexpr size_t kReadings = 20;
+constexpr std::array kLargestFirst = {FieldUnit::Tesla, FieldUnit::Gauss, FieldUnit::Microtesla,
+                                      FieldUnit::Milligauss, FieldUnit::Nanotesla};
+
+template <typename Size>
+double medianSize(const std::vector<Vec3>& readings, const Size& size) {
+  std::vector<double> sizes;
+  for (const Vec3& reading : readings) sizes.push_back(size(reading));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+}  // namespace
+
+void ReadingUnit::add(const Vec3& reading) {
+  if (settled()) return;
+  readings_.push_back(reading);
+  unit_ = find();
+}
+
+bool ReadingUnit::settled() const { return readings_.size() >= kReadings; }
+
+double ReadingUnit::size() const {
+  return readings_.empty() ? 0.0 : medianSize(readings_, [](const Vec3& reading) { return reading.norm(); });
+}
+
+bool ReadingUnit::fits(FieldUnit unit) const {
+  const double tesla = teslaPer(unit);
+  // In too small a unit a reading is nothing, and what is left is the calibration's hard iron.
+  const double raw_T = tesla * size();
+  if (raw_T < 5e-6 || raw_T > 500e-6) return false;
+  const double corrected_T = medianSize(
+      readings_, [&](const Vec3& reading) { return calibration_.corrected_B(tesla * reading).norm(); });
+  return unitBySize(corrected_T) == FieldUnit::Tesla;
+}
+
+FieldUnit ReadingUnit::find() const {
+  for (const FieldUnit unit : kLargestFirst) {
+    if (fits(unit)) return unit;
+  }
+  // A calibration may be wrong, or missing where hard iron is larger than the field: then the size as it is.
+  // No unit but tesla has readings so small.
+  if (size() > 1e-6 && size() < 1e-3) return FieldUnit::Tesla;
+  return unitBySize(size());
+}
+
+}  // namespace lodeline

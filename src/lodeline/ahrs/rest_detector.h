@@ -1,0 +1,48 @@
+#pragma once
+
+#include "lodeline/ahrs/low_pass.h"
+#include "lodeline/sensors/measurements.h"
+
+namespace lodeline {
+
+struct RestDetectorOptions {
+  double time_constant_s = 0.5;             ///< of the means that readings are compared with
+  double shortest_s = 1.5;                  ///< readings must stay close to their means for so long
+  double rate_deviation_rad_per_s = 0.035;  ///< 2 deg/s
+  double force_deviation_m_per_s2 = 0.5;
+};
+
+/// Tells when a sensor lies still, from readings that stay close to their own means (Laidig & Seel, "VQF",
+/// Information Fusion 2023, section 3.5). A steady turn looks like a bias here; the bias filter knows better.
+class RestDetector {
+ public:
+  explicit RestDetector(const RestDetectorOptions& options)
+      : options_(options), rate_(options.time_constant_s), force_(options.time_constant_s) {}
+
+  /// `step_s`: since the sample before.
+  bool update(const ImuSample& sample, double step_s) {
+    const Vec3& rate = rate_.update(sample.angular_velocity_B, step_s);
+    const Vec3& force = force_.update(sample.specific_force_B, step_s);
+    const bool is_close =
+        (sample.angular_velocity_B - rate).cwiseAbs().maxCoeff() < options_.rate_deviation_rad_per_s &&
+        (sample.specific_force_B - force).cwiseAbs().maxCoeff() < options_.force_deviation_m_per_s2;
+    still_s_ = is_close ? still_s_ + step_s : 0.0;
+    return still_s_ >= options_.shortest_s;
+  }
+
+  /// Mean of the gyroscope's readings, rad/s.
+  const Vec3& meanRate_B() const { return rate_.value(); }
+
+  void reset() {
+    still_s_ = 0.0;
+    rate_.reset();
+    force_.reset();
+  }
+
+ private:
+  RestDetectorOptions options_;
+  LowPass<Vec3> rate_, force_;
+  double still_s_ = 0.0;
+};
+
+}  // namespace lodeline

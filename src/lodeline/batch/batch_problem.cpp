@@ -1,0 +1,247 @@
+#include "lodeline/batch/batch_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/batch/batch_structure.h"
+#include "lodeline/estimator/problem/robust_loss.h"
+#include "lodeline/estimator/problem/window_terms.h"
+#include "lodeline/estimator/self_calibration/lens_trust.h"
+#include "lodeline/estimator/state/magnetometer_states.h"
+#include "lodeline/estimator/uncertainty/claimed_covariance.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kSensorLoss = 3.0;  // Cauchy, in standard deviations
+
+}  // namespace
+
+BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record)
+    : options_(options),
+      factors_(rig, options_),
+      loss_(std::make_shared<ceres::CauchyLoss>(kSensorLoss)),
+      visual_(window_, factors_) {
+  for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
+  addStates(rig, record);
+  addTracks(record);
+  addGlobals(record);
+  addStartPrior(rig, record);
+  holdLenses(record.globals());
+  believeInFilesAsBefore(record);
+  addImuAxes(record.globals());
+  orderBlocks();
+  relinearise();
+  renewLandmarks();
+}
+
+size_t BatchProblem::landmarks() const {
+  return static_cast<size_t>(std::count_if(window_.tracks().begin(), window_.tracks().end(),
+                                           [](const auto& entry) { return entry.second.landmark; }));
+}
+
+size_t BatchProblem::sightings() const {
+  size_t count = 0;
+  for (const auto& [id, track] : window_.tracks()) count += track.landmark ? track.sightings.size() : 0;
+  return count;
+}
+
+double* BatchProblem::nodeOf(const Chain& chain, size_t state) {
+  if (chain.empty()) return nullptr;
+  const auto after = std::upper_bound(chain.begin(), chain.end(), state,
+                                      [](size_t k, const Node& node) { return k < node.first; });
+  return std::prev(after)->state->value.data();
+}
+
+std::vector<Factor> BatchProblem::motionFactors() {
+  std::vector<Factor> terms;
+  for (const Prior& prior : priors_) terms.push_back(factors_.prior(prior));
+  for (Factor& term : collectGlobalTerms(window_, factors_)) terms.push_back(std::move(term));
+  for (size_t k = 0; k < states(); ++k) {
+    Frame& frame = *window_.frames()[k];
+    if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));
+    if (!field_offsets_.empty()) {
+      if (auto field = factors_.magnetometer(window_, nullptr, frame)) {
+        field->blocks[2] = nodeOf(field_offsets_, k);
+        field->loss = loss_;
+        terms.push_back(std::move(*field));
+      }
+    }
+    if (!depth_offsets_.empty()) {
+      if (auto depth = factors_.depth(window_, frame)) {
+        depth->blocks[1] = nodeOf(depth_offsets_, k);
+        depth->loss = loss_;
+        terms.push_back(std::move(*depth));
+      }
+    }
+  }
+  return terms;
+}
+
+double BatchProblem::cost() {
+  std::vector<double> residual;
+  double sum = visual_.cost();
+  for (const Factor& factor : motionFactors()) sum += costOf(factor, residual);
+  return sum;
+}
+
+void BatchProblem::scatter(const NormalEquations& local, SkylineMatrix* hessian,
+                           Eigen::VectorXd* gradient) const {
+  const auto h = local.lowerTriangle();
+  const Eigen::VectorXd g = local.gradient();
+  std::vector<int> rows;
+  for (const NormalEquations::Block& a : local.blocks()) {
+    const int row = rows.emplace_back(rowOf(a.value));
+    gradient->segment(hessian->offset(row), a.tangentSize()) += g.segment(a.offset, a.tangentSize());
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const NormalEquations::Block& b = local.blocks()[i];
+      const auto product = h.block(a.offset, b.offset, a.tangentSize(), b.tangentSize());
+      if (rows[i] == row) {
+        hessian->block(row, row) += product.selfadjointView<Eigen::Lower>().toDenseMatrix();
+      } else if (rows[i] < row) {
+        hessian->block(row, rows[i]) += product;
+      } else {
+        hessian->block(rows[i], row) += product.transpose();
+      }
+    }
+  }
+}
+
+void BatchProblem::linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient) {
+  hessian->setZero();
+  gradient->setZero(hessian->size());
+  for (const Factor& factor : motionFactors()) {
+    NormalEquations local;
+    local.add(factor);
+    scatter(local, hessian, gradient);
+  }
+  visual_.linearise([&](const NormalEquations& local) { scatter(local, hessian, gradient); });
+}
+
+void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
+  const int first_motion = rowOf(state(0).motion.data());
+  hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
+      unclaimedBiasInformation(options_);
+  for (const auto& [state, unclaimed] : unclaimedCalibration(window_, options_, factors_))
+    hessian->block(rowOf(state), rowOf(state)) -= unclaimed;
+}
+
+void BatchProblem::step(const Eigen::VectorXd& step) {
+  std::vector<int> offsets(1, 0);
+  for (const int size : sizes_) offsets.push_back(offsets.back() + size);
+  const auto stepOf = [&](const double* value, int size) {
+    return step.segment(offsets[static_cast<size_t>(rowOf(value))], size);
+  };
+  visual_.step([&](const NormalEquations& local) {
+    Eigen::VectorXd local_step(local.size());
+    for (const NormalEquations::Block& block : local.blocks())
+      local_step.segment(block.offset, block.tangentSize()) = stepOf(block.value, block.tangentSize());
+    return local_step;
+  });
+  for (const auto& frame : window_.frames()) {
+    const Eigen::Matrix<double, 6, 1> moved = stepOf(frame->pose.data(), kPoseTangentSize);
+    poseToBlock(perturbed(frame->worldFromBody(), moved), frame->pose.data());
+    Eigen::Map<Eigen::Matrix<double, kMotionSize, 1>>(frame->motion.data()) +=
+        stepOf(frame->motion.data(), kMotionSize);
+  }
+  for (const auto& global : window_.globals()) {
+    const int size = global->tangentSize();
+    Eigen::Map<Eigen::VectorXd>(global->value.data(), size) += stepOf(global->value.data(), size);
+  }
+}
+
+template <typename Visit>
+void BatchProblem::forEachValue(const Visit& visit) {
+  for (const auto& frame : window_.frames()) {
+    visit(frame->pose.data(), kPoseSize);
+    visit(frame->motion.data(), kMotionSize);
+  }
+  for (const auto& global : window_.globals())
+    visit(global->value.data(), static_cast<int>(global->value.size()));
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.landmark) visit(track.landmark->parameters.data(), kLandmarkSize);
+  }
+}
+
+std::vector<double> BatchProblem::values() {
+  std::vector<double> values;
+  forEachValue([&](const double* value, int size) { values.insert(values.end(), value, value + size); });
+  return values;
+}
+
+void BatchProblem::setValues(const std::vector<double>& values) {
+  const double* next = values.data();
+  forEachValue([&](double* value, int size) {
+    std::copy_n(next, size, value);
+    next += size;
+  });
+}
+
+void BatchProblem::relinearise() {
+  Frame* before = nullptr;
+  for (const auto& frame : window_.frames()) {
+    frame->updateImageMotion();
+    if (before &&
+        frame->from_previous->needsRepropagation(before->gyroscopeBias(), before->accelerometerBias()))
+      frame->from_previous->repropagate(before->gyroscopeBias(), before->accelerometerBias());
+    before = frame.get();
+  }
+}
+
+double BatchProblem::renewLandmarks() {
+  window_.tracks() = all_tracks_;
+  double placed = 0.0, removed = 0.0;
+  std::vector<SightingError> errors;
+  for (auto& [id, track] : window_.tracks()) {
+    placeLandmark(window_, factors_, options_.landmark, &track);
+    if (!track.landmark) continue;
+    placed += static_cast<double>(track.sightings.size());
+    removed += removeContradictions(window_, factors_, options_.landmark, id, &track, &errors);
+  }
+  adaptRobustLosses(window_, errors, options_.solver);
+  visual_.arrange();
+  return placed > 0.0 ? removed / placed : 0.0;
+}
+
+LastingErrors BatchProblem::lastingErrors() {
+  constexpr double kBelieved = 2.0;  // widths of the loss: what is further off it hardly counts
+  LastingErrors lasting;
+  for (auto& [id, track] : window_.tracks()) {
+    if (!track.landmark) continue;
+    const std::vector<Vec2> errors = residualsOf(factors_.landmark(window_, track));
+    std::vector<std::vector<Vec2>> by_camera(cameras_.size());
+    for (size_t i = 0; i < errors.size(); ++i) {
+      const Sighting& sighting = track.sightings[i];
+      if (errors[i].norm() < kBelieved * factors_.robustScale(*window_.find(sighting.frame)))
+        by_camera[static_cast<size_t>(sighting.camera)].push_back(errors[i]);
+    }
+    for (const std::vector<Vec2>& of_camera : by_camera) lasting.add(of_camera);
+  }
+  return lasting;
+}
+
+void BatchProblem::weighSightings(double variance) {
+  for (auto& [id, track] : window_.tracks()) track.weight /= variance;
+}
+
+Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index, const SkylineMatrix& inverse) const {
+  const int pose = rowOf(state(index).pose.data()), motion = rowOf(state(index).motion.data());
+  Eigen::Matrix<double, 15, 15> covariance;
+  covariance.topLeftCorner<6, 6>() = inverse.block(pose, pose);
+  covariance.bottomLeftCorner<9, 6>() = inverse.block(motion, pose);
+  covariance.topRightCorner<6, 9>() = covariance.bottomLeftCorner<9, 6>().transpose();
+  covariance.bottomRightCorner<9, 9>() = inverse.block(motion, motion);
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+AzimuthCovariance BatchProblem::azimuth(size_t index, const SkylineMatrix& inverse) const {
+  const GlobalState* field = window_.findGlobal(MagnetometerStates::kField);
+  if (field == nullptr) return {};
+  const int row = rowOf(field->value.data());
+  Eigen::Matrix<double, 15, 3> state_field;
+  state_field << inverse.block(row, rowOf(state(index).pose.data())).transpose(),
+      inverse.block(row, rowOf(state(index).motion.data())).transpose();
+  return azimuthCovariance(MagnetometerStates(window_).field_W(), inverse.block(row, row), state_field);
+}
+
+}  // namespace lodeline

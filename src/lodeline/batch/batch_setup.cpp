@@ -1,0 +1,281 @@
+// How a BatchProblem is made from the record of a forward run.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lodeline/batch/batch_problem.h"
+#include "lodeline/estimator/self_calibration/lens_trust.h"
+#include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/estimator/state/depth_states.h"
+#include "lodeline/estimator/state/inertial_states.h"
+#include "lodeline/estimator/state/magnetometer_states.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kNode_s = 60.0;  // for which a wandering offset counts as constant
+// Longer tracks are cut: their states form a clique, and a rig at rest would tie thousands together.
+constexpr size_t kLongestTrack = 40;
+
+/// The end of a random walk against its beginning, as a quadratic term.
+Prior walkBetween(GlobalState* begin, GlobalState* end, double sigma) {
+  Prior prior;
+  const auto size = static_cast<Eigen::Index>(begin->value.size());
+  for (GlobalState* state : {begin, end})
+    prior.blocks.push_back({state->value.data(), Eigen::VectorXd::Zero(size)});
+  prior.sqrt_information = Eigen::MatrixXd::Zero(2 * size, 2 * size);
+  prior.sqrt_information.topLeftCorner(size, size).diagonal().setConstant(1.0 / sigma);
+  prior.sqrt_information.topRightCorner(size, size).diagonal().setConstant(-1.0 / sigma);
+  prior.offset = Eigen::VectorXd::Zero(2 * size);
+  return prior;
+}
+
+/// Takes a block that is tied to no other out of a prior.
+void remove(const char* name, Prior* prior, std::vector<std::string>* names) {
+  Prior rest;
+  std::vector<std::string> rest_names;
+  std::vector<int> kept;
+  int row = 0;
+  for (size_t i = 0; i < names->size(); ++i) {
+    const Prior::Block& block = prior->blocks[i];
+    if ((*names)[i] != name) {
+      rest.blocks.push_back(block);
+      rest_names.push_back((*names)[i]);
+      for (int k = 0; k < block.tangentSize(); ++k) kept.push_back(row + k);
+    }
+    row += block.tangentSize();
+  }
+  rest.sqrt_information = prior->sqrt_information(kept, kept).eval();
+  rest.offset = prior->offset(kept).eval();
+  *prior = std::move(rest);
+  *names = std::move(rest_names);
+}
+
+}  // namespace
+
+void BatchProblem::addStates(const Rig& rig, const ForwardRecord& record) {
+  for (const RecordedState& recorded : record.states()) {
+    auto frame = std::make_unique<Frame>();
+    frame->id = static_cast<FrameId>(states());
+    frame->setState(recorded.state);
+    frame->is_keyframe = true;  // any state may host landmarks
+    frame->gyroscope_B = recorded.gyroscope_B;
+    frame->magnetometer = recorded.magnetometer;
+    frame->depth = recorded.depth;
+    if (!window_.empty()) {
+      const Frame& before = window_.newest();
+      frame->from_previous = std::make_unique<Preintegration>(
+          record.imuBetween(before.time, frame->time), before.gyroscopeBias(), before.accelerometerBias(),
+          rig.imu, options_.preintegration);
+      if (const InertialDoubt doubt = record.doubtBetween(before.time, frame->time); doubt.any())
+        frame->from_previous->setDoubt(doubt);
+    }
+    window_.add(std::move(frame));
+  }
+}
+
+void BatchProblem::addTracks(const ForwardRecord& record) {
+  struct Piece {
+    TrackId id;
+    size_t first;
+  };
+  std::unordered_map<TrackId, Piece> pieces;
+  TrackId next = 0;
+  for (size_t k = 0; k < states(); ++k) {
+    for (const Observation& observation : record.states()[k].observations) {
+      const auto [entry, is_new] = pieces.try_emplace(observation.track, Piece{next, k});
+      if (!is_new && k - entry->second.first >= kLongestTrack) entry->second = {next, k};
+      if (entry->second.id == next) ++next;
+      Sighting sighting;
+      sighting.frame = static_cast<FrameId>(k);
+      sighting.camera = observation.camera;
+      sighting.measurement = DirectionMeasurement::fromBearing(
+          *cameras_[static_cast<size_t>(observation.camera)], observation.bearing_C, observation.sigma_px);
+      all_tracks_[entry->second.id].sightings.push_back(sighting);
+    }
+  }
+  removeShortTracks(all_tracks_, 2);
+}
+
+GlobalState* BatchProblem::addGlobal(const ForwardRecord& record, const std::string& name,
+                                     const std::string& as) {
+  const auto found = record.globals().find(name);
+  if (found == record.globals().end()) return nullptr;
+  return &window_.add({as, found->second, std::nullopt, 0.0, false});
+}
+
+void BatchProblem::addKnowledge(GlobalState* state, double sigma) {
+  Prior& prior = priors_.emplace_back();
+  const auto size = static_cast<Eigen::Index>(state->value.size());
+  prior.append(state->value.data(), static_cast<int>(size), Eigen::VectorXd::Constant(size, sigma));
+}
+
+void BatchProblem::addGlobals(const ForwardRecord& record) {
+  const MagnetometerOptions& magnetometer = options_.magnetometer;
+  const DepthOptions& depth = options_.depth;
+  addChain(record, MagnetometerStates::kOffset, false, &field_offsets_);
+  addWalk(field_offsets_, magnetometer.offset_walk_T_per_sqrt_s);
+  addGlobal(record, MagnetometerStates::kField, MagnetometerStates::kField);
+  addChain(record, DepthStates::kOffset, true, &depth_offsets_);
+  addWalk(depth_offsets_, depth.offset_walk_m_per_sqrt_s);
+  for (const Node& node : depth_offsets_) {
+    if (!node.continues) addKnowledge(node.state, depth.offset_sigma_m);
+  }
+  if (GlobalState* scale = addGlobal(record, DepthStates::kScale, DepthStates::kScale)) {
+    scale->value = {depth.density_ratio};
+    addKnowledge(scale, std::max(depth.density_ratio_sigma, 1e-7));
+    scale->value = record.globals().at(DepthStates::kScale);
+    const auto& gauge = record.frames().back().depth.gauge;
+    if (gauge && gauge->belief) scale->beliefs = {*gauge->belief};
+  }
+  if (GlobalState* lag = addGlobal(record, DepthStates::kLag, DepthStates::kLag)) {
+    lag->value = {depth.lag_s};
+    addKnowledge(lag, std::max(depth.lag_sigma_s, 1e-7));
+    lag->value = record.globals().at(DepthStates::kLag);
+  }
+}
+
+void BatchProblem::addChain(const ForwardRecord& record, const char* name, bool restarts, Chain* chain) {
+  int epoch = 0;
+  for (size_t k = 0; k < states(); ++k) {
+    const int now = restarts ? record.states()[k].gauge_epoch : 0;
+    const bool is_new = chain->empty() || now != epoch;
+    if (!is_new && (state(k).time - state(chain->back().first).time).seconds() < kNode_s) continue;
+    // The first keeps the plain name, by which factors look for it.
+    const std::string as = chain->empty() ? name : std::string(name) + "@" + std::to_string(chain->size());
+    GlobalState* node = addGlobal(record, name, as);
+    if (node == nullptr) return;
+    chain->push_back({k, node, !is_new});
+    epoch = now;
+  }
+}
+
+void BatchProblem::addWalk(const Chain& chain, double walk_per_sqrt_s) {
+  for (size_t i = 1; i < chain.size(); ++i) {
+    if (!chain[i].continues) continue;
+    const double elapsed_s = (state(chain[i].first).time - state(chain[i - 1].first).time).seconds();
+    const double sigma = std::max(walk_per_sqrt_s * std::sqrt(elapsed_s), 1e-12);
+    priors_.push_back(walkBetween(chain[i - 1].state, chain[i].state, sigma));
+  }
+}
+
+void BatchProblem::addStartPrior(const Rig& rig, const ForwardRecord& record) {
+  const ForwardRecord::StartPrior& start = record.startPrior();
+  const GlobalValues& globals = record.globals();
+  Prior prior = start.prior;
+  std::vector<std::string> names = start.names;
+  // That the start's field was the Earth's turned out to be wrong.
+  if (record.frames().back().magnetometer.field_epoch > 0) {
+    remove(MagnetometerStates::kField, &prior, &names);
+    remove(MagnetometerStates::kOffset, &prior, &names);
+  }
+  Frame& first = *window_.frames().front();
+  std::vector<const double*> known;
+  for (size_t i = 0; i < prior.blocks.size(); ++i) {
+    const std::string& name = names[i];
+    double* value = nullptr;
+    if (name == "pose") value = first.pose.data();
+    if (name == "motion") value = first.motion.data();
+    if (value == nullptr) {
+      GlobalState* state = window_.findGlobal(name);
+      // The cameras' placement is in no chain, and has not been added yet.
+      if (state == nullptr) {
+        const Eigen::VectorXd& at = prior.blocks[i].first_estimate;
+        state = &window_.add({name, {at.data(), at.data() + at.size()}, std::nullopt, 0.0, false});
+        const auto end = globals.find(name);
+        if (end != globals.end()) state->value = end->second;
+      }
+      value = state->value.data();
+    }
+    prior.blocks[i].value = value;
+    known.push_back(value);
+  }
+  priors_.push_back(std::move(prior));
+  // A magnetometer that was heard only later has states that the start knew nothing of.
+  const MagnetometerStates magnetometer(window_);
+  const auto isKnown = [&](const GlobalState* state) {
+    return std::find(known.begin(), known.end(), state->value.data()) != known.end();
+  };
+  if (magnetometer.field && !isKnown(magnetometer.field))
+    addKnowledge(magnetometer.field, options_.magnetometer.field_sigma_T);
+  if (magnetometer.offset && !isKnown(magnetometer.offset)) {
+    const std::vector<double> end = std::exchange(magnetometer.offset->value, {0.0, 0.0, 0.0});
+    addKnowledge(magnetometer.offset, offsetSigma(*rig.magnetometer, options_.magnetometer));
+    magnetometer.offset->value = end;
+  }
+}
+
+void BatchProblem::holdLenses(const GlobalValues& globals) {
+  CameraCalibrationOptions held = options_.camera_calibration;
+  held.focal_length_sigma = held.principal_point_sigma_px = held.radial_sigma = 0.0;
+  Prior prior;
+  addLensStates(window_, prior, static_cast<int>(cameras_.size()), held);
+  if (prior.empty()) return;
+  const std::vector<GlobalState*> lenses = cameraStates(window_).intrinsics;
+  for (size_t camera = 0; camera < lenses.size(); ++camera) {
+    const auto end = globals.find(lenses[camera]->name);
+    if (end == globals.end()) continue;
+    lenses[camera]->value = end->second;
+    prior.blocks[camera].first_estimate =
+        Eigen::Map<const Eigen::VectorXd>(end->second.data(), static_cast<Eigen::Index>(end->second.size()));
+  }
+  priors_.push_back(std::move(prior));
+}
+
+void BatchProblem::believeInFilesAsBefore(const ForwardRecord& record) {
+  const auto& corrections = record.frames().back().camera_corrections;
+  if (corrections) believeInFiles(window_, options_.camera_calibration, corrections->are_files_held);
+}
+
+void BatchProblem::addImuAxes(const GlobalValues& globals) {
+  addInertialStates(window_, options_.imu_axes);
+  const ImuAxesStates axes(window_);
+  for (GlobalState* state : {axes.gyroscope, axes.accelerometer}) {
+    if (!state) continue;
+    const auto end = globals.find(state->name);
+    if (end != globals.end()) state->value = end->second;
+  }
+}
+
+void BatchProblem::appendBlock(double* value, int tangent_size, int first) {
+  const int row = static_cast<int>(sizes_.size());
+  rows_[value] = row;
+  sizes_.push_back(tangent_size);
+  first_.push_back(std::min(first, row));
+}
+
+void BatchProblem::orderBlocks() {
+  std::vector<size_t> first_seen(states());  // oldest state that shares a landmark
+  for (size_t k = 0; k < states(); ++k) first_seen[k] = k > 0 ? k - 1 : 0;
+  for (const auto& [id, track] : all_tracks_) {
+    const auto oldest = static_cast<size_t>(track.sightings.front().frame);
+    for (const Sighting& sighting : track.sightings) {
+      size_t& first = first_seen[static_cast<size_t>(sighting.frame)];
+      first = std::min(first, oldest);
+    }
+  }
+  // A node of a chain stands behind the states that it is in force for.
+  const auto appendNodes = [&](const Chain& chain, size_t k) {
+    for (size_t i = 0; i < chain.size(); ++i) {
+      const size_t last = i + 1 < chain.size() ? chain[i + 1].first - 1 : states() - 1;
+      if (last != k) continue;
+      const int since = rowOf(state(chain[i].first).pose.data());
+      const int before = i > 0 ? rowOf(chain[i - 1].state->value.data()) : since;
+      // The start's prior ties the first one to the first state.
+      appendBlock(chain[i].state->value.data(), chain[i].state->tangentSize(), std::min(since, before));
+    }
+  };
+  for (size_t k = 0; k < states(); ++k) {
+    Frame& frame = *window_.frames()[k];
+    const int first = k == 0 ? 0 : rowOf(state(first_seen[k]).pose.data());
+    appendBlock(frame.pose.data(), kPoseTangentSize, first);
+    appendBlock(frame.motion.data(), kMotionSize, k == 0 ? 0 : rowOf(state(k - 1).pose.data()));
+    appendNodes(field_offsets_, k);
+    appendNodes(depth_offsets_, k);
+  }
+  for (const auto& global : window_.globals()) {
+    if (rows_.count(global->value.data()) == 0) appendBlock(global->value.data(), global->tangentSize(), 0);
+  }
+}
+
+}  // namespace lodeline

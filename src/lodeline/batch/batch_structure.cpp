@@ -1,0 +1,128 @@
+#include "lodeline/batch/batch_structure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/estimator/visual/landmark_host.h"
+#include "lodeline/frontend/stereo/triangulation.h"
+
+namespace lodeline {
+namespace {
+
+bool hosts(const TrackHistory& track) {
+  return track.seenIn(track.landmark->host) && track.find(track.landmark->host, 0) != nullptr;
+}
+
+/// Cost of a landmark's terms and, under their losses, the normal equations of the landmark alone.
+struct LandmarkSystem {
+  double cost = 0.0;
+  Mat3 hessian = Mat3::Zero();
+  Vec3 gradient = Vec3::Zero();
+
+  explicit LandmarkSystem(const LandmarkFactors& terms) {
+    for (const Factor& factor : terms.factors) add(factor, terms.landmark);
+  }
+  void add(const Factor& factor, const double* landmark) {
+    using RowMajor = Eigen::Matrix<double, 2, kLandmarkSize, Eigen::RowMajor>;
+    RowMajor by_landmark;
+    std::vector<double*> jacobians(factor.blocks.size(), nullptr);
+    const auto block = std::find(factor.blocks.begin(), factor.blocks.end(), landmark);
+    jacobians[static_cast<size_t>(block - factor.blocks.begin())] = by_landmark.data();
+    Vec2 residual;
+    factor.function->Evaluate(factor.blocks.data(), residual.data(), jacobians.data());
+    double rho[3];
+    factor.loss->Evaluate(residual.squaredNorm(), rho);
+    cost += 0.5 * rho[0];
+    hessian += rho[1] * by_landmark.transpose() * by_landmark;
+    gradient += rho[1] * by_landmark.transpose() * residual;
+  }
+};
+
+/// Moves a landmark to where the robust loss has it, poses as they are. A place in the middle of all
+/// sightings is off by so much where one of them strays that most of the others contradict it.
+void settle(const LandmarkFactors& terms) {
+  constexpr int kMostSteps = 10;
+  constexpr double kLeastGain = 1e-3;
+  Eigen::Map<Vec3> landmark(terms.landmark);
+  LandmarkSystem system(terms);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Vec3 before = landmark;
+    landmark -= system.hessian.ldlt().solve(system.gradient);
+    const LandmarkSystem next(terms);
+    const double gain = system.cost - next.cost;
+    if (!(gain > 0.0)) landmark = before;
+    if (!(gain > kLeastGain * system.cost)) return;
+    system = next;
+  }
+}
+
+}  // namespace
+
+std::vector<Vec2> residualsOf(const LandmarkFactors& landmark) {
+  std::vector<Vec2> residuals;
+  for (const Factor& factor : landmark.factors)
+    factor.function->Evaluate(factor.blocks.data(), residuals.emplace_back().data(), nullptr);
+  return residuals;
+}
+
+void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                   TrackHistory* track) {
+  const auto host = std::find_if(track->sightings.begin(), track->sightings.end(),
+                                 [](const Sighting& sighting) { return sighting.camera == 0; });
+  if (host == track->sightings.end() || track->sightings.size() < 2) return;
+  const CameraStates cameras = cameraStates(window);
+  const auto viewOf = [&](const Sighting& sighting) {
+    // Pixels over the angle, both axes together.
+    const double pixels = std::sqrt(std::abs(sighting.measurement.sqrt_information.determinant()));
+    return BearingView{factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera),
+                       rayOf(sighting, cameras), 1.0 / pixels};
+  };
+  std::vector<BearingView> views = {viewOf(*host)};
+  for (const Sighting& sighting : track->sightings) {
+    if (&sighting != &*host) views.push_back(viewOf(sighting));
+  }
+  TriangulationOptions wanted;
+  wanted.max_rms_sigmas = 3.0 * options.max_error_sigmas;  // single sightings are judged afterwards
+  const Triangulation point = triangulate(views, wanted);
+  const double rho = point.inverse_depth_per_m, sigma = point.inverse_depth_sigma_per_m;
+  const bool is_known =
+      sigma < options.max_relative_sigma * std::abs(rho) || sigma < options.max_inverse_distance_sigma_per_m;
+  const bool is_usable =
+      point.good() || (point.status == TriangulationStatus::LowParallax && is_known && rho > 1e-4);
+  if (!is_usable || rho > 1.0 / options.min_distance_m || rho < 1e-4) return;
+  const Vec3 point_C = views.front().world_from_camera.inverse() * point.point_W;
+  Landmark landmark;
+  landmark.host = host->frame;
+  landmark.base = LandmarkBase(views.front().bearing_C);
+  const double depth = landmark.base.bearing_C.dot(point_C);
+  if (depth < options.min_distance_m) return;
+  const Vec2 ab = landmark.base.tangent_C.transpose() * point_C / depth;
+  landmark.parameters = {ab.x(), ab.y(), 1.0 / depth};
+  track->landmark = landmark;
+}
+
+int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
+                         TrackId id, TrackHistory* track, std::vector<SightingError>* errors) {
+  const LandmarkFactors terms = factors.landmark(window, *track);
+  const std::vector<Vec2> as_placed = residualsOf(terms);
+  settle(terms);
+  const std::vector<Vec2> settled = residualsOf(terms);
+  std::vector<Sighting> kept;
+  for (size_t i = 0; i < track->sightings.size(); ++i) {
+    const Sighting& sighting = track->sightings[i];
+    const bool is_host = sighting.frame == track->landmark->host && sighting.camera == 0;
+    if (!is_host) errors->push_back({id, sighting.frame, as_placed[i].norm()});
+    if (settled[i].norm() <= options.max_error_sigmas) kept.push_back(sighting);
+  }
+  const int removed = static_cast<int>(track->sightings.size() - kept.size());
+  track->sightings = std::move(kept);
+  if (!hosts(*track)) moveToNewHost(window, *track, track->landmark->host, factors);
+  if (!track->landmark) return removed;
+  const double rho = track->landmark->inverseDistance();
+  const bool is_sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
+  if (track->sightings.size() < 2 || !is_sane) track->landmark.reset();
+  return removed;
+}
+
+}  // namespace lodeline

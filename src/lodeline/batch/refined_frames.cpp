@@ -1,0 +1,150 @@
+#include "lodeline/batch/refined_frames.h"
+
+#include <cmath>
+#include <limits>
+
+#include "lodeline/estimator/state/depth_states.h"
+#include "lodeline/estimator/state/inertial_states.h"
+#include "lodeline/estimator/state/magnetometer_states.h"
+#include "lodeline/estimator/uncertainty/claimed_covariance.h"
+#include "lodeline/estimator/uncertainty/unmodelled_errors.h"
+
+namespace lodeline {
+namespace {
+
+using Mat15 = Eigen::Matrix<double, 15, 15>;
+
+class FrameMaker {
+ public:
+  FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
+             const ForwardRecord& record, const SkylineMatrix* inverse)
+      : problem_(problem), rig_(rig), options_(options), record_(record), unmodelled_(options) {
+    for (size_t k = 0; inverse && k < problem.states(); ++k) {
+      covariances_.push_back(problem.covarianceOf(k, *inverse));
+      azimuths_.push_back(problem.azimuth(k, *inverse));
+    }
+  }
+
+  FrameEstimate make(const FrameEstimate& forward) {
+    while (state_ + 1 < problem_.states() && problem_.state(state_ + 1).time <= forward.time) ++state_;
+    FrameEstimate refined = forward;
+    const Frame& begin = problem_.state(state_);
+    const bool is_state = begin.time == forward.time;
+    const double share = is_state || state_ + 1 == problem_.states()
+                             ? 0.0
+                             : (forward.time - begin.time).seconds() /
+                                   (problem_.state(state_ + 1).time - begin.time).seconds();
+    refined.state = is_state ? begin.state() : between(begin, forward.time, share);
+    refined.covariance = covarianceAt(share);
+    describeNorth(share, &refined);
+    addDoubtAboutUp(options_.imu_axes, &refined.covariance);
+    refined.camera_corrections = cameraCorrections(problem_.window());
+    refined.gyroscope_axes = gyroscopeAxes(problem_.window());
+    refined.accelerometer_axes = accelerometerAxes(problem_.window());
+    describeMagnetometer(&refined);
+    describeDepth(&refined);
+    unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
+    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
+                       refined.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
+                      &refined.covariance);
+    addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
+    refined.magnetometer.heading_sigma_rad =
+        std::hypot(std::sqrt(refined.covariance(5, 5)), refined.magnetometer.declination_sigma_rad);
+    return refined;
+  }
+
+ private:
+  NavigationState predictTo(const Frame& begin, Time time) const {
+    const Preintegration interval(record_.imuBetween(begin.time, time), begin.gyroscopeBias(),
+                                  begin.accelerometerBias(), rig_.imu, options_.preintegration);
+    return predict(begin.state(), interval, options_.gravity_W);
+  }
+
+  NavigationState between(const Frame& begin, Time time, double share) const {
+    NavigationState state = predictTo(begin, time);
+    if (state_ + 1 == problem_.states()) return state;
+    const Frame& end = problem_.state(state_ + 1);
+    const NavigationState missed = predictTo(begin, end.time);
+    state.world_from_body = perturbed(
+        state.world_from_body, share * perturbationBetween(missed.world_from_body, end.worldFromBody()));
+    state.velocity_W += share * (end.velocity_W() - missed.velocity_W);
+    state.gyroscope_bias_B += share * (end.gyroscopeBias() - begin.gyroscopeBias());
+    state.accelerometer_bias_B += share * (end.accelerometerBias() - begin.accelerometerBias());
+    return state;
+  }
+
+  Mat15 covarianceAt(double share) const {
+    if (covariances_.empty()) return Mat15::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (share == 0.0) return covariances_[state_];
+    return (1.0 - share) * covariances_[state_] + share * covariances_[state_ + 1];
+  }
+
+  /// North that the run found late counts from the first frame on.
+  void describeNorth(double share, FrameEstimate* refined) const {
+    const MagnetometerEstimate& last = record_.frames().back().magnetometer;
+    if (!last.north_found) return;
+    MagnetometerEstimate& magnetometer = refined->magnetometer;
+    magnetometer.heading_reference = last.heading_reference;
+    magnetometer.declination_sigma_rad = last.declination_sigma_rad;
+    magnetometer.axes_sigma_rad = last.axes_sigma_rad;
+    magnetometer.north_found = last.north_found;
+    magnetometer.north_from_world_rad = last.north_from_world_rad;
+    AzimuthCovariance azimuth;
+    azimuth.variance_rad2 = std::pow(last.north_from_world_sigma_rad, 2);
+    const MagnetometerStates states(problem_.window());
+    if (states.field) {
+      magnetometer.field_W = states.field_W();
+      magnetometer.north_from_world_rad =
+          northFromWorld(states.field_W(), last.heading_reference, options_.magnetometer);
+      if (!azimuths_.empty()) azimuth = azimuthAt(share);
+    }
+    magnetometer.north_from_world_sigma_rad = std::sqrt(azimuth.variance_rad2);
+    relateToNorth(refined->state, azimuth, &refined->covariance);
+  }
+
+  AzimuthCovariance azimuthAt(double share) const {
+    AzimuthCovariance at = azimuths_[state_];
+    if (share > 0.0) at.with_state += share * (azimuths_[state_ + 1].with_state - at.with_state);
+    return at;
+  }
+
+  void describeMagnetometer(FrameEstimate* refined) const {
+    const MagnetometerStates states(problem_.window());
+    if (states.field == nullptr || !refined->magnetometer.field_W) return;
+    refined->magnetometer.field_W = states.field_W();
+    refined->magnetometer.offset_B = Vec3(problem_.fieldOffset(state_));
+  }
+
+  void describeDepth(FrameEstimate* refined) const {
+    const DepthStates states(problem_.window());
+    if (!states || !refined->depth.gauge) return;
+    DepthEstimate::Gauge& gauge = *refined->depth.gauge;
+    gauge.depth_at_origin_m = *problem_.depthOffset(state_);
+    gauge.density_ratio = states.density_ratio();
+    gauge.lag_s = states.lag_s();
+    gauge.body_depth_m =
+        gauge.depth_at_origin_m - gauge.density_ratio * refined->state.world_from_body.translation.z();
+  }
+
+  const BatchProblem& problem_;
+  const Rig& rig_;
+  const EstimatorOptions& options_;
+  const ForwardRecord& record_;
+  UnmodelledErrors unmodelled_;
+  std::vector<Mat15> covariances_;
+  std::vector<AzimuthCovariance> azimuths_;
+  size_t state_ = 0;  ///< the last one at or before the frame
+};
+
+}  // namespace
+
+std::vector<FrameEstimate> refinedFrames(const BatchProblem& problem, const Rig& rig,
+                                         const EstimatorOptions& options, const ForwardRecord& record,
+                                         const SkylineMatrix* inverse) {
+  FrameMaker maker(problem, rig, options, record, inverse);
+  std::vector<FrameEstimate> frames;
+  for (const FrameEstimate& forward : record.frames()) frames.push_back(maker.make(forward));
+  return frames;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+#include "lodeline/geometry/types.h"
+#include "lodeline/util/time/time.h"
+
+namespace lodeline {
+
+/// Finds out when another field than the one in force has the better claim to be the Earth's. A dive may
+/// begin beside a boat or between tanks: that field is the first to be measured, and the gate rejects the
+/// Earth's as soon as the diver swims away. The Earth's field keeps size and direction in the world wherever
+/// the rig goes, so the field that holds for longest is the Earth's:
+/// - a field replaces the one in force when it has held for `kLeast_s` and for longer than that one agreed;
+/// - `kPlausible_s` are enough where the one in force cannot be the Earth's at the site (alignHeading());
+/// - a field that has agreed for `kConfirmed_s` is not replaced any more, nor one after `kMostReplacements`:
+///   by then the calibration is what is wrong.
+/// Only time with readings counts.
+class EarthFieldSearch {
+ public:
+  static constexpr double kLeast_s = 20.0;
+  static constexpr double kPlausible_s = 5.0;
+  static constexpr double kConfirmed_s = 300.0;
+  static constexpr int kMostReplacements = 3;
+  static constexpr double kSteadiness = 0.05;  ///< greatest change, relative to the field's size
+
+  struct Reading {
+    Time time;
+    Vec3 field_W = Vec3::Zero();  ///< measured, T
+    bool agrees = false;          ///< with the field in force
+    bool is_plausible = false;    ///< as the Earth's field at the site
+    bool is_field_in_force_plausible = false;
+  };
+  /// Gives the field (T, world axes) that takes the place of the one in force, where there is one.
+  std::optional<Vec3> add(const Reading& reading);
+
+ private:
+  void follow(const Reading& reading, double since_s);
+
+  std::optional<Time> last_time_;
+  double agreed_s_ = 0.0;            ///< for which the field in force agreed
+  std::optional<Vec3> candidate_W_;  ///< mean of the readings that have held
+  int readings_ = 0;                 ///< of that mean
+  double held_s_ = 0.0;
+  int replacements_ = 0;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,356 @@
+#include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
+
+#include <fmt/core.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lodeline/estimator/state/inertial_states.h"
+#include "lodeline/estimator/uncertainty/lasting_error.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+// A rig that has just been switched on does not know its gyroscope's bias: the less time it is carried over
+// the better, as long as there are readings.
+constexpr double kShortMean_s = 0.25;
+constexpr double kLongMean_s = 1.0;
+constexpr int kEnoughReadings = 3;
+constexpr double kLongestWait_s = 5.0;  // of means for their window
+
+MagnetometerUse useOf(const std::optional<MagnetometerCalibration>& magnetometer, MagnetometerUse wanted) {
+  if (!magnetometer || wanted == MagnetometerUse::Off) return MagnetometerUse::Off;
+  if (wanted != MagnetometerUse::Automatic) return wanted;
+  return magnetometer->is_calibrated ? MagnetometerUse::Absolute : MagnetometerUse::Off;
+}
+
+/// The part of the readings that a mean is made of: within the IMU's readings and not too old.
+std::span<const FieldSample> recent(std::span<const FieldSample> samples, std::span<const ImuSample> imu) {
+  const auto since = [&](Time begin) {
+    return samples.subspan(static_cast<size_t>(std::count_if(
+        samples.begin(), samples.end(), [&](const FieldSample& sample) { return sample.time < begin; })));
+  };
+  const Time end = imu.back().time;
+  while (!samples.empty() && samples.back().time > end) samples = samples.first(samples.size() - 1);
+  const auto last = since(std::max(imu.front().time, end - Duration::fromSeconds(kShortMean_s)));
+  if (static_cast<int>(last.size()) >= kEnoughReadings) return last;
+  return since(std::max(imu.front().time, end - Duration::fromSeconds(kLongMean_s)));
+}
+
+/// Upper triangular root of the information of a field whose azimuth is all but known.
+Mat3 fieldPrior(const Vec3& field_W, double sigma_T, double azimuth_sigma_rad) {
+  const double horizontal_T = field_W.head<2>().norm();
+  const Vec3 across = Vec3::UnitZ().cross(field_W) / horizontal_T;
+  const double across_sigma_T = azimuth_sigma_rad * horizontal_T;
+  const Mat3 information = Mat3::Identity() / (sigma_T * sigma_T) +
+                           across * across.transpose() / (across_sigma_T * across_sigma_T);
+  return information.llt().matrixU();
+}
+
+}  // namespace
+
+MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& options,
+                                       Diagnostics* diagnostics)
+    : options_(options),
+      diagnostics_(diagnostics),
+      use_(useOf(rig.magnetometer, options.magnetometer.use)),
+      calibration_(rig.magnetometer.value_or(MagnetometerCalibration())),
+      gyroscope_density_(options.preintegration.noise_inflation *
+                         rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz),
+      readings_(calibration_, diagnostics),
+      comparison_(options.magnetometer),
+      gate_(options.magnetometer.gate),
+      errors_(options.magnetometer, offsetSigma()),
+      deviation_(options.magnetometer),
+      step_(options.magnetometer.step) {
+  if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
+    return;
+  if (use_ == MagnetometerUse::Off) {
+    status_ = MagnetometerStatus::Uncalibrated;
+    diagnostics->report(
+        Severity::Warning, "magnetometer_uncalibrated",
+        "magnetometer: not calibrated, hence not used; `lodeline calibrate magnetometer` makes "
+        "a calibration for --mag-calibration, and --magnetometer absolute uses it as it is");
+  } else {
+    diagnostics->report(
+        Severity::Warning, "magnetometer_uncalibrated",
+        "magnetometer: used without a calibration; heading may be wrong by tens of degrees until "
+        "the rig has turned");
+  }
+}
+
+void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
+                              const Vec3& gyroscope_bias_B) {
+  // Of what is not used the faults are told all the same: attitude beside the odometry may use it.
+  const std::vector<FieldSample> fields = readings_.add(readings);
+  if (use_ == MagnetometerUse::Off || imu.empty()) return;
+  const std::span<const FieldSample> samples = recent(fields, imu);
+  const Time time = imu.back().time;
+  std::erase_if(means_, [&](const auto& entry) { return (time - entry.first).seconds() > kLongestWait_s; });
+  if (!samples.empty()) means_[time] = carryToFrame(samples, imu, gyroscope_bias_B, gyroscope_density_);
+}
+
+void MagnetometerFusion::start(double tilt_sigma_rad, Window* window, Prior* prior) {
+  if (use_ == MagnetometerUse::Off) return;
+  tilt_variance_rad2_ = tilt_sigma_rad * tilt_sigma_rad;
+  started_ = window->newest().time;
+  status_ = MagnetometerStatus::NoData;
+  align(window, prior);
+  for (const auto& frame : window->frames()) {
+    const auto mean = means_.find(frame->time);
+    if (mean == means_.end()) continue;
+    frame->magnetometer = measurementOf(mean->second, 1.0, false);
+    status_ = MagnetometerStatus::Used;
+  }
+  means_.clear();
+}
+
+double MagnetometerFusion::offsetSigma() const {
+  return lodeline::offsetSigma(calibration_, options_.magnetometer);
+}
+
+double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
+  return std::hypot(deviation_.sigma_T(errors_.floor_T()),
+                    calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
+}
+
+void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const {
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  const auto add = [&](const char* name, const Vec3& value, double walk) -> GlobalState& {
+    return window->add({name, {value.x(), value.y(), value.z()}, std::nullopt, walk, true});
+  };
+  GlobalState& field = add(MagnetometerStates::kField, alignment.field_W, 0.0);
+  GlobalState& offset = add(MagnetometerStates::kOffset, Vec3::Zero(), wanted.offset_walk_T_per_sqrt_s);
+  add(MagnetometerStates::kDisturbance, Vec3::Zero(), wanted.disturbance_walk_T_per_sqrt_s);
+  prior->append(field.value.data(), 3, Vec3::Constant(wanted.field_sigma_T));
+  if (alignment.reference != HeadingReference::Start) {
+    prior->sqrt_information.bottomRightCorner<3, 3>() =
+        fieldPrior(alignment.field_W, wanted.field_sigma_T, options_.initial_state.yaw_sigma_rad);
+  }
+  prior->append(offset.value.data(), 3, Vec3::Constant(offsetSigma()));
+}
+
+double MagnetometerFusion::whiteVariance(const MagnetometerMean& mean) const {
+  const double density = options_.magnetometer.noise_inflation * calibration_.noise_density_T_per_sqrtHz;
+  return density * density * calibration_.rate_hz / mean.readings;
+}
+
+void MagnetometerFusion::remember(JointCovariance covariance) {
+  covariance_ = std::move(covariance);
+  tilt_variance_rad2_ = 0.5 * covariance_.newest().diagonal().segment<2>(3).sum();
+}
+
+LastingError MagnetometerFusion::tiltError() const {
+  const double longest_s = options_.magnetometer.floor_correlation_s;
+  const double growth_rad2_per_s = gyroscope_density_ * gyroscope_density_;
+  return {tilt_variance_rad2_, tilt_variance_rad2_ < longest_s * growth_rad2_per_s
+                                   ? tilt_variance_rad2_ / growth_rad2_per_s
+                                   : longest_s};
+}
+
+double MagnetometerFusion::tiltSigma(Time now) {
+  const double shared = lastingErrorShare(now, last_seen_, tiltError().correlation_s);
+  // An error of the tilt lasts too, but what has been learned of it since is new: of all that the frames so
+  // far have said, the part that took the tilt as wrongly as then shall fade. The weighted mean of errors of
+  // an estimate whose information grows has twice the variance of its last one, hence the half.
+  const double information = 1.0 / tilt_variance_rad2_;
+  const bool is_first = least_tilt_variance_rad2_ == 0.0;
+  const double known = is_first ? information : 1.0 / least_tilt_variance_rad2_;
+  const double learned = 0.5 * std::max(0.0, information - known);
+  least_tilt_variance_rad2_ = 1.0 / std::max(information, known);
+  return 1.0 / std::sqrt(information / shared + learned);
+}
+
+FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean, double variance_scale,
+                                                   bool disturbed) {
+  const MagnetometerOptions& wanted = options_.magnetometer;
+  FieldMeasurement measurement;
+  measurement.mean = mean;
+  measurement.relative = !absolute();
+  measurement.disturbed = disturbed;
+  if (measurement.relative) {
+    measurement.noise.sigma_T = std::sqrt(whiteVariance(mean) * mean.readings);
+    return measurement;
+  }
+  const double shared = lastingErrorShare(mean.time, last_seen_, wanted.floor_correlation_s);
+  const double variance_T2 = whiteVariance(mean) + shared * std::pow(floorSigma(mean.field_B), 2);
+  measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
+  measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
+  measurement.noise.tilt_sigma_rad = tiltSigma(mean.time) * std::sqrt(variance_scale);
+  last_seen_ = mean.time;
+  return measurement;
+}
+
+void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
+  if (use_ == MagnetometerUse::Off) return;
+  Frame& newest = window.newest();
+  const auto found = means_.find(newest.time);
+  status_ = MagnetometerStatus::NoData;
+  if (found == means_.end()) {
+    missField(window);
+    return;
+  }
+  const MagnetometerMean mean = found->second;
+  means_.clear();
+  if (!absolute()) {
+    findNorth(newest.worldFromBody().rotation * mean.field_B, newest.time);
+    status_ = MagnetometerStatus::Used;
+    newest.magnetometer = measurementOf(mean, 1.0, false);
+    return;
+  }
+  if (MagnetometerStates(window).field == nullptr) startLate(mean, window, marginalizer);
+  findNorth(MagnetometerStates(window).field_W(), newest.time);
+  judge(withoutSteps(mean, window), window, marginalizer);
+  if (takeBetterField(mean, window, marginalizer)) status_ = MagnetometerStatus::Used;
+}
+
+MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, Window& window) {
+  if (!options_.magnetometer.step.enabled) return mean;
+  const MagnetometerStates states(window);
+  const Quat body_from_world = window.newest().worldFromBody().rotation.conjugate();
+  FieldStep::Reading reading;
+  reading.time = mean.time;
+  reading.difference_B = mean.field_B - body_from_world * states.field_W() - mean.carried * states.offset_B();
+  reading.heading_B = body_from_world * Vec3::UnitZ().cross(states.field_W()).normalized();
+  reading.white_variance_T2 = whiteVariance(mean);
+  reading.is_believed =
+      status_before_ == MagnetometerStatus::Used || status_before_ == MagnetometerStatus::Off;
+  if (const auto change = step_.add(reading)) {
+    states.offset->sudden_variance += change->sigma_T * change->sigma_T;
+    diagnostics_->report(
+        Severity::Notice, "magnetometer_step",
+        fmt::format("magnetometer: at {} ns the field on board changed at once by {:.2f} uT (a lamp or a "
+                    "motor was switched); readings are corrected by it",
+                    mean.time.nanoseconds(), 1e6 * change->by_B.norm()));
+  }
+  MagnetometerMean corrected = mean;
+  corrected.field_B -= mean.carried * step_.step_B();
+  return corrected;
+}
+
+void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
+  HeadingAlignment alignment;
+  alignment.field_W = window.newest().worldFromBody().rotation * mean.field_B;
+  Prior states;
+  addStates(alignment, &window, &states);
+  const MagnetometerStates added(window);
+  marginalizer.addKnowledge(*added.field, Vec3::Constant(options_.magnetometer.field_sigma_T));
+  marginalizer.addKnowledge(*added.offset, Vec3::Constant(offsetSigma()));
+}
+
+void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
+  Frame& newest = window.newest();
+  comparison_.add(mean, whiteVariance(mean), window);
+  const FieldCheck earth = comparison_.check(window, covariance_, errors_.floor_T(), false);
+  std::optional<FieldCheck> with_disturbance;
+  if (disturbed_) with_disturbance = comparison_.check(window, covariance_, errors_.floor_T(), true);
+  const GateDecision decision = gate_.decide(mean.time, earth, with_disturbance);
+  reportDecision(decision, mean.time);
+  status_ = decision.status;
+  if (decision.end_disturbance || (decision.begin_disturbance && disturbed_))
+    endDisturbance(window, marginalizer);
+  if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
+  // Also a field that is not believed at all is watched, lest it never be believed again.
+  if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
+    learnErrors(mean, earth, window);
+  if (!decision.use) {
+    // A field that was rejected a moment ago is no fresh witness: what disturbed it fades.
+    last_seen_ = mean.time;
+    return;
+  }
+  const bool disturbed = status_ == MagnetometerStatus::Readmitted;
+  newest.magnetometer = measurementOf(mean, decision.variance_scale, disturbed);
+}
+
+void MagnetometerFusion::learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window) {
+  const MagnetometerStates states(window);
+  errors_.add(mean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(mean),
+              tiltError());
+  states.offset->walk_per_sqrt_s = errors_.walk_T_per_sqrt_s();
+  const double norm_T = states.field_W().norm();
+  const double relative_variance =
+      0.5 * (earth.norm_sigma * earth.norm_sigma + earth.dip_sigma_rad * earth.dip_sigma_rad);
+  const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
+  const double state_variance_T2 =
+      norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
+  deviation_.add(mean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
+                 std::max(0.0, state_variance_T2), whiteVariance(mean));
+}
+
+void MagnetometerFusion::beginDisturbance(const MagnetometerMean& mean, Window& window,
+                                          Marginalizer& marginalizer) {
+  const MagnetometerStates states(window);
+  const Vec3 measured_W =
+      window.newest().worldFromBody().rotation * (mean.field_B - mean.carried * states.offset_B());
+  const Vec3 disturbance_W = measured_W - states.field_W();
+  std::copy_n(disturbance_W.data(), 3, states.disturbance->value.begin());
+  marginalizer.addKnowledge(*states.disturbance, Vec3::Constant(options_.magnetometer.disturbance_sigma_T));
+  disturbed_ = true;
+}
+
+void MagnetometerFusion::endDisturbance(Window& window, Marginalizer& marginalizer) {
+  for (const auto& frame : window.frames()) {
+    if (frame->magnetometer && frame->magnetometer->disturbed) frame->magnetometer.reset();
+  }
+  GlobalState& disturbance = *MagnetometerStates(window).disturbance;
+  marginalizer.forget(window, disturbance);
+  std::fill(disturbance.value.begin(), disturbance.value.end(), 0.0);
+  disturbed_ = false;
+}
+
+void MagnetometerFusion::reportDecision(const GateDecision& decision, Time time) {
+  const bool inconsistent = decision.status == MagnetometerStatus::Inconsistent;
+  if (inconsistent && status_before_ != MagnetometerStatus::Inconsistent) {
+    diagnostics_->report(
+        Severity::Warning, "magnetometer_inconsistent",
+        fmt::format(
+            "magnetometer: its field has disagreed with its calibration for longer than it has agreed "
+            "with it, up to {} ns; nothing of it is used from then on unless that changes. Calibrate it "
+            "anew, where it is mounted (`lodeline calibrate magnetometer`)",
+            time.nanoseconds()));
+  }
+  if (!decision.use && !inconsistent && !rejecting_) {
+    diagnostics_->report(
+        Severity::Warning, "magnetometer_rejected",
+        fmt::format("magnetometer: not the Earth's field ({}) from {} ns on; heading is carried by gyroscope "
+                    "and images",
+                    toString(decision.status), time.nanoseconds()));
+  }
+  if (decision.begin_disturbance) {
+    diagnostics_->report(
+        Severity::Warning, "magnetometer_readmitted",
+        fmt::format("magnetometer: its field at {} ns has been another for {:.0f} s; used from "
+                    "now on with a disturbance that is estimated",
+                    time.nanoseconds(), options_.magnetometer.gate.readmission_s));
+  }
+  rejecting_ = !decision.use;
+  status_before_ = decision.status;
+}
+
+double MagnetometerFusion::axesSigma() const {
+  if (!calibration_.is_calibrated) return options_.magnetometer.uncalibrated_axes_sigma;
+  return options_.imu_axes.uncalibrated_sigma;
+}
+
+MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
+  MagnetometerEstimate estimate;
+  estimate.status = status_;
+  describeNorth(window, &estimate);
+  if (heading_reference_ == HeadingReference::True)
+    estimate.declination_sigma_rad = options_.magnetometer.declination_sigma_rad;
+  const MagnetometerStates states(window);
+  if (states.field != nullptr) {
+    const Vec3 field_W = states.field_W();
+    estimate.axes_sigma_rad =
+        std::min(std::numbers::pi, axesSigma() * field_W.norm() / field_W.head<2>().norm());
+    estimate.field_W = field_W;
+    estimate.offset_B = states.offset_B();
+    estimate.floor_T = errors_.floor_T();
+  }
+  return estimate;
+}
+
+}  // namespace lodeline

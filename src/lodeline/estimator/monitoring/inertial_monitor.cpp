@@ -1,0 +1,162 @@
+#include "lodeline/estimator/monitoring/inertial_monitor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "lodeline/geometry/so3.h"
+#include "lodeline/util/angles.h"
+
+namespace lodeline {
+namespace {
+
+/// What a rig that is carried, swims or flies does not exceed.
+constexpr double kGreatestAcceleration_m_per_s2 = 15.0;
+constexpr double kGreatestAngularAcceleration_rad_per_s2 = 15.0;
+
+const Vec3& shorter(const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm() ? a : b; }
+
+}  // namespace
+
+void InnovationWatch::add(Time time, double nis) {
+  constexpr double kSpan_s = 0.5;
+  constexpr size_t kFewestValues = 5;
+  constexpr double kGreatest = 4.0 * kBeyondChance;
+  constexpr double kCalm_s = 1.0;
+  if (nis > kBeyondChance) last_beyond_chance_ = time;
+  values_.push_back({time, std::min(nis, kGreatest)});
+  while (values_.size() > kFewestValues && (time - values_[1].time).seconds() >= kSpan_s) values_.pop_front();
+  double sum = 0.0;
+  for (const Value& value : values_) sum += value.nis;
+  const auto count = static_cast<double>(std::max(values_.size(), kFewestValues));
+  if (!alarmed_since_ && sum > count * kBeyondChance) {
+    alarmed_since_ = std::find_if(values_.begin(), values_.end(), [](const Value& value) {
+                       return value.nis > kBeyondChance;
+                     })->time;
+  } else if (alarmed_since_ && (time - *last_beyond_chance_).seconds() > kCalm_s) {
+    alarmed_since_.reset();
+  }
+}
+
+void InertialMonitor::check(Window& window, const FactorMaker& factors,
+                            const Eigen::Matrix<double, 15, 15>& before) {
+  const std::optional<MotionInnovation> innovation =
+      motionInnovation(window, factors, before, is_before_placed_);
+  is_before_placed_ = innovation.has_value();
+  if (!innovation) return;
+  const Time time = window.newest().time;
+  const bool contradicts = innovation->rotation_nis > InnovationWatch::kBeyondChance ||
+                           innovation->position_nis > InnovationWatch::kBeyondChance;
+  const bool images_suspected = contradicts && areImagesSuspected(*innovation);
+  const auto watch = [&](InnovationWatch& sensor, double nis, const char* name) {
+    const bool was_alarmed = sensor.isAlarmed();
+    sensor.add(time, nis);
+    if (!was_alarmed && sensor.isAlarmed()) report(*innovation, time, sensor, name);
+  };
+  const double worst = std::max(innovation->rotation_nis, innovation->position_nis);
+  watch(images_, images_suspected ? worst : 0.0, "camera");
+  watch(gyroscope_, images_suspected ? 0.0 : innovation->rotation_nis, "gyroscope");
+  watch(accelerometer_, images_suspected ? 0.0 : innovation->position_nis, "accelerometer");
+  if (images_suspected) {
+    // Neither what the images say nor that readings follow on them is known.
+    is_before_placed_ = false;
+    diagnostics_->report(
+        Severity::Warning, "image_out_of_place",
+        fmt::format("the image at {} ns shows the rig {:.2f} m and {:.1f} degrees from where its motion and "
+                    "the inertial readings put it: an image out of order, of another camera or of another "
+                    "time? Not followed; `lodeline inspect` looks closer",
+                    time.nanoseconds(), innovation->position_W.norm(),
+                    innovation->rotation_W.norm() * kDegreesPerRadian));
+    return;
+  }
+  if (contradicts || isAlarmed()) widen(*innovation, window);
+}
+
+bool InertialMonitor::areImagesSuspected(const MotionInnovation& innovation) const {
+  const double dt2 = innovation.interval_s * innovation.interval_s;
+  const auto jumps = [&](const Vec3& from_steady, const Vec3& from_inertial, double nis, double greatest) {
+    const Vec3 inertial_from_steady = from_steady - from_inertial;
+    return nis > InnovationWatch::kBeyondChance && from_steady.norm() > dt2 * greatest &&
+           inertial_from_steady.norm() < 0.5 * from_steady.norm();
+  };
+  return jumps(innovation.position_from_steady_W, innovation.position_W, innovation.position_nis,
+               kGreatestAcceleration_m_per_s2) ||
+         jumps(innovation.rotation_from_steady_W, innovation.rotation_W, innovation.rotation_nis,
+               kGreatestAngularAcceleration_rad_per_s2);
+}
+
+void InertialMonitor::widen(const MotionInnovation& innovation, Window& window) {
+  Frame& newest = window.newest();
+  Frame& before = *window.frames()[window.frames().size() - 2];
+  const double dt_s = innovation.interval_s;
+  const bool turn_contradicts = innovation.rotation_nis > InnovationWatch::kBeyondChance;
+  const bool way_contradicts = innovation.position_nis > InnovationWatch::kBeyondChance;
+  const Rigid3 before_from_newest = before.worldFromBody().inverse() * innovation.world_from_body;
+  NavigationState state = newest.state();
+  state.world_from_body = innovation.world_from_body;
+  // White noise of density s makes a rotation of variance s^2 dt and a way of variance s^2 dt^3 / 3.
+  InertialDoubt doubt;
+  if (turn_contradicts || gyroscope_.isAlarmed()) {
+    doubt.gyroscope_density_rad_per_s_sqrtHz = innovation.rotation_W.norm() / std::sqrt(dt_s);
+    // The reading at either end belongs to the interval.
+    before.gyroscope_B = newest.gyroscope_B =
+        so3::log(before_from_newest.rotation) / dt_s + state.gyroscope_bias_B;
+  }
+  if (turn_contradicts && gyroscope_.isAlarmed())
+    doubt.gyroscope_bias_step_rad_per_s = initial_.gyroscope_bias_sigma_rad_per_s;
+  if (way_contradicts || accelerometer_.isAlarmed()) {
+    doubt.accelerometer_density_m_per_s2_sqrtHz =
+        innovation.position_W.norm() * std::sqrt(3.0 / (dt_s * dt_s * dt_s));
+    state.velocity_W = before.worldFromBody().rotation * before_from_newest.translation / dt_s;
+  }
+  if (way_contradicts && accelerometer_.isAlarmed())
+    doubt.accelerometer_bias_step_m_per_s2 = initial_.accelerometer_bias_sigma_m_per_s2;
+  newest.from_previous->setDoubt(doubt);
+  newest.setState(state);
+  // Images may be wrong by as much as the lesser of what readings and inertia say against them.
+  if (turn_contradicts || way_contradicts) {
+    doubtMotion(shorter(innovation.position_W, innovation.position_from_steady_W),
+                shorter(innovation.rotation_W, innovation.rotation_from_steady_W),
+                state.world_from_body.translation);
+  }
+}
+
+void InertialMonitor::doubtMotion(const Vec3& position_error_W, const Vec3& rotation_error_W,
+                                  const Vec3& position_W) {
+  position_doubt_ += position_error_W * position_error_W.transpose();
+  rotation_doubt_ += rotation_error_W * rotation_error_W.transpose();
+  const double variance = rotation_error_W.squaredNorm() / 3.0;
+  turned_ += variance;
+  turned_at_W_ += variance * position_W;
+  turned_at_squared_ += variance * position_W * position_W.transpose();
+}
+
+void InertialMonitor::addTo(const Vec3& position_W, Eigen::Matrix<double, 15, 15>* covariance) const {
+  if (turned_ == 0.0 && position_doubt_.isZero(0.0)) return;
+  // Sum over the doubts of variance * arm arm^T; a turn moves what is across the arm.
+  const Mat3 arms = turned_at_squared_ + turned_ * position_W * position_W.transpose() -
+                    turned_at_W_ * position_W.transpose() - position_W * turned_at_W_.transpose();
+  covariance->block<3, 3>(0, 0) += position_doubt_ + arms.trace() * Mat3::Identity() - arms;
+  covariance->block<3, 3>(3, 3) += rotation_doubt_;
+}
+
+void InertialMonitor::report(const MotionInnovation& innovation, Time time, const InnovationWatch& watch,
+                             const char* sensor) {
+  const bool is_gyroscope = std::string_view(sensor) == "gyroscope";
+  const double sigmas = std::sqrt(is_gyroscope ? innovation.rotation_nis : innovation.position_nis);
+  diagnostics_->report(
+      Severity::Serious, "motion_contradiction",
+      fmt::format(
+          "images and inertial readings contradict each other from {} ns on; {} suspected. From one image to "
+          "the next, at {} ns, they differ by {:.1f} mm and {:.2f} degrees, {:.0f} sigmas. Its unit, range "
+          "or "
+          "axes, a jump of its bias, images of another time or of another camera do that. The run goes on by "
+          "what is more plausible, with wider uncertainty, status 'degraded'; `lodeline inspect` compares "
+          "both",
+          watch.alarmedSince().nanoseconds(), sensor, time.nanoseconds(), 1e3 * innovation.position_W.norm(),
+          innovation.rotation_W.norm() * kDegreesPerRadian, sigmas));
+}
+
+}  // namespace lodeline

@@ -1,0 +1,96 @@
+#include "lodeline/estimator/monitoring/motion_innovation.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+
+#include "lodeline/estimator/monitoring/image_pose.h"
+#include "lodeline/factors/parameters.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+/// Of the way and of the turn since the frame before, one sigma: distances of landmarks, axes of sensors and
+/// placements of cameras that are still being estimated leave as much.
+constexpr double kWayError = 0.05;
+constexpr double kTurnError = 0.02;
+
+/// How the body moved into the frame before the newest, by the estimates of that frame and of the one before
+/// it: the last readings of that interval may be wrong already. At rest where there is no such frame.
+ImageMotion steadyMotion(const Window& window) {
+  const auto& frames = window.frames();
+  if (frames.size() < 3) return {};
+  const Frame &from = *frames[frames.size() - 3], &to = *frames[frames.size() - 2];
+  const double dt_s = (to.time - from.time).seconds();
+  const Rigid3 world_from_begin = from.worldFromBody(), world_from_end = to.worldFromBody();
+  return {(world_from_end.translation - world_from_begin.translation) / dt_s,
+          so3::log(world_from_begin.rotation.conjugate() * world_from_end.rotation) / dt_s};
+}
+
+double normalised(const Vec3& innovation, const Mat3& covariance) {
+  return innovation.dot(covariance.ldlt().solve(innovation)) / 3.0;
+}
+
+/// Covariance of the predicted [dp, dtheta] against the frame before, world axes.
+Mat6 predictionCovariance(const Frame& before, const Preintegration& interval,
+                          const Eigen::Matrix<double, 15, 15>& known, bool is_before_placed) {
+  using namespace inertial_error;
+  const double dt_s = interval.dt_s();
+  const Mat3 world_from_before = before.worldFromBody().rotation.toRotationMatrix();
+  Eigen::Matrix<double, 6, 9> by_motion = Eigen::Matrix<double, 6, 9>::Zero();
+  by_motion.block<3, 3>(0, kAlpha) = world_from_before;
+  by_motion.block<3, 3>(3, kTheta) = world_from_before;
+  // A turn of the frame before turns its velocity along: against that frame the velocity stays.
+  Eigen::Matrix<double, 6, 15> by_state = Eigen::Matrix<double, 6, 15>::Zero();
+  if (is_before_placed) {
+    by_state.block<3, 3>(0, 3) = dt_s * so3::skew(before.velocity_W());
+  } else {
+    by_state.leftCols<6>().setIdentity();
+  }
+  by_state.block<3, 3>(0, 6).diagonal().setConstant(dt_s);
+  by_state.rightCols<6>() = by_motion * interval.biasJacobian();
+  return by_state * known * by_state.transpose() +
+         by_motion * interval.covariance().topLeftCorner<9, 9>() * by_motion.transpose();
+}
+
+}  // namespace
+
+std::optional<MotionInnovation> motionInnovation(Window& window, const FactorMaker& factors,
+                                                 const Eigen::Matrix<double, 15, 15>& before,
+                                                 bool is_before_placed) {
+  Frame& newest = window.newest();
+  const Frame& previous = *window.frames()[window.frames().size() - 2];
+  const Preintegration& interval = *newest.from_previous;
+  const double dt_s = interval.dt_s();
+  const Rigid3 predicted = newest.worldFromBody();
+  // The rate of a reading that is wrong must not move the camera within the images' delay.
+  const ImageMotion steady = steadyMotion(window);
+  newest.image_motion = steady;
+  const std::array<Rigid3, 3> starts = {predicted, steady.poseAfter(previous.worldFromBody(), dt_s),
+                                        previous.worldFromBody()};
+  const std::optional<ImagePose> seen = poseByImages(window, factors, starts);
+  if (!seen) return std::nullopt;
+
+  MotionInnovation innovation;
+  innovation.interval_s = dt_s;
+  innovation.world_from_body = seen->world_from_body;
+  const auto from_prediction = perturbationBetween(predicted, seen->world_from_body);
+  const auto from_steady = perturbationBetween(starts[1], seen->world_from_body);
+  innovation.position_W = from_prediction.head<3>();
+  innovation.rotation_W = from_prediction.tail<3>();
+  innovation.position_from_steady_W = from_steady.head<3>();
+  innovation.rotation_from_steady_W = from_steady.tail<3>();
+
+  const auto step = perturbationBetween(previous.worldFromBody(), seen->world_from_body);
+  // The frame before was placed by an image as well, about as well.
+  Mat6 covariance =
+      predictionCovariance(previous, interval, before, is_before_placed) + 2.0 * seen->covariance;
+  covariance.diagonal().head<3>().array() += kWayError * kWayError * step.head<3>().squaredNorm();
+  covariance.diagonal().tail<3>().array() += kTurnError * kTurnError * step.tail<3>().squaredNorm();
+  innovation.position_nis = normalised(innovation.position_W, covariance.topLeftCorner<3, 3>());
+  innovation.rotation_nis = normalised(innovation.rotation_W, covariance.bottomRightCorner<3, 3>());
+  return innovation;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/normal_equations.h"
+
+namespace lodeline {
+
+/// Stands for "not known": a sigma of a million metres, radians and so on.
+constexpr double kUnknownVariance = 1e12;
+
+/// Whether all variances are positive, finite and known.
+bool isCovariance(const Eigen::MatrixXd& matrix);
+
+/// Covariance of one frame's [dp, dtheta, dv, db_g, db_a] in a linearised window.
+Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame);
+
+/// Joint covariance of some of the blocks that a system holds, stacked in the order given; kUnknownVariance
+/// where rounding has left the system without a positive definite Hessian. Other blocks in the order in which
+/// they are best eliminated (see WindowCholesky), as far as one is known.
+Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
+                             const std::vector<const double*>& eliminated_first = {});
+
+/// Pose and motion of the newest frame, and those global states that the system knows and whose correlation
+/// is wanted (GlobalState::is_correlation_wanted).
+std::vector<const double*> correlatedBlocks(const NormalEquations& system, const Window& window);
+
+/// Joint covariance of the correlatedBlocks() of a window.
+class JointCovariance {
+ public:
+  JointCovariance() = default;
+  JointCovariance(const NormalEquations& system, const Window& window);
+  /// Where it is known already: `matrix` is of the correlatedBlocks(), stacked.
+  JointCovariance(const NormalEquations& system, const std::vector<const double*>& blocks,
+                  Eigen::MatrixXd matrix);
+
+  bool empty() const { return offsets_.empty(); }
+  bool knows(const double* block) const { return offsets_.count(block) > 0; }
+  /// Of two blocks' tangent coordinates; both must be known.
+  Eigen::MatrixXd between(const double* rows, const double* columns) const;
+  /// Of the newest frame's [dp, dtheta, dv, db_g, db_a].
+  Eigen::Matrix<double, 15, 15> newest() const { return matrix_.topLeftCorner<15, 15>(); }
+  /// All of it had the system not been told `information` of a known block (symmetric; negative parts of it
+  /// do not count). Of a direction in which nothing else is known a millionth of the information stays.
+  JointCovariance without(const double* block, const Eigen::MatrixXd& information) const;
+
+ private:
+  Eigen::MatrixXd matrix_;
+  std::map<const double*, std::pair<int, int>> offsets_;  ///< first row and size
+};
+
+/// Relative standard deviation of the scale as the newest frame shows it: of its distance from the origin or
+/// of its speed along their directions, whichever is known better. `covariance` as from newestCovariance().
+double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
+/// The same of its speed alone.
+double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
+
+/// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
+Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
+                                               const FactorMaker& factors);
+/// The same with the global states.
+JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors);
+
+}  // namespace lodeline

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lodeline/estimator/problem/factor_list.h"
+
+namespace lodeline {
+
+/// W with W W^T the inverse of a landmark's positive semi-definite Hessian on its range, insensitive to the
+/// units of its coordinates; what hardly anything is known of counts as unobserved and comes out as zero.
+Mat3 landmarkInverseRoot(const Mat3& hessian);
+
+/// The Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
+/// Jacobians are those the factors give (first estimates where they hold them), residuals are current.
+class NormalEquations {
+ public:
+  struct Block {
+    double* value = nullptr;
+    int ambient_size = 0;
+    int offset = 0;  ///< first row in the system
+
+    int tangentSize() const { return ambient_size == kPoseSize ? kPoseTangentSize : ambient_size; }
+  };
+
+  /// Blocks that factors mention get their rows in the order of the first mention.
+  void add(const Factor& factor);
+
+  /// Adds the terms of one landmark and eliminates it (Schur complement). Apart from the landmark its factors
+  /// may have blocks of at most 6 tangent coordinates.
+  void addEliminated(const LandmarkFactors& landmark);
+
+  /// Adds 1/2 d^T h d + g^T d, where d stacks the tangent coordinates of `blocks`, each at its offset; of h
+  /// the lower triangle is read.
+  void add(const std::vector<Block>& blocks, const Eigen::MatrixXd& h, const Eigen::VectorXd& g);
+
+  /// Makes room for as many tangent coordinates at once.
+  void reserve(int size);
+
+  /// Moves the eliminated landmarks along with a step d of the blocks.
+  void stepLandmarks(const Eigen::VectorXd& step) const;
+
+  /// Frees the system and keeps what stepLandmarks() needs.
+  void forgetTerms();
+
+  const std::vector<Block>& blocks() const { return blocks_; }
+  int size() const { return size_; }
+  const Block* find(const double* value) const;
+
+  /// Symmetric, size() x size().
+  Eigen::MatrixXd hessian() const;
+  /// The same without what stands above its diagonal; of no meaning after the next change.
+  Eigen::Block<const Eigen::MatrixXd> lowerTriangle() const { return h_.topLeftCorner(size_, size_); }
+  const Eigen::VectorXd gradient() const { return g_.head(size_); }
+
+ private:
+  struct LandmarkTerm;
+  /// Between a block and the landmark; rows beyond the block's size are zero.
+  struct Coupling {
+    int offset, size;
+    Eigen::Matrix<double, 6, 3> by_landmark = Eigen::Matrix<double, 6, 3>::Zero();
+  };
+  /// What back-substitution needs.
+  struct EliminatedLandmark {
+    double* value;
+    Mat3 inverse_hessian;
+    Vec3 gradient;
+    std::vector<Coupling> couplings;
+  };
+  int offsetOf(double* value, int ambient_size);
+  LandmarkTerm linearised(const Factor& factor, const double* landmark);
+  void addProduct(int row, int row_size, int column, int column_size, const Mat6& product);
+
+  std::vector<Block> blocks_;
+  std::vector<EliminatedLandmark> eliminated_;
+  Eigen::MatrixXd h_;  ///< lower triangle is kept; may be larger than size_
+  Eigen::VectorXd g_;
+  int size_ = 0;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,84 @@
+// What frames and landmarks saw outlives them, as far as it is asked for.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/estimator/solver/window_update.h"
+#include "lodeline/estimator/trials/marginalizer_dive.h"
+
+namespace lodeline {
+namespace {
+
+/// One sigma of the newest frame's yaw after so many frames, every nth of them a keyframe.
+double yawSigmaAfter(int frames, int keyframe_every, const WindowOptions& wanted, TestWindow& test) {
+  Marginalizer marginalizer(test.factors);
+  TestScene scene(sceneOptions(0.1 * frames + 1.0, 10.0));
+  for (int k = 0; k < frames; ++k) {
+    addNext(test, scene, keyframe_every, &marginalizer);
+    updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
+    marginalizer.shorten(test.window, wanted);
+  }
+  return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
+}
+
+// What the sightings of an interpolated frame say of the keyframes beside it outlives them.
+TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
+  const auto yawSigma = [](double spacing_s) {
+    TestWindow test(2, quadraticOptions());
+    const double sigma =
+        yawSigmaAfter(60, 3, {.recent_frames = 5, .keyframes = 4, .interpolated_spacing_s = spacing_s}, test);
+    EXPECT_EQ(test.window.frames().size() > 9u, spacing_s < 0.1);
+    return sigma;
+  };
+  const double dropped = yawSigma(1.0), kept = yawSigma(0.05);
+  // Three times the sightings: 0.58 if they were all there is.
+  EXPECT_LT(kept, 0.85 * dropped);
+  EXPECT_GT(kept, 0.5 * dropped);
+}
+
+// Nor do those of a landmark that outlives the window: all of them, but for what ties both sides of a cut.
+TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
+  const auto yawSigma = [](int keyframes_after_cut) {
+    TestWindow test(2, quadraticOptions());
+    return yawSigmaAfter(
+        80, 2, {.recent_frames = 5, .keyframes = 6, .keyframes_after_cut = keyframes_after_cut}, test);
+  };
+  const double dropped = yawSigma(6), kept = yawSigma(2);
+  EXPECT_LT(kept, 0.9 * dropped);
+  EXPECT_GT(kept, 0.2 * dropped);
+}
+
+// However many keyframes go at once.
+TEST(Marginalizer, CutsNothingWhereNothingIsAskedToBeCut) {
+  constexpr int kKeyframes = 6, kNever = std::numeric_limits<int>::max();
+  const auto informationAfter = [](const auto& shorten) {
+    TestWindow test(2, quadraticOptions());
+    Marginalizer marginalizer(test.factors);
+    TestScene scene(sceneOptions(9.0, 10.0));
+    for (int k = 0; k < 60; ++k) addNext(test, scene, 2, &marginalizer);
+    updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
+    marginalizer.shorten(test.window, {.recent_frames = 5, .keyframes = 60});
+    EXPECT_GT(test.window.poseOnlyCount(), 3 * kKeyframes);
+    shorten(marginalizer, test.window);
+    return marginalizer.prior().sqrt_information;
+  };
+  const auto atOnce = [&](int keyframes_after_cut) {
+    return informationAfter([&](Marginalizer& marginalizer, Window& window) {
+      marginalizer.shorten(
+          window, {.recent_frames = 5, .keyframes = kKeyframes, .keyframes_after_cut = keyframes_after_cut});
+    });
+  };
+  const auto one_by_one = informationAfter([](Marginalizer& marginalizer, Window& window) {
+    for (int left = window.poseOnlyCount() - 1; left >= kKeyframes; --left) {
+      marginalizer.shorten(window, {.recent_frames = 5, .keyframes = left, .keyframes_after_cut = left});
+    }
+  });
+  EXPECT_EQ(atOnce(kNever), one_by_one);
+  EXPECT_NE(atOnce(kKeyframes), one_by_one);
+}
+
+}  // namespace
+}  // namespace lodeline

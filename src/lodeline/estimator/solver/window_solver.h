@@ -1,0 +1,25 @@
+#pragma once
+
+#include "lodeline/estimator/problem/factor_list.h"
+
+namespace lodeline {
+
+struct SolveSummary {
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  bool usable = true;      ///< false where the solver failed and the window was left as it was
+  bool converged = false;  ///< before the limit of iterations
+};
+
+/// Minimises the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
+/// thread, so that the same input gives the same bytes). Inertial terms whose biases moved too far are
+/// integrated again first.
+struct SolveLimits {
+  int max_iterations = 4;
+  double function_tolerance = 1e-4;  ///< relative change of the cost that ends the iterations
+};
+SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
+                         const SolveLimits& limits);
+
+}  // namespace lodeline

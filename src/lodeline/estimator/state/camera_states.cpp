@@ -1,0 +1,112 @@
+#include "lodeline/estimator/state/camera_states.h"
+
+#include <algorithm>
+
+#include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/intrinsics_factor.h"
+
+namespace lodeline {
+namespace {
+
+constexpr const char* kTimeOffset = "camera.dt";
+
+// Small enough to hold a state, large enough to keep the prior well conditioned.
+constexpr double kHeld = 1e-7;
+
+// Short enough to need no memory of their own: they are looked up for every landmark.
+std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".T_BC"; }
+
+std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
+
+void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
+              const Vec3& start = Vec3::Zero()) {
+  GlobalState state;
+  state.name = name;
+  state.value.assign(static_cast<size_t>(sigmas.size()), 0.0);
+  if (!start.isZero()) std::copy_n(start.data(), 3, state.value.begin());
+  GlobalState& added = window.add(std::move(state));
+  prior.append(added.value.data(), static_cast<int>(sigmas.size()), sigmas.cwiseMax(kHeld));
+}
+
+Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
+  Eigen::VectorXd sigmas(kExtrinsicsSize);
+  sigmas << Vec3::Constant(rotation_rad), Vec3::Constant(position_m);
+  return sigmas;
+}
+
+/// Of a further camera's position only that it is somewhere on the rig: FactorMaker::placement() has the
+/// rest.
+Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
+  constexpr double kSomewhere_m = 0.05;
+  return extrinsicsSigmas(options.stereo_rotation_sigma_rad,
+                          options.stereo_position_sigma_m > 0.0 ? kSomewhere_m : 0.0);
+}
+
+}  // namespace
+
+Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options) {
+  return Vec3::Constant(std::max(options.stereo_rotation_sigma_rad, kHeld));
+}
+
+double placementLossWidth(const GlobalState& further) { return further.beliefs.empty() ? 1.0 : 0.5; }
+
+Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options) {
+  Eigen::VectorXd sigmas(kIntrinsicsSize);
+  sigmas << Vec2::Constant(options.focal_length_sigma), Vec2::Constant(options.principal_point_sigma_px),
+      Vec2::Constant(options.radial_sigma);
+  return sigmas.cwiseMax(kHeld);
+}
+
+void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options,
+                     const std::vector<Vec3>& rotations) {
+  if (!options.enabled) return;
+  addState(window, prior, extrinsicsName(0),
+           extrinsicsSigmas(options.rotation_sigma_rad, options.position_sigma_m));
+  addState(window, prior, kTimeOffset, Eigen::VectorXd::Constant(1, options.time_offset_sigma_s));
+  for (size_t camera = 1; camera < static_cast<size_t>(cameras); ++camera) {
+    addState(window, prior, extrinsicsName(camera), stereoSigmas(options),
+             camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
+    window.findGlobal(extrinsicsName(camera))->is_correlation_wanted = true;  // claimedCovariance()
+  }
+}
+
+void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
+  if (!options.enabled || !options.intrinsics) return;
+  for (int camera = 0; camera < cameras; ++camera)
+    addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), lensSigmas(options));
+}
+
+CameraStates cameraStates(const Window& window) {
+  CameraStates states;
+  states.camera0 = window.findGlobal(extrinsicsName(0));
+  if (!states.camera0) return states;
+  states.time_offset = window.findGlobal(kTimeOffset);
+  while (GlobalState* further = window.findGlobal(extrinsicsName(states.further.size() + 1)))
+    states.further.push_back(further);
+  while (GlobalState* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
+    states.intrinsics.push_back(lens);
+  return states;
+}
+
+Vec3 rayOf(const Sighting& sighting, const CameraStates& states) {
+  if (states.intrinsics.empty()) return sighting.measurement.bearing_C;
+  const GlobalState* lens = states.intrinsics[static_cast<size_t>(sighting.camera)];
+  return rayThrough(sighting.measurement, lens->value.data());
+}
+
+std::optional<CameraCorrections> cameraCorrections(const Window& window) {
+  using Correction = Eigen::Matrix<double, 6, 1>;
+  const CameraStates states = cameraStates(window);
+  if (!states) return std::nullopt;
+  CameraCorrections corrections;
+  corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(states.camera0->value.data()));
+  for (const GlobalState* further : states.further)
+    corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(further->value.data()));
+  corrections.time_offset_s = states.timeOffset_s();
+  for (const GlobalState* lens : states.intrinsics)
+    corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));
+  corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->beliefs.empty();
+  return corrections;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "lodeline/estimator/state/window.h"
+
+namespace lodeline {
+
+/// The global states by which a window knows the depth gauge; all null where it is not fused.
+struct DepthStates {
+  static constexpr const char* kOffset = "depth_at_origin";  ///< d_0, m
+  static constexpr const char* kScale = "depth_scale";       ///< k
+  static constexpr const char* kLag = "depth_lag";           ///< tau, s
+
+  explicit DepthStates(const Window& window)
+      : offset(window.findGlobal(kOffset)), scale(window.findGlobal(kScale)), lag(window.findGlobal(kLag)) {}
+
+  explicit operator bool() const { return offset != nullptr; }
+  double offset_m() const { return offset->value[0]; }
+  double density_ratio() const { return scale->value[0]; }
+  double lag_s() const { return lag->value[0]; }
+
+  GlobalState* offset;
+  GlobalState* scale;
+  GlobalState* lag;
+};
+
+}  // namespace lodeline

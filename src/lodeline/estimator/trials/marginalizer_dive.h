@@ -1,0 +1,33 @@
+#pragma once
+
+#include "lodeline/estimator/initialization/start.h"
+#include "lodeline/estimator/solver/marginalizer.h"
+#include "lodeline/estimator/trials/test_window.h"
+#include "lodeline/estimator/visual/landmarks.h"
+
+namespace lodeline {
+
+/// A short dive of 40 points an image, for tests of the marginaliser.
+inline TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {
+  TestSceneOptions options;
+  options.duration_s = duration_s;
+  options.points.tracks = 40;
+  options.points.frame_rate_hz = frame_rate_hz;
+  return options;
+}
+
+inline EstimatorOptions quadraticOptions() {
+  EstimatorOptions options;
+  options.solver.robust_scale_sigmas = 1e3;  // so that the cost is as good as quadratic
+  return options;
+}
+
+/// One frame more of a scene, each `keyframe_every`th a keyframe; the first one starts the marginaliser.
+inline void addNext(TestWindow& test, TestScene& scene, FrameId keyframe_every, Marginalizer* marginalizer) {
+  const FrameId count = test.window.empty() ? 0 : test.window.newest().id + 1;
+  Frame& added = test.add(*scene.next(), count % keyframe_every == 0);
+  if (count == 0) marginalizer->start(startPrior(added, test.options.initial_state, 0.05));
+  createLandmarks(test.window, test.factors, test.options.landmark);
+}
+
+}  // namespace lodeline

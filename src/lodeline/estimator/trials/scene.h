@@ -1,0 +1,109 @@
+#pragma once
+
+#include <vector>
+
+#include "lodeline/estimator/estimator.h"
+#include "lodeline/util/diagnostics.h"
+#include "simulation/dive/point_simulation.h"
+
+namespace lodeline {
+
+/// For tests: a rig that sways and turns in a round room, seen as tracks of points and inertial readings.
+struct TestSceneOptions {
+  uint64_t seed = 1;  ///< of noise, points, biases and the phases of the motion
+  int cameras = 2;
+  double duration_s = 20.0;
+  double liveliness = 1.0;   ///< 1: about 1 m/s, 1.5 m/s^2 and 0.5 rad/s; scales position and rotation
+  double translation = 1.0;  ///< scales the sway of the position once more; 0 turns on the spot
+  /// More yaw than that from 5 s on: up to so much faster.
+  double hurry_rad_per_s = 0.0;
+  Vec3 drift_m_per_s = Vec3::Zero();  ///< constant velocity on top
+  std::vector<TimeSpan> still;        ///< the sway fades within 3 s of their borders
+  std::vector<TimeSpan> on_the_spot;  ///< only the sway of the position fades
+  PointSimulationOptions points;      ///< seed, end and IMU errors are filled in by the scene
+  /// The specimen's biases at the start are drawn from these, one sigma per axis.
+  double gyroscope_bias_sigma_rad_per_s = 0.02;
+  double accelerometer_bias_sigma_m_per_s2 = 0.05;
+};
+
+/// Streams the frames of a scene. The rig states exactly the noise that its readings have.
+class TestScene {
+ public:
+  explicit TestScene(const TestSceneOptions& options);
+  TestScene(const TestScene&) = delete;
+
+  const Rig& rig() const { return rig_; }
+  std::optional<SimulatedFrame> next() { return simulation_.next(); }
+  std::vector<SimulatedFrame> all();
+  Vec3 landmark(TrackId track) const { return simulation_.landmark(track); }
+  /// Seconds since the start of the motion.
+  double secondsOf(Time time) const { return (time - start_).seconds(); }
+
+ private:
+  Time start_;
+  Rig rig_;
+  Motion motion_;
+  LandmarkField landmarks_;
+  PointSimulation simulation_;
+};
+
+/// Two (or one) undistorted cameras 11 cm apart looking along the body's x axis, y to the left; a pressure
+/// port 12 cm behind.
+Rig testRig(int cameras);
+
+/// Options of an estimator that believes what a scene does: noise as stated, biases as drawn.
+EstimatorOptions honestOptions(const TestSceneOptions& scene);
+
+/// What turns true poses into the estimator's world, whose origin and heading are those of its first frame.
+/// The prior on that frame holds the z component of its rotation's perturbation at zero, so that is how the
+/// true heading is carried over, however far off the first tilt was. `first_estimate` is the pose that the
+/// prior was built around.
+Rigid3 estimateFromTruth(const Rigid3& first_estimate, const Rigid3& first_truth);
+
+/// An estimate beside the truth.
+struct Comparison {
+  double time_s = 0.0;  ///< since the start of the motion
+  FrameEstimate estimate;
+  Rigid3 true_world_from_body;  ///< in the estimator's world
+  Vec3 true_velocity_W = Vec3::Zero();
+  Vec3 true_gyroscope_bias_B = Vec3::Zero();
+  Vec3 true_accelerometer_bias_B = Vec3::Zero();
+  Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Zero();  ///< [dp, dtheta], m and rad
+
+  bool initialized() const { return estimate.status != Status::Waiting; }
+  double positionError() const { return error.head<3>().norm(); }
+  double rotationError() const { return error.tail<3>().norm(); }
+};
+
+/// Sets an estimator's output beside the truth, frame by frame from the first.
+class TruthComparison {
+ public:
+  Comparison compare(const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator& estimator);
+
+ private:
+  std::map<Time, Rigid3> true_poses_;  // until initialised
+  std::optional<Rigid3> estimate_from_truth_;
+};
+
+/// An estimator that is compared with the truth after every frame.
+class ComparedEstimator {
+ public:
+  ComparedEstimator(const TestScene& scene, const EstimatorOptions& options)
+      : scene_(scene), estimator_(scene.rig(), options, &diagnostics_) {}
+
+  Comparison add(const SimulatedFrame& frame, std::span<const DepthSample> depth = {});
+
+  const Estimator& estimator() const { return estimator_; }
+  const Diagnostics& diagnostics() const { return diagnostics_; }
+
+ private:
+  const TestScene& scene_;
+  Diagnostics diagnostics_;
+  Estimator estimator_;
+  TruthComparison comparison_;
+};
+
+/// Runs a whole scene.
+std::vector<Comparison> compare(TestScene& scene, const EstimatorOptions& options);
+
+}  // namespace lodeline

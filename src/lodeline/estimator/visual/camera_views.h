@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include "lodeline/estimator/problem/factor_list.h"
+
+namespace lodeline {
+
+/// The cameras of every frame of a window, placed once for all the sightings that need them: by the blocks'
+/// present values, or where Jacobians are taken (factors/parameters.h).
+class CameraViews {
+ public:
+  enum class At { kValues, kFirstEstimates };
+
+  /// Camera 0 of one frame at the true time of its images. Its pose moves by [dp, dtheta] in world axes, like
+  /// that of a body.
+  struct Placement {
+    Mat3 world_from_camera;  ///< rotation
+    Vec3 position_W;
+    Mat6 by_body;  ///< d(pose) / d(pose of the body)
+    Eigen::Matrix<double, 6, 7>
+        by_calibration;  ///< d(pose) / d[phi, xi, dt], see calibrated_reprojection_factor.h
+  };
+
+  /// A camera beside camera 0, in the axes of that one.
+  struct Further {
+    Mat3 camera0_from_camera;
+    Vec3 position_C0;
+    Mat3 left_jacobian;  ///< of phi
+  };
+
+  /// From a host's camera 0 to a target camera: the homogeneous point q = rotation d + rho translation.
+  struct Relative {
+    Mat3 rotation;
+    Vec3 translation;
+  };
+
+  /// All three must outlive the views. `hosts`: the frames that a landmark has for its host. Nothing is
+  /// placed before the first update().
+  CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at,
+              std::vector<int> hosts);
+
+  /// Places all cameras anew, after a block has moved.
+  void update();
+
+  /// Frames count from the oldest of the window.
+  const Placement& placement(int frame) const { return placements_[static_cast<size_t>(frame)]; }
+  const Further& further(int camera) const { return further_[static_cast<size_t>(camera) - 1]; }
+  const std::vector<int>& hosts() const { return hosts_; }
+  /// For those hosts.
+  const Relative& relative(int host, int target, int camera) const {
+    return relative_[static_cast<size_t>((host * frames_ + target) * cameras_ + camera)];
+  }
+
+ private:
+  Placement placeFrame(const Frame& frame) const;
+  Further placeFurther(int camera) const;
+  void relate(int host, int target);
+  const double* valueOf(const GlobalState& state) const;
+
+  const Window& window_;
+  const CameraStates& states_;
+  const FactorMaker& factors_;
+  At at_;
+  int frames_;
+  int cameras_;
+  std::vector<int> hosts_;
+  std::vector<Placement> placements_;
+  std::vector<Further> further_;
+  std::vector<Relative> relative_;  // by host, target, camera
+};
+
+}  // namespace lodeline

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "lodeline/evaluation/errors/evaluation.h"
+#include "lodeline/util/diagnostics.h"
+
+namespace lodeline {
+
+/// The figures as a table for people, lengths in metres, angles in degrees; ends with the remarks.
+std::string evaluationTable(const Evaluation& evaluation, const Diagnostics& diagnostics);
+
+/// All figures for programs; every key carries its unit.
+nlohmann::ordered_json evaluationJson(const Evaluation& evaluation, const Diagnostics& diagnostics);
+
+}  // namespace lodeline

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lodeline/evaluation/trajectory/trajectory.h"
+
+namespace lodeline {
+
+/// Writes a trajectory in the TUM layout, stamps exact to 1 ns. Throws InputError where that fails.
+void writeTum(const Trajectory& trajectory, const std::filesystem::path& file);
+
+}  // namespace lodeline

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/frontend/detection/corner_detector.h"
+#include "lodeline/frontend/detection/fixed_structure.h"
+#include "lodeline/frontend/detection/image_quality.h"
+#include "lodeline/frontend/stereo/stereo_matcher.h"
+#include "lodeline/frontend/tracking/epipolar_consensus.h"
+#include "lodeline/frontend/tracking/temporal_tracker.h"
+#include "lodeline/frontend/tracking/tracks.h"
+
+namespace lodeline {
+
+struct FrontEndOptions {
+  int pyramid_levels = 4;
+  CornerDetectorOptions detector;
+  TemporalTrackerOptions tracker;
+  StereoMatcherOptions stereo;
+  EpipolarConsensusOptions consensus;
+  FixedStructureOptions fixed_structure;
+  /// Images whose texture (ImageQuality::texture_grey) is below this are smoothed more before tracking, for
+  /// noise weighs more in them.
+  double faint_texture_grey = 1.5;
+  /// So are images of which more than this is on the finest scale (ImageQuality::sharpness), as mere noise
+  /// has 0.65 of it and clear pictures 0.35 to 0.45.
+  double noisy_sharpness = 0.46;
+  /// Tracks are looked for again after images of camera 0 were missing for at most this long.
+  double max_gap_s = 1.0;
+  /// Standard deviation of an observation.
+  double sigma_px = 1.0;
+};
+
+/// What became of the tracks in one frame.
+struct FrontEndStatistics {
+  int kept = 0;      ///< followed from the frame before
+  int lost = 0;      ///< not found again, or of poor likeness
+  int rejected = 0;  ///< found, but against the motion of the others or on top of another track
+  int created = 0;
+  int matched = 0;       ///< seen in at least one further camera
+  bool missing = false;  ///< camera 0 gave no image
+  ImageQuality image;    ///< of camera 0
+
+  int tracks() const { return kept + created; }
+};
+
+/// From images to tracked points. Points live in camera 0, are followed from frame to frame with the
+/// gyroscope's rotation as prediction, and are matched into every other camera of the same moment; one camera
+/// is merely the case without others.
+class FrontEnd {
+ public:
+  /// Throws InputError where a camera's calibration or mask cannot be used, or the rig has no camera.
+  FrontEnd(const Rig& rig, const FrontEndOptions& options);
+
+  /// `images`: one 8-bit grey image per camera of the rig; empty where the camera gave none.
+  /// `previous_from_current_B`: rotation of the body between the call before and this one; `alternative_B`:
+  /// another opinion of it, which counts where the images do not agree with the first. Without an image of
+  /// camera 0 nothing is observed, and tracks wait for the next one. What another camera saw at another
+  /// moment, by `motion`, is given as it would have seen it at `time`. Throws InputError where an image has
+  /// another size or type than the calibration says.
+  FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
+                      const Quat& alternative_B, const RigMotion& motion = {});
+  FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
+                      const RigMotion& motion = {}) {
+    return process(time, images, previous_from_current_B, previous_from_current_B, motion);
+  }
+
+  /// Gives up all tracks: the images so far were not those of camera 0.
+  void forgetTracks();
+
+  /// Of the last frame.
+  const FrontEndStatistics& statistics() const { return statistics_; }
+  const std::vector<Track>& tracks() const { return tracks_; }
+  const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
+  /// By how much later than thought a further camera (1, 2, ...) takes its images.
+  StereoDelay& delay(size_t camera) { return matchers_[camera - 1].delay(); }
+  /// What stays at its place in the images of each camera and is not looked at.
+  const std::vector<FixedStructure>& fixedStructures() const { return fixed_structures_; }
+
+ private:
+  void check(Time time, const std::vector<cv::Mat>& images) const;
+  ImagePyramid pyramid(const cv::Mat& image) const;
+  void updateQuality(const ImagePyramid& current);
+  /// Tracks found in the current image, and their rays in the previous one.
+  struct Followed {
+    std::vector<Track> tracks;
+    std::vector<Vec3> previous_bearings;
+  };
+  Followed follow(std::vector<Track> tracks, const ImagePyramid& current,
+                  const Mat3& current_from_previous_C) const;
+  void follow(const ImagePyramid& current, const Mat3& current_from_previous_C, const Mat3& alternative_C);
+  void rejectOutliers(const std::vector<Vec3>& previous_bearings, const Mat3& current_from_previous_C,
+                      const Mat3& alternative_C);
+  void rejectCrowded();
+  bool isHidden(size_t camera, const Eigen::Vector2f& pixel) const;
+  void detect(const ImagePyramid& current);
+  void matchOther(size_t m, const ImagePyramid& current, const ImagePyramid& other);
+  void matchOthers(Time time, const ImagePyramid& current, const std::vector<cv::Mat>& images);
+  FrameTracks observations(Time time) const;
+
+  FrontEndOptions options_;
+  std::vector<std::shared_ptr<const Camera>> cameras_;
+  Quat body_from_camera_;
+  std::vector<cv::Mat> masks_;
+  TemporalTracker tracker_;
+  std::vector<StereoMatcher> matchers_;  ///< camera 0 with camera 1, 2, ...
+  CornerDetector detector_;
+  std::vector<FixedStructure> fixed_structures_;  ///< of each camera
+
+  std::vector<Track> tracks_;  ///< by rising id
+  ImagePyramid previous_;
+  bool faint_ = false;  ///< the last image was faint or noisy
+  Time previous_time_;
+  double previous_interval_s_ = 0.0;  ///< that led there
+  /// Since the last image of camera 0, by either opinion.
+  Quat previous_from_current_B_ = Quat::Identity(), alternative_B_ = Quat::Identity();
+  TrackId next_id_ = 0;
+  FrontEndStatistics statistics_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "lodeline/frontend/detection/image_pyramid.h"
+#include "lodeline/frontend/tracking/patch_sampling.h"
+
+namespace lodeline {
+
+/// What alignment may change of a warp: its position, or its linear part as well.
+enum class PatchMotion { Shift, Deformation };
+
+/// How well a patch was found.
+struct PatchMatch {
+  float correlation = 0.0F;    ///< of the normalised patches at the finest level, 1 = equal
+  float residual_grey = 0.0F;  ///< RMS difference after normalisation, grey levels of the template
+};
+
+/// The looks of a small neighbourhood, on several pyramid levels, with everything that can be computed once
+/// for finding it again in other images.
+///
+/// Alignment is inverse compositional Gauss-Newton (S. Baker, I. Matthews, "Lucas-Kanade 20 years on", IJCV
+/// 2004) on normalised values: constant, linear trend and gain are taken out of template and image alike, for
+/// a lamp that moves with the camera draws a pool of light over the rock that is bright, steep, and stands
+/// still in the image; whatever of it is left in the residual holds the patch back.
+class PatchTemplate {
+ public:
+  PatchTemplate() = default;
+
+  /// `motion`: the most that align() will ever change. Nothing where the finest level leaves the image or has
+  /// no texture. Coarser levels that leave the image are passed over.
+  static std::optional<PatchTemplate> extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
+                                              int levels, PatchMotion motion = PatchMotion::Deformation);
+
+  /// Finds the template in another image, from level `coarsest` down to the image itself. Deformation
+  /// follows the linear part of the warp as well, on the finest level. Nothing where it leaves the image or
+  /// does not converge; `warp` is then unspecified.
+  std::optional<PatchMatch> align(const ImagePyramid& image, int coarsest, PatchMotion motion,
+                                  PatchWarp& warp) const;
+
+  /// Correlation of the image at `warp` with the template on one level, without moving; nothing outside.
+  std::optional<float> correlate(const ImagePyramid& image, int level, const PatchWarp& warp) const;
+
+  int levels() const { return static_cast<int>(levels_.size()); }
+  /// Root of the sum of squares of the detrended template on the finest level, grey levels.
+  float contrastGrey() const { return contrast_grey_; }
+
+ private:
+  static constexpr int kParameters = 6;
+  using Jacobian = std::array<PatchValues, kParameters>;
+  struct Level {
+    bool valid = false;
+    PatchValues values{};  ///< normalised
+    /// Pseudo-inverse of the Jacobian of the normalised values by the shift, row by row.
+    std::array<PatchValues, 2> shift_gain{};
+  };
+
+  /// The Jacobian of the normalised values by the shift, or by (shift, linear part).
+  static bool fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, PatchMotion motion, Level& level,
+                        Jacobian& jacobian, float& norm);
+  void invertInformation();
+  bool shiftOnLevel(const Level& level, const cv::Mat& image, float converged_px, PatchWarp& warp,
+                    float& correlation) const;
+  bool deform(const cv::Mat& image, PatchWarp& warp, float& correlation) const;
+
+  std::vector<Level> levels_;
+  PatchMotion most_ = PatchMotion::Shift;
+  /// Of the finest level, by (shift, linear part), and the inverse of its damped square; not worked out in a
+  /// template that is only shifted.
+  Jacobian jacobian_{};
+  Eigen::Matrix<float, kParameters, kParameters> inverse_information_;
+  float contrast_grey_ = 0.0F;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lodeline/geometry/types.h"
+#include "lodeline/util/time/time.h"
+
+namespace lodeline {
+
+/// Identifies one physical point as long as it is tracked; never reused.
+using TrackId = int64_t;
+
+/// One sighting of a tracked point in one image.
+struct Observation {
+  TrackId track = -1;
+  int camera = 0;                  ///< index into Rig::cameras
+  Vec2 pixel = Vec2::Zero();       ///< in the image as recorded (distorted)
+  Vec3 bearing_C = Vec3::UnitZ();  ///< unit ray in the camera frame
+  double sigma_px = 1.0;           ///< standard deviation of the pixel along each axis
+};
+
+/// Everything the front end knows of one moment. Sorted by track, then camera; a track occurs at most once a
+/// camera.
+struct FrameTracks {
+  Time time;
+  std::vector<Observation> observations = {};
+  /// How camera 1, 2, ... are turned against what the rig says, where their epipolar lines say so beyond
+  /// doubt: phi in rad, axes of camera 0, whose exp(phi) comes before the rotation of camera0_from_camera.
+  /// Zero where the rig may be right; empty where nothing was compared.
+  std::vector<Vec3> camera_rotations = {};
+};
+
+}  // namespace lodeline

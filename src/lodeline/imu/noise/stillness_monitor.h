@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lodeline/geometry/types.h"
+#include "lodeline/util/time/time.h"
+
+namespace lodeline {
+
+/// What still means for a sensor; [u] is the unit of its reading.
+struct StillLimits {
+  double largest_std = 0.0;   ///< [u], root mean square over the axes within ten seconds
+  double largest_step = 0.0;  ///< [u], change of the mean between neighbouring ten seconds
+};
+
+/// How still a sensor was kept: shares of the record's ten-second windows.
+struct Stillness {
+  int windows = 0;
+  int moved = 0;                    ///< windows beyond the limits
+  std::optional<Time> first_moved;  ///< begin of the first of them
+  double median_std = 0.0;          ///< [u]
+
+  double movedShare() const { return windows == 0 ? 0.0 : static_cast<double>(moved) / windows; }
+};
+
+/// Watches readings of a sensor that ought to lie still. A window counts as moved when it scatters more than
+/// the limit, or three times as much as the median window, or when its mean steps away from that of the one
+/// before.
+class StillnessMonitor {
+ public:
+  explicit StillnessMonitor(const StillLimits& limits) : limits_(limits) {}
+
+  void add(Time time, const Vec3& reading);
+  Stillness result() const;
+
+ private:
+  struct Window {
+    Time begin;
+    float std = 0.0F;
+    float step = 0.0F;
+  };
+  void close();
+
+  StillLimits limits_;
+  std::vector<Window> windows_;
+  std::optional<Time> begin_;
+  Vec3 origin_ = Vec3::Zero();  ///< first reading of the window, taken off for the sake of precision
+  Vec3 sum_ = Vec3::Zero();
+  Vec3 squares_ = Vec3::Zero();
+  int count_ = 0;
+  std::optional<Vec3> last_mean_;
+};
+
+}  // namespace lodeline

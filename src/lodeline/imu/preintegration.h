@@ -1,0 +1,163 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lodeline/geometry/types.h"
+#include "lodeline/imu/inertial_doubt.h"
+#include "lodeline/imu/rotation_increment.h"
+#include "lodeline/imu/step_noise.h"
+#include "lodeline/sensors/measurements.h"
+#include "lodeline/sensors/rig.h"
+#include "lodeline/util/time/time.h"
+
+namespace lodeline {
+
+struct PreintegrationOptions {
+  /// Factor on all four densities of ImuNoise. Datasheet and Allan figures hold for a sensor at rest on a
+  /// bench.
+  double noise_inflation = 2.0;
+  MotionNoiseOptions motion_noise;
+
+  /// Two readings further apart than this, and further than 1.5 nominal periods, count as lost data.
+  double max_gap_s = 0.02;
+  /// How far the mean rate and specific force over a gap may lie from the mean of its two ends, one sigma per
+  /// axis.
+  double gap_rate_sigma_rad_per_s = 0.3;
+  double gap_specific_force_sigma_m_per_s2 = 1.5;
+
+  /// Largest corrections for a moved bias that the first-order expansion is trusted with: |db_g| * dt and
+  /// |db_a| * dt. alpha and beta are linear in b_a, so the second only bounds the product of both.
+  double max_rotation_correction_rad = 0.005;
+  double max_velocity_correction_m_per_s = 0.1;
+};
+
+/// Where each part begins in the 15 coordinates of the inertial error, its covariance and the residual.
+namespace inertial_error {
+constexpr int kAlpha = 0;               ///< m, axes of body k
+constexpr int kBeta = 3;                ///< m/s, axes of body k
+constexpr int kTheta = 6;               ///< rad, axes of body k
+constexpr int kGyroscopeBias = 9;       ///< rad/s
+constexpr int kAccelerometerBias = 12;  ///< m/s^2
+constexpr int kRelativeMotionSize = 9;  ///< alpha, beta, theta
+constexpr int kSize = 15;
+}  // namespace inertial_error
+
+/// What the IMU says about the motion from body k to body k+1, free of gravity and of the state at k:
+///   R_B_W^k (p^{k+1} - p^k - v^k dt - g dt^2 / 2) = alpha
+///   R_B_W^k (v^{k+1} - v^k - g dt)                = beta
+///   R_B_W^k R_W_B^{k+1}                           = gamma
+struct RelativeMotion {
+  Vec3 alpha = Vec3::Zero();      ///< m, axes of body k
+  Vec3 beta = Vec3::Zero();       ///< m/s, axes of body k
+  Quat gamma = Quat::Identity();  ///< body_k from body_k+1
+};
+
+/// Rotation from the start of an interval to a moment within it, and how the gyroscope bias moves it:
+/// gamma(b_g + d) = exp(theta_by_gyroscope_bias * d) * gamma(b_g).
+struct IntermediateRotation {
+  Quat gamma = Quat::Identity();  ///< body_k from body at that moment
+  Mat3 theta_by_gyroscope_bias = Mat3::Zero();
+
+  Quat correctedFor(const Vec3& gyroscope_bias_change) const;
+};
+
+/// How a sensor's axes are longer and point elsewhere than its calibration says: the true value is
+/// (I + D) (reading - bias). D column by column; 0 for a sensor as calibrated. (D_w and D_a in Yang et al.,
+/// "Online IMU intrinsic calibration: is it necessary?", RSS 2020.)
+using SensorAxes = Eigen::Matrix<double, 9, 1>;
+
+struct ImuAxes {
+  SensorAxes gyroscope = SensorAxes::Zero();
+  SensorAxes accelerometer = SensorAxes::Zero();
+};
+
+/// IMU readings between two moments, integrated once so that the optimiser need not.
+///
+/// Model: measured rate = true rate + b_g + noise, measured force = R_B_W (a_W - g_W) + b_a + noise; white
+/// noises and random walks of the biases with the densities of ImuNoise times `noise_inflation`, and more
+/// where the motion asks for it (inertial/step_noise.h). Over a step the rate is a cubic in time, its slopes
+/// at the readings those of the chords between their neighbours (rotation by the Magnus expansion to second
+/// order), and the specific force, turned into body k's axes, is linear in time.
+///
+/// Error: e = [alpha, beta, theta, b_g, b_a] = truth minus integration with the biases of moment k, where
+/// gamma_true = exp(theta) * gamma and the last two are the biases' walk from k to k+1.
+///
+/// Sources: Forster et al., "On-manifold preintegration for real-time visual-inertial odometry", TRO 2017
+/// (bias correction); Qin, Li & Shen, "VINS-Mono", TRO 2018 (alpha, beta, gamma). Derivation:
+/// docs/inertial.md.
+class Preintegration {
+ public:
+  using Mat15 = Eigen::Matrix<double, 15, 15>;
+  using Mat96 = Eigen::Matrix<double, 9, 6>;
+  using Mat99 = Eigen::Matrix<double, 9, 9>;
+
+  /// `samples`: from moment k to moment k+1, the first and last reading exactly on the borders, times
+  /// strictly increasing. Throws InputError for fewer than two samples, times that do not increase, readings
+  /// that are not finite, or noise densities that are not positive.
+  Preintegration(std::span<const ImuSample> samples, const Vec3& gyroscope_bias_B,
+                 const Vec3& accelerometer_bias_B, const ImuCalibration& imu,
+                 const PreintegrationOptions& options = {});
+
+  Time start() const { return samples_.front().time; }
+  Time end() const { return samples_.back().time; }
+  double dt_s() const { return (end() - start()).seconds(); }
+
+  /// The biases integrated with.
+  const Vec3& gyroscopeBias() const { return gyroscope_bias_; }
+  const Vec3& accelerometerBias() const { return accelerometer_bias_; }
+
+  /// At the biases integrated with, axes as calibrated.
+  const RelativeMotion& motion() const { return motion_; }
+  /// To first order at other biases and axes.
+  RelativeMotion correctedFor(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B,
+                              const ImuAxes& axes = {}) const;
+  /// d[alpha, beta, theta] / d[b_g, b_a], theta as in IntermediateRotation.
+  const Mat96& biasJacobian() const { return bias_jacobian_; }
+  /// The same by the gyroscope's and by the accelerometer's axes.
+  const Mat99& gyroscopeAxesJacobian() const { return gyroscope_axes_jacobian_; }
+  const Mat99& accelerometerAxesJacobian() const { return accelerometer_axes_jacobian_; }
+
+  /// Covariance of the error, SI units.
+  const Mat15& covariance() const { return covariance_; }
+  /// Lower triangular W with W^T W = covariance^-1: W * e has unit covariance.
+  const Mat15& whitening() const { return whitening_; }
+
+  bool needsRepropagation(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B) const;
+  /// Integrates again at the given biases.
+  void repropagate(const Vec3& gyroscope_bias_B, const Vec3& accelerometer_bias_B);
+
+  /// Integrates again with noise added to the interval.
+  void setDoubt(const InertialDoubt& doubt);
+  const InertialDoubt& doubt() const { return doubt_; }
+
+  /// Rotation from body k to the body at `time`, at the bias integrated with. Throws InputError outside the
+  /// interval.
+  IntermediateRotation gammaAt(Time time) const;
+
+ private:
+  void integrate();
+  /// Over the step from sample i to the next.
+  void advance(size_t i);
+  /// At a sample, freed from the bias.
+  TurningRate turningRate(size_t i) const;
+  Mat15 processNoise(const ImuSample& from, const ImuSample& to,
+                     const Eigen::Matrix<double, 9, 3>& motion_by_gyroscope_bias) const;
+
+  std::vector<ImuSample> samples_;
+  ImuCalibration imu_;
+  PreintegrationOptions options_;
+  InertialDoubt doubt_;
+  Vec3 gyroscope_bias_;
+  Vec3 accelerometer_bias_;
+
+  RelativeMotion motion_;
+  Mat96 bias_jacobian_;
+  Mat99 gyroscope_axes_jacobian_;
+  Mat99 accelerometer_axes_jacobian_;
+  Mat15 covariance_;
+  Mat15 whitening_;
+  std::vector<IntermediateRotation> rotations_;  // at each sample
+};
+
+}  // namespace lodeline

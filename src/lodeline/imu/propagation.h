@@ -1,0 +1,24 @@
+#pragma once
+
+#include "lodeline/geometry/rigid3.h"
+#include "lodeline/imu/preintegration.h"
+#include "lodeline/util/time/time.h"
+
+namespace lodeline {
+
+/// Everything the inertial equations need to know about one moment.
+struct NavigationState {
+  Time time;
+  Rigid3 world_from_body;
+  Vec3 velocity_W = Vec3::Zero();            ///< m/s
+  Vec3 gyroscope_bias_B = Vec3::Zero();      ///< rad/s
+  Vec3 accelerometer_bias_B = Vec3::Zero();  ///< m/s^2
+};
+
+/// The state at the end of the preintegrated interval from the one at its start; the biases stay. The
+/// interval is corrected to first order for the state's biases. Throws std::invalid_argument if `state` is
+/// not of the interval's start.
+NavigationState predict(const NavigationState& state, const Preintegration& preintegration,
+                        const Vec3& gravity_W);
+
+}  // namespace lodeline

@@ -1,0 +1,80 @@
+#include "lodeline/inspection/survey/camera_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/util/angles.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+/// "+x", with the angle in between where it is not small.
+std::string nearestAxis(const Vec3& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  const double angle_deg = kDegreesPerRadian * std::acos(std::min(1.0, std::abs(direction[axis])));
+  const std::string name = fmt::format("{}{}", direction[axis] < 0.0 ? '-' : '+', "xyz"[axis]);
+  return angle_deg < 5.0 ? name : fmt::format("{} ({:.0f} deg off)", name, angle_deg);
+}
+
+/// Full angle between the middles of the left and right edges.
+std::optional<double> widthAngle_deg(const CameraCalibration& calibration) {
+  const std::shared_ptr<const Camera> camera = makeCamera(calibration);
+  const double row = 0.5 * calibration.height_px;
+  const auto left = camera->unproject(Vec2(0.0, row));
+  const auto right = camera->unproject(Vec2(calibration.width_px - 1.0, row));
+  if (!left || !right) return std::nullopt;
+  return kDegreesPerRadian * std::acos(std::clamp(left->dot(*right), -1.0, 1.0));
+}
+
+}  // namespace
+
+bool isCalibrated(const CameraCalibration& camera) { return camera.width_px > 0; }
+
+std::string describeAxes(const CameraCalibration& camera) {
+  const Mat3 rotation = camera.body_from_camera.rotation.toRotationMatrix();
+  return fmt::format("looks along the body's {}; the top of its image points along {}, its right along {}",
+                     nearestAxis(rotation.col(2)), nearestAxis(-rotation.col(1)),
+                     nearestAxis(rotation.col(0)));
+}
+
+std::string describeGravity(const CameraCalibration& camera, const Vec3& up_B) {
+  const Vec3 down_C = camera.body_from_camera.rotation.conjugate() * -up_B;
+  const double pitch_deg = kDegreesPerRadian * std::asin(std::clamp(down_C.z(), -1.0, 1.0));
+  if (std::abs(pitch_deg) > 60.0) {
+    return fmt::format("looks {}, {:.0f} deg off the vertical", pitch_deg > 0.0 ? "down" : "up",
+                       90.0 - std::abs(pitch_deg));
+  }
+  const double roll_deg = kDegreesPerRadian * std::atan2(down_C.x(), down_C.y());
+  const char* word = std::abs(roll_deg) < 45.0    ? "upright"
+                     : std::abs(roll_deg) > 135.0 ? "upside down"
+                                                  : "on its side";
+  return fmt::format(
+      "{} on average (gravity {:.0f} deg off the image's downward direction, {:.0f} deg {} its plane)", word,
+      std::abs(roll_deg), std::abs(pitch_deg), pitch_deg > 0.0 ? "in front of" : "behind");
+}
+
+std::string oddIntrinsics(const CameraCalibration& camera) {
+  if (!isCalibrated(camera)) return {};
+  const double off_x = std::abs(camera.cx_px - 0.5 * camera.width_px) / camera.width_px;
+  const double off_y = std::abs(camera.cy_px - 0.5 * camera.height_px) / camera.height_px;
+  if (off_x > 0.2 || off_y > 0.2) {
+    return fmt::format("the principal point ({:.0f}, {:.0f}) px lies far from the centre of {} x {} px",
+                       camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
+  }
+  if (std::max(camera.fx_px, camera.fy_px) > 1.1 * std::min(camera.fx_px, camera.fy_px)) {
+    return fmt::format("the focal lengths {:.1f} and {:.1f} px differ by more than 10 %: pixels are square",
+                       camera.fx_px, camera.fy_px);
+  }
+  const std::optional<double> angle_deg = widthAngle_deg(camera);
+  if (!angle_deg) return "the distortion is not invertible within the image";
+  if (*angle_deg < 15.0)
+    return fmt::format("the view is only {:.0f} deg wide; is the focal length right?", *angle_deg);
+  return {};
+}
+
+}  // namespace lodeline

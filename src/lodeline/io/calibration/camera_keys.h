@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lodeline/io/calibration/yaml_file.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// Reads what EuRoC's sensor.yaml and Kalibr's camchain say alike: `camera_model` (pinhole), `resolution`,
+/// `intrinsics` (fx fy cx cy, px), `distortion_model` (radial-tangential or radtan, equidistant, none) and
+/// its coefficients under `coefficients_key`. Throws InputError for anything else.
+void readPinhole(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera);
+
+}  // namespace lodeline

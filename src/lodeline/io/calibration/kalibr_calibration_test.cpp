@@ -1,0 +1,121 @@
+#include "lodeline/io/calibration/kalibr_calibration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lodeline/io/euroc/euroc_rig.h"
+#include "lodeline/io/euroc/test_recording.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// cam0 is turned by 90 degrees about z against the IMU; cam1 stands 0.1 m to its right.
+constexpr const char* kCamchain = R"(cam0:
+  T_cam_imu:
+  - [0.0, 1.0, 0.0, 0.5]
+  - [-1.0, 0.0, 0.0, 0.0]
+  - [0.0, 0.0, 1.0, 0.0]
+  - [0.0, 0.0, 0.0, 1.0]
+  cam_overlaps: [1]
+  camera_model: pinhole
+  distortion_coeffs: [0.1, 0.2, 0.3, 0.4]
+  distortion_model: equidistant
+  intrinsics: [30.0, 31.0, 7.5, 5.5]
+  resolution: [16, 12]
+  rostopic: /cam0/image_raw
+  timeshift_cam_imu: 0.0125
+cam1:
+  T_cn_cnm1:
+  - [1.0, 0.0, 0.0, -0.1]
+  - [0.0, 1.0, 0.0, 0.0]
+  - [0.0, 0.0, 1.0, 0.0]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: pinhole
+  distortion_coeffs: []
+  distortion_model: none
+  intrinsics: [30.0, 31.0, 7.5, 5.5]
+  resolution: [16, 12]
+)";
+
+constexpr const char* kImuOfKalibr = R"(imu0:
+  T_i_b: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+  accelerometer_noise_density: 0.004
+  accelerometer_random_walk: 0.005
+  gyroscope_noise_density: 0.006
+  gyroscope_random_walk: 0.007
+  model: calibrated
+  rostopic: /imu0
+  time_offset: 0.0
+  update_rate: 201.0
+)";
+
+class KalibrTest : public testing::Test {
+ protected:
+  Rig read() { return readEurocRig(findEurocLayout(recording_.folder(), {}), &diagnostics_); }
+
+  TestRecording recording_;
+  Diagnostics diagnostics_;
+};
+
+TEST_F(KalibrTest, WinsOverSensorYamlAndSaysSo) {
+  recording_.write("../camchain-imucam.yaml", kCamchain);
+  recording_.write("imu.yaml", kImuOfKalibr);
+  const Rig rig = read();
+  ASSERT_EQ(rig.cameras.size(), 2u);
+  const CameraCalibration& camera = rig.cameras[0];
+  EXPECT_EQ(camera.fx_px, 30.0);
+  EXPECT_EQ(camera.distortion_model, DistortionModel::Equidistant);
+  EXPECT_EQ(camera.time_offset_to_imu_s, 0.0125);
+  EXPECT_EQ(camera.rate_hz, 20.0);
+  EXPECT_TRUE((camera.body_from_camera.inverse() * Vec3(1, 0, 0)).isApprox(Vec3(0.5, -1, 0), 1e-12));
+  EXPECT_EQ(rig.cameras[1].distortion_model, DistortionModel::None);
+  EXPECT_TRUE((rig.cameras[1].body_from_camera.inverse() * Vec3(1, 0, 0)).isApprox(Vec3(0.4, -1, 0), 1e-12));
+  EXPECT_EQ(rig.imu.rate_hz, 201.0);
+  EXPECT_EQ(rig.imu.noise.accelerometer_density_m_per_s2_sqrtHz, 0.004);
+  EXPECT_EQ(rig.imu.noise.gyroscope_random_walk_rad_per_s2_sqrtHz, 0.007);
+  EXPECT_EQ(diagnostics_.count("kalibr_used"), 2);
+  EXPECT_EQ(diagnostics_.ranked().size(), 1u);
+}
+
+TEST_F(KalibrTest, NeedsNoSensorYamlOfCamerasAndImu) {
+  for (const char* file : {"cam0/sensor.yaml", "cam1/sensor.yaml", "imu0/sensor.yaml"}) {
+    std::filesystem::remove(recording_.path(file));
+  }
+  recording_.write("dive3-camchain-imucam.yaml", kCamchain);
+  recording_.write("../imu-dive3.yaml", std::string(kImuOfKalibr).substr(6));
+  const Rig rig = read();
+  EXPECT_NEAR(rig.cameras[1].rate_hz, 20.0, 1e-6);
+  EXPECT_EQ(rig.imu.rate_hz, 201.0);
+  EXPECT_EQ(diagnostics_.count("kalibr_used"), 0);
+}
+
+TEST_F(KalibrTest, RefusesAChainWithoutImu) {
+  std::string camchain = kCamchain;
+  camchain.replace(camchain.find("T_cam_imu"), 9, "T_cam_xyz");
+  recording_.write("camchain-imucam.yaml", camchain);
+  EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("key 'cam0.T_cam_imu' is missing")));
+}
+
+TEST_F(KalibrTest, RefusesAChainThatLacksACamera) {
+  recording_.write("camchain-imucam.yaml",
+                   std::string(kCamchain).substr(0, std::string(kCamchain).find("cam1:")));
+  EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("key 'cam1' is missing")));
+}
+
+TEST_F(KalibrTest, RefusesTwoFilesOfAKind) {
+  recording_.write("camchain-imucam-a.yaml", kCamchain);
+  recording_.write("camchain-imucam-b.yaml", kCamchain);
+  EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("keep the one that is valid")));
+}
+
+TEST_F(KalibrTest, RefusesWhatIsNoCamchain) {
+  recording_.write("camchain-imucam.yaml", "- 1\n- 2\n");
+  EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("holds no sensors")));
+}
+
+}  // namespace
+}  // namespace lodeline

@@ -1,0 +1,109 @@
+#include "lodeline/io/calibration/rig_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/io/euroc/test_recording.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kImu =
+    "  gyroscope_noise_density: 1.0e-4\n  gyroscope_random_walk: 1.0e-5\n"
+    "  accelerometer_noise_density: 1.0e-3\n  accelerometer_random_walk: 1.0e-4\n";
+constexpr const char* kTransform = "[1,0,0,0.1, 0,1,0,0.2, 0,0,1,0.3, 0,0,0,1]";
+
+class RigFileTest : public testing::Test {
+ protected:
+  RigFile read(const std::vector<std::string>& texts) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& text : texts) {
+      const std::string name = "rig" + std::to_string(files.size()) + ".yaml";
+      place_.write(name, text);
+      files.push_back(place_.path(name));
+    }
+    return readRigFiles(files, &diagnostics_);
+  }
+
+  std::string refusal(const std::vector<std::string>& texts) {
+    try {
+      read(texts);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  TestRecording place_;
+  Diagnostics diagnostics_;
+  const std::string imu_ = std::string("imu0:\n  topic: /imu\n") + kImu;
+  const std::string camera_ = std::string("cam0:\n  T_BS: ") + kTransform +
+                              "\n  resolution: [640, 480]\n  intrinsics: [400, 401, 320, 240]\n"
+                              "  distortion_model: none\n";
+};
+
+TEST_F(RigFileTest, ReadsOurOwnKeys) {
+  const RigFile file = read({imu_ + camera_ + "pressure0:\n  T_BS: " + kTransform +
+                             "\n  depth_noise_std: 0.01\n  water_density_kg_per_m3: 1025\n"});
+  EXPECT_TRUE(file.has_imu);
+  ASSERT_EQ(file.rig.cameras.size(), 1u);
+  EXPECT_EQ(file.rig.cameras[0].fy_px, 401.0);
+  EXPECT_EQ(file.rig.cameras[0].body_from_camera.translation, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(file.topics.at("imu0"), "/imu");
+  EXPECT_FALSE(file.topics.contains("cam0"));
+  EXPECT_TRUE(file.rig.pressure);
+  EXPECT_NEAR(file.water.depth_m(101325.0 + 1025.0 * 9.80665 * 12.5), 12.5, 1e-9);
+}
+
+TEST_F(RigFileTest, ReadsKalibrsFiles) {
+  const RigFile file = read(
+      {std::string("cam0:\n  rostopic: /left\n  T_cam_imu: ") + kTransform +
+           "\n  camera_model: pinhole\n  distortion_model: radtan\n  distortion_coeffs: [0, 0, 0, 0]\n"
+           "  intrinsics: [400, 401, 320, 240]\n  resolution: [640, 480]\n  timeshift_cam_imu: 0.01\n",
+       "rostopic: /imu\nupdate_rate: 200\ngyroscope_noise_density: 1.0e-4\ngyroscope_random_walk: 1.0e-5\n"
+       "accelerometer_noise_density: 1.0e-3\naccelerometer_random_walk: 1.0e-4\n"});
+  EXPECT_TRUE(file.has_imu);
+  EXPECT_EQ(file.rig.imu.rate_hz, 200.0);
+  EXPECT_EQ(file.topics.at("cam0"), "/left");
+  EXPECT_EQ(file.topics.at("imu0"), "/imu");
+  EXPECT_EQ(file.rig.cameras.at(0).body_from_camera.translation, Vec3(-0.1, -0.2, -0.3));
+  EXPECT_EQ(file.rig.cameras.at(0).time_offset_to_imu_s, 0.01);
+}
+
+TEST_F(RigFileTest, MovesSensorsToTheImuFrame) {
+  const RigFile file = read({imu_ + "  T_BS: " + kTransform + "\n" + camera_});
+  EXPECT_NEAR(file.rig.cameras.at(0).body_from_camera.translation.norm(), 0.0, 1e-15);
+}
+
+TEST_F(RigFileTest, NamesTheNearestKeyForAnUnknownOne) {
+  EXPECT_THAT(refusal({imu_ + camera_ + "  intrinsic: [1, 2]\n"}),
+              HasSubstr("unknown key 'cam0.intrinsic'; did you mean 'intrinsics'?"));
+  EXPECT_THAT(refusal({imu_ + "img0: {}\n"}), HasSubstr("unknown sensor 'img0'; did you mean 'imu0'?"));
+}
+
+TEST_F(RigFileTest, RefusesContradictionsAndGaps) {
+  EXPECT_THAT(refusal({imu_, imu_}), HasSubstr("describes imu0, which"));
+  std::string second = camera_;
+  second.replace(0, 4, "cam1");
+  EXPECT_THAT(refusal({imu_ + second}), HasSubstr("describes cam1 but not cam0"));
+  EXPECT_THAT(refusal({"- a list\n"}), HasSubstr("holds no sensors"));
+}
+
+TEST_F(RigFileTest, RefusesSectionsThatAreNoMaps) {
+  EXPECT_THAT(refusal({imu_ + "cam0: 7\n"}), HasSubstr("rig0.yaml"));
+  EXPECT_THAT(refusal({imu_ + "cam00: {}\n"}), HasSubstr("cam00"));
+}
+
+TEST_F(RigFileTest, DepthInDecimalsSurvivesBeingAPressure) {
+  const WaterColumn water;
+  for (const double depth_m : {0.0, 7.48, 12.345678, -0.25, 101.000001}) {
+    EXPECT_EQ(water.depth_m(water.pressure_Pa(depth_m)), depth_m);
+  }
+}
+
+}  // namespace
+}  // namespace lodeline

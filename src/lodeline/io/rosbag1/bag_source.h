@@ -1,0 +1,91 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/io/calibration/rig_file.h"
+#include "lodeline/io/images/grey_range.h"
+#include "lodeline/io/rosbag1/bag_file.h"
+#include "lodeline/io/rosbag1/imu_halves.h"
+#include "lodeline/io/rosbag1/messages.h"
+#include "lodeline/io/rosbag1/topic_choice.h"
+#include "lodeline/io/synchronizer/measurement_source.h"
+
+namespace lodeline {
+
+struct BagOptions {
+  /// Files that describe the rig (see readRigFiles). None: NAME.rig.yaml beside NAME.bag.
+  std::vector<std::filesystem::path> rig_files;
+  /// Topics by sensor ("cam0", "imu0", …), before what the rig files name; two for the halves of an IMU, with
+  /// a comma between them.
+  std::map<std::string, std::string> topics;
+  /// N of the camN to use, as in EurocOptions.
+  std::vector<int> camera_indices;
+  bool with_cameras = true;
+  /// False for what needs readings only, as converting: sensors without a calibration get the default one.
+  bool needs_calibration = true;
+  /// Stamps readings with the times at which they were recorded, not with those of their headers: for drivers
+  /// that write none. Transport and its jitter are in these times.
+  bool use_received_times = false;
+};
+
+/// A ROS 1 bag as a recording, streamed: one message of each topic at a time.
+class BagSource : public RecordedSource {
+ public:
+  /// Throws InputError as BagFile, readRigFiles and chooseTopics do, and for a rig that has no camera or IMU
+  /// or a bag that has none of its readings; UsageError for a topic of a sensor that the rig does not have.
+  /// `diagnostics` must outlive the source.
+  BagSource(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics);
+
+  std::optional<ImuSample> nextRecordedImu() override;
+  std::optional<PendingImage> nextImage(size_t camera) override;
+  std::optional<MagnetometerSample> nextMagnetometer() override;
+  std::optional<DepthSample> nextDepth() override;
+  std::optional<SonarSample> nextSonar() override;
+
+  BagFile& bag() { return bag_; }
+  const RigFile& rigFile() const { return rig_file_; }
+
+ private:
+  /// How far a topic has been read.
+  struct Cursor {
+    const BagTopic* topic = nullptr;
+    size_t next = 0;
+  };
+
+  GreyRange measureGreyRange(size_t camera);
+  void refuseUnknownTopics(const BagOptions& options) const;
+  void settleCameras(const BagOptions& options);
+  void settleRates();
+  Cursor cursorOf(const std::string& sensor) const;
+  std::optional<wire::Bytes> nextMessage(Cursor* cursor);
+  void reportMessage(const Cursor& cursor, const std::string& problem);
+  std::vector<Time> firstStamps(Cursor cursor, const std::string& name);
+  /// Gives a reading of the message that was read last its time.
+  template <typename Reading>
+  void restamp(const Cursor& cursor, Reading* reading) const;
+  std::optional<ImuSample> nextOf(Cursor* imu);
+  template <typename Parse>
+  auto nextReading(Cursor* cursor, const Parse& parse)
+      -> std::optional<decltype(parse(std::span<const uint8_t>()))>;
+
+  BagFile bag_;
+  Diagnostics* diagnostics_;
+  RigFile rig_file_;
+  bool use_received_times_;
+  TopicChoice choice_;
+  std::vector<Cursor> cameras_;
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< of each camera, once its first image is asked for
+  Cursor imu_, accelerometer_, magnetometer_, pressure_, sonar_;
+  ImuHalves halves_;                ///< of an IMU in two topics
+  std::deque<SonarSample> echoes_;  ///< of the scan last read
+};
+
+/// NAME.rig.yaml for NAME.bag.
+std::filesystem::path rigFileBeside(const std::filesystem::path& bag);
+
+}  // namespace lodeline

@@ -1,0 +1,23 @@
+#include "lodeline/io/rosbag1/convert/bag_writer.h"
+#include "lodeline/util/error.h"
+
+// In place of bag_writer.cpp where librosbag-storage is not there when the program is built.
+
+namespace lodeline {
+
+class BagWriter::Implementation {};
+
+BagWriter::BagWriter(const std::filesystem::path&, const std::string&) {
+  throw UsageError(
+      "this program was built without librosbag-storage and cannot write bags; install librosbag-storage-dev "
+      "and "
+      "libsensor-msgs-dev and build it again");
+}
+
+BagWriter::~BagWriter() = default;
+
+void BagWriter::write(const std::string&, const std::string&, Time, wire::Bytes) {}
+
+void BagWriter::close() {}
+
+}  // namespace lodeline

@@ -1,0 +1,62 @@
+#include "lodeline/io/streams/stream_rate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+std::vector<Time> everySoMany_ns(int64_t step_ns, int count = 50) {
+  std::vector<Time> stamps;
+  for (int i = 0; i < count; ++i)
+    stamps.push_back(Time::fromNanoseconds(1'400'000'000'000'000'000 + step_ns * i));
+  return stamps;
+}
+
+TEST(StreamRate, StatedRateStandsUnlessTheStampsContradict) {
+  Diagnostics diagnostics;
+  EXPECT_EQ(settleRate("IMU", everySoMany_ns(5'100'000), 200.0, &diagnostics), 200.0);
+  EXPECT_TRUE(diagnostics.ranked().empty());
+  EXPECT_NEAR(settleRate("IMU", everySoMany_ns(5'000'000), 400.0, &diagnostics), 200.0, 1e-9);
+  EXPECT_EQ(diagnostics.count("rate"), 1);
+}
+
+TEST(StreamRate, BurstsHaveTheirMeanRate) {
+  std::vector<Time> stamps;
+  for (int i = 0; i < 50; ++i)
+    stamps.push_back(Time::fromNanoseconds(50'000'000 * (i / 10) + 100'000 * (i % 10)));
+  Diagnostics diagnostics;
+  EXPECT_EQ(settleRate("IMU", stamps, 200.0, &diagnostics), 200.0);
+  EXPECT_TRUE(diagnostics.ranked().empty());
+}
+
+TEST(StreamRate, StampsThatStandStillAreRefusedWithAdvice) {
+  Diagnostics diagnostics;
+  const std::vector<Time> zeros(50);
+  EXPECT_THAT([&] { settleRate("/imu", zeros, 200.0, &diagnostics, "give --x"); },
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(testing::HasSubstr("/imu: the first 50 readings all have the stamp 0 ns"),
+                                 testing::HasSubstr("give --x"))));
+}
+
+std::vector<double> numbers(double first, double step) {
+  std::vector<double> stamps;
+  for (int i = 0; i < 50; ++i) stamps.push_back(first + step * i);
+  return stamps;
+}
+
+TEST(StreamRate, StampsCountNanosecondsUnlessNoSensorIsThatFast) {
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e18, 5e6), kInertialRate), TimeUnit::Nanoseconds);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e15, 5e3), kInertialRate), TimeUnit::Microseconds);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e12, 5.0), kInertialRate), TimeUnit::Milliseconds);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e15, 5e4), kCameraRate), TimeUnit::Microseconds);
+  // Slow, fast and unknown streams of nanoseconds stay what they say.
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 1e9), kInertialRate), TimeUnit::Nanoseconds);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 1e5), kInertialRate), TimeUnit::Nanoseconds);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 0.0), kInertialRate), TimeUnit::Nanoseconds);
+}
+
+}  // namespace
+}  // namespace lodeline

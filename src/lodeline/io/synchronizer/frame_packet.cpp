@@ -1,0 +1,29 @@
+#include "lodeline/io/synchronizer/frame_packet.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace lodeline {
+namespace {
+
+template <typename Reading>
+void putBefore(std::vector<Reading> before, std::vector<Reading>* readings) {
+  before.insert(before.end(), std::make_move_iterator(readings->begin()),
+                std::make_move_iterator(readings->end()));
+  *readings = std::move(before);
+}
+
+}  // namespace
+
+void FramePacket::prepend(FramePacket before) {
+  // The reading at the common border is in both.
+  if (!before.imu.empty() && !imu.empty() && before.imu.back().time == imu.front().time)
+    before.imu.pop_back();
+  putBefore(std::move(before.imu), &imu);
+  putBefore(std::move(before.magnetometer), &magnetometer);
+  putBefore(std::move(before.depth), &depth);
+  putBefore(std::move(before.sonar), &sonar);
+  longest_imu_gap_s = std::max(longest_imu_gap_s, before.longest_imu_gap_s);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,134 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/io/synchronizer/synchronizer.h"
+
+/// What the synchroniser does where a clock jumped ahead in mid-recording. A clock that was set back shows in
+/// its own stream (OrderedStream); one that was set ahead looks like lost data until the streams are
+/// compared.
+namespace lodeline {
+namespace {
+
+/// Shorter silence is taken for lost data or a pause: the uncertainty of the readings across it covers both.
+constexpr double kLeastJump_s = 1.0;
+/// Longer silence of one sensor, while the other goes on, is no pause.
+constexpr double kLongestPause_s = 10.0;
+/// What a pause of all sensors that is longer than that is shortened to.
+constexpr double kBridgedPause_s = 1.0;
+
+Duration seconds(double s) { return Duration::fromSeconds(s); }
+
+}  // namespace
+
+/// Takes jumps of a clock between the image before and `reference` off the stamps from there on.
+void Synchronizer::followClocks(PendingImage* reference) {
+  const Duration step = span(reference->time, *last_image_time_);
+  // A stamp far ahead must not have the whole recording read into memory.
+  constexpr double kHorizon_s = 3600.0;
+  const Time horizon = std::min(reference->time, *last_image_time_ + seconds(kHorizon_s));
+  imu_.readUntil(horizon);
+  const std::optional<ImuIntervals::Gap> gap = imu_.longestGap(*last_image_time_, horizon);
+  if (step.seconds() > std::max(kLeastJump_s, 3.0 / source_->rig().cameras[0].rate_hz)) {
+    if (gap && followCommonClock(*gap, step, reference)) return;
+    if (followImageClock(step, reference)) return;
+  }
+  if (gap && gap->length().seconds() > kLeastJump_s) followImuClock(*gap, *reference);
+}
+
+/// All sensors were silent for the same long time: a clock set ahead, or a recording that was interrupted.
+bool Synchronizer::followCommonClock(const ImuIntervals::Gap& gap, Duration step, PendingImage* reference) {
+  const double period_s = 1.0 / source_->rig().cameras[0].rate_hz;
+  if (std::abs(gap.length().seconds() - step.seconds()) > 2.0 * period_s) return false;
+  if (gap.length().seconds() <= kLongestPause_s) return true;  // covered by the uncertainty across it
+  const Duration by = seconds(kBridgedPause_s) - gap.length();
+  const Time from = gap.begin + seconds(0.5 * gap.length().seconds());
+  diagnostics_->report(
+      Severity::Serious, "clock_jump",
+      fmt::format("all sensors: nothing for {:.6g} s after stamp {} ns: the clock was set ahead, or the "
+                  "recording was interrupted. It goes on as after a pause of {:g} s; if the rig moved "
+                  "meanwhile, the two parts do not belong together",
+                  gap.length().seconds(), gap.begin.nanoseconds(), kBridgedPause_s));
+  reference->time = moved(reference->time, by);
+  imu_.shiftFrom(from, by);
+  for (OrderedStream<PendingImage>& camera : cameras_) camera.shiftFrom(from, by);
+  magnetometer_.shiftFrom(from, by);
+  depth_.shiftFrom(from, by);
+  sonar_.shiftFrom(from, by);
+  return true;
+}
+
+/// The images leap to a time beyond all inertial readings, or after more silence than a camera has.
+bool Synchronizer::followImageClock(Duration step, PendingImage* reference) {
+  constexpr double kLongestSilence_s = 3600.0;
+  const bool is_covered = imu_.last() && *imu_.last() >= reference->time;
+  if (is_covered && step.seconds() < kLongestSilence_s) return false;
+  if (source_->isLive()) return false;
+  const Duration period = seconds(1.0 / source_->rig().cameras[0].rate_hz);
+  const Time expected = *last_image_time_ + period;
+  // Images that ended with the inertial readings would lie beyond them too.
+  if (imu_.last() && *imu_.last() < expected) return false;
+  diagnostics_->report(
+      Severity::Warning, "image_clock_jump",
+      fmt::format(
+          "{}: the clock of the images was set ahead by {:.6g} s after stamp {} ns, that of the inertial "
+          "readings was not; taken off the images from there on",
+          source_->rig().cameras[0].name, (step - period).seconds(), last_image_time_->nanoseconds()));
+  const Time from = *last_image_time_ + seconds(0.5 * step.seconds());
+  reference->time = expected;
+  for (OrderedStream<PendingImage>& camera : cameras_) {
+    // Another camera may have a clock of its own.
+    const PendingImage* next = &camera == &cameras_[0] ? nullptr : camera.peek();
+    if (next != nullptr && std::abs((next->time - expected).seconds()) < 0.5 * period.seconds()) continue;
+    camera.shiftFrom(from, period - step);
+  }
+  return true;
+}
+
+/// The inertial readings leap ahead while the images go on.
+bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingImage& reference) {
+  if (reference.time <= gap.begin || reference.time > gap.end || source_->isLive()) return false;
+  if (gap.length().seconds() < kLongestPause_s) {
+    const double rate_hz = source_->rig().cameras[0].rate_hz;
+    const auto images = static_cast<size_t>(std::ceil(kLongestPause_s * rate_hz));
+    bool ends = false;
+    const std::optional<Time> last = cameras_[0].reach(images, &ends);
+    // Images within the silence and none after it: what the sensor says after it belongs to them.
+    if (!ends || (last && *last > gap.end)) return false;
+  }
+  const Duration by = seconds(1.0 / source_->rig().imu.rate_hz) - gap.length();
+  diagnostics_->report(
+      Severity::Warning, "imu_clock_jump",
+      fmt::format(
+          "IMU: its clock was set ahead by {:.6g} s after stamp {} ns, that of the images was not; taken "
+          "off the readings from there on",
+          -by.seconds(), gap.begin.nanoseconds()));
+  imu_.shiftFrom(gap.end, by);
+  return true;
+}
+
+/// Says which sensors have readings, but none at a time of the others'.
+void Synchronizer::reportApart() {
+  const bool may_read_on = !source_->isLive();
+  if (may_read_on) imu_.drain();
+  const auto report = [this](const char* name, const std::optional<TimeSpan>& span, const char* other_name,
+                             const std::optional<TimeSpan>& other, const char* offset) {
+    if (!span || !other) return;
+    const std::optional<std::string> words = apart(name, *span, other_name, *other, offset);
+    if (words) diagnostics_->report(Severity::Serious, kClocksApart, *words);
+  };
+  report("the images", images_span_.get(), "the inertial readings", imu_.span(),
+         "timeshift_cam_imu (to be added to the images' stamps)");
+  if (!last_packet_time_) return;
+  const auto reportOther = [&](const char* name, auto* stream, SpanOfStream* span, const char* offset) {
+    while (may_read_on && stream->peek() != nullptr) span->add(stream->pop().time);
+    report(name, span->get(), "the images", images_span_.get(), offset);
+  };
+  reportOther("the magnetometer", &magnetometer_, &magnetometer_span_,
+              "time_offset_to_imu_s of its calibration");
+  reportOther("the pressure sensor", &depth_, &depth_span_, "its clock");
+  reportOther("the sonar", &sonar_, &sonar_span_, "its clock");
+}
+
+}  // namespace lodeline

@@ -1,0 +1,220 @@
+#include "lodeline/magnetometer/calibration/magnetometer_record.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/io/csv/plain_csv.h"
+#include "lodeline/io/euroc/csv_reader.h"
+#include "lodeline/io/euroc/euroc_rig.h"
+#include "lodeline/io/euroc/folder_calibration.h"
+#include "lodeline/io/streams/inertial_screen.h"
+#include "lodeline/io/streams/ordered_stream.h"
+#include "lodeline/io/streams/time_span.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+/// What a reader knows about the unit: as written in the file, or the user's word, or nothing.
+struct Reading {
+  MagnetometerRecord record;
+  std::optional<FieldUnit> unit;
+};
+
+void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* record,
+             Diagnostics* diagnostics) {
+  if (rig.has_imu) {
+    record->imu_noise = rig.rig.imu.noise;
+  } else {
+    diagnostics->report(
+        Severity::Notice, "imu_noise_assumed",
+        (layout.sensor("imu0") / "sensor.yaml").string() + ": missing; the noise of a usual IMU is assumed");
+  }
+  CsvReader csv(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
+  for (CsvRow row; csv.next(&row);) {
+    if (!record->imu.empty() && row.time <= record->imu.back().time) {
+      diagnostics->report(Severity::Warning, "imu_order",
+                          fmt::format("{}:{}: not later than the reading before; passed over",
+                                      csv.file().string(), csv.line()));
+      continue;
+    }
+    const ImuSample sample{row.time, Vec3(row.numbers.data()), Vec3(row.numbers.data() + 3)};
+    record->imu.push_back(rig.imu_correction ? rig.imu_correction->applied(sample) : sample);
+  }
+}
+
+/// The calibration of a recording that may have none.
+RigFile readCalibration(const EurocLayout& layout, Diagnostics* diagnostics) {
+  Diagnostics found;
+  RigFile rig = readFolderCalibration(layout, &found);
+  for (const Finding& finding : found.ranked()) {
+    if (finding.kind.ends_with("_uncalibrated")) continue;  // what that means here is said below
+    diagnostics->report(finding.severity, finding.kind, finding.first_message);
+  }
+  return rig;
+}
+
+Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) {
+  EurocOptions options;
+  options.with_cameras = false;
+  options.needs_imu = false;
+  options.needs_calibration = false;
+  const EurocLayout layout = findEurocLayout(data, options);
+  const std::filesystem::path csv = layout.csv("mag0");
+  if (!std::filesystem::exists(csv)) {
+    throw InputError(csv.string() + ": missing; there are no magnetometer readings to calibrate from");
+  }
+  Reading reading;
+  reading.unit = FieldUnit::Tesla;
+  const RigFile rig = readCalibration(layout, diagnostics);
+  if (layout.has_imu) readImu(layout, rig, &reading.record, diagnostics);
+  if (rig.rig.magnetometer) {
+    reading.record.body_from_magnetometer = rig.rig.magnetometer->body_from_magnetometer.rotation;
+  }
+  CsvReader rows(csv, CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
+  for (CsvRow row; rows.next(&row);) {
+    reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
+  }
+  return reading;
+}
+
+Reading readFile(const std::filesystem::path& file, const RecordOptions& options, Diagnostics* diagnostics) {
+  PlainCsvOptions table;
+  table.is_magnetometer = true;
+  PlainCsv csv(file, diagnostics, table);
+  if (!csv.hasMagnetometer()) {
+    throw InputError(file.string() + ": names no magnetometer columns (mx, my, mz, or x, y, z)");
+  }
+  if (options.unit && csv.statesFieldUnit()) {
+    throw UsageError(file.string() +
+                     ": --unit is for files that state no unit; correct the unit in its header");
+  }
+  Reading reading;
+  if (csv.statesFieldUnit()) reading.unit = FieldUnit::Tesla;
+  reading.record.has_times = csv.hasTimes();
+  const bool has_imu = csv.hasTimes() && csv.hasGyroscope() && csv.hasAccelerometer();
+  for (PlainReading row; csv.next(&row);) {
+    if (row.field) reading.record.magnetometer.push_back({row.time, *row.field});
+    if (!has_imu || !row.angular_velocity || !row.specific_force) continue;
+    if (!reading.record.imu.empty() && row.time <= reading.record.imu.back().time) continue;
+    reading.record.imu.push_back({row.time, *row.angular_velocity, *row.specific_force});
+  }
+  return reading;
+}
+
+void cut(const RecordOptions& options, MagnetometerRecord* record) {
+  if (options.from_s == 0.0 && !options.to_s) return;
+  if (!record->has_times) throw UsageError("--from and --to need a file with times; this one has none");
+  const Time begin = record->magnetometer.front().time + Duration::fromSeconds(options.from_s);
+  const Time end = options.to_s ? record->magnetometer.front().time + Duration::fromSeconds(*options.to_s)
+                                : record->magnetometer.back().time;
+  std::erase_if(record->magnetometer,
+                [&](const auto& sample) { return sample.time < begin || sample.time > end; });
+  // The inertial readings reach a little further, for a magnetometer that lags.
+  const Duration margin = Duration::fromSeconds(0.5);
+  std::erase_if(record->imu, [&](const auto& sample) {
+    return sample.time < begin - margin || sample.time > end + margin;
+  });
+  if (record->magnetometer.empty()) throw UsageError("--from and --to leave no magnetometer reading");
+}
+
+/// The unit in which the readings make sense, with a warning where that is not what was said.
+void settleUnit(const std::string& data, const RecordOptions& options, std::optional<FieldUnit> stated,
+                MagnetometerRecord* record, Diagnostics* diagnostics) {
+  std::vector<Vec3> finite;
+  for (const MagnetometerSample& sample : record->magnetometer) {
+    if (sample.field_M.allFinite()) finite.push_back(sample.field_M);
+  }
+  const double size = fieldSize(finite);
+  const FieldUnit by_size = unitBySize(size);
+  FieldUnit unit = options.unit.value_or(stated.value_or(by_size));
+  if (options.unit) {
+    if (*options.unit != by_size && by_size != FieldUnit::Raw && *options.unit != FieldUnit::Raw) {
+      diagnostics->report(Severity::Warning, "magnetometer_unit",
+                          fmt::format("{}: a field of {:.4g} {} as asked for; by its size it is in {}", data,
+                                      size, toString(unit), toString(by_size)));
+    }
+  } else if (!stated) {
+    diagnostics->report(
+        Severity::Warning, "magnetometer_unit",
+        by_size == FieldUnit::Raw
+            ? fmt::format("{}: no unit stated and a size, {:.4g}, that fits none; taken for raw counts "
+                          "(--unit says otherwise)",
+                          data, size)
+            : fmt::format("{}: no unit stated; by the field's size, {:.4g}, it is {} (--unit says "
+                          "otherwise)",
+                          data, size, toString(by_size)));
+  } else if (by_size != *stated) {
+    const bool other = by_size != FieldUnit::Raw;
+    if (other) unit = by_size;
+    diagnostics->report(Severity::Warning, "magnetometer_unit",
+                        fmt::format("{}: a field of {:.4g} {}, while the Earth's is 22 to 67 uT; {}", data,
+                                    size, toString(*stated),
+                                    other ? fmt::format("it is taken to be in {}", toString(by_size))
+                                          : std::string("check the unit, and for iron nearby")));
+  }
+  record->is_raw = unit == FieldUnit::Raw;
+  for (MagnetometerSample& sample : record->magnetometer) sample.field_M *= teslaPer(unit);
+}
+
+Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostics* diagnostics) {
+  Reading reading;
+  reading.unit = FieldUnit::Tesla;
+  reading.record.imu_noise = source.rig().imu.noise;
+  if (is_mounting_known && source.rig().magnetometer) {
+    reading.record.body_from_magnetometer = source.rig().magnetometer->body_from_magnetometer.rotation;
+  }
+  StreamExpectation expected{"imu", "IMU", 0.0, 0.0, Duration()};
+  expected.spreads_bursts = true;
+  OrderedStream<ImuSample> imu(
+      expected, [&] { return source.nextImu(); }, diagnostics);
+  while (imu.peek() != nullptr) reading.record.imu.push_back(imu.pop());
+  while (const std::optional<MagnetometerSample> sample = source.nextMagnetometer()) {
+    reading.record.magnetometer.push_back(*sample);
+  }
+  return reading;
+}
+
+/// Without a time in common, the gyroscope says nothing of how the magnetometer turns.
+void reportApart(const MagnetometerRecord& record, Diagnostics* diagnostics) {
+  SpanOfStream imu, magnetometer;
+  for (const ImuSample& sample : record.imu) imu.add(sample.time);
+  for (const MagnetometerSample& sample : record.magnetometer) magnetometer.add(sample.time);
+  if (!imu.get() || !magnetometer.get()) return;
+  const std::optional<std::string> words =
+      apart("the magnetometer", *magnetometer.get(), "the inertial readings", *imu.get(), "its clock");
+  if (words) diagnostics->report(Severity::Serious, kClocksApart, *words);
+}
+
+MagnetometerRecord settled(Reading reading, const std::string& name, const RecordOptions& options,
+                           Diagnostics* diagnostics) {
+  if (reading.record.magnetometer.empty()) {
+    throw InputError(name + ": holds no magnetometer reading that can be used");
+  }
+  reportApart(reading.record, diagnostics);
+  cut(options, &reading.record);
+  InertialScreenOptions screen;
+  screen.knows_rate_unit = false;
+  reading.record.imu = screened(reading.record.imu, screen, diagnostics);
+  settleUnit(name, options, reading.unit, &reading.record, diagnostics);
+  return std::move(reading.record);
+}
+
+}  // namespace
+
+MagnetometerRecord readMagnetometerRecord(MeasurementSource& source, const std::string& name,
+                                          bool is_mounting_known, const RecordOptions& options,
+                                          Diagnostics* diagnostics) {
+  return settled(readSource(source, is_mounting_known, diagnostics), name, options, diagnostics);
+}
+
+MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
+                                          Diagnostics* diagnostics) {
+  Reading reading = std::filesystem::is_regular_file(data) ? readFile(data, options, diagnostics)
+                                                           : readFolder(data, diagnostics);
+  return settled(std::move(reading), data.string(), options, diagnostics);
+}
+
+}  // namespace lodeline

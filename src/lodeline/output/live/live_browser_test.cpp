@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "lodeline/output/live/live_view.h"
+#include "lodeline/output/report/page/test_browser.h"
+
+// The page in headless Chromium while a run goes on; web/test/live.mjs says what it should show.
+
+namespace lodeline {
+namespace {
+
+/// Swims east at 1 m/s, half a metre below the start, by inertial readings at the end. North is found after
+/// six seconds: the estimator's world, that of the first pose, has it along its x axis.
+FrameEstimate estimateAt(int second) {
+  FrameEstimate estimate;
+  estimate.time = Time::fromSeconds(second);
+  estimate.status = second < 12 ? Status::Tracking : Status::Inertial;
+  const double north_rad = 0.5 * M_PI;
+  const Quat world_from_north(Eigen::AngleAxisd(-north_rad, Vec3::UnitZ()));
+  estimate.state.world_from_body = Rigid3(world_from_north, world_from_north * Vec3(second, 0.0, -0.5));
+  if (second >= 6) {
+    estimate.magnetometer.heading_reference = HeadingReference::True;
+    estimate.magnetometer.north_from_world_rad = north_rad;
+  }
+  estimate.magnetometer.heading_sigma_rad = 2.0 * M_PI / 180.0;
+  return estimate;
+}
+
+TEST(LiveBrowser, ShowsWhatIsTold) {
+  if (const std::string missing = test::browserMissing(); !missing.empty()) GTEST_SKIP() << missing;
+  bool passed = false;
+  std::thread browser;
+  {
+    LiveServer server("127.0.0.1", 0, livePage("dive", "recording", Vec3::UnitX()));
+    RunSummary summary;
+    for (int second = 0; second <= 12; ++second) {
+      FrameEstimate estimate = estimateAt(second);
+      if (second > 0) summary.add(estimate);
+      summary.wall_s = summary.recordingSeconds() / 1.5;
+      server.sendAndKeep("state", liveState(estimate, summary, second, {{1.0F, 2.0F, -0.5F}}));
+    }
+    server.sendAndKeep("picture", R"({"t_s":12,"jpeg":"AAAA"})");
+    browser = std::thread([&passed, url = server.url()] { passed = test::passesInBrowser("live.mjs", url); });
+    for (int i = 0; i < 6000 && !server.isWatched(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    server.send("end", "{}");
+  }
+  browser.join();
+  EXPECT_TRUE(passed);
+}
+
+}  // namespace
+}  // namespace lodeline

@@ -1,0 +1,193 @@
+#include "lodeline/output/report/page/report_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "lodeline/evaluation/trajectory/test_trajectories.h"
+#include "lodeline/output/report/page/page_template.h"
+#include "lodeline/output/report/page/run_page.h"
+#include "lodeline/output/report/page/table_json.h"
+#include "lodeline/output/report/page/test_run.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+using test::TemporaryFolder;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(ShortNumber, KeepsSixDigitsAndSaysWhatIsNotANumber) {
+  EXPECT_EQ(shortNumber(0.123456789).dump(), "0.123457");
+  EXPECT_EQ(shortNumber(-1234567.0).get<double>(), -1234570.0);
+  EXPECT_EQ(shortNumber(4.5e-8).dump(), "4.5e-08");
+  EXPECT_EQ(shortNumber(0.0).dump(), "0");
+  EXPECT_EQ(shortNumber(std::nan("")).dump(), "null");
+}
+
+TEST(RunPage, HoldsWhatTheFilesOfTheRunSay) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  Diagnostics diagnostics;
+  const auto run = runPageJson(folder.path() / "dive", std::nullopt, &diagnostics);
+  EXPECT_EQ(run["name"], "dive");
+  EXPECT_EQ(run["origin_ns"], "1700000000000000000");
+  const auto& states = run["states"];
+  EXPECT_EQ(states["total"], 200);
+  EXPECT_EQ(states["t_s"].size(), 200u);
+  EXPECT_EQ(states["t_s"][15], 1.0);
+  EXPECT_EQ(states["words"]["status"][49], "inertial");
+  EXPECT_EQ(states["words"]["magnetometer"][19], "norm");
+  EXPECT_NEAR(states["numbers"]["p_z [m]"][30].get<double>(), -0.1, 1e-9);
+  EXPECT_FALSE(states["numbers"].contains("cov_pose_00"));
+  EXPECT_EQ(run["landmarks"]["total"], 1000);
+  EXPECT_EQ(run["landmarks"]["xyz"].get<std::string>().size(), 16000u);
+  EXPECT_EQ(run["pictures"].size(), 6u);
+  EXPECT_NEAR(run["pictures"][1]["t_s"].get<double>(), 200.0 / 15.0 / 6.0, 1e-3);
+  EXPECT_EQ(run["timings"]["numbers"]["estimator [s]"][3], 0.011);
+  EXPECT_TRUE(run["magnetometer"]["is_calibrated"]);
+  EXPECT_NEAR(run["magnetometer"]["field_strength_T"].get<double>(), 45.532e-6, 1e-9);
+  EXPECT_TRUE(run["evaluation"].is_null());
+}
+
+TEST(RunPage, ShowsTheRefinedResultFirst) {
+  const TemporaryFolder folder;
+  const std::filesystem::path dive = folder.path() / "dive";
+  test::writeTestRun(dive);
+  Diagnostics diagnostics;
+  EXPECT_FALSE(runPageJson(dive, std::nullopt, &diagnostics)["is_refined"].get<bool>());
+  test::writeTestRun(folder.path() / "short", {.frames = 150});
+  std::filesystem::copy(folder.path() / "short" / "states.csv", dive / "states_refined.csv");
+  std::filesystem::copy(folder.path() / "short" / "landmarks.ply", dive / "landmarks_refined.ply");
+  const auto refined = runPageJson(dive, std::nullopt, &diagnostics);
+  EXPECT_TRUE(refined["is_refined"].get<bool>());
+  EXPECT_EQ(refined["states"]["total"], 150);
+  EXPECT_EQ(refined["landmarks"]["total"], 750);
+}
+
+// Calibrated at home, dived elsewhere.
+TEST(RunPage, TakesTheSphereFromTheRunsOwnField) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  const std::filesystem::path file = folder.path() / "dive" / "run.json";
+  Diagnostics diagnostics;
+  const auto sphere = [&](const std::function<void(nlohmann::json*)>& change) {
+    nlohmann::json summary = nlohmann::json::parse(std::ifstream(file));
+    change(&summary);
+    std::ofstream(file) << summary;
+    const auto page = runPageJson(folder.path() / "dive", std::nullopt, &diagnostics)["magnetometer"];
+    return std::pair(page["field_strength_from"].get<std::string>(), page["field_strength_T"].get<double>());
+  };
+  EXPECT_EQ(sphere([](nlohmann::json*) {}).first, "the field at the site");
+  const auto estimated = sphere([](nlohmann::json* summary) {
+    (*summary)["rig"]["magnetometer"].erase("site_field_strength_T");
+    (*summary)["magnetometer"]["field_W_T"] = {0.0, 3e-5, -4e-5};
+  });
+  EXPECT_EQ(estimated.first, "the field as estimated");
+  EXPECT_NEAR(estimated.second, 50e-6, 1e-12);
+  const auto calibrated =
+      sphere([](nlohmann::json* summary) { (*summary)["magnetometer"].erase("field_W_T"); });
+  EXPECT_EQ(calibrated.first, "the field where it was calibrated");
+  EXPECT_NEAR(calibrated.second, 50e-6, 1e-12);
+}
+
+TEST(RunPage, ComparesWithAReference) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  test::writeTestReference(folder.path() / "truth.tum");
+  Diagnostics diagnostics;
+  const ReportReference reference = {folder.path() / "truth.tum", AlignmentType::None};
+  const auto run = runPageJson(folder.path() / "dive", reference, &diagnostics);
+  const auto& evaluation = run["evaluation"];
+  EXPECT_NEAR(evaluation["figures"]["absolute"]["position_m"]["rmse"].get<double>(), 0.1, 1e-6);
+  EXPECT_NEAR(evaluation["errors"]["numbers"]["position [m]"][5].get<double>(), 0.1, 1e-6);
+  EXPECT_GT(evaluation["path"]["x"].size(), 100u);
+  EXPECT_TRUE(evaluation["yaw_aligned"].is_null());
+}
+
+TEST(RunPage, TellsErrorsOfAttitudeAfterTurningAboutTheVertical) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  test::writeTestReference(folder.path() / "truth.tum");
+  Diagnostics diagnostics;
+  const ReportReference reference = {folder.path() / "truth.tum", AlignmentType::SE3};
+  const auto evaluation = runPageJson(folder.path() / "dive", reference, &diagnostics)["evaluation"];
+  EXPECT_EQ(evaluation["figures"]["alignment"]["type"], "se3");
+  EXPECT_NEAR(evaluation["yaw_aligned"]["position_m"]["rmse"].get<double>(), 0.0, 1e-6);
+  EXPECT_NEAR(evaluation["yaw_aligned"]["rotation_deg"]["rmse"].get<double>(), 0.0, 1e-5);
+}
+
+TEST(RunPage, LongRunsAreThinnedAndKeepEveryChangeOfStatus) {
+  const TemporaryFolder folder;
+  test::TestRun long_run;
+  long_run.frames = 20000;
+  test::writeTestRun(folder.path(), long_run);
+  Diagnostics diagnostics;
+  const auto states = runPageJson(folder.path(), std::nullopt, &diagnostics)["states"];
+  EXPECT_EQ(states["total"], 20000);
+  EXPECT_EQ(states["stride"], 3);
+  EXPECT_LT(states["t_s"].size(), 2 * kMostRows);
+  EXPECT_EQ(std::count(states["words"]["status"].begin(), states["words"]["status"].end(), "inertial"), 400);
+}
+
+TEST(RunPage, DoesWithoutWhatARunLacks) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path());
+  for (const char* file : {"run.json", "config.yaml", "landmarks.ply", "timings.csv", "magnetometer.csv"}) {
+    std::filesystem::remove(folder.path() / file);
+  }
+  std::filesystem::remove_all(folder.path() / "pictures");
+  Diagnostics diagnostics;
+  const auto run = runPageJson(folder.path(), std::nullopt, &diagnostics);
+  EXPECT_EQ(run["states"]["total"], 200);
+  EXPECT_TRUE(run["timings"].is_null());
+  EXPECT_TRUE(run["magnetometer"].is_null());
+  EXPECT_TRUE(run["pictures"].empty());
+}
+
+TEST(RunPage, LastLineThatWasCutOffIsPassedOver) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path());
+  std::ofstream(folder.path() / "states.csv", std::ios::app) << "1700000099000000000,tracking,0,1";
+  Diagnostics diagnostics;
+  EXPECT_EQ(runPageJson(folder.path(), std::nullopt, &diagnostics)["states"]["total"], 200);
+  EXPECT_EQ(diagnostics.count("run_file_cut_off"), 1);
+}
+
+TEST(RunPage, DamageIsNamedWithFileAndLine) {
+  const TemporaryFolder folder;
+  Diagnostics diagnostics;
+  EXPECT_THROW(runPageJson(folder.path(), std::nullopt, &diagnostics), InputError);
+  folder.write("states.csv", "#timestamp [ns],status\n1,tracking\nx,tracking\n3,tracking\n");
+  try {
+    runPageJson(folder.path(), std::nullopt, &diagnostics);
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("states.csv:3"));
+  }
+}
+
+TEST(ReportPage, NothingInTheDataEndsTheScript) {
+  if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path());
+  Diagnostics diagnostics;
+  const std::string page = reportPage({folder.path()}, std::nullopt, &diagnostics);
+  EXPECT_THAT(page, HasSubstr("a name with \\u003c/script> in it"));
+  EXPECT_THAT(page, Not(HasSubstr("with </script>")));
+  EXPECT_THAT(page, Not(HasSubstr("LODELINE_DATA")));
+}
+
+TEST(ReportPage, AsksForNothingFromTheNetwork) {
+  if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
+  EXPECT_EQ(pageTemplate().find("<script src"), std::string_view::npos);
+  EXPECT_EQ(pageTemplate().find("<link rel=\"stylesheet\""), std::string_view::npos);
+  EXPECT_EQ(pageTemplate().find("@import"), std::string_view::npos);
+}
+
+}  // namespace
+}  // namespace lodeline

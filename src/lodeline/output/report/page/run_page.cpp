@@ -1,0 +1,132 @@
+#include "lodeline/output/report/page/run_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/page/table_json.h"
+#include "lodeline/output/survey/run/landmark_file.h"
+#include "lodeline/util/csv_fields.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Empty where there is no such file.
+std::string readWhole(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  if (stream) text << stream.rdbuf();
+  return text.str();
+}
+
+nlohmann::ordered_json readSummary(const fs::path& file) {
+  const std::string text = readWhole(file);
+  if (text.empty()) return nlohmann::ordered_json::object();
+  try {
+    return nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw InputError(fmt::format("{}: no JSON ({})", file.string(), error.what()));
+  }
+}
+
+nlohmann::ordered_json landmarksJson(const fs::path& file, Diagnostics* diagnostics) {
+  if (!fs::exists(file)) return {{"total", 0}, {"xyz", ""}};
+  const std::vector<MapLandmark> all = readLandmarkFile(file, diagnostics);
+  std::vector<Eigen::Vector3f> shown;
+  for (const size_t row : chooseRows(all.size(), kMostLandmarks, {}).rows)
+    shown.push_back(all[row].position.cast<float>());
+  const auto* bytes = reinterpret_cast<const uint8_t*>(shown.data());
+  return {{"total", all.size()}, {"xyz", base64({bytes, shown.size() * sizeof(Eigen::Vector3f)})}};
+}
+
+/// The JPEGs of SamplePictures, by time.
+nlohmann::ordered_json picturesJson(const fs::path& folder, int64_t origin_ns) {
+  std::vector<std::pair<int64_t, fs::path>> files;
+  if (fs::is_directory(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      int64_t stamp_ns = 0;
+      const bool is_picture = entry.path().extension() == ".jpg";
+      if (is_picture && csv::parse(entry.path().stem().string(), &stamp_ns))
+        files.emplace_back(stamp_ns, entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const auto& [stamp_ns, file] : files) {
+    const std::string jpeg = readWhole(file);
+    json.push_back({{"t_s", shortNumber(1e-9 * static_cast<double>(stamp_ns - origin_ns))},
+                    {"jpeg", base64({reinterpret_cast<const uint8_t*>(jpeg.data()), jpeg.size()})}});
+  }
+  return json;
+}
+
+/// null where the run has no such file, or was killed before it wrote any of it.
+nlohmann::ordered_json optionalTable(const fs::path& file, int64_t origin_ns, Diagnostics* diagnostics) {
+  std::error_code error;
+  if (fs::file_size(file, error) == 0 || error) return nullptr;
+  return tableJson(readRunTable(file, diagnostics), origin_ns);
+}
+
+/// Size that corrected readings should have, T, and where that is from: of the field at the run's site, else
+/// as the run estimated it, else at the place of calibration.
+std::pair<nlohmann::ordered_json, const char*> fieldStrength(const nlohmann::ordered_json& summary) {
+  const auto calibration = summary.value("/rig/magnetometer"_json_pointer, nlohmann::ordered_json::object());
+  if (calibration.contains("site_field_strength_T"))
+    return {calibration["site_field_strength_T"], "the field at the site"};
+  const auto field_W = summary.value("/magnetometer/field_W_T"_json_pointer, std::vector<double>{});
+  if (field_W.size() == 3) return {std::hypot(field_W[0], field_W[1], field_W[2]), "the field as estimated"};
+  if (calibration.contains("field_strength_T"))
+    return {calibration["field_strength_T"], "the field where it was calibrated"};
+  return {nullptr, "their mean"};
+}
+
+nlohmann::ordered_json magnetometerJson(const fs::path& run, const nlohmann::ordered_json& summary,
+                                        int64_t origin_ns, Diagnostics* diagnostics) {
+  nlohmann::ordered_json table = optionalTable(run / "magnetometer.csv", origin_ns, diagnostics);
+  if (table.is_null()) return nullptr;
+  const auto [strength_T, origin] = fieldStrength(summary);
+  return {{"table", std::move(table)},
+          {"is_calibrated", summary.value("/rig/magnetometer/is_calibrated"_json_pointer, false)},
+          {"field_strength_T", strength_T},
+          {"field_strength_from", origin}};
+}
+
+std::string nameOf(const fs::path& run) {
+  const fs::path absolute = fs::absolute(run).lexically_normal();
+  return (absolute.has_filename() ? absolute : absolute.parent_path()).filename().string();
+}
+
+}  // namespace
+
+nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<ReportReference>& reference,
+                                   Diagnostics* diagnostics) {
+  const bool is_refined = fs::exists(run / "states_refined.csv");
+  const RunTable states = readRunTable(run / (is_refined ? "states_refined.csv" : "states.csv"), diagnostics);
+  const int64_t origin_ns = states.rows() > 0 ? states.stamp_ns.front() : 0;
+  nlohmann::ordered_json json;
+  json["name"] = nameOf(run);
+  json["origin_ns"] = std::to_string(origin_ns);
+  json["is_refined"] = is_refined;
+  json["summary"] = readSummary(run / "run.json");
+  json["config"] = readWhole(run / "config.yaml");
+  // The page draws one sigma, not covariances, and the attitude filter has its own command.
+  json["states"] = tableJson(states, origin_ns, {"cov_", "attitude_", "keyframe"});
+  json["landmarks"] =
+      landmarksJson(run / (is_refined ? "landmarks_refined.ply" : "landmarks.ply"), diagnostics);
+  json["pictures"] = picturesJson(run / "pictures", origin_ns);
+  json["timings"] = optionalTable(run / "timings.csv", origin_ns, diagnostics);
+  json["magnetometer"] = magnetometerJson(run, json["summary"], origin_ns, diagnostics);
+  json["evaluation"] = nullptr;
+  if (reference) json["evaluation"] = runEvaluationJson(run, *reference, origin_ns);
+  return json;
+}
+
+}  // namespace lodeline

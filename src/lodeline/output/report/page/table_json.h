@@ -1,0 +1,27 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "lodeline/output/files/run_table.h"
+
+namespace lodeline {
+
+/// Poses, readings and the like that a page shows at most, a table.
+inline constexpr size_t kMostRows = 8000;
+
+/// A number with six significant digits, enough for a picture; null for what is not finite.
+nlohmann::json shortNumber(double value);
+nlohmann::json shortNumbers(const std::vector<double>& values, const std::vector<size_t>& rows);
+
+/// Times (s since `origin_ns`, ms resolution) of some rows.
+nlohmann::json secondsSince(int64_t origin_ns, const std::vector<int64_t>& stamp_ns,
+                            const std::vector<size_t>& rows);
+
+/// A table as the page reads it (`Table` in web/src/data.ts), thinned by chooseRows(). Columns whose names
+/// begin with one of `left_out` are not taken along.
+nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns,
+                                 const std::vector<std::string>& left_out = {});
+
+}  // namespace lodeline

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lodeline/batch/refine.h"
+#include "lodeline/estimator/estimator.h"
+#include "lodeline/output/report/blind_stretches.h"
+#include "lodeline/sensors/rig.h"
+#include "lodeline/util/diagnostics.h"
+
+namespace lodeline {
+
+/// What a run was made from.
+struct RunDescription {
+  std::string version;  ///< of the program
+  std::string data;     ///< as the user gave it
+  std::string config;   ///< file of settings; empty for none
+  std::vector<std::string> overrides;
+  std::vector<std::string> cameras;  ///< names, the reference first
+  double camera_rate_hz = 0.0;
+  double imu_rate_hz = 0.0;
+  Vec3 camera_axis_B = Vec3::UnitX();  ///< where the reference camera looks
+  std::vector<std::string> other_sensors;
+  std::optional<Vec3> site_field_W;  ///< of the Earth, T, where the run was told its site
+  std::optional<MagnetometerCalibration> magnetometer;
+  double observation_sigma_px = 0.0;
+};
+
+class SummaryLines;
+
+/// Gathers the figures of a run frame by frame.
+class RunSummary {
+ public:
+  explicit RunSummary(RunDescription description = {}) : description_(std::move(description)) {}
+
+  void add(const FrameEstimate& estimate);
+
+  int frames() const { return frames_; }
+  int posed() const { return posed_; }
+  const FrameEstimate& last() const { return last_; }
+
+  // Filled in by whoever runs the stages; processor seconds.
+  double front_end_s = 0.0;
+  double estimator_s = 0.0;
+  double pictures_s = 0.0;  ///< for the report page
+  double process_s = 0.0;   ///< of the whole process, all threads
+  double wall_s = 0.0;
+  double peak_memory_MB = 0.0;  ///< of the whole process
+  int64_t images = 0;           ///< that could be read
+  int64_t recorded_images = 0;  ///< of the first camera, also those that could not be used
+  int64_t map_points = 0;
+  bool interrupted = false;                     ///< ended by the user before the recording did
+  std::optional<RefinementSummary> refinement;  ///< of a run that was refined
+
+  double recordingSeconds() const;
+  /// Images of the first camera that were recorded; those that could not be used are no frames.
+  int64_t recorded() const { return std::max<int64_t>(recorded_images, frames_); }
+  /// Share of the recorded images from which a pose was estimated; frames that inertial readings alone carry,
+  /// or that contradict these, do not count.
+  double completion() const {
+    const int seen = posed_ - inertial_ - degraded_;
+    return recorded() > 0 ? static_cast<double>(seen) / static_cast<double>(recorded()) : 0.0;
+  }
+  /// Why the result is not to be trusted: images and inertial readings contradicted each other in most frames
+  /// or at the end. Empty otherwise.
+  std::string distrust() const;
+  double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
+  double pathLength_m() const { return path_m_; }
+  double meanTracks() const;
+  double meanLandmarks() const;
+  double meanReprojection_sigmas() const;
+
+  /// Reports stretches of at least half a second without usable images as the finding `blind_stretch`.
+  void reportBlindStretches(Diagnostics* diagnostics) const;
+  /// A few lines for people, then the findings; `with_details`: all figures. `value_width`: of SummaryLines.
+  std::string text(const Diagnostics& diagnostics, bool with_details = false, size_t value_width = 0) const;
+  /// run.json: the same and more for programs.
+  std::string json(const Diagnostics& diagnostics) const;
+
+ private:
+  double coreMillisecondsPerFrame(double seconds) const;
+  bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
+  double northFoundAfter_s() const;
+  bool hasNorth() const;
+  std::string completionText() const;
+  std::string uncertaintyText() const;
+  void addDetails(SummaryLines* lines) const;
+  /// With stamps as times since the first frame.
+  std::string readable(const std::string& message) const;
+  std::string headingText() const;
+  std::string magnetometerText() const;
+  std::string depthText() const;
+  /// Mean over the frames of what carried the scale; nothing where nothing did.
+  std::optional<ScaleInformation> scaleInformation() const;
+  /// What the process spent outside of front end and estimator: reading, decoding, writing.
+  double filesSeconds() const { return process_s - front_end_s - estimator_s - pictures_s; }
+
+  RunDescription description_;
+  BlindStretches blind_;
+  FrameEstimate last_;
+  std::optional<Time> first_time_;
+  Time first_pose_time_;
+  std::optional<Vec3> last_position_W_;
+  int frames_ = 0;
+  int posed_ = 0;
+  int inertial_ = 0;
+  int degraded_ = 0;
+  int disagreeing_ = 0;  ///< inertial although images had much to follow
+  int keyframes_ = 0;
+  double path_m_ = 0.0;
+  double tracks_ = 0.0;
+  double landmarks_ = 0.0;
+  double reprojection_sigmas_ = 0.0;
+  int reprojected_frames_ = 0;
+  std::map<MagnetometerStatus, int> magnetometer_frames_;
+  std::map<DepthStatus, int> depth_frames_;  ///< of frames with readings
+  ScaleInformation scale_;                   ///< summed over the frames
+};
+
+}  // namespace lodeline

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lodeline/output/survey/map/dive_map.h"
+
+/// What the writers of survey data share.
+namespace lodeline::survey_text {
+
+/// Positions of stations rounded to what is written (0.1 mm), so that differences of them add up to them.
+Vec3 rounded(const Vec3& position);
+
+/// "0 1 4.0000 -3.0000 0.1000": legs between positions, one a line.
+std::string legs(const std::vector<Vec3>& positions, const std::string& indent);
+
+/// A splay from a station: distance, bearing and inclination as survey programs take them.
+std::string splay(size_t station, const char* target, const Vec3& vector, const std::string& indent);
+
+/// Every note as a comment.
+std::string comments(const DiveMap& map, const char* mark);
+
+/// "2026.11.21" from "2026-11-21".
+std::string dotted(std::string date);
+
+/// In double quotes; those inside become single.
+std::string quoted(std::string text);
+
+}  // namespace lodeline::survey_text

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "lodeline/geometry/so3.h"
+#include "lodeline/output/survey/formats/write_formats.h"
+
+namespace lodeline {
+namespace {
+
+/// COLMAP's name and parameters of a camera. Its pixel centres lie at halves, ours at integers.
+std::string cameraModel(const CameraCalibration& camera) {
+  std::vector<double> parameters = {camera.fx_px, camera.fy_px, camera.cx_px + 0.5, camera.cy_px + 0.5};
+  parameters.insert(parameters.end(), camera.distortion.begin(), camera.distortion.end());
+  const char* name = "PINHOLE";
+  if (camera.distortion_model == DistortionModel::Equidistant) name = "OPENCV_FISHEYE";
+  if (camera.distortion_model == DistortionModel::RadialTangential) {
+    const bool is_short = camera.distortion.size() <= 4;
+    name = is_short ? "OPENCV" : "FULL_OPENCV";
+    parameters.resize(is_short ? 8 : 12, 0.0);
+  }
+  std::string text = name;
+  text += fmt::format(" {} {}", camera.width_px, camera.height_px);
+  for (double parameter : parameters) text += fmt::format(" {:.12g}", parameter);
+  return text;
+}
+
+}  // namespace
+
+ColmapModel colmapModel(const DiveMap& map, const std::vector<CameraCalibration>& cameras,
+                        const std::vector<ColmapImage>& images) {
+  ColmapModel model;
+  model.cameras = "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    model.cameras += fmt::format("{} {}\n", i + 1, cameraModel(cameras[i]));
+  }
+  model.images = "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; then POINTS2D[] (none)\n";
+  size_t id = 0;
+  for (const ColmapImage& image : images) {
+    const Rigid3 camera_from_map =
+        (map.trajectory.poses.at(image.pose).world_from_body * cameras.at(image.camera).body_from_camera)
+            .inverse();
+    const Quat q = so3::canonical(camera_from_map.rotation);
+    const Vec3& t = camera_from_map.translation;
+    fmt::format_to(std::back_inserter(model.images),
+                   "{} {:.12g} {:.12g} {:.12g} {:.12g} {:.9f} {:.9f} {:.9f} {} {}\n\n", ++id, q.w(), q.x(),
+                   q.y(), q.z(), t.x(), t.y(), t.z(), image.camera + 1, image.name);
+  }
+  model.points3D = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] (none); metres " + map.north.axes + "\n";
+  id = 0;
+  for (const MapLandmark& landmark : map.landmarks) {
+    fmt::format_to(std::back_inserter(model.points3D), "{} {:.6f} {:.6f} {:.6f} 170 160 145 0\n", ++id,
+                   landmark.position.x(), landmark.position.y(), landmark.position.z());
+  }
+  return model;
+}
+
+}  // namespace lodeline

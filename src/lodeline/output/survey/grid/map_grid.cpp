@@ -1,0 +1,233 @@
+#include "lodeline/output/survey/grid/map_grid.h"
+
+#include <fmt/format.h>
+#include <proj.h>
+#include <proj_experimental.h>
+
+#include <GeographicLib/UTMUPS.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+using GeographicLib::UTMUPS;
+
+/// PROJ's code of a grid's name, "EPSG:32617" of "utm17n" or "17N"; upper case else.
+std::string codeOf(const std::string& crs, const GeodeticPosition& place) {
+  std::string code = crs;
+  std::transform(code.begin(), code.end(), code.begin(), [](unsigned char c) { return std::toupper(c); });
+  if (code.find(':') != std::string::npos) return code;
+  try {
+    int zone = 0;
+    bool north = place.latitude_deg >= 0.0;
+    if (code == "AUTO") {
+      zone = UTMUPS::StandardZone(place.latitude_deg, place.longitude_deg);
+    } else {
+      UTMUPS::DecodeZone(code.starts_with("UTM") ? code.substr(3) : code, zone, north);
+    }
+    if (zone >= UTMUPS::MINUTMZONE && zone <= UTMUPS::MAXUTMZONE)
+      return fmt::format("EPSG:{}", UTMUPS::EncodeEPSG(zone, north));
+  } catch (const GeographicLib::GeographicErr&) {  // named below
+  }
+  return code;
+}
+
+/// "UTM17N" of EPSG:32617, the code itself of all others.
+std::string nameOf(const std::string& code) {
+  int zone = UTMUPS::INVALID;
+  bool north = false;
+  if (code.starts_with("EPSG:")) UTMUPS::DecodeEPSG(std::atoi(code.c_str() + 5), zone, north);
+  const bool is_utm = zone >= UTMUPS::MINUTMZONE && zone <= UTMUPS::MAXUTMZONE;
+  return is_utm ? fmt::format("UTM{}{}", zone, north ? "N" : "S") : code;
+}
+
+std::string textOf(const char* text) { return text == nullptr ? "" : text; }
+
+/// The name of a transformation without its steps that only exchange axes.
+std::string withoutAxisOrder(std::string name) {
+  const std::string step = "axis order change (2D)";
+  for (const std::string& text : {step + " + ", " + " + step}) {
+    for (size_t at = name.find(text); at != std::string::npos; at = name.find(text))
+      name.erase(at, text.size());
+  }
+  return name;
+}
+
+/// What the transformation from WGS 84 gives, in the grid's own unit; infinite where there is none.
+Vec2 transformed(PJ* grid_from_wgs84, double latitude_deg, double longitude_deg) {
+  const PJ_COORD result =
+      proj_trans(grid_from_wgs84, PJ_FWD, proj_coord(longitude_deg, latitude_deg, 0.0, HUGE_VAL));
+  proj_errno_reset(grid_from_wgs84);
+  return {result.xy.x, result.xy.y};
+}
+
+/// Therion's spelling: "UTM17", "UTM55S", "EPSG:6372".
+std::string therionSpelling(std::string name) {
+  if (name.starts_with("UTM") && name.ends_with('N')) name.pop_back();
+  return name;
+}
+
+}  // namespace
+
+/// PROJ's objects of one grid, in a context of their own.
+struct MapGrid::Proj {
+  struct Destroy {
+    void operator()(PJ* object) const { proj_destroy(object); }
+    void operator()(PJ_OBJ_LIST* list) const { proj_list_destroy(list); }
+    void operator()(PJ_OPERATION_FACTORY_CONTEXT* factory) const {
+      proj_operation_factory_context_destroy(factory);
+    }
+    void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
+  };
+  using Object = std::unique_ptr<PJ, Destroy>;
+  using ObjectList = std::unique_ptr<PJ_OBJ_LIST, Destroy>;
+
+  std::unique_ptr<PJ_CONTEXT, Destroy> context{proj_context_create()};
+  Object crs, grid_from_wgs84;
+
+  Proj() {
+    proj_context_set_enable_network(context.get(), 0);
+    proj_log_level(context.get(), PJ_LOG_NONE);
+  }
+
+  Object create(const std::string& definition) const {
+    return Object(proj_create(context.get(), definition.c_str()));
+  }
+
+  /// The transformation from WGS 84 to a grid that PROJ suggests at a place: of all that it knows, or of
+  /// those whose grid files are installed. Nothing where there is none.
+  Object suggested(PJ* grid, const GeodeticPosition& place, bool with_missing_files) const {
+    const std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, Destroy> factory(
+        proj_create_operation_factory_context(context.get(), nullptr));
+    proj_operation_factory_context_set_spatial_criterion(context.get(), factory.get(),
+                                                         PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
+    proj_operation_factory_context_set_grid_availability_use(
+        context.get(), factory.get(),
+        with_missing_files ? PROJ_GRID_AVAILABILITY_IGNORED
+                           : PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID);
+    const ObjectList list(
+        proj_create_operations(context.get(), create("EPSG:4326").get(), grid, factory.get()));
+    if (list == nullptr || proj_list_get_count(list.get()) == 0) return nullptr;
+    const int index =
+        proj_get_suggested_operation(context.get(), list.get(), PJ_FWD,
+                                     proj_coord(place.latitude_deg, place.longitude_deg, 0.0, HUGE_VAL));
+    return Object(proj_list_get(context.get(), list.get(), std::max(index, 0)));
+  }
+
+  /// The best transformation to a grid, from degrees of longitude and latitude to easting and northing.
+  Object best(PJ* grid, const GeodeticPosition& place) const {
+    const Object operation = suggested(grid, place, false);
+    if (operation == nullptr) return nullptr;
+    return Object(proj_normalize_for_visualization(context.get(), operation.get()));
+  }
+
+  void describeUnit(MapGridDescription* grid, const std::string& crs_name) const {
+    const Object axes(proj_crs_get_coordinate_system(context.get(), crs.get()));
+    std::string directions;
+    for (int i = 0; i < 2; ++i) {
+      const char *direction = nullptr, *unit = nullptr;
+      proj_cs_get_axis_info(context.get(), axes.get(), i, nullptr, nullptr, &direction,
+                            &grid->metres_per_unit, &unit, nullptr, nullptr);
+      directions += textOf(direction) + " ";
+      grid->unit = textOf(unit);
+    }
+    if (directions == "east north " || directions == "north east ") return;
+    throw UsageError(fmt::format(
+        "--crs {}: the axes of {} point {}and not to the east and north, which survey programs take them for",
+        crs_name, grid->title, directions));
+  }
+
+  void describeArea(MapGridDescription* grid, const GeodeticPosition& place) const {
+    double west_deg, south_deg, east_deg, north_deg;
+    const char* area = nullptr;
+    if (!proj_get_area_of_use(context.get(), crs.get(), &west_deg, &south_deg, &east_deg, &north_deg, &area))
+      return;
+    grid->area = textOf(area);
+    const double width_deg = east_deg < west_deg ? east_deg + 360.0 - west_deg : east_deg - west_deg;
+    const double from_west_deg = std::remainder(place.longitude_deg - west_deg, 360.0);
+    grid->is_outside_area = place.latitude_deg < south_deg || place.latitude_deg > north_deg ||
+                            (from_west_deg < 0.0 ? from_west_deg + 360.0 : from_west_deg) > width_deg;
+  }
+
+  void describeOperation(MapGridDescription* grid, const GeodeticPosition& place) const {
+    grid->operation = withoutAxisOrder(textOf(proj_pj_info(grid_from_wgs84.get()).description));
+    const double accuracy_m = proj_coordoperation_get_accuracy(context.get(), grid_from_wgs84.get());
+    const bool is_guess =
+        proj_coordoperation_has_ballpark_transformation(context.get(), grid_from_wgs84.get()) != 0;
+    if (accuracy_m >= 0.0 && !is_guess) grid->accuracy_m = accuracy_m;
+    const Object first = suggested(crs.get(), place, true);
+    grid->lacks_grid_file =
+        first != nullptr && proj_coordoperation_is_instantiable(context.get(), first.get()) == 0;
+  }
+
+  /// The code of the same grid in metres, which EPSG lists by the name without its unit; empty without one.
+  std::string codeInMetres(const MapGridDescription& grid, const GeodeticPosition& place) const {
+    const PJ_TYPE type = PJ_TYPE_PROJECTED_CRS;
+    const std::string title = grid.title.substr(0, grid.title.rfind(" (ft"));
+    const ObjectList list(
+        proj_create_from_name(context.get(), "EPSG", title.c_str(), &type, 1, 0, 1, nullptr));
+    if (list == nullptr || proj_list_get_count(list.get()) == 0) return "";
+    const Object twin(proj_list_get(context.get(), list.get(), 0));
+    const Object twin_from_wgs84 = best(twin.get(), place);
+    if (twin_from_wgs84 == nullptr) return "";
+    const Vec2 in_metres = transformed(twin_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
+    const Vec2 in_units = transformed(grid_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
+    if (!((in_metres - grid.metres_per_unit * in_units).norm() < 1e-3)) return "";
+    return fmt::format("EPSG:{}", textOf(proj_get_id_code(twin.get(), 0)));
+  }
+
+  void describeNames(MapGridDescription* grid, const GeodeticPosition& place) const {
+    std::string code = grid->name;
+    if (std::abs(grid->metres_per_unit - 1.0) > 1e-12) code = codeInMetres(*grid, place);
+    grid->survex_name = code;
+    if (!code.empty() && !grid->lacks_grid_file) grid->therion_name = therionSpelling(code);
+    if (!code.empty()) return;
+    const Object axes(
+        proj_crs_alter_cs_linear_unit(context.get(), crs.get(), "metre", 1.0, nullptr, nullptr));
+    const Object metric(
+        proj_crs_alter_parameters_linear_unit(context.get(), axes.get(), "metre", 1.0, nullptr, nullptr, 1));
+    const std::string text = textOf(proj_as_proj_string(context.get(), metric.get(), PJ_PROJ_4, nullptr));
+    grid->survex_name = fmt::format("custom \"{}\"", text);
+  }
+};
+
+MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(std::make_shared<Proj>()) {
+  const std::string code = codeOf(crs, place);
+  const auto refuse = [&](const std::string& why) {
+    throw UsageError(fmt::format("--crs {}: {}", crs, why));
+  };
+  if (code.starts_with("EPSG:") || code.starts_with("ESRI:")) proj_->crs = proj_->create(code);
+  if (code == "AUTO") {
+    refuse(fmt::format(
+        "latitude {:g}, longitude {:g} lies in no UTM zone (80 S to 84 N): are latitude and longitude "
+        "swapped? Else name a grid",
+        place.latitude_deg, place.longitude_deg));
+  }
+  if (proj_->crs == nullptr) refuse("a projected grid is wanted, as UTM17N, EPSG:32617 or EPSG:6372");
+  description_.code = code;
+  description_.name = nameOf(code);
+  description_.title = textOf(proj_get_name(proj_->crs.get()));
+  if (proj_get_type(proj_->crs.get()) != PJ_TYPE_PROJECTED_CRS) {
+    refuse(fmt::format("{} is no projected grid in metres or feet; name one, as UTM17N or EPSG:6372",
+                       description_.title));
+  }
+  proj_->describeUnit(&description_, crs);
+  proj_->grid_from_wgs84 = proj_->best(proj_->crs.get(), place);
+  if (proj_->grid_from_wgs84 == nullptr) refuse("PROJ knows no way from WGS 84 to " + description_.title);
+  proj_->describeArea(&description_, place);
+  proj_->describeOperation(&description_, place);
+
+  proj_->describeNames(&description_, place);
+}
+
+Vec2 MapGrid::project(double latitude_deg, double longitude_deg) const {
+  return description_.metres_per_unit *
+         transformed(proj_->grid_from_wgs84.get(), latitude_deg, longitude_deg);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,110 @@
+#include "lodeline/output/survey/grid/map_grid.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lodeline/output/survey/formats/test_outside_program.h"
+#include "lodeline/output/survey/grid/georeference.h"
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr GeodeticPosition kFlorida = {29.83, -82.60, 10.0};
+
+std::string nameOf(const std::string& crs, const GeodeticPosition& place) {
+  return MapGrid(crs, place).description().name;
+}
+
+TEST(MapGrid, IsNamedInTheUsualSpellings) {
+  for (const char* name : {"UTM17N", "utm17n", "17N", "EPSG:32617", "epsg:32617", "auto", "AUTO"}) {
+    EXPECT_EQ(nameOf(name, kFlorida), "UTM17N") << name;
+  }
+  EXPECT_EQ(nameOf("EPSG:32755", {-37.72, 142.9, 30.0}), "UTM55S");
+  EXPECT_EQ(nameOf("auto", {60.4, 5.3, 0.0}), "UTM32N");  // the wider zone of southern Norway
+  EXPECT_EQ(nameOf("epsg:6438", kFlorida), "EPSG:6438");
+}
+
+TEST(MapGrid, RefusesWhatIsNoGridWithAxesToEastAndNorth) {
+  const auto expectRefusal = [](const char* crs, const char* says) {
+    EXPECT_THAT([&] { MapGrid(crs, kFlorida); }, ThrowsMessage<UsageError>(HasSubstr(says))) << crs;
+  };
+  for (const char* crs :
+       {"", "UTM", "UTM61N", "EPSG:", "EPSG:999999", "WGS84", "NaN", "+proj=utm +zone=17"}) {
+    expectRefusal(crs, "UTM17N");
+  }
+  expectRefusal("EPSG:4326", "no projected grid");
+  expectRefusal("EPSG:5773", "no projected grid");  // heights
+  expectRefusal("EPSG:2053", "axes");               // to the west and south
+  EXPECT_THROW(MapGrid("auto", {88.0, 0.0, 0.0}), UsageError);
+}
+
+// By gdaltransform 3.6 and cs2cs 9.1.
+TEST(MapGrid, PutsPlacesWhereProjDoes) {
+  LODELINE_NEEDS_PROGRAM("gdaltransform", "gdal-bin");
+  struct Case {
+    const char* crs;
+    double latitude_deg, longitude_deg;
+  };
+  for (const Case& c : {Case{"EPSG:6372", 20.32, -87.39},  // Mexico
+                        Case{"EPSG:6438", 29.83, -82.60},  // Florida East, US feet
+                        Case{"EPSG:2154", 44.3, 1.7},      // Lambert-93
+                        Case{"EPSG:27700", 54.15, -2.4},   // British grid
+                        Case{"EPSG:2056", 46.95, 7.44},    // Swiss grid
+                        Case{"EPSG:3765", 45.0, 15.5},     // Croatia
+                        Case{"EPSG:2193", -41.0, 172.5},   // New Zealand, northing first
+                        Case{"EPSG:28354", -37.8, 140.8},  // Australia
+                        Case{"EPSG:5514", 49.4, 16.7},     // Krovak, east and north
+                        Case{"EPSG:31467", 48.5, 9.4},     // Gauss-Krueger, northing first
+                        Case{"EPSG:2225", 40.9, -123.0},   // California, US feet
+                        Case{"EPSG:2222", 33.5, -112.0},   // Arizona, international feet
+                        Case{"UTM17N", 29.83, -82.60}}) {
+    const MapGrid grid(c.crs, {c.latitude_deg, c.longitude_deg, 0.0});
+    const Vec2 found = grid.project(c.latitude_deg, c.longitude_deg) / grid.description().metres_per_unit;
+    const test::OutsideRun run =
+        test::runIn("/", fmt::format("echo '{} {}' | gdaltransform -s_srs EPSG:4326 -t_srs {} -output_xy",
+                                     c.longitude_deg, c.latitude_deg, grid.description().code));
+    double x = NAN, y = NAN;
+    ASSERT_EQ(std::sscanf(run.output.c_str(), "%lf %lf", &x, &y), 2) << run.output;
+    EXPECT_LT((found - Vec2(x, y)).norm(), 0.01) << c.crs << ": " << run.output;
+  }
+}
+
+TEST(MapGrid, KnowsTheSameGridInMetres) {
+  const MapGridDescription florida = MapGrid("EPSG:6438", kFlorida).description();
+  EXPECT_EQ(florida.unit, "US survey foot");
+  EXPECT_NEAR(florida.metres_per_unit, 1200.0 / 3937.0, 1e-15);
+  EXPECT_EQ(florida.survex_name, "EPSG:6437");
+  EXPECT_EQ(florida.therion_name, "EPSG:6437");
+  // A foot of its own, which EPSG lists in feet only.
+  const MapGridDescription gold_coast = MapGrid("EPSG:2136", {6.5, -1.0, 0.0}).description();
+  EXPECT_THAT(gold_coast.survex_name, HasSubstr("custom \"+proj=tmerc"));
+  EXPECT_THAT(gold_coast.survex_name, HasSubstr("+units=m"));
+  EXPECT_FALSE(gold_coast.therion_name);
+}
+
+TEST(MapGrid, SaysHowWellItIsTied) {
+  EXPECT_EQ(MapGrid("auto", kFlorida).description().accuracy_m, 0.0);
+  EXPECT_EQ(MapGrid("EPSG:6438", kFlorida).description().accuracy_m, 2.0);
+  EXPECT_FALSE(MapGrid("EPSG:6438", kFlorida).description().lacks_grid_file);
+  EXPECT_FALSE(MapGrid("EPSG:6441", kFlorida).description().is_outside_area);  // Florida North
+  EXPECT_TRUE(MapGrid("EPSG:6438", kFlorida).description().is_outside_area);   // Florida East
+}
+
+TEST(MapGrid, IsNoGridWhereItsLengthsAreNotThoseOnTheGround) {
+  const auto at = [](const char* crs, const GeodeticPosition& place) {
+    return Georeference(place, MapGrid(crs, place));
+  };
+  EXPECT_THROW(at("UTM40N", kFlorida), UsageError);
+  EXPECT_THROW(at("EPSG:3857", kFlorida), UsageError);  // the web's Mercator: 1.15 m a metre
+  EXPECT_NEAR(at("EPSG:6372", {20.32, -87.39, 0.0}).scale(), 1.0, 0.01);
+}
+
+}  // namespace
+}  // namespace lodeline

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/output/survey/grid/georeference.h"
+#include "lodeline/output/survey/grid/north.h"
+#include "lodeline/output/survey/map/passage.h"
+#include "lodeline/output/survey/map/survey.h"
+#include "lodeline/output/survey/run/run_folder.h"
+#include "lodeline/util/diagnostics.h"
+
+namespace lodeline {
+
+/// What the user says about a map.
+struct DiveMapOptions {
+  std::string name;               ///< of the survey; empty for that of the run folder
+  std::string title;              ///< empty for the name
+  std::vector<std::string> team;  ///< names of people
+  std::string date;               ///< YYYY-MM-DD; empty for what run and stamps say
+
+  std::optional<GeodeticPosition>
+      entrance;                   ///< the water's surface above the first pose; nothing for a local map
+  double entrance_sigma_m = 3.0;  ///< horizontal, per axis
+  double entrance_height_sigma_m = 5.0;
+  std::string crs = "auto";
+  std::optional<double> turn_deg;  ///< see findNorth()
+  std::optional<double>
+      start_depth_m;               ///< of the first pose; nothing for what the run's pressure sensor says
+  std::string start_depth_source;  ///< where that is from, in words
+  double geoid_height_m = 0.0;     ///< of the level from which heights count above the ellipsoid
+
+  std::optional<double> relative_sigma;  ///< of the end, by the length of the line; else as the run says
+  StationOptions stations;
+  PassageOptions passage;
+  int min_sightings = 3;  ///< of a landmark that is taken for wall
+  bool is_closed = false;
+  std::vector<std::string> notes;  ///< what else the headers are to say
+};
+
+/// Everything that goes into maps, in east, north, up with the first pose as origin.
+struct DiveMap {
+  std::string name, title, date;
+  std::vector<std::string> team;
+  std::vector<std::string> notes;    ///< where it is from and what was assumed, a line each
+  std::filesystem::path run_folder;  ///< as a full path
+
+  North north;
+  std::optional<Georeference> place;
+  Vec3 place_sigma = Vec3::Zero();  ///< m, east, north, up
+  double start_depth_m = 0.0;
+  std::string start_depth_source;  ///< in words
+  double geoid_height_m = 0.0;
+
+  Trajectory trajectory;                           ///< body in ENU
+  std::vector<PositionUncertainty> uncertainties;  ///< axes of ENU
+  std::vector<MapLandmark> landmarks;              ///< ENU
+  Survey survey;
+
+  /// Below the water's surface, m.
+  double depth_m(const Vec3& point_ENU) const { return start_depth_m - point_ENU.z(); }
+};
+
+/// `extra_walls_W`: wall points other than landmarks (echoes of a sonar), in the run's world. Throws
+/// InputError and UsageError where the run or the options cannot make a map.
+DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
+                    const std::vector<Vec3>& extra_walls_W, Diagnostics* diagnostics);
+
+/// What the notes, and a summary on the screen, say about a map.
+std::vector<std::string> describe(const DiveMap& map, const RunFolder& run);
+
+}  // namespace lodeline

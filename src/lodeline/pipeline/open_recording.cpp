@@ -1,0 +1,127 @@
+#include "lodeline/pipeline/open_recording.h"
+
+#include <fmt/core.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/util/error.h"
+#include "lodeline/util/files/file_kind.h"
+
+namespace lodeline {
+namespace {
+
+BagOptions bagOptions(const BagArguments& arguments) {
+  BagOptions options;
+  options.rig_files.assign(arguments.rig_files.begin(), arguments.rig_files.end());
+  options.topics = topicsOf(arguments);
+  options.use_received_times = arguments.use_received_times;
+  return options;
+}
+
+}  // namespace
+
+void addBagOptions(BagArguments* arguments, CLI::App* command) {
+  command
+      ->add_option("--rig", arguments->rig_files,
+                   "calibration of the rig: rig.yaml, or files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3, "
+                   "OKVIS, Basalt; "
+                   "without it NAME.rig.yaml beside NAME.bag, or what lies in the folder")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--topic", arguments->topics,
+          "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
+          "is not named; imu0=/gyro,/accel unites two halves")
+      ->type_name("SENSOR=TOPIC");
+  command->add_flag(
+      "--received-times", arguments->use_received_times,
+      "for a bag whose header stamps are not filled: stamp messages with the times at which they "
+      "were recorded, which are late and uneven");
+}
+
+std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
+  std::map<std::string, std::string> topics;
+  for (const std::string& text : arguments.topics) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      throw UsageError(fmt::format("--topic {}: expected SENSOR=TOPIC, as in cam0=/left/image_raw", text));
+    }
+    topics[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  return topics;
+}
+
+bool isBag(const std::filesystem::path& data) {
+  const RecognisedFile recognised = recogniseFile(data);
+  if (recognised.kind == FileKind::Ros1Bag) return true;
+  const std::string name = data.filename().string();
+  return recognised.kind == FileKind::Missing &&
+         (data.extension() == ".bag" || name.ends_with(".bag.active"));
+}
+
+bool isTableOfReadings(const std::filesystem::path& data) {
+  const RecognisedFile recognised = recogniseFile(data);
+  if (recognised.isFolder() || recognised.kind == FileKind::Ros1Bag) return false;
+  if (isBag(data)) return false;  // one that is missing is reported by its reader
+  if (recognised.kind != FileKind::Table && recognised.kind != FileKind::Text) {
+    refuseFile(recognised, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
+  }
+  return true;
+}
+
+void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments) {
+  if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data)) return;
+  throw UsageError(
+      fmt::format("--rig is for ROS bags here; {} is {}", data.string(), recogniseFile(data).what));
+}
+
+void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
+  if (isBag(data)) return;
+  const bool is_for_bags = !bag_arguments.topics.empty() || bag_arguments.use_received_times;
+  if (is_for_bags && std::filesystem::exists(data)) {
+    throw UsageError(fmt::format("--topic and --received-times are for ROS bags; {} is {}", data.string(),
+                                 recogniseFile(data).what));
+  }
+  if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
+    const RecognisedFile recognised = recogniseFile(data);
+    const bool is_table = recognised.kind == FileKind::Table || recognised.kind == FileKind::Text;
+    if (!is_table) return;  // refused by its kind
+    throw UsageError(
+        fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognised.what));
+  }
+}
+
+std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
+                                           const BagArguments& bag_arguments, Diagnostics* diagnostics) {
+  BagOptions options = bagOptions(bag_arguments);
+  options.with_cameras = false;
+  options.needs_calibration = false;
+  return std::make_unique<BagSource>(bag, options, diagnostics);
+}
+
+std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
+                                              const BagArguments& bag_arguments, Diagnostics* diagnostics) {
+  if (!isBag(data)) {
+    refuseBagOptions(data, bag_arguments);
+    EurocOptions folder_options = options;
+    folder_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
+    return std::make_unique<EurocSource>(data, folder_options, diagnostics);
+  }
+  BagOptions bag_options = bagOptions(bag_arguments);
+  bag_options.camera_indices = options.camera_indices;
+  bag_options.with_cameras = options.with_cameras;
+  bag_options.needs_calibration = options.needs_calibration;
+  if (!options.needs_calibration && bag_options.rig_files.empty() &&
+      !std::filesystem::exists(rigFileBeside(data))) {
+    diagnostics->report(Severity::Warning, "bag_uncalibrated",
+                        fmt::format("{}: no rig file (--rig) and none beside the bag ({}); sensors are taken "
+                                    "as they are, in body axes",
+                                    data.string(), rigFileBeside(data).string()));
+  }
+  return std::make_unique<BagSource>(data, bag_options, diagnostics);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lodeline/io/euroc/euroc_rig.h"
+#include "lodeline/io/rosbag1/bag_source.h"
+#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/util/diagnostics.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lodeline {
+
+/// What the command line says about a recording's sensors.
+struct BagArguments {
+  std::vector<std::string> rig_files;
+  std::vector<std::string> topics;  ///< SENSOR=TOPIC
+  bool use_received_times = false;
+};
+
+/// Adds --rig, --topic and --received-times to a command.
+void addBagOptions(BagArguments* arguments, CLI::App* command);
+
+/// Topics by sensor. Throws UsageError where one is not of the form SENSOR=TOPIC.
+std::map<std::string, std::string> topicsOf(const BagArguments& arguments);
+
+/// Whether a path is a ROS 1 bag, by its content, and by its name where it is not there.
+bool isBag(const std::filesystem::path& data);
+
+/// Whether a path is a file with a table of readings; false for bags and folders. Throws InputError, naming
+/// its kind, for a file that is neither.
+bool isTableOfReadings(const std::filesystem::path& data);
+
+/// Throws UsageError for --topic where `data` is no bag, and for --rig where it is neither a bag nor a
+/// folder.
+void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments);
+
+/// Throws UsageError for rig files with a folder, for commands that take its sensors as they are.
+void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments);
+
+/// Opens a bag for its readings alone: without images, and sensors of which no rig file tells have the
+/// default calibration. Throws as BagSource does; `diagnostics` must outlive the source.
+std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
+                                           const BagArguments& bag_arguments, Diagnostics* diagnostics);
+
+/// Opens a folder in the EuRoC ASL layout, or a ROS 1 bag. Throws as EurocSource and BagSource do, and
+/// UsageError for --topic with a folder. `diagnostics` must outlive the source.
+std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
+                                              const BagArguments& bag_arguments, Diagnostics* diagnostics);
+
+}  // namespace lodeline

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "lodeline/util/error.h"
+
+namespace lodeline {
+
+/// Makes a folder for results where it is missing. Throws InputError naming it.
+inline void createOutputFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(folder.string() + ": cannot be created (" + error.message() +
+                     "); choose another folder with -o");
+  }
+}
+
+/// Opens a file of a run's output folder for writing, replacing what was there. Throws InputError naming it.
+inline std::ofstream openOutput(const std::filesystem::path& file) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  if (!stream) {
+    throw InputError(file.string() +
+                     ": cannot be written; choose a folder with write permission and free space (-o)");
+  }
+  return stream;
+}
+
+/// Throws InputError naming the file where something of it could not be written.
+inline void closeOutput(const std::filesystem::path& file, std::ofstream* stream) {
+  stream->close();
+  if (!*stream) throw InputError(file.string() + ": writing failed; is the disk full?");
+}
+
+inline void writeOutput(const std::filesystem::path& file, std::string_view content) {
+  std::ofstream stream = openOutput(file);
+  stream << content;
+  closeOutput(file, &stream);
+}
+
+}  // namespace lodeline

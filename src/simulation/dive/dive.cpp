@@ -1,0 +1,131 @@
+#include "simulation/dive/dive.h"
+
+#include <cmath>
+#include <utility>
+
+#include "simulation/motion/dive_motion.h"
+#include "simulation/shared/random.h"
+
+namespace lodeline {
+namespace {
+
+CenterlineOptions passageOptions(const Scenario& s) {
+  CenterlineOptions options;
+  options.seed = s.seed;
+  options.length_m = 0.5 * s.path_length_m;
+  options.descent_m = std::min(0.08 * options.length_m, s.decorated ? 6.0 : 20.0);
+  if (s.decorated) {
+    // Dissolved along joints near the water table: level, wide, low.
+    options.mean_width_m = 5.5;
+    options.mean_height_m = 2.6;
+    options.undulation_m = 0.5;
+    options.shortest_bend_m = 18.0;
+  }
+  return options;
+}
+
+DiveMotionOptions diveOptions(const Scenario& s) {
+  DiveMotionOptions options;
+  options.seed = s.seed;
+  options.duration_s = s.duration_s;
+  options.path_length_m = s.path_length_m;
+  options.starts_at_rest = s.starts_at_rest;
+  // Short excerpts spend less of their time resting and turning.
+  options.start_rest_s = std::min(4.0, 0.06 * s.duration_s);
+  options.turn_s = std::min(10.0, 0.2 * s.duration_s);
+  return options;
+}
+
+struct Place {
+  std::optional<Centerline> passage;
+  std::optional<WreckLayout> wreck;
+};
+
+Motion makeMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place) {
+  switch (s.motion) {
+    case MotionKind::Dive: {
+      const Centerline passage = Centerline::generate(passageOptions(s));
+      Motion motion = makeDiveMotion(passage, diveOptions(s), diver_from_body);
+      place.passage = passage.translated(motion.worldShift());
+      return motion;
+    }
+    case MotionKind::AroundWreck: {
+      Motion motion =
+          makeWreckMotion({}, s.seed, s.duration_s, s.path_length_m, s.starts_at_rest, diver_from_body);
+      place.wreck = WreckLayout{}.translated(motion.worldShift());
+      return motion;
+    }
+    case MotionKind::FigureEight:
+      return makeFigureEightMotion(s.seed, s.duration_s, diver_from_body);
+    case MotionKind::AtRest:
+      break;
+  }
+  return makeMotionAtRest(s.seed, s.duration_s, diver_from_body);
+}
+
+// Points over the faces of the box around a hull.
+LandmarkField hullLandmarks(const WreckLayout& wreck, double points_per_metre, uint64_t seed) {
+  Random random(seed, "landmarks");
+  const Quat heading(Eigen::AngleAxisd(wreck.azimuth_rad, Vec3::UnitZ()));
+  const Vec3 half(0.5 * wreck.length_m, 0.5 * wreck.width_m, 0.5 * wreck.height_m);
+  std::vector<LandmarkPoint> points;
+  const int count = static_cast<int>(points_per_metre * 2.0 * (wreck.length_m + wreck.width_m));
+  for (int i = 0; i < count; ++i) {
+    // Long sides, ends and deck by their areas.
+    const double side = half.x() * half.z(), end = half.y() * half.z(), deck = half.x() * half.y();
+    const double pick = random.uniform(0.0, 2.0 * side + 2.0 * end + deck);
+    Vec3 normal = Vec3::UnitZ();
+    if (pick < 2.0 * side) {
+      normal = (pick < side ? 1.0 : -1.0) * Vec3::UnitY();
+    } else if (pick < 2.0 * side + 2.0 * end) {
+      normal = (pick < 2.0 * side + end ? 1.0 : -1.0) * Vec3::UnitX();
+    }
+    const double u = random.uniform(-1.0, 1.0);
+    const double v = random.uniform(-1.0, 1.0);
+    const double relief_m = 0.15 * random.normal();
+    Vec3 local = half.cwiseProduct(normal) + relief_m * normal;
+    const int a = normal.x() != 0.0 ? 1 : 0;
+    const int b = normal.z() != 0.0 ? 1 : 2;
+    local[a] = u * half[a];
+    local[b] = v * half[b];
+    points.push_back({wreck.center_W + heading * (local + Vec3(0, 0, half.z())), heading * normal});
+  }
+  return LandmarkField(std::move(points));
+}
+
+}  // namespace
+
+Dive makeDive(const Scenario& s) {
+  Place place;
+  const DiveErrors errors = drawErrors(s);
+  Motion motion = makeMotion(s, errors.truth.diver_from_body, place);
+  Dive dive{.scenario = s,
+            .errors = errors,
+            .motion = std::move(motion),
+            .passage = place.passage,
+            .wreck = place.wreck,
+            .disturbances = {},
+            .start = {}};
+  dive.field_W = scenarioField(s);
+  dive.surface_height_m = s.start_depth_m;
+  // 2026-11-21, 10:00 UTC, whatever the scenario's date: only its year enters, through the magnetic field.
+  dive.start = Time::fromNanoseconds(1'795'255'200'000'000'000);
+  if (s.motion == MotionKind::Dive || s.motion == MotionKind::AroundWreck) {
+    DisturbanceOptions options;
+    options.seed = s.seed;
+    if (s.effects.has(Effect::MagneticDisturbances)) {
+      dive.disturbances = drawDisturbances(dive.motion, dive.field_W, options);
+    }
+    if (s.effects.has(Effect::LampCurrent))
+      dive.disturbances.switched = drawLampSwitching(s.duration_s, s.seed);
+  }
+  return dive;
+}
+
+LandmarkField diveLandmarks(const Dive& dive, double points_per_metre) {
+  if (dive.passage) return passageLandmarks(*dive.passage, points_per_metre, dive.scenario.seed);
+  if (dive.wreck) return hullLandmarks(*dive.wreck, points_per_metre, dive.scenario.seed);
+  return LandmarkField({});
+}
+
+}  // namespace lodeline

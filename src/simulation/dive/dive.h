@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "simulation/dive/dive_errors.h"
+#include "simulation/motion/posed_motion.h"
+#include "simulation/rendering/cave/centerline.h"
+#include "simulation/sensors/landmark_field.h"
+#include "simulation/shared/motion.h"
+
+namespace lodeline {
+
+/// A scenario with everything drawn that it leaves to its seed: the place, the swim, the rig and its errors.
+struct Dive {
+  Scenario scenario;
+  DiveErrors errors;
+  Motion motion;
+  std::optional<Centerline> passage;  ///< in a cave, world frame
+  std::optional<WreckLayout> wreck;   ///< in open water, world frame
+  Vec3 field_W = Vec3::Zero();        ///< Earth's, T
+  MagneticDisturbances disturbances;
+  Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
+  double surface_height_m = 0.0;  ///< of the water above the world's origin
+  Time start;                     ///< stamp of the motion's second 0, on the IMU's clock
+};
+
+/// Deterministic in the scenario. Throws UsageError for lengths and durations that no diver swims.
+Dive makeDive(const Scenario& scenario);
+
+/// Points on the dive's walls (cave) or hull (wreck), for point-level simulation; empty without a place.
+LandmarkField diveLandmarks(const Dive& dive, double points_per_metre = 400.0);
+
+}  // namespace lodeline

@@ -1,0 +1,141 @@
+#include "simulation/dive/dive_errors.h"
+
+#include <numbers>
+
+#include "lodeline/geometry/so3.h"
+#include "lodeline/util/angles.h"
+
+namespace lodeline {
+namespace {
+
+Quat drawTurn(double least_rad, double most_rad, Random& random) {
+  const double angle = random.uniform(least_rad, most_rad);
+  return so3::exp(angle * random.direction());
+}
+
+// What misleads a calibration (target, water, window) misleads it for both cameras alike, and since it fits
+// them together, the stereo pair's images still agree to a fraction of a pixel: the errors are common, with
+// little of their own for each camera.
+void misstateIntrinsics(uint64_t seed, Rig& given) {
+  Random common(seed, "calibration/intrinsics");
+  const double focal_error = common.sign() * common.uniform(0.0012, 0.0048);
+  const double size_px = common.uniform(1.2, 2.8);
+  const double angle = common.uniform(0.0, 2.0 * std::numbers::pi);
+  for (CameraCalibration& camera : given.cameras) {
+    Random own(seed, "calibration/intrinsics/" + camera.name);
+    camera.fx_px *= 1.0 + focal_error + own.uniform(-1.5e-4, 1.5e-4);
+    camera.fy_px *= 1.0 + focal_error + own.uniform(-1.5e-4, 1.5e-4);
+    const double scale = camera.width_px / 640.0;
+    camera.cx_px += scale * (size_px * std::cos(angle) + own.uniform(-0.12, 0.12));
+    camera.cy_px += scale * (size_px * std::sin(angle) + own.uniform(-0.12, 0.12));
+  }
+}
+
+void misstateExtrinsics(const EffectSet& effects, uint64_t seed, Rig& given) {
+  if (effects.has(Effect::CameraImuExtrinsics)) {
+    Random random(seed, "calibration/camera-imu");
+    const Quat turn = drawTurn(0.1 * kDegree, 0.5 * kDegree, random);
+    const double distance_m = random.uniform(0.005, 0.010);
+    const Vec3 shift = distance_m * random.direction();
+    // About the first camera, so that the stereo geometry stays as it is.
+    const Vec3 pivot = given.cameras.front().body_from_camera.translation;
+    for (CameraCalibration& camera : given.cameras) {
+      const Rigid3& pose = camera.body_from_camera;
+      camera.body_from_camera =
+          Rigid3(turn * pose.rotation, pivot + turn * (pose.translation - pivot) + shift);
+    }
+  }
+  if (effects.has(Effect::StereoExtrinsics) && given.cameras.size() > 1) {
+    Random random(seed, "calibration/stereo");
+    Rigid3& pose = given.cameras[1].body_from_camera;
+    pose.rotation = (pose.rotation * drawTurn(0.02 * kDegree, 0.1 * kDegree, random)).normalized();
+  }
+}
+
+void putBehindPort(uint64_t seed, DiveErrors& errors) {
+  Random random(seed, "port");
+  FlatPort port;
+  port.normal_C = (Vec3::UnitZ() + 0.6 * kDegree * random.normal3()).normalized();
+  port.distance_m = random.uniform(0.010, 0.025);
+  errors.port = port;
+  errors.port_fit_rms_px = 0.0;
+  for (size_t i = 0; i < errors.truth.rig.cameras.size(); ++i) {
+    CameraCalibration& camera = errors.truth.rig.cameras[i];
+    camera = airCameraFor(camera, port);
+    const PortFit fit = fitRadialTangential(camera, port);
+    errors.in_water.cameras[i] = fit.calibration;
+    errors.port_fit_rms_px = std::max(errors.port_fit_rms_px, fit.rms_px);
+  }
+}
+
+void drawClocks(const Scenario& s, DiveErrors& errors) {
+  Random random(s.seed, "clock/camera");
+  const double delay_s = random.uniform(0.003, 0.008);
+  const double drift_ppm = random.sign() * random.uniform(5.0, 30.0);
+  const double dropped = random.uniform(0.01, 0.03);
+  if (s.effects.has(Effect::CameraDelay)) errors.camera_clock.delay_s = delay_s;
+  if (s.effects.has(Effect::ClockDrift)) errors.camera_clock.drift_ppm = drift_ppm;
+  if (s.effects.has(Effect::StampJitter)) errors.camera_clock.jitter_s = 0.0005;
+  if (s.effects.has(Effect::DroppedFrames)) errors.dropped_image_share = dropped;
+}
+
+void drawDepthAndSonar(const Scenario& s, DiveErrors& errors) {
+  Random random(s.seed, "pressure/specimen");
+  const double offset_m = random.sign() * random.uniform(0.05, 0.30);
+  const double lag_s = random.uniform(0.3, 1.0);
+  // A gauge set to salt water in a spring, or to fresh water in the halocline.
+  const double density_ratio = random.chance(0.5) ? 998.0 / 1025.0 : 1010.0 / 1000.0;
+  if (s.effects.has(Effect::PressureNoise)) {
+    errors.pressure.noise_m = 0.01;
+    errors.pressure.resolution_m = 0.01;
+  }
+  if (s.effects.has(Effect::DepthErrors)) {
+    errors.pressure.offset_m = offset_m;
+    errors.pressure.lag_s = lag_s;
+    errors.pressure.density_ratio = density_ratio;
+  }
+  if (s.effects.has(Effect::SonarNoise)) {
+    errors.sonar.noise_m = 0.03;
+    errors.sonar.dropout_share = 0.10;
+    errors.sonar.spurious_share = 0.02;
+    errors.sonar.resolution_m = 0.01;
+  }
+}
+
+}  // namespace
+
+DiveErrors drawErrors(const Scenario& s) {
+  const EffectSet& on = s.effects;
+  DiveErrors errors;
+  errors.truth = standardRig(s.rig);
+  errors.imu = drawImuErrors(imuGrade(s.imu_grade),
+                             {on.has(Effect::ImuNoise), on.has(Effect::ImuBias), on.has(Effect::ImuScale),
+                              on.has(Effect::ImuWarmUp)},
+                             s.seed);
+  errors.magnetometer =
+      drawMagnetometerErrors(s.imu_grade,
+                             {on.has(Effect::MagnetometerNoise), on.has(Effect::MagnetometerIron),
+                              on.has(Effect::HardIronCreep), on.has(Effect::MagnetometerLag), s.duration_s},
+                             s.seed);
+  errors.truth.rig.magnetometer->body_from_magnetometer = errors.magnetometer.body_from_magnetometer;
+  drawDepthAndSonar(s, errors);
+  drawClocks(s, errors);
+
+  errors.in_water = errors.truth.rig;
+  if (on.has(Effect::FlatPort)) putBehindPort(s.seed, errors);
+  errors.given = errors.in_water;
+  if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
+  misstateExtrinsics(on, s.seed, errors.given);
+
+  // Files state a grade's noise, whichever effects are on: nobody delivers a noise density of zero.
+  const ImuGrade& grade = imuGrade(s.imu_grade);
+  errors.given.imu.noise = statedNoise({grade.gyroscope, grade.accelerometer});
+  if (on.has(Effect::MagnetometerExtrinsics)) errors.given.magnetometer->body_from_magnetometer = Rigid3();
+  errors.given.magnetometer->noise_density_T_per_sqrtHz =
+      drawMagnetometerErrors(s.imu_grade, {}, s.seed).noise_density_T_per_sqrtHz;
+  errors.given.pressure->depth_noise_std_m = 0.02;
+  errors.given.sonar->range_noise_std_m = 0.05;
+  return errors;
+}
+
+}  // namespace lodeline

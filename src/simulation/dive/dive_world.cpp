@@ -1,0 +1,72 @@
+#include "simulation/dive/dive_world.h"
+
+#include "simulation/shared/random.h"
+
+namespace lodeline {
+namespace {
+
+Daylight entranceLight(const Centerline& passage) {
+  Daylight daylight;
+  daylight.irradiance = 6.0;
+  // Comes in behind the diver, where the passage begins.
+  daylight.entrance_W = passage.at(passage.beginArcLength()).position_W;
+  daylight.decay_m = 3.5;
+  return daylight;
+}
+
+}  // namespace
+
+std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
+  const Scenario& s = dive.scenario;
+  if (dive.wreck) {
+    WreckOptions options;
+    options.seed = s.seed;
+    options.center_W = dive.wreck->center_W.cast<float>();
+    options.heading_rad = static_cast<float>(dive.wreck->azimuth_rad);
+    return buildWreckWorld(options);
+  }
+  if (!dive.passage) return nullptr;
+  CaveOptions options;
+  options.style = s.decorated ? CaveStyle::yucatanDecorated() : CaveStyle::floridaSpring();
+  options.seed = s.seed;
+  if (s.effects.has(Effect::BareWalls)) options.style.bare_share += 0.25f;
+  return buildCaveWorld(*dive.passage, options);
+}
+
+RenderSettings renderSettings(const Dive& dive) {
+  const EffectSet& on = dive.scenario.effects;
+  const RenderSettings field = RenderSettings::field();
+  RenderSettings settings = dive.wreck ? RenderSettings::openWater() : RenderSettings::clean();
+  settings.seed = dive.scenario.seed;
+  if (on.has(Effect::MilkyWater)) {
+    settings.water = field.water;
+    settings.snow = field.snow;
+  }
+  if (on.has(Effect::PoorExposure)) {
+    settings.sensor = field.sensor;
+    settings.lamps = field.lamps;
+  }
+  if (on.has(Effect::SecondDiver)) settings.second_diver = field.second_diver;
+  if (on.has(Effect::SiltOuts)) settings.water.silt = drawSiltOuts(dive.scenario.duration_s, settings.seed);
+  if (on.has(Effect::Daylight) && dive.passage) settings.daylight = entranceLight(*dive.passage);
+  if (on.has(Effect::RollingShutter)) settings.sensor.readout_s = 0.015;
+  if (!on.has(Effect::MarineSnow)) settings.snow.flakes_per_m3 = 0.0;
+  settings.sensor.noise = on.has(Effect::ImageNoise);
+  settings.motion_blur = on.has(Effect::MotionBlur);
+  settings.lens.port = dive.errors.port;
+  settings.mountLamps(dive.errors.truth.diver_from_body);
+  return settings;
+}
+
+std::vector<SiltEpisode> drawSiltOuts(double duration_s, uint64_t seed) {
+  Random random(seed, "silt");
+  std::vector<SiltEpisode> episodes;
+  for (double t = random.uniform(15.0, 60.0); t < duration_s; t += random.uniform(40.0, 130.0)) {
+    const double length_s = random.uniform(3.0, 8.0);
+    episodes.push_back({t, length_s, random.uniform(1.0, 3.5)});
+    t += length_s;
+  }
+  return episodes;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,177 @@
+#include "simulation/dive/point_simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace lodeline {
+namespace {
+
+ImuSample interpolated(const ImuSample& a, const ImuSample& b, Time time) {
+  const double u = (time - a.time).seconds() / (b.time - a.time).seconds();
+  return {time, (1.0 - u) * a.angular_velocity_B + u * b.angular_velocity_B,
+          (1.0 - u) * a.specific_force_B + u * b.specific_force_B};
+}
+
+std::vector<std::shared_ptr<const Camera>> makeCameras(const Rig& rig) {
+  std::vector<std::shared_ptr<const Camera>> cameras;
+  for (const CameraCalibration& calibration : rig.cameras) cameras.push_back(makeCamera(calibration));
+  return cameras;
+}
+
+}  // namespace
+
+PointSimulation::PointSimulation(const Motion& motion, const LandmarkField& landmarks, const Rig& rig,
+                                 const PointSimulationOptions& options)
+    : PointSimulation(motion, landmarks, rig, rig, options) {}
+
+PointSimulation::PointSimulation(const Motion& motion, const LandmarkField& landmarks, const Rig& true_rig,
+                                 const Rig& given_rig, const PointSimulationOptions& options)
+    : motion_(motion),
+      landmarks_(landmarks),
+      true_rig_(true_rig),
+      options_(options),
+      true_cameras_(makeCameras(true_rig)),
+      given_cameras_(makeCameras(given_rig)),
+      imu_(options.imu, true_rig.imu.rate_hz, options.seed),
+      pixel_noise_(options.seed, "points/pixel"),
+      choice_(options.seed, "points/choice") {
+  if (!options.magnetometer) return;
+  const PointMagnetometer& magnetometer = *options.magnetometer;
+  magnetometer_.emplace(motion, magnetometer.field_W, magnetometer.disturbances, magnetometer.errors,
+                        true_rig.magnetometer.value().rate_hz, options.seed);
+}
+
+std::optional<SimulatedFrame> PointSimulation::next() {
+  while (choice_.chance(options_.dropped_frame_share) && next_frame_ > 0) ++next_frame_;
+  const double time_s = secondsOf(next_frame_++);
+  if (time_s > std::min(options_.end_s, motion_.duration_s())) return std::nullopt;
+
+  SimulatedFrame frame;
+  frame.truth.time = options_.start + Duration::fromSeconds(time_s);
+  frame.truth.motion = motion_.at(time_s);
+  frame.tracks.time = frame.truth.time;
+  takeImu(frame);
+  takeMagnetometer(frame);
+
+  const bool dark = std::any_of(options_.blackouts.begin(), options_.blackouts.end(),
+                                [&](const TimeSpan& span) { return span.contains(time_s); });
+  if (dark) {
+    tracks_.clear();
+  } else {
+    renewTracks(time_s, frame.truth.motion.world_from_body);
+    observe(frame.truth.motion.world_from_body, frame.tracks);
+  }
+  return frame;
+}
+
+void PointSimulation::takeImu(SimulatedFrame& frame) {
+  const Time border = frame.truth.time;
+  if (border_) frame.imu.push_back(*border_);
+  const auto keep = [&](const Reading& reading) {
+    if (frame.imu.empty() || reading.sample.time > frame.imu.back().time) frame.imu.push_back(reading.sample);
+  };
+  // A reading drawn beyond the last border opens this interval.
+  if (after_ && after_->sample.time <= border) {
+    keep(*after_);
+    before_ = after_;
+    after_.reset();
+  }
+  while (!after_) {
+    const double t = static_cast<double>(next_imu_++) / true_rig_.imu.rate_hz;
+    const Time stamp = options_.start + Duration::fromSeconds(t);
+    const ImuSample sample = imu_.measure(perfectImuSample(motion_.at(t), stamp, options_.gravity_W));
+    const Reading reading{sample, imu_.gyroscopeBias(), imu_.accelerometerBias()};
+    if (stamp <= border) {
+      keep(reading);
+      before_ = reading;
+    } else {
+      after_ = reading;
+    }
+  }
+  if (before_ && frame.imu.back().time < border) {
+    frame.imu.push_back(interpolated(before_->sample, after_->sample, border));
+  }
+  border_ = frame.imu.back();
+  frame.truth.gyroscope_bias_B = before_->gyroscope_bias;
+  frame.truth.accelerometer_bias_B = before_->accelerometer_bias;
+}
+
+void PointSimulation::takeMagnetometer(SimulatedFrame& frame) {
+  while (magnetometer_) {
+    const double t = static_cast<double>(next_magnetometer_) / true_rig_.magnetometer->rate_hz;
+    const Time stamp = options_.start + Duration::fromSeconds(t);
+    if (stamp > frame.truth.time) return;
+    frame.magnetometer.push_back({stamp, magnetometer_->measure(t)});
+    ++next_magnetometer_;
+  }
+}
+
+std::optional<Vec2> PointSimulation::seen(int camera, const Rigid3& world_from_body,
+                                          const LandmarkPoint& point) const {
+  constexpr double kBorder_px = 4.0;
+  const Rigid3 world_from_camera = world_from_body * true_rig_.cameras[camera].body_from_camera;
+  const Vec3 ray_W = point.position_W - world_from_camera.translation;
+  const double range_m = ray_W.norm();
+  if (range_m < options_.nearest_m || range_m > options_.farthest_m) return std::nullopt;
+  // Seen too flat, a surface cannot be tracked; from behind it is rock.
+  if (ray_W.dot(point.normal_W) > -0.1 * range_m) return std::nullopt;
+  const Vec3 point_C = world_from_camera.rotation.conjugate() * ray_W;
+  const auto pixel = true_cameras_[camera]->project(point_C);
+  if (!pixel || !true_cameras_[camera]->contains(*pixel, kBorder_px)) return std::nullopt;
+  return pixel;
+}
+
+void PointSimulation::renewTracks(double time_s, const Rigid3& world_from_body) {
+  std::erase_if(tracks_, [&](const Track& track) {
+    return time_s - track.born_s > options_.longest_track_s ||
+           !seen(0, world_from_body, landmarks_.points()[track.point]);
+  });
+  // A front end detects anew when tracks have grown thin.
+  if (static_cast<int>(tracks_.size()) * 10 >= options_.tracks * 9) return;
+  std::set<int> taken;
+  for (const Track& track : tracks_) taken.insert(track.point);
+  std::vector<int> candidates = landmarks_.near(world_from_body.translation, options_.farthest_m);
+  while (static_cast<int>(tracks_.size()) < options_.tracks && !candidates.empty()) {
+    const int pick = choice_.index(static_cast<int>(candidates.size()));
+    const int point = candidates[pick];
+    candidates[pick] = candidates.back();
+    candidates.pop_back();
+    if (taken.count(point) || !seen(0, world_from_body, landmarks_.points()[point])) continue;
+    tracks_.push_back({static_cast<TrackId>(point_of_track_.size()), point, time_s});
+    point_of_track_.push_back(point);
+  }
+}
+
+void PointSimulation::observe(const Rigid3& world_from_body, FrameTracks& tracks) {
+  // Tracks are in the order of their identities: new ones are appended.
+  for (const Track& track : tracks_) {
+    const LandmarkPoint& point = landmarks_.points()[track.point];
+    for (int camera = 0; camera < static_cast<int>(true_cameras_.size()); ++camera) {
+      if (camera > 0 && !choice_.chance(options_.stereo_share)) continue;
+      const auto pixel = seen(camera, world_from_body, point);
+      if (pixel) addObservation(track.id, camera, *pixel, tracks);
+    }
+  }
+}
+
+void PointSimulation::addObservation(TrackId track, int camera, const Vec2& true_pixel, FrameTracks& tracks) {
+  const double x = pixel_noise_.normal();
+  const double y = pixel_noise_.normal();
+  Vec2 pixel = true_pixel + options_.pixel_sigma_px * Vec2(x, y);
+  if (options_.outlier_share > 0.0 && pixel_noise_.chance(options_.outlier_share)) {
+    const double angle = pixel_noise_.uniform(0.0, 6.283185307179586);
+    pixel += pixel_noise_.uniform(5.0, 50.0) * Vec2(std::cos(angle), std::sin(angle));
+  }
+  const auto bearing = given_cameras_[camera]->unproject(pixel);
+  if (!bearing) return;
+  Observation observation;
+  observation.track = track;
+  observation.camera = camera;
+  observation.pixel = pixel;
+  observation.bearing_C = *bearing;
+  observation.sigma_px = std::max(options_.pixel_sigma_px, 1e-3);
+  tracks.observations.push_back(observation);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,76 @@
+#include "simulation/dive/recording_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace lodeline {
+namespace {
+
+std::string transform(const Rigid3& body_from_sensor) {
+  const Eigen::Matrix4d m = body_from_sensor.matrix();
+  std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
+  for (int row = 0; row < 4; ++row) {
+    text += fmt::format("{}{}, {}, {}, {}", row == 0 ? "" : ",\n         ", m(row, 0), m(row, 1), m(row, 2),
+                        m(row, 3));
+  }
+  return text + "]\n";
+}
+
+std::string cameraText(const CameraCalibration& c) {
+  const bool equidistant = c.distortion_model == DistortionModel::Equidistant;
+  std::string text = "sensor_type: camera\n" + transform(c.body_from_camera);
+  text += fmt::format("rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n", c.rate_hz, c.width_px,
+                      c.height_px);
+  text += fmt::format("intrinsics: [{}, {}, {}, {}]  # fu, fv, cu, cv\n", c.fx_px, c.fy_px, c.cx_px, c.cy_px);
+  text += fmt::format("distortion_model: {}\ndistortion_coefficients: [{}]\n",
+                      equidistant ? "equidistant" : "radial-tangential", fmt::join(c.distortion, ", "));
+  if (c.time_offset_to_imu_s != 0.0) text += fmt::format("timeshift_cam_imu: {}\n", c.time_offset_to_imu_s);
+  return text;
+}
+
+std::string imuText(const ImuCalibration& imu) {
+  const ImuNoise& n = imu.noise;
+  return "sensor_type: imu\n" + transform(Rigid3()) +
+         fmt::format(
+             "rate_hz: {}\n"
+             "gyroscope_noise_density: {}  # rad/s/sqrt(Hz)\n"
+             "gyroscope_random_walk: {}  # rad/s^2/sqrt(Hz)\n"
+             "accelerometer_noise_density: {}  # m/s^2/sqrt(Hz)\n"
+             "accelerometer_random_walk: {}  # m/s^3/sqrt(Hz)\n",
+             imu.rate_hz, n.gyroscope_density_rad_per_s_sqrtHz, n.gyroscope_random_walk_rad_per_s2_sqrtHz,
+             n.accelerometer_density_m_per_s2_sqrtHz, n.accelerometer_random_walk_m_per_s3_sqrtHz);
+}
+
+void writeText(const std::filesystem::path& path, const std::string& text) {
+  RecordingFile file(path);
+  file.write(text);
+  file.close();
+}
+
+}  // namespace
+
+void writeCalibration(const Rig& rig, const std::filesystem::path& mav0) {
+  for (const CameraCalibration& camera : rig.cameras)
+    writeText(mav0 / camera.name / "sensor.yaml", cameraText(camera));
+  writeText(mav0 / "imu0" / "sensor.yaml", imuText(rig.imu));
+  if (rig.magnetometer) {
+    writeText(mav0 / "mag0" / "sensor.yaml",
+              "sensor_type: magnetometer\n" + transform(rig.magnetometer->body_from_magnetometer) +
+                  fmt::format("rate_hz: {}\nmagnetometer_noise_density: {}  # T/sqrt(Hz)\n",
+                              rig.magnetometer->rate_hz, rig.magnetometer->noise_density_T_per_sqrtHz));
+  }
+  if (rig.pressure) {
+    writeText(mav0 / "pressure0" / "sensor.yaml",
+              "sensor_type: pressure\n" + transform(rig.pressure->body_from_pressure) +
+                  fmt::format("rate_hz: {}\ndepth_noise_std: {}  # m\n", rig.pressure->rate_hz,
+                              rig.pressure->depth_noise_std_m));
+  }
+  if (rig.sonar) {
+    writeText(mav0 / "sonar0" / "sensor.yaml",
+              "sensor_type: sonar\n" + transform(rig.sonar->body_from_sonar) +
+                  fmt::format("rate_hz: {}\nrange_noise_std: {}  # m\n", rig.sonar->rate_hz,
+                              rig.sonar->range_noise_std_m));
+  }
+}
+
+}  // namespace lodeline

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lodeline/io/synchronizer/recording_file.h"
+#include "lodeline/sensors/rig.h"
+
+namespace lodeline {
+
+/// Writes a `sensor.yaml` in EuRoC's keys for every sensor of the rig into mav0/cam0, mav0/imu0 and so on.
+/// Numbers read back to the same bits.
+void writeCalibration(const Rig& rig, const std::filesystem::path& mav0);
+
+}  // namespace lodeline

@@ -1,0 +1,152 @@
+#include "simulation/dive/scenario.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "lodeline/util/error.h"
+#include "simulation/sensors/imu_model.h"
+
+namespace lodeline {
+namespace {
+
+const GeodeticPosition kDevilsEye{29.83, -82.60, 10.0};
+const GeodeticPosition kDosOjos{20.32, -87.39, 5.0};
+
+Scenario scenario(const char* name, const char* description, double duration_s, double path_length_m,
+                  const GeodeticPosition& site) {
+  Scenario s;
+  s.name = name;
+  s.description = description;
+  s.duration_s = duration_s;
+  s.path_length_m = path_length_m;
+  s.site = site;
+  return s;
+}
+
+std::vector<Scenario> makeScenarios() {
+  std::vector<Scenario> all;
+  all.push_back(scenario("cave1_short", "Devil's Eye, 110 m in and back; stereo", 900.0, 220.0, kDevilsEye));
+
+  Scenario long_dive =
+      scenario("cave1_long", "Devil's Eye, 253 m in and back; one camera", 1980.0, 506.0, kDevilsEye);
+  long_dive.imu_grade = "gv7";
+  long_dive.rig.cameras = 1;
+  all.push_back(long_dive);
+
+  Scenario dos_ojos =
+      scenario("dos_ojos", "Dos Ojos, decorated, 340 m in and back; stereo", 3060.0, 680.0, kDosOjos);
+  dos_ojos.decorated = true;
+  dos_ojos.start_depth_m = 4.0;
+  all.push_back(dos_ojos);
+
+  Scenario demo = scenario("demo", "a short excerpt of a decorated cave; stereo", 45.0, 9.0, kDosOjos);
+  demo.decorated = true;
+  demo.start_depth_m = 6.0;
+  all.push_back(demo);
+
+  Scenario figure_eight =
+      scenario("figure_eight", "the rig turned about all axes, for calibrating the magnetometer", 90.0, 0.0,
+               kDevilsEye);
+  figure_eight.world = WorldKind::None;
+  figure_eight.motion = MotionKind::FigureEight;
+  figure_eight.images = false;
+  all.push_back(figure_eight);
+
+  Scenario bench = scenario("bench", "at rest for hours, for Allan analysis", 10800.0, 0.0, kDevilsEye);
+  bench.world = WorldKind::None;
+  bench.motion = MotionKind::AtRest;
+  bench.images = false;
+  all.push_back(bench);
+
+  Scenario open_water = scenario("open_water", "free swimming about a wreck; stereo", 400.0, 100.0, kDosOjos);
+  open_water.world = WorldKind::Wreck;
+  open_water.motion = MotionKind::AroundWreck;
+  open_water.start_depth_m = 14.0;
+  all.push_back(open_water);
+  return all;
+}
+
+double positive(double value, const char* what) {
+  if (!(std::isfinite(value) && value > 0.0))
+    throw UsageError(fmt::format("{} must be positive, got {:g}", what, value));
+  return value;
+}
+
+void changeExtent(const ScenarioChanges& c, Scenario& s) {
+  if (c.metres && s.path_length_m == 0.0) {
+    throw UsageError(fmt::format("{} goes nowhere: it can be scaled with --seconds, not --metres", s.name));
+  }
+  const double standard_speed = s.path_length_m / s.duration_s;
+  if (c.seconds) s.duration_s = positive(*c.seconds, "--seconds");
+  if (c.metres) s.path_length_m = positive(*c.metres, "--metres");
+  if (c.seconds && !c.metres) s.path_length_m = standard_speed * s.duration_s;
+  if (c.metres && !c.seconds) s.duration_s = s.path_length_m / standard_speed;
+}
+
+}  // namespace
+
+const std::vector<Scenario>& scenarios() {
+  static const std::vector<Scenario> all = makeScenarios();
+  return all;
+}
+
+Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
+  const Scenario* found = nullptr;
+  std::string names;
+  for (const Scenario& s : scenarios()) {
+    if (s.name == name) found = &s;
+    names += (names.empty() ? "" : ", ") + s.name;
+  }
+  if (found == nullptr) throw UsageError(fmt::format("there is no scenario '{}'; there are {}", name, names));
+  Scenario s = *found;
+  changeExtent(c, s);
+  if (c.seed) s.seed = *c.seed;
+  if (c.imu_grade) s.imu_grade = imuGrade(*c.imu_grade).name;
+  // A picture keeps the rig's shape unless both sides are given.
+  if (c.width_px) {
+    s.rig.width_px = static_cast<int>(positive(*c.width_px, "--width"));
+    s.rig.height_px = *c.width_px * 3 / 4;
+  }
+  if (c.height_px) s.rig.height_px = static_cast<int>(positive(*c.height_px, "--height"));
+  if (s.rig.width_px < 64 || s.rig.height_px < 48 || s.rig.width_px > 4096 || s.rig.height_px > 4096) {
+    throw UsageError(fmt::format("images of {} x {} px: both sides must lie between 64 x 48 and 4096 x 4096",
+                                 s.rig.width_px, s.rig.height_px));
+  }
+  if (c.cameras) s.rig.cameras = *c.cameras;
+  if (s.rig.cameras < 1 || s.rig.cameras > 2) throw UsageError("--cameras: the rig holds one or two");
+  if (c.camera_rate_hz) s.rig.camera_rate_hz = positive(*c.camera_rate_hz, "--camera-rate-hz");
+  if (c.imu_rate_hz) s.rig.imu_rate_hz = positive(*c.imu_rate_hz, "--imu-rate-hz");
+  if (c.magnetometer_rate_hz)
+    s.rig.magnetometer_rate_hz = positive(*c.magnetometer_rate_hz, "--magnetometer-rate-hz");
+  s.effects = EffectSet::named(c.realism);
+  for (const std::string& assignment : c.effects) s.effects.set(assignment);
+  s.starts_at_rest = !c.starts_moving;
+  if (c.no_images) s.images = false;
+  return s;
+}
+
+Vec3 scenarioField(const Scenario& s) {
+  return s.field_ENU ? *s.field_ENU : worldMagneticField(s.site, decimalYear(s.date)).field_ENU;
+}
+
+std::string describe(const Scenario& s) {
+  std::string text = fmt::format(
+      "scenario: {}\nseed: {}\nduration_s: {}\npath_length_m: {}\nstarts_at_rest: {}\nimages: {}\n"
+      "site: {{latitude_deg: {}, longitude_deg: {}, height_m: {}, date: {}}}\nstart_depth_m: {}\nimu_grade: "
+      "{}\n",
+      s.name, s.seed, s.duration_s, s.path_length_m, s.starts_at_rest, s.images, s.site.latitude_deg,
+      s.site.longitude_deg, s.site.height_m, s.date, s.start_depth_m, s.imu_grade);
+  text += fmt::format(
+      "rig: {{cameras: {}, width_px: {}, height_px: {}, camera_rate_hz: {}, imu_rate_hz: {}, "
+      "magnetometer_rate_hz: {}, pressure_rate_hz: {}, sonar_rate_hz: {}}}\neffects:\n",
+      s.rig.cameras, s.rig.width_px, s.rig.height_px, s.rig.camera_rate_hz, s.rig.imu_rate_hz,
+      s.rig.magnetometer_rate_hz, s.rig.pressure_rate_hz, s.rig.sonar_rate_hz);
+  for (const EffectDescription& d : effectDescriptions()) {
+    text += fmt::format("  {}: {}\n", d.name, s.effects.has(d.effect) ? "on" : "off");
+  }
+  if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
+  return text;
+}
+
+}  // namespace lodeline

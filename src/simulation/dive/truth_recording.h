@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "simulation/dive/dive.h"
+#include "simulation/dive/image_recording.h"
+#include "simulation/sensors/sonar_model.h"
+
+namespace lodeline {
+
+/// Writes folder/truth: what nobody gets to know in the field.
+///   calibration/    sensor.yaml of every sensor as it is (behind a flat port: the best fit in water)
+///   errors.yaml     every error of the sensors, of the calibration files and of the water
+///   image_times.csv true middle of each exposure beside its stamp
+///   landmarks.ply   surface points around the path, W (where `range` is given)
+void recordTruth(const Dive& dive, const RenderSettings& settings, const std::vector<ScheduledImage>& images,
+                 const RangeFunction& range, const std::filesystem::path& folder);
+
+}  // namespace lodeline

@@ -1,0 +1,109 @@
+#include "simulation/motion/dive_motion.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "simulation/motion/hand_motion.h"
+#include "simulation/shared/random.h"
+#include "simulation/shared/waves.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kPathKnot_s = 0.5;
+
+// Where the diver swims within the cross-section: a wandering share of the room, on the way back another one
+// close to the first.
+class Line {
+ public:
+  explicit Line(uint64_t seed)
+      : side_(seed, "dive/side", 9.0, 60.0),
+        side_back_(seed, "dive/side-back", 9.0, 60.0),
+        rise_(seed, "dive/rise", 7.0, 40.0),
+        rise_back_(seed, "dive/rise-back", 7.0, 40.0) {}
+
+  Vec3 at(const PassageStation& station, double turn) const {
+    const double s = station.arc_length_m;
+    const double side = std::tanh(0.5 * side_(s) + 0.35 * turn * side_back_(s));
+    const double rise = std::tanh(0.5 * rise_(s) + 0.35 * turn * rise_back_(s));
+    const Vec3 left = Vec3::UnitZ().cross(station.tangent_W).normalized();
+    return station.position_W + 0.5 * station.width_m * kCorridorShareOfHalfWidth * side * left +
+           0.5 * station.height_m * kCorridorShareOfHalfHeight * rise * Vec3::UnitZ();
+  }
+
+ private:
+  Waves side_, side_back_, rise_, rise_back_;
+};
+
+double unwrapped(double angle, double near) {
+  return angle + 2.0 * std::numbers::pi * std::round((near - angle) / (2.0 * std::numbers::pi));
+}
+
+MotionChannels makeChannels(const Centerline& centerline, const DiveMotionOptions& o, const SwimPlan& plan) {
+  const Line line(o.seed);
+  const auto positionAt = [&](double t) { return line.at(centerline.at(plan.arcLength(t)), plan.turn(t)); };
+  const auto coordinate = [&](int axis) {
+    return motionSpline(o.duration_s, kPathKnot_s, [&](double t) { return positionAt(t)[axis]; });
+  };
+  MotionChannels channels;
+  channels.east.splines.push_back(coordinate(0));
+  channels.north.splines.push_back(coordinate(1));
+  channels.up.splines.push_back(coordinate(2));
+
+  // The diver looks a little ahead along the passage.
+  constexpr double kLookAhead_m = 1.0;
+  const auto aheadAt = [&](double t) {
+    const double way = 1.0 - 2.0 * plan.turn(t);
+    return centerline.at(plan.arcLength(t) + way * kLookAhead_m).tangent_W;
+  };
+  const double turn_angle = Random(o.seed, "dive/turn").sign() * std::numbers::pi;
+  double heading = std::atan2(aheadAt(0.0).y(), aheadAt(0.0).x());
+  channels.yaw.splines.push_back(motionSpline(o.duration_s, kPathKnot_s, [&](double t) {
+    const Vec3 ahead = aheadAt(t);
+    heading = unwrapped(std::atan2(ahead.y(), ahead.x()), heading);
+    return heading + turn_angle * plan.turn(t);
+  }));
+  channels.pitch.splines.push_back(motionSpline(o.duration_s, kPathKnot_s, [&](double t) {
+    const double way = 1.0 - 2.0 * plan.turn(t);
+    return -0.8 * way * std::asin(aheadAt(t).z());
+  }));
+  return channels;
+}
+
+Motion makeOnce(const Centerline& centerline, const DiveMotionOptions& o, double penetration_m,
+                const Rigid3& diver_from_body) {
+  SwimPlanOptions plan_options;
+  plan_options.seed = o.seed;
+  plan_options.duration_s = o.duration_s;
+  plan_options.penetration_m = penetration_m;
+  plan_options.round_trip = o.round_trip;
+  plan_options.starts_at_rest = o.starts_at_rest;
+  plan_options.start_rest_s = o.start_rest_s;
+  plan_options.turn_s = o.turn_s;
+  plan_options.stops_per_minute = o.stops_per_minute;
+  plan_options.still_phases = o.still_phases;
+  const SwimPlan plan(plan_options);
+  MotionChannels channels = makeChannels(centerline, o, plan);
+  HandMotionOptions hand;
+  hand.seed = o.seed;
+  hand.duration_s = o.duration_s;
+  hand.liveliness = o.liveliness;
+  hand.activity = [&](double t) { return plan.activity(t); };
+  hand.kick = [&](double t) { return plan.kick(t) * plan.activity(t); };
+  addHandMotion(hand, channels);
+  return Motion(std::move(channels), diver_from_body, o.duration_s);
+}
+
+}  // namespace
+
+Motion makeDiveMotion(const Centerline& centerline, const DiveMotionOptions& o,
+                      const Rigid3& diver_from_body) {
+  const double nominal_m = o.path_length_m * (o.round_trip ? 0.5 : 1.0);
+  const Motion first = makeOnce(centerline, o, nominal_m, diver_from_body);
+  // Swaying and the wandering line make the path longer than the passage; the second draft goes less far in.
+  const double ratio = o.path_length_m / pathLength(first, 0.0, o.duration_s);
+  return makeOnce(centerline, o, nominal_m * ratio, diver_from_body);
+}
+
+}  // namespace lodeline

@@ -1,0 +1,147 @@
+#include "simulation/motion/swim_plan.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lodeline/util/error.h"
+#include "simulation/shared/random.h"
+#include "simulation/shared/waves.h"
+
+namespace lodeline {
+namespace {
+
+constexpr double kStep_s = 0.05;
+// Sampled beyond both ends of the dive, for the splines' outer control points.
+constexpr double kBorder_s = 10.0;
+constexpr double kEndRest_s = 1.5;
+// Until all that is smoothed in time (speed, activity, the splines of the path) has come to rest.
+constexpr double kSettle_s = 2.75;
+
+// Moving average over +-`half_width_s`, twice: a continuous rate of change.
+std::vector<double> smoothed(std::vector<double> values, double half_width_s) {
+  const int half = static_cast<int>(std::lround(half_width_s / kStep_s));
+  const int count = static_cast<int>(values.size());
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<double> sums(count + 1, 0.0);
+    for (int i = 0; i < count; ++i) sums[i + 1] = sums[i] + values[i];
+    for (int i = 0; i < count; ++i) {
+      const int begin = std::max(0, i - half);
+      const int end = std::min(count, i + half + 1);
+      values[i] = (sums[end] - sums[begin]) / (end - begin);
+    }
+  }
+  return values;
+}
+
+double smoothStep01(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * (10.0 + u * (6.0 * u - 15.0));
+}
+
+}  // namespace
+
+SwimPlan::SwimPlan(const SwimPlanOptions& options) : options_(options) {
+  const SwimPlanOptions& o = options_;
+  const double rest_s = o.starts_at_rest ? o.start_rest_s + kSettle_s : 0.0;
+  turn_begin_s_ = o.round_trip ? rest_s + 0.5 * (o.duration_s - rest_s - kEndRest_s - o.turn_s)
+                               : o.duration_s + kBorder_s;
+  const std::vector<Pause> all = pauses();
+  const Waves variation(o.seed, "swim/speed", 8.0, 60.0);
+
+  const int count = static_cast<int>(std::ceil((o.duration_s + 2.0 * kBorder_s) / kStep_s)) + 1;
+  for (int i = 0; i < count; ++i) {
+    const double t = i * kStep_s - kBorder_s;
+    double speed = std::clamp(1.0 + 0.2 * variation(t), 0.6, 1.4);
+    double activity = 1.0;
+    for (const Pause& pause : all) {
+      if (t < pause.begin_s || t > pause.end_s) continue;
+      speed = 0.0;
+      if (pause.still) activity = 0.0;
+    }
+    kick_.push_back(speed);
+    activity_.push_back(activity);
+    turn_.push_back(o.round_trip ? smoothStep01((t - turn_begin_s_) / o.turn_s) : 0.0);
+  }
+  kick_ = smoothed(kick_, 0.6);
+  activity_ = smoothed(activity_, 0.5);
+  integrateSpeed();
+}
+
+std::vector<SwimPlan::Pause> SwimPlan::pauses() const {
+  const SwimPlanOptions& o = options_;
+  std::vector<Pause> all;
+  if (o.starts_at_rest) all.push_back({-kBorder_s, o.start_rest_s + kSettle_s, true});
+  if (o.round_trip) all.push_back({turn_begin_s_, turn_begin_s_ + o.turn_s, false});
+  all.push_back({o.duration_s - kEndRest_s, o.duration_s + kBorder_s, false});
+  for (const StillPhase& p : o.still_phases) {
+    all.push_back({p.begin_s - kSettle_s, p.begin_s + p.duration_s + kSettle_s, true});
+  }
+  addHalts(all);
+  return all;
+}
+
+void SwimPlan::addHalts(std::vector<Pause>& pauses) const {
+  if (options_.stops_per_minute <= 0.0) return;
+  const std::vector<Pause> fixed = pauses;
+  Random random(options_.seed, "swim/halts");
+  double t = 0.0;
+  while (true) {
+    t += 60.0 / options_.stops_per_minute * random.uniform(0.5, 1.5);
+    const double length_s = random.uniform(4.0, 10.0);
+    if (t + length_s > options_.duration_s) return;
+    const bool free = std::none_of(fixed.begin(), fixed.end(), [&](const Pause& p) {
+      return t < p.end_s + 6.0 && t + length_s > p.begin_s - 6.0;
+    });
+    if (free) pauses.push_back({t, t + length_s, false});
+    t += length_s;
+  }
+}
+
+void SwimPlan::integrateSpeed() {
+  const SwimPlanOptions& o = options_;
+  const double middle_s = turn_begin_s_ + 0.5 * o.turn_s;
+  const auto timeOf = [](size_t i) { return static_cast<double>(i) * kStep_s - kBorder_s; };
+  double in = 0.0, out = 0.0, swimming_s = 0.0;
+  for (size_t i = 0; i < kick_.size(); ++i) {
+    if (timeOf(i) < 0.0 || timeOf(i) > o.duration_s) continue;
+    (timeOf(i) < middle_s ? in : out) += kick_[i] * kStep_s;
+    if (kick_[i] > 0.3) swimming_s += kStep_s;
+  }
+  const double path_m = o.penetration_m * (o.round_trip ? 2.0 : 1.0);
+  if (swimming_s == 0.0) {
+    throw UsageError(
+        fmt::format("{:.0f} s leave no time to swim beside standing still and turning; "
+                    "make the dive longer",
+                    o.duration_s));
+  }
+  mean_speed_ = path_m / swimming_s;
+  if (!(mean_speed_ >= 0.05 && mean_speed_ <= 0.6)) {
+    throw UsageError(
+        fmt::format("{:.1f} m in {:.0f} s asks for swimming at {:.2f} m/s; a diver swims at 0.05 to 0.6 m/s, "
+                    "so change the length or the duration",
+                    path_m, o.duration_s, mean_speed_));
+  }
+  const size_t zero = static_cast<size_t>(std::lround(kBorder_s / kStep_s));
+  std::vector<double> signed_speed(kick_.size());
+  for (size_t i = 0; i < kick_.size(); ++i) {
+    signed_speed[i] =
+        timeOf(i) < middle_s ? kick_[i] * o.penetration_m / in : -kick_[i] * o.penetration_m / out;
+  }
+  arc_length_m_.assign(kick_.size(), 0.0);
+  for (size_t i = zero; i + 1 < kick_.size(); ++i)
+    arc_length_m_[i + 1] = arc_length_m_[i] + signed_speed[i] * kStep_s;
+  for (size_t i = zero; i > 0; --i) arc_length_m_[i - 1] = arc_length_m_[i] - signed_speed[i - 1] * kStep_s;
+  for (double& kick : kick_) kick = std::min(kick, 1.0);
+}
+
+double SwimPlan::sampled(const std::vector<double>& values, double time_s) const {
+  const double index =
+      std::clamp((time_s + kBorder_s) / kStep_s, 0.0, static_cast<double>(values.size() - 1));
+  const size_t i = std::min(static_cast<size_t>(index), values.size() - 2);
+  const double u = index - static_cast<double>(i);
+  return (1.0 - u) * values[i] + u * values[i + 1];
+}
+
+}  // namespace lodeline

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulation/rendering/cave/cave_style.h"
+#include "simulation/rendering/cave/centerline.h"
+#include "simulation/rendering/cave/triangle_mesh.h"
+
+namespace lodeline {
+
+/// One ring of wall vertices around the passage.
+struct WallRing {
+  Vec3f center = Vec3f::Zero();
+  Vec3f forward = Vec3f::UnitX();  ///< unit
+  Vec3f right = Vec3f::UnitY();    ///< unit, across the passage
+  Vec3f up = Vec3f::UnitZ();       ///< unit, right x forward
+  float half_width_m = 0.0f;
+  float half_height_m = 0.0f;
+  float taper = 1.0f;  ///< below 1 where the passage closes at its ends
+
+  /// Whether a point near the ring's plane stays `margin_m` away from where the diver swims.
+  bool clearOfCorridor(const Vec3f& point, float margin_m) const;
+};
+
+/// Walls, ceiling and sediment floor of a passage as a closed tube, its vertices in rings.
+struct CaveWalls {
+  std::vector<WallRing> rings;
+  int ring_size =
+      0;  ///< vertex j of ring i: index i * ring_size + j, at angle 2 pi j / ring_size from `right` to `up`
+  TriangleMesh mesh;  ///< with normals
+
+  const Vec3f& vertex(int ring, int j) const {
+    return mesh.positions[static_cast<size_t>(ring) * ring_size + j];
+  }
+};
+
+/// Sweeps a superelliptic section along the centreline, displaces it by layered noise (large alcoves, bedding
+/// ledges, crags down to the size of a triangle), buries its lower part in sediment and closes both ends.
+/// Everything stays `clearance_m` away from the diver's corridor. At most about `max_triangles`.
+CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, uint64_t seed,
+                        double clearance_m, size_t max_triangles);
+
+}  // namespace lodeline

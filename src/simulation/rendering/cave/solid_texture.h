@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulation/rendering/optics/render_types.h"
+
+namespace lodeline {
+
+/// The look of rock at one point: reflectance relative to its mean, and the slope of the small relief.
+struct TextureSample {
+  float reflectance = 0.0f;     ///< about -1..1, mean zero
+  Vec3f slope = Vec3f::Zero();  ///< gradient of the relief (m/m), to be projected onto the surface
+};
+
+/// A cube of rock, precomputed once and repeated through space: pits, cracks, grains and stains over five
+/// octaves. Sampling it at several tile sizes gives detail from millimetres to metres at the cost of memory
+/// reads, an order of magnitude cheaper than evaluating noise for every pixel. A pyramid of box-filtered
+/// copies (L. Williams, "Pyramidal parametrics", SIGGRAPH 1983) removes whatever is finer than a pixel, so
+/// that the texture does not flicker and corners can be tracked.
+class SolidTexture {
+ public:
+  explicit SolidTexture(uint64_t seed);
+
+  /// Texture of a tile of edge `tile_m` at `point` (m), averaged over about `footprint_m`.
+  TextureSample sample(const Vec3f& point, float tile_m, float footprint_m) const;
+
+ private:
+  static constexpr int kSize = 128;  ///< voxels along an edge; 8 MB of four bytes each
+  static constexpr int kLevels = 6;
+
+  struct Voxel {
+    int8_t channel[4];  ///< reflectance, slope x y z; scaled by 127
+  };
+  struct Level {
+    int size = 0;
+    std::vector<Voxel> voxels;  ///< x fastest; every row repeats its first voxel at its end
+  };
+
+  void addCoarserLevel();
+
+  std::vector<Level> levels_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "simulation/rendering/light/daylight.h"
+#include "simulation/rendering/light/lamp.h"
+#include "simulation/rendering/light/water.h"
+
+namespace lodeline {
+
+/// All light and the water it crosses, at one moment.
+struct LightField {
+  std::vector<PlacedLamp> lamps;
+  Daylight daylight;
+  Water water;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "simulation/rendering/light/light_field.h"
+#include "simulation/rendering/optics/camera_optics.h"
+#include "simulation/rendering/optics/motion_blur.h"
+
+namespace lodeline {
+
+/// Flakes adrift in the water.
+struct SnowOptions {
+  double flakes_per_m3 = 150.0;
+  double median_radius_m = 0.00016;
+  double reflectance = 0.2;
+  double drift_speed_m_per_s = 0.04;
+  double aperture_m = 0.003;  ///< of the lens: how fast flakes blur away from the focus
+  double focus_m = 1.5;
+};
+
+/// Adds the light of all flakes in view to a radiance image (CV_32F). Flakes fill space endlessly and
+/// reproducibly: each cell of a drifting grid draws its own from a hash. Those behind the surface at
+/// `range_m` are hidden; those near the lens are wide, faint discs.
+void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics& optics,
+                   const Rigid3& world_from_body, const ExposureMotion& motion, const LightField& light,
+                   const SnowOptions& options, double time_s, uint64_t seed);
+
+}  // namespace lodeline

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "simulation/rendering/cave/cave_style.h"
+#include "simulation/rendering/cave/centerline.h"
+#include "simulation/rendering/cave/solid_texture.h"
+#include "simulation/rendering/cave/traced_scene.h"
+#include "simulation/rendering/cave/wreck_mesh.h"
+
+namespace lodeline {
+
+/// No lamp reaches farther than this and back, m.
+inline constexpr float kSight_m = 60.0f;
+
+/// The place of a dive: what sonar and cameras see, and what it is made of. World frame W, m.
+struct RenderWorld {
+  RenderWorld(TriangleMesh mesh, uint64_t seed) : scene(std::move(mesh)), texture(seed) {}
+
+  TracedScene scene;
+  SolidTexture texture;
+};
+
+struct CaveOptions {
+  CaveStyle style;
+  uint64_t seed = 1;
+  /// Walls, silt, boulders and stalactites keep this far from the diver's corridor: room for lamps and arms.
+  double clearance_m = 0.4;
+  size_t max_triangles = 2'500'000;  ///< of the walls; boulders and stalactites come on top
+};
+
+/// Walls and furniture of a cave along a centreline, with normals.
+TriangleMesh makeCaveMesh(const Centerline& centerline, const CaveOptions& options);
+
+/// A cave along a centreline.
+std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options);
+
+/// A wreck on the sea bottom in open water.
+std::shared_ptr<const RenderWorld> buildWreckWorld(const WreckOptions& options);
+
+}  // namespace lodeline

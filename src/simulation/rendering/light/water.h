@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulation/rendering/optics/render_types.h"
+
+namespace lodeline {
+
+/// A stretch of time in which stirred-up silt clouds the water.
+struct SiltEpisode {
+  double start_s = 0.0;
+  double duration_s = 5.0;
+  double peak_attenuation_per_m = 2.0;  ///< added at its thickest
+};
+
+/// Optical properties of the water, in one band of grey.
+struct WaterOptions {
+  double attenuation_per_m = 0.10;  ///< c in Beer-Lambert's exp(-c r), absorption and scattering together
+  double scattering_share = 0.6;    ///< b / c, single-scattering albedo of the water itself
+  double asymmetry = 0.88;          ///< Henyey-Greenstein's g, the mean cosine of scattering
+  double patchiness = 0.0;          ///< relative strength of clouds half a metre to metres wide
+  double drift_speed_m_per_s = 0.03;
+  std::vector<SiltEpisode> silt;
+};
+
+/// The water at one moment.
+class Water {
+ public:
+  Water(const WaterOptions& options, double time_s, uint64_t seed);
+
+  /// Whether attenuation is the same everywhere.
+  bool uniform() const { return silt_per_m_ <= 0.0f && patchiness_ <= 0.0f; }
+  /// Coefficients at a place, 1/m.
+  struct Coefficients {
+    float attenuation = 0.0f;
+    float scattering = 0.0f;
+    /// Of light on its way through haze. What is scattered forwards goes on about where it went, so only the
+    /// share 1 - g of scattering takes it away: the similarity relation (H. C. van de Hulst, "Multiple Light
+    /// Scattering", 1980, chapter 14).
+    float diffuse_attenuation = 0.0f;
+  };
+  Coefficients at(const Vec3f& point_W) const;
+  Coefficients mean() const { return coefficients(clear_per_m_, silt_per_m_); }
+
+  /// Share of scattered light per steradian at an angle, given its cosine: L. Henyey and J. Greenstein,
+  /// "Diffuse radiation in the galaxy", Astrophysical Journal 93, 1941.
+  /// In thick silt light arrives after many turns, from everywhere: with the scattering coefficient the phase
+  /// function passes into an even one, by half at 1/m (a fit to the eye, not a law).
+  float phase(float cosine, float scattering_per_m) const;
+
+ private:
+  Coefficients coefficients(float clear_per_m, float silt_per_m) const;
+
+  float clear_per_m_, scattering_share_, asymmetry_, patchiness_;
+  float silt_per_m_ = 0.0f;
+  Vec3f drift_m_;
+  uint32_t seed_;
+};
+
+/// How much an episode adds at a time, 1/m: quick to rise, slow to settle.
+double siltAttenuation(const SiltEpisode& episode, double time_s);
+
+}  // namespace lodeline

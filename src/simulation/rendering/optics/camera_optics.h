@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lodeline/cameras/camera.h"
+#include "simulation/rendering/optics/flat_port.h"
+#include "simulation/rendering/optics/render_types.h"
+
+namespace lodeline {
+
+/// What lies between the water and the image plane.
+struct LensOptions {
+  std::optional<FlatPort> port;  ///< the calibration then describes the camera in air
+  double vignetting = 0.35;      ///< loss of light in the image's corners beyond the cosine law, 0..1
+  double blur_sigma_px = 0.55;   ///< point spread function of lens and pixel
+};
+
+/// The ray of every pixel of one camera, computed once with the exact inverse of its distortion.
+class CameraOptics {
+ public:
+  CameraOptics(const CameraCalibration& calibration, const LensOptions& lens);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const Rigid3& bodyFromCamera() const { return body_from_camera_; }
+  bool sees(int pixel) const { return light_[pixel] > 0.0f; }
+
+  /// Camera frame, unit; only where `sees`.
+  const Vec3f& direction(int pixel) const { return directions_[pixel]; }
+  /// Camera frame, m.
+  Vec3f origin(int pixel) const { return origins_.empty() ? Vec3f::Zero() : origins_[pixel]; }
+
+  /// The exact ray of any pixel position, double precision; nothing where the camera sees none.
+  std::optional<WaterRay> ray(const Vec2& pixel) const;
+
+  /// Share of light that reaches a pixel compared to the image's centre: natural vignetting, the fourth power
+  /// of the cosine to the axis, and the lens's own.
+  float light(int pixel) const { return light_[pixel]; }
+
+  /// Angle between the rays of neighbouring pixels in the image's centre, rad.
+  float pixelAngle() const { return pixel_angle_rad_; }
+
+  /// Projects points in the water: exact without a port, the best radial-tangential fit with one.
+  const Camera& projector() const { return *projector_; }
+  /// Camera frame of the projector, which a port shifts along the axis.
+  const Rigid3& bodyFromProjector() const { return projector_->calibration().body_from_camera; }
+
+  double blurSigma() const { return blur_sigma_px_; }
+
+ private:
+  int width_, height_;
+  Rigid3 body_from_camera_;
+  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const Camera> projector_;
+  std::optional<FlatPort> port_;
+  std::vector<Vec3f> directions_;
+  std::vector<Vec3f> origins_;  ///< empty without a port
+  std::vector<float> light_;
+  float pixel_angle_rad_ = 0.0f;
+  double blur_sigma_px_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "lodeline/sensors/measurements.h"
+#include "lodeline/sensors/rig.h"
+#include "simulation/shared/random.h"
+
+namespace lodeline {
+
+/// Everything by which a three-axis inertial sensor lies, in the unit of its reading [u] (rad/s or m/s^2):
+///   reading = matrix * true + warm_up * exp(-t / warm_up_time) + b(t) + white noise, clipped to the range,
+/// where b(t) starts at `turn_on_bias` and adds a random walk and a flicker process (bias instability).
+struct TriadErrors {
+  double noise_density = 0.0;     ///< [u]/sqrt(Hz), two-sided (Kalibr)
+  double random_walk = 0.0;       ///< [u]/s/sqrt(Hz)
+  double bias_instability = 0.0;  ///< [u], the coefficient B of IEEE 952: Allan deviation floor 0.664 B
+  Vec3 turn_on_bias = Vec3::Zero();
+  Mat3 matrix = Mat3::Identity();  ///< scale factors and misalignment
+  Vec3 warm_up = Vec3::Zero();     ///< bias at power-on that fades with `warm_up_time_s`
+  double warm_up_time_s = 400.0;
+  double range = 1e9;  ///< readings are clipped to +-range
+};
+
+struct ImuErrors {
+  TriadErrors gyroscope;
+  TriadErrors accelerometer;
+};
+
+/// Datasheet figures of a class of IMU: noise, and one-sigma figures from which a specimen's systematic
+/// errors are drawn.
+struct ImuGrade {
+  std::string_view name;
+  double rate_hz;
+  TriadErrors gyroscope, accelerometer;  ///< noise figures and range; the rest neutral
+  double gyroscope_turn_on_rad_per_s, accelerometer_turn_on_m_per_s2;
+  double scale_error, misalignment_rad;
+  double gyroscope_warm_up_rad_per_s, accelerometer_warm_up_m_per_s2;
+};
+
+/// `gx5-25` (Microstrain 3DM-GX5-25), `gv7` (3DM-GV7) and `consumer` (MPU-9250 class). Throws UsageError for
+/// another name.
+const ImuGrade& imuGrade(std::string_view name);
+std::vector<std::string_view> imuGradeNames();
+
+struct SpecimenOptions {
+  bool noise = true;  ///< white noise, random walk and instability
+  bool turn_on_bias = true;
+  bool scale_and_misalignment = false;
+  bool warm_up = false;
+};
+/// One specimen of a grade. The draws do not depend on which of them are asked for.
+ImuErrors drawImuErrors(const ImuGrade& grade, const SpecimenOptions& options, uint64_t seed);
+
+/// The noise figures a calibration file states for such a sensor. The random walk is enlarged to reach the
+/// bias instability's Allan deviation at 100 s, as a model without a flicker term needs.
+ImuNoise statedNoise(const ImuErrors& errors);
+
+/// The drifting bias of three axes.
+class DriftingBias {
+ public:
+  DriftingBias(const TriadErrors& errors, Random random);
+  /// Steps on by `step_s` > 0.
+  void advance(double step_s);
+  const Vec3& value() const { return value_; }
+
+ private:
+  // Flicker noise is a sum of first-order Gauss-Markov processes, two per decade of time constant.
+  static constexpr int kProcesses = 9;
+  static constexpr double kShortestTime_s = 1.0;
+
+  TriadErrors errors_;
+  Random random_;
+  Vec3 walk_;
+  Vec3 flicker_[kProcesses];
+  Vec3 value_;
+};
+
+/// Turns perfect readings into those of a real IMU. Readings must come in order of time.
+class ImuModel {
+ public:
+  ImuModel(const ImuErrors& errors, double rate_hz, uint64_t seed);
+
+  ImuSample measure(const ImuSample& perfect);
+
+  /// What was added to (matrix * truth) besides white noise in the last reading, warm-up included.
+  const Vec3& gyroscopeBias() const { return gyroscope_bias_; }
+  const Vec3& accelerometerBias() const { return accelerometer_bias_; }
+
+ private:
+  ImuErrors errors_;
+  double rate_hz_;
+  DriftingBias gyroscope_drift_, accelerometer_drift_;
+  Random white_;
+  bool started_ = false;
+  Time start_, last_;
+  Vec3 gyroscope_bias_ = Vec3::Zero(), accelerometer_bias_ = Vec3::Zero();
+};
+
+}  // namespace lodeline

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "lodeline/sensors/measurements.h"
+#include "simulation/shared/motion.h"
+#include "simulation/shared/random.h"
+
+namespace lodeline {
+
+/// Distance to the first surface from a point along a unit direction, both in W, m; nothing where there is
+/// none.
+using RangeFunction = std::function<std::optional<double>(const Vec3& origin_W, const Vec3& direction_W)>;
+
+/// A pencil-beam sonar whose head turns steadily about its z axis; at angle 0 the beam points along x.
+struct SonarErrors {
+  double noise_m = 0.0;
+  double dropout_share = 0.0;  ///< echoes lost by chance
+  double spurious_share =
+      0.0;  ///< echoes that stop anywhere before the wall: silt, bubbles, the diver's fins
+  double nearest_m = 0.2;
+  double farthest_m = 6.0;
+  double resolution_m = 0.0;  ///< 0: continuous
+  double turn_rad_per_s = 0.63;
+};
+
+class SonarModel {
+ public:
+  /// `motion` must outlive the model.
+  SonarModel(const Motion& motion, const Rigid3& body_from_sonar, RangeFunction range,
+             const SonarErrors& errors, uint64_t seed);
+
+  /// The echo at `time_s` (its time left to the caller), or nothing: too far, too near, or lost.
+  std::optional<SonarSample> measure(double time_s);
+
+ private:
+  const Motion& motion_;
+  Rigid3 body_from_sonar_;
+  RangeFunction range_;
+  SonarErrors errors_;
+  Random random_;
+};
+
+}  // namespace lodeline
