@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
   // Everything that is odd about the recording ends up here.
   lodeline::Diagnostics diagnostics;
 
-  // The source gives each sensor's readings as they were stored; the synchroniser makes one packet an image.
+  // The source gives each sensor's readings as they were stored; the synchronizer makes one packet an image.
   lodeline::EurocSource source(argv[1], {}, &diagnostics);
   lodeline::Synchronizer synchronizer(&source, {}, &diagnostics);
   lodeline::Odometry odometry(source.rig(), {}, &diagnostics);

@@ -1,7 +1,7 @@
 #include "fuzzed_file.h"
 #include "lodeline/evaluation/trajectory/read_trajectory.h"
 
-// Trajectories in every layout; the layout is recognised from the file.
+// Trajectories in every layout; the layout is recognized from the file.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lodeline;

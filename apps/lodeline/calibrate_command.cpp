@@ -91,7 +91,7 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
 MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
   refuseRigOfFolder(arguments.data, arguments.bag);
-  const bool is_packed = recogniseFile(arguments.data).kind == FileKind::Compressed;
+  const bool is_packed = recognizeFile(arguments.data).kind == FileKind::Compressed;
   if (is_packed || isTableOfReadings(arguments.data) || !isBag(arguments.data)) {
     return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
   }

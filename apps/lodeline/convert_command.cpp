@@ -27,7 +27,7 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
   options.rig_files.assign(arguments.bag.rig_files.begin(), arguments.bag.rig_files.end());
   options.topics = topicsOf(arguments.bag);
   options.compression = arguments.compression;
-  const RecognisedFile source = recogniseFile(arguments.source);
+  const RecognizedFile source = recognizeFile(arguments.source);
   const bool from_bag = isBag(arguments.source);
   const bool is_other = !from_bag && !source.isFolder();
   if (is_other) refuseFile(source, "convert takes a bag (NAME.bag) and a folder, in either order");

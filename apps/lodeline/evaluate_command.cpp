@@ -13,7 +13,7 @@
 #include "lodeline/evaluation/trajectory/image_times.h"
 #include "lodeline/evaluation/trajectory/read_body_from_camera.h"
 #include "lodeline/evaluation/trajectory/read_trajectory.h"
-#include "lodeline/output/report/read_claims.h"
+#include "lodeline/output/report/read_reported_uncertainty.h"
 #include "lodeline/util/error.h"
 #include "lodeline/util/json_text.h"
 
@@ -72,10 +72,10 @@ void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& 
 }
 
 /// A run of another version, or one that is damaged beside its trajectory, is evaluated all the same.
-ClaimCheck claimsOf(const std::filesystem::path& run, const Trajectory& reference,
-                    const AssociationOptions& association, Diagnostics* diagnostics) {
+ConsistencyCheck claimsOf(const std::filesystem::path& run, const Trajectory& reference,
+                          const AssociationOptions& association, Diagnostics* diagnostics) {
   try {
-    return checkClaims(readClaims(run, diagnostics), reference, association);
+    return checkConsistency(readReportedUncertainty(run, diagnostics), reference, association);
   } catch (const InputError& error) {
     diagnostics->report(Severity::Warning, "claims_unknown",
                         fmt::format("errors are not compared with claimed sigmas: {}", error.what()));

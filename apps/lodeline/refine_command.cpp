@@ -3,13 +3,13 @@
 #include <memory>
 
 #include "apps/lodeline/run_command.h"
-#include "lodeline/batch/forward_record.h"
+#include "lodeline/batch/estimator_log.h"
 
 namespace lodeline {
 
 void addRefineCommand(CLI::App& program) {
   auto arguments = std::make_shared<RunRequest>();
-  arguments->refine_interval_s = ForwardRecord::kStateInterval_s;
+  arguments->refine_interval_s = EstimatorLog::kStateInterval_s;
   CLI::App* command = program.add_subcommand(
       "refine", "Run, then solve for the whole trajectory and map at once: the best there is for a survey");
   addRunOptions(arguments.get(), command);

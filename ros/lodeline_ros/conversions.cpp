@@ -126,7 +126,7 @@ message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time tim
   auto cloud = headed<message::PointCloud2>(time, names.world);
   using message::PointField;
   cloud.fields = {field("x", 0, PointField::FLOAT32), field("y", 4, PointField::FLOAT32),
-                  field("z", 8, PointField::FLOAT32), field("sightings", 12, PointField::UINT32)};
+                  field("z", 8, PointField::FLOAT32), field("observations", 12, PointField::UINT32)};
   cloud.height = 1;
   cloud.width = static_cast<uint32_t>(points.size());
   cloud.is_bigendian = false;
@@ -137,9 +137,9 @@ message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time tim
   uint8_t* place = cloud.data.data();
   for (const MapPoint& point : points) {
     const Eigen::Vector3f position = point.position_W.cast<float>();
-    const auto sightings = static_cast<uint32_t>(point.sightings);
+    const auto observations = static_cast<uint32_t>(point.observations);
     std::memcpy(place, position.data(), 12);
-    std::memcpy(place + 12, &sightings, 4);
+    std::memcpy(place + 12, &observations, 4);
     place += cloud.point_step;
   }
   return cloud;

@@ -39,7 +39,7 @@ message::TransformStamped transformMessage(const FrameEstimate& estimate, const 
 /// The world in the map: a turn about the vertical to north, as known now. Nothing while north is unknown.
 std::optional<message::TransformStamped> northMessage(const FrameEstimate& estimate, const FrameNames& names);
 
-/// Points in the world, m, as x, y, z (FLOAT32) and `sightings` (UINT32), 16 bytes a point.
+/// Points in the world, m, as x, y, z (FLOAT32) and `observations` (UINT32), 16 bytes a point.
 message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time time, const FrameNames& names);
 
 }  // namespace lodeline

@@ -144,10 +144,10 @@ TEST(Conversions, CloudLaysPointsOutAsItsFieldsSay) {
       EXPECT_EQ(numberAt<float>(cloud.data, start + field.offset),
                 static_cast<float>(points[i].position_W[axis]));
     }
-    EXPECT_EQ(cloud.fields[3].name, "sightings");
+    EXPECT_EQ(cloud.fields[3].name, "observations");
     EXPECT_EQ(cloud.fields[3].datatype, message::PointField::UINT32);
     EXPECT_EQ(numberAt<uint32_t>(cloud.data, start + cloud.fields[3].offset),
-              static_cast<uint32_t>(points[i].sightings));
+              static_cast<uint32_t>(points[i].observations));
   }
   EXPECT_TRUE(landmarkCloud({}, Time::fromNanoseconds(1), {}).data.empty());
 }

@@ -11,7 +11,7 @@
 #include <memory>
 #include <type_traits>
 
-/// ROS's messages for C++20. Headers that ROS generates, and its serialisation of vectors, ask the allocator
+/// ROS's messages for C++20. Headers that ROS generates, and its serialization of vectors, ask the allocator
 /// for `rebind`, which C++20 took away from std::allocator; this one has it. Texts stay std::string.
 namespace lodeline::message {
 

@@ -53,7 +53,7 @@ struct Trial {
 };
 
 Trial runTrial(const HeadingTrialOptions& options, const RefinementOptions& wanted) {
-  ForwardRecord record(wanted.state_interval_s);
+  EstimatorLog record(wanted.state_interval_s);
   std::vector<Rigid3> truth;
   TruthComparison comparison;
   Rig rig;
@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   app.add_option("--parallax", dive.estimator.keyframe.min_parallax_rad, "of a new keyframe, rad")
       ->capture_default_str();
   app.add_option("--gap", dive.estimator.window.interpolated_gap_s,
-                 "between keyframes beside which other frames' sightings are kept, s")
+                 "between keyframes beside which other frames' observations are kept, s")
       ->capture_default_str();
   app.add_option("--spacing", dive.estimator.window.interpolated_spacing_s, "of such frames, s")
       ->capture_default_str();

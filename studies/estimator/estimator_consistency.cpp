@@ -113,7 +113,7 @@ void studyDives(double minutes, int samples, DiveConsistencyOptions options) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Mean normalised estimation error squared over simulated scenes; an honest estimator shows the "
+      "Mean normalized estimation error squared over simulated scenes; an honest estimator shows the "
       "number after the slash. ok/high/low: against bounds that hold with probability 0.999. With --minutes, "
       "over dives of so many minutes, against the band of probability 0.95.");
   ConsistencyOptions options;

@@ -24,13 +24,13 @@ class Row {
   void add(const HeadingTrial& trial) {
     ++count_;
     rms_ += std::pow(trial.rms(), 2);
-    claimed_ += std::pow(trial.claimed(), 2);
+    reported_ += std::pow(trial.claimed(), 2);
     aligned_ += std::pow(trial.alignedRms(), 2);
     largest_ = std::max(largest_, trial.largest());
     used_ += trial.share(MagnetometerStatus::Used);
     readmitted_ += trial.share(MagnetometerStatus::Readmitted);
     inconsistent_ += trial.share(MagnetometerStatus::Inconsistent);
-    floor_T_ += trial.floor_T;
+    correlated_noise_sigma_T_ += trial.correlated_noise_sigma_T;
     ms_ += 1e3 * trial.estimator_s / static_cast<double>(trial.samples.size());
     reference_ = trial.reference;
   }
@@ -40,16 +40,17 @@ class Row {
     };
     fmt::print(
         "{:13} {:9} {:>8.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>7.1f} {:>7.1f} {:>7.1f} {:>8.3f} {:>7.2f}  {}\n",
-        trouble, use, degrees(rms_), degrees(claimed_), largest_ * 180.0 / std::numbers::pi,
+        trouble, use, degrees(rms_), degrees(reported_), largest_ * 180.0 / std::numbers::pi,
         degrees(aligned_), 100.0 * used_ / count_, 100.0 * readmitted_ / count_,
-        100.0 * inconsistent_ / count_, 1e6 * floor_T_ / count_, ms_ / count_, toString(reference_));
+        100.0 * inconsistent_ / count_, 1e6 * correlated_noise_sigma_T_ / count_, ms_ / count_,
+        toString(reference_));
     std::fflush(stdout);
   }
 
  private:
   int count_ = 0;
-  double rms_ = 0.0, claimed_ = 0.0, aligned_ = 0.0, largest_ = 0.0, used_ = 0.0, readmitted_ = 0.0,
-         inconsistent_ = 0.0, floor_T_ = 0.0, ms_ = 0.0;
+  double rms_ = 0.0, reported_ = 0.0, aligned_ = 0.0, largest_ = 0.0, used_ = 0.0, readmitted_ = 0.0,
+         inconsistent_ = 0.0, correlated_noise_sigma_T_ = 0.0, ms_ = 0.0;
   HeadingReference reference_ = HeadingReference::Start;
 };
 
@@ -102,9 +103,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--lamp-from", options.lamp_earliest_s, "s, the earliest that it is switched")
       ->capture_default_str();
-  app.add_option("--floor", magnetometer.floor_T, "T")->capture_default_str();
-  app.add_option("--floor-correlation", magnetometer.floor_correlation_s, "s")->capture_default_str();
-  app.add_option("--floor-freedom", magnetometer.floor_freedom, "degrees of it, of the floor's distribution")
+  app.add_option("--floor", magnetometer.correlated_noise_sigma_T, "T")->capture_default_str();
+  app.add_option("--floor-correlation", magnetometer.correlated_noise_time_s, "s")->capture_default_str();
+  app.add_option("--student-dof", magnetometer.student_dof, "degrees of it, of the floor's distribution")
       ->capture_default_str();
   app.add_option("--offset-sigma", magnetometer.offset_sigma_T, "T")->capture_default_str();
   app.add_option("--offset-walk", magnetometer.offset_walk_T_per_sqrt_s, "T/sqrt(s)")->capture_default_str();

@@ -196,9 +196,9 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
   } else {
     std::string names;
     for (const Scenario& s : all) names += (names.empty() ? "" : ", ") + s.name;
-    const RecognisedFile recognised = recogniseFile(input);
-    if (recognised.kind != FileKind::Missing)
-      refuseFile(recognised, "give a folder with mav0, or a ROS 1 bag");
+    const RecognizedFile recognized = recognizeFile(input);
+    if (recognized.kind != FileKind::Missing)
+      refuseFile(recognized, "give a folder with mav0, or a ROS 1 bag");
     throw UsageError(
         fmt::format("{}: neither a folder, a bag nor a scenario; scenarios are {}", input, names));
   }

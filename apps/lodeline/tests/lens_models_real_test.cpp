@@ -25,10 +25,10 @@ struct Lens {
 };
 
 /// Resamples a camera's images as another lens would have taken them.
-class LensChange {
+class IntrinsicsChange {
  public:
   /// Makes `calibration` that of the new lens.
-  LensChange(const Lens& lens, CameraCalibration* calibration) {
+  IntrinsicsChange(const Lens& lens, CameraCalibration* calibration) {
     const auto from = makeCamera(*calibration);
     calibration->distortion_model = lens.model;
     calibration->distortion = lens.distortion;
@@ -76,7 +76,7 @@ class LensModels : public testing::TestWithParam<int> {
     if (GetParam() == 1) options.camera_indices = {0};
     EurocSource source(recording_, options, &diagnostics);
     Rig rig = source.rig();
-    std::vector<LensChange> changes;
+    std::vector<IntrinsicsChange> changes;
     for (CameraCalibration& camera : rig.cameras) {
       changes.emplace_back(lens, &camera);
       EXPECT_GT(changes.back().shareSeen(), 0.97) << "the images do not show all that such a lens sees";

@@ -204,7 +204,7 @@ TEST_F(RunOutcome, ABadByteCostsItsRowAlone) {
   EXPECT_THAT(readText(output_ / "run.json"), HasSubstr("data.csv:151"));
 }
 
-TEST_F(RunOutcome, MisspeltWordsAreRecognised) {
+TEST_F(RunOutcome, MisspeltWordsAreRecognized) {
   const std::string rest = quoted(recording_.data) + " -o " + quoted(output_);
   const auto output = [](const std::string& arguments) {
     const Execution result = runProgram(arguments);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kHistory_s = 0.5;
 constexpr double kSilent_s = 1.5;
-constexpr double kLongestFieldStep_s = 0.5;  ///< after silence a reading counts for no more
+constexpr double kLongestMagneticStepDetector_s = 0.5;  ///< after silence a reading counts for no more
 
 std::optional<FieldShape> shapeOf(const std::optional<Vec3>& field_W) {
   if (!field_W) return std::nullopt;
@@ -180,7 +180,7 @@ void AttitudeFilter::takeField(const FieldSample& sample) {
 
   const double since_s =
       last_field_time_ ? (sample.time - *last_field_time_).seconds() : 1.0 / magnetometer_rate_hz_;
-  const double step_s = std::min(since_s, kLongestFieldStep_s);
+  const double step_s = std::min(since_s, kLongestMagneticStepDetector_s);
   const Vec3 field_L = level_from_body * sample.field_B;
   const FieldVerdict verdict = gate_.update(field_L, to.turned_rad - last_field_turned_rad_, step_s);
   last_field_time_ = sample.time;

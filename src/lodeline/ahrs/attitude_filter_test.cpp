@@ -107,7 +107,7 @@ TEST_F(AttitudeFilterTest, FindsAttitudeBiasAndHeadingAtRest) {
 
 TEST_F(AttitudeFilterTest, FollowsAMovingBody) {
   AttitudeFilter filter = filterWithMagnetometer();
-  double heading = 0.0, inclination = 0.0, normalised = 0.0;
+  double heading = 0.0, inclination = 0.0, normalized = 0.0;
   int count = 0;
   run(&filter, 90.0, earthField, [&](double t) {
     if (t < 3.0) return;
@@ -115,13 +115,13 @@ TEST_F(AttitudeFilterTest, FollowsAMovingBody) {
     const double error = headingError(e.world_from_body, truth(t));
     heading += error * error;
     inclination += std::pow(inclinationError(e.world_from_body, truth(t)), 2);
-    normalised += std::pow(error / e.heading_sigma_rad, 2);
+    normalized += std::pow(error / e.heading_sigma_rad, 2);
     ++count;
   });
   EXPECT_LT(std::sqrt(heading / count), 1.0 * kDegree);
   // Swaying with 0.4 to 0.5 m/s^2 at 0.7 to 1.2 rad/s, of which the filter leaves 0.2 m/s^2: one degree.
   EXPECT_LT(std::sqrt(inclination / count), 1.5 * kDegree);
-  EXPECT_LT(normalised / count, 1.5);
+  EXPECT_LT(normalized / count, 1.5);
   EXPECT_LT((filter.estimate()->gyroscope_bias_B - bias_B).norm(), 0.2 * kDegree);
 }
 

@@ -48,7 +48,7 @@ std::vector<BroadRow> readBroad(const std::filesystem::path& file) {
 
 /// Sums over an attitude's errors; rotation error = one about up, and one about a horizontal axis.
 struct HeadingAndTilt {
-  double heading = 0.0, inclination = 0.0, normalised = 0.0;
+  double heading = 0.0, inclination = 0.0, normalized = 0.0;
   int count = 0;
   std::optional<double> start_rad;
 
@@ -60,13 +60,13 @@ struct HeadingAndTilt {
     const double heading_rad = std::remainder(about_up - *start_rad, 2.0 * std::numbers::pi);
     heading += heading_rad * heading_rad;
     inclination += std::pow(2.0 * std::acos(std::min(1.0, std::hypot(error.w(), error.z()))), 2);
-    normalised += std::pow(heading_rad / std::max(1e-6, estimate.heading_sigma_rad), 2);
+    normalized += std::pow(heading_rad / std::max(1e-6, estimate.heading_sigma_rad), 2);
     ++count;
   }
   double headingRmse_deg() const { return std::sqrt(heading / count) * 180.0 / std::numbers::pi; }
   double inclinationRmse_deg() const { return std::sqrt(inclination / count) * 180.0 / std::numbers::pi; }
   /// Mean squared heading error in sigmas.
-  double normalisedHeading() const { return normalised / count; }
+  double normalizedHeading() const { return normalized / count; }
 };
 
 /// Without a magnetometer heading starts from the truth.
@@ -105,7 +105,7 @@ TEST_F(Broad, UndisturbedHeadingIsWithinThreeDegrees) {
     RecordProperty(name, std::to_string(errors.headingRmse_deg()));
     EXPECT_LE(errors.headingRmse_deg(), 3.0) << name;
     EXPECT_LE(errors.inclinationRmse_deg(), 3.0) << name;
-    EXPECT_LE(errors.normalisedHeading(), 2.0) << name;
+    EXPECT_LE(errors.normalizedHeading(), 2.0) << name;
   }
 }
 

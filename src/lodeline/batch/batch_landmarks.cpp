@@ -28,7 +28,7 @@ double BatchLandmarks::cost() const {
   std::vector<double> costs(stretches_.size(), 0.0);
   tbb::parallel_for(size_t{0}, stretches_.size(), [&](size_t i) {
     std::vector<double> residual;
-    for (TrackHistory* track : stretches_[i].tracks) {
+    for (FeatureTrack* track : stretches_[i].tracks) {
       for (const Factor& factor : factors_.landmark(window_, *track).factors)
         costs[i] += costOf(factor, residual);
     }
@@ -36,12 +36,12 @@ double BatchLandmarks::cost() const {
   return std::accumulate(costs.begin(), costs.end(), 0.0);
 }
 
-void BatchLandmarks::linearise(const std::function<void(const NormalEquations&)>& take) {
+void BatchLandmarks::linearize(const std::function<void(const NormalEquations&)>& take) {
   for (size_t begin = 0; begin < stretches_.size(); begin += kAtOnce) {
     const size_t end = std::min(begin + kAtOnce, stretches_.size());
     tbb::parallel_for(begin, end, [&](size_t i) {
       NormalEquations system;
-      for (TrackHistory* track : stretches_[i].tracks)
+      for (FeatureTrack* track : stretches_[i].tracks)
         system.addEliminated(factors_.landmark(window_, *track));
       stretches_[i].system = std::move(system);
     });

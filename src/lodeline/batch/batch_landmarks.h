@@ -14,7 +14,7 @@ namespace lodeline {
 class BatchLandmarks {
  public:
   /// Both must outlive this. There are no terms before the first arrange().
-  BatchLandmarks(Window& window, const FactorMaker& factors) : window_(window), factors_(factors) {}
+  BatchLandmarks(Window& window, const FactorBuilder& factors) : window_(window), factors_(factors) {}
 
   /// Takes the landmarks that the window's tracks have now: to be called after any came or went.
   void arrange();
@@ -22,20 +22,20 @@ class BatchLandmarks {
   double cost() const;
 
   /// Gives every stretch's Gauss-Newton system, landmarks eliminated, to `take`, which is called in order.
-  void linearise(const std::function<void(const NormalEquations&)>& take);
+  void linearize(const std::function<void(const NormalEquations&)>& take);
 
   /// Moves the landmarks along with a step of the other blocks, of which `stepOf` picks those of a system. To
-  /// be called after linearise(), before any value has moved. `stepOf` is called from several threads.
+  /// be called after linearize(), before any value has moved. `stepOf` is called from several threads.
   void step(const std::function<Eigen::VectorXd(const NormalEquations&)>& stepOf) const;
 
  private:
   struct Stretch {
-    std::vector<TrackHistory*> tracks;
+    std::vector<FeatureTrack*> tracks;
     NormalEquations system;
   };
 
   Window& window_;
-  const FactorMaker& factors_;
+  const FactorBuilder& factors_;
   std::vector<Stretch> stretches_;
 };
 

@@ -6,9 +6,9 @@
 #include "lodeline/batch/batch_structure.h"
 #include "lodeline/estimator/problem/robust_loss.h"
 #include "lodeline/estimator/problem/window_terms.h"
-#include "lodeline/estimator/self_calibration/lens_trust.h"
+#include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/state/magnetometer_states.h"
-#include "lodeline/estimator/uncertainty/claimed_covariance.h"
+#include "lodeline/estimator/uncertainty/reported_covariance.h"
 
 namespace lodeline {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kSensorLoss = 3.0;  // Cauchy, in standard deviations
 
 }  // namespace
 
-BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record)
+BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record)
     : options_(options),
       factors_(rig, options_),
       loss_(std::make_shared<ceres::CauchyLoss>(kSensorLoss)),
@@ -27,11 +27,11 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addTracks(record);
   addGlobals(record);
   addStartPrior(rig, record);
-  holdLenses(record.globals());
+  holdIntrinsics(record.globals());
   believeInFilesAsBefore(record);
   addImuAxes(record.globals());
   orderBlocks();
-  relinearise();
+  resetLinearizationPoints();
   renewLandmarks();
 }
 
@@ -40,9 +40,9 @@ size_t BatchProblem::landmarks() const {
                                            [](const auto& entry) { return entry.second.landmark; }));
 }
 
-size_t BatchProblem::sightings() const {
+size_t BatchProblem::observations() const {
   size_t count = 0;
-  for (const auto& [id, track] : window_.tracks()) count += track.landmark ? track.sightings.size() : 0;
+  for (const auto& [id, track] : window_.tracks()) count += track.landmark ? track.observations.size() : 0;
   return count;
 }
 
@@ -85,7 +85,7 @@ double BatchProblem::cost() {
   return sum;
 }
 
-void BatchProblem::scatter(const NormalEquations& local, SkylineMatrix* hessian,
+void BatchProblem::scatter(const NormalEquations& local, BlockSkylineCholesky* hessian,
                            Eigen::VectorXd* gradient) const {
   const auto h = local.lowerTriangle();
   const Eigen::VectorXd g = local.gradient();
@@ -107,7 +107,7 @@ void BatchProblem::scatter(const NormalEquations& local, SkylineMatrix* hessian,
   }
 }
 
-void BatchProblem::linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient) {
+void BatchProblem::linearize(BlockSkylineCholesky* hessian, Eigen::VectorXd* gradient) {
   hessian->setZero();
   gradient->setZero(hessian->size());
   for (const Factor& factor : motionFactors()) {
@@ -115,15 +115,14 @@ void BatchProblem::linearise(SkylineMatrix* hessian, Eigen::VectorXd* gradient) 
     local.add(factor);
     scatter(local, hessian, gradient);
   }
-  visual_.linearise([&](const NormalEquations& local) { scatter(local, hessian, gradient); });
+  visual_.linearize([&](const NormalEquations& local) { scatter(local, hessian, gradient); });
 }
 
-void BatchProblem::subtractUnclaimed(SkylineMatrix* hessian) const {
+void BatchProblem::subtractRemoved(BlockSkylineCholesky* hessian) const {
   const int first_motion = rowOf(state(0).motion.data());
-  hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -=
-      unclaimedBiasInformation(options_);
-  for (const auto& [state, unclaimed] : unclaimedCalibration(window_, options_, factors_))
-    hessian->block(rowOf(state), rowOf(state)) -= unclaimed;
+  hessian->block(first_motion, first_motion).diagonal().tail<3>().array() -= removedBiasInformation(options_);
+  for (const auto& [state, removed] : removedCalibration(window_, options_, factors_))
+    hessian->block(rowOf(state), rowOf(state)) -= removed;
 }
 
 void BatchProblem::step(const Eigen::VectorXd& step) {
@@ -177,7 +176,7 @@ void BatchProblem::setValues(const std::vector<double>& values) {
   });
 }
 
-void BatchProblem::relinearise() {
+void BatchProblem::resetLinearizationPoints() {
   Frame* before = nullptr;
   for (const auto& frame : window_.frames()) {
     frame->updateImageMotion();
@@ -191,11 +190,11 @@ void BatchProblem::relinearise() {
 double BatchProblem::renewLandmarks() {
   window_.tracks() = all_tracks_;
   double placed = 0.0, removed = 0.0;
-  std::vector<SightingError> errors;
+  std::vector<ObservationError> errors;
   for (auto& [id, track] : window_.tracks()) {
     placeLandmark(window_, factors_, options_.landmark, &track);
     if (!track.landmark) continue;
-    placed += static_cast<double>(track.sightings.size());
+    placed += static_cast<double>(track.observations.size());
     removed += removeContradictions(window_, factors_, options_.landmark, id, &track, &errors);
   }
   adaptRobustLosses(window_, errors, options_.solver);
@@ -203,28 +202,29 @@ double BatchProblem::renewLandmarks() {
   return placed > 0.0 ? removed / placed : 0.0;
 }
 
-LastingErrors BatchProblem::lastingErrors() {
+TimeCorrelatedErrors BatchProblem::timeCorrelatedErrors() {
   constexpr double kBelieved = 2.0;  // widths of the loss: what is further off it hardly counts
-  LastingErrors lasting;
+  TimeCorrelatedErrors lasting;
   for (auto& [id, track] : window_.tracks()) {
     if (!track.landmark) continue;
     const std::vector<Vec2> errors = residualsOf(factors_.landmark(window_, track));
     std::vector<std::vector<Vec2>> by_camera(cameras_.size());
     for (size_t i = 0; i < errors.size(); ++i) {
-      const Sighting& sighting = track.sightings[i];
-      if (errors[i].norm() < kBelieved * factors_.robustScale(*window_.find(sighting.frame)))
-        by_camera[static_cast<size_t>(sighting.camera)].push_back(errors[i]);
+      const Observation& observation = track.observations[i];
+      if (errors[i].norm() < kBelieved * factors_.robustScale(*window_.find(observation.frame)))
+        by_camera[static_cast<size_t>(observation.camera)].push_back(errors[i]);
     }
     for (const std::vector<Vec2>& of_camera : by_camera) lasting.add(of_camera);
   }
   return lasting;
 }
 
-void BatchProblem::weighSightings(double variance) {
+void BatchProblem::weighObservations(double variance) {
   for (auto& [id, track] : window_.tracks()) track.weight /= variance;
 }
 
-Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index, const SkylineMatrix& inverse) const {
+Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index,
+                                                         const BlockSkylineCholesky& inverse) const {
   const int pose = rowOf(state(index).pose.data()), motion = rowOf(state(index).motion.data());
   Eigen::Matrix<double, 15, 15> covariance;
   covariance.topLeftCorner<6, 6>() = inverse.block(pose, pose);
@@ -234,8 +234,8 @@ Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index, const Sky
   return 0.5 * (covariance + covariance.transpose());
 }
 
-AzimuthCovariance BatchProblem::azimuth(size_t index, const SkylineMatrix& inverse) const {
-  const GlobalState* field = window_.findGlobal(MagnetometerStates::kField);
+AzimuthCovariance BatchProblem::azimuth(size_t index, const BlockSkylineCholesky& inverse) const {
+  const ParameterBlock* field = window_.findGlobal(MagnetometerStates::kField);
   if (field == nullptr) return {};
   const int row = rowOf(field->value.data());
   Eigen::Matrix<double, 15, 3> state_field;

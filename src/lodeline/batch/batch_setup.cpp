@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "lodeline/batch/batch_problem.h"
-#include "lodeline/estimator/self_calibration/lens_trust.h"
+#include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/depth_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
@@ -18,10 +18,10 @@ constexpr double kNode_s = 60.0;  // for which a wandering offset counts as cons
 constexpr size_t kLongestTrack = 40;
 
 /// The end of a random walk against its beginning, as a quadratic term.
-Prior walkBetween(GlobalState* begin, GlobalState* end, double sigma) {
+Prior walkBetween(ParameterBlock* begin, ParameterBlock* end, double sigma) {
   Prior prior;
   const auto size = static_cast<Eigen::Index>(begin->value.size());
-  for (GlobalState* state : {begin, end})
+  for (ParameterBlock* state : {begin, end})
     prior.blocks.push_back({state->value.data(), Eigen::VectorXd::Zero(size)});
   prior.sqrt_information = Eigen::MatrixXd::Zero(2 * size, 2 * size);
   prior.sqrt_information.topLeftCorner(size, size).diagonal().setConstant(1.0 / sigma);
@@ -53,7 +53,7 @@ void remove(const char* name, Prior* prior, std::vector<std::string>* names) {
 
 }  // namespace
 
-void BatchProblem::addStates(const Rig& rig, const ForwardRecord& record) {
+void BatchProblem::addStates(const Rig& rig, const EstimatorLog& record) {
   for (const RecordedState& recorded : record.states()) {
     auto frame = std::make_unique<Frame>();
     frame->id = static_cast<FrameId>(states());
@@ -74,7 +74,7 @@ void BatchProblem::addStates(const Rig& rig, const ForwardRecord& record) {
   }
 }
 
-void BatchProblem::addTracks(const ForwardRecord& record) {
+void BatchProblem::addTracks(const EstimatorLog& record) {
   struct Piece {
     TrackId id;
     size_t first;
@@ -82,35 +82,35 @@ void BatchProblem::addTracks(const ForwardRecord& record) {
   std::unordered_map<TrackId, Piece> pieces;
   TrackId next = 0;
   for (size_t k = 0; k < states(); ++k) {
-    for (const Observation& observation : record.states()[k].observations) {
+    for (const FeatureObservation& observation : record.states()[k].observations) {
       const auto [entry, is_new] = pieces.try_emplace(observation.track, Piece{next, k});
       if (!is_new && k - entry->second.first >= kLongestTrack) entry->second = {next, k};
       if (entry->second.id == next) ++next;
-      Sighting sighting;
-      sighting.frame = static_cast<FrameId>(k);
-      sighting.camera = observation.camera;
-      sighting.measurement = DirectionMeasurement::fromBearing(
+      Observation observation;
+      observation.frame = static_cast<FrameId>(k);
+      observation.camera = observation.camera;
+      observation.measurement = DirectionMeasurement::fromBearing(
           *cameras_[static_cast<size_t>(observation.camera)], observation.bearing_C, observation.sigma_px);
-      all_tracks_[entry->second.id].sightings.push_back(sighting);
+      all_tracks_[entry->second.id].observations.push_back(observation);
     }
   }
   removeShortTracks(all_tracks_, 2);
 }
 
-GlobalState* BatchProblem::addGlobal(const ForwardRecord& record, const std::string& name,
-                                     const std::string& as) {
+ParameterBlock* BatchProblem::addGlobal(const EstimatorLog& record, const std::string& name,
+                                        const std::string& as) {
   const auto found = record.globals().find(name);
   if (found == record.globals().end()) return nullptr;
   return &window_.add({as, found->second, std::nullopt, 0.0, false});
 }
 
-void BatchProblem::addKnowledge(GlobalState* state, double sigma) {
+void BatchProblem::addKnowledge(ParameterBlock* state, double sigma) {
   Prior& prior = priors_.emplace_back();
   const auto size = static_cast<Eigen::Index>(state->value.size());
   prior.append(state->value.data(), static_cast<int>(size), Eigen::VectorXd::Constant(size, sigma));
 }
 
-void BatchProblem::addGlobals(const ForwardRecord& record) {
+void BatchProblem::addGlobals(const EstimatorLog& record) {
   const MagnetometerOptions& magnetometer = options_.magnetometer;
   const DepthOptions& depth = options_.depth;
   addChain(record, MagnetometerStates::kOffset, false, &field_offsets_);
@@ -121,21 +121,21 @@ void BatchProblem::addGlobals(const ForwardRecord& record) {
   for (const Node& node : depth_offsets_) {
     if (!node.continues) addKnowledge(node.state, depth.offset_sigma_m);
   }
-  if (GlobalState* scale = addGlobal(record, DepthStates::kScale, DepthStates::kScale)) {
+  if (ParameterBlock* scale = addGlobal(record, DepthStates::kScale, DepthStates::kScale)) {
     scale->value = {depth.density_ratio};
     addKnowledge(scale, std::max(depth.density_ratio_sigma, 1e-7));
     scale->value = record.globals().at(DepthStates::kScale);
     const auto& gauge = record.frames().back().depth.gauge;
-    if (gauge && gauge->belief) scale->beliefs = {*gauge->belief};
+    if (gauge && gauge->prior) scale->priors = {*gauge->prior};
   }
-  if (GlobalState* lag = addGlobal(record, DepthStates::kLag, DepthStates::kLag)) {
+  if (ParameterBlock* lag = addGlobal(record, DepthStates::kLag, DepthStates::kLag)) {
     lag->value = {depth.lag_s};
     addKnowledge(lag, std::max(depth.lag_sigma_s, 1e-7));
     lag->value = record.globals().at(DepthStates::kLag);
   }
 }
 
-void BatchProblem::addChain(const ForwardRecord& record, const char* name, bool restarts, Chain* chain) {
+void BatchProblem::addChain(const EstimatorLog& record, const char* name, bool restarts, Chain* chain) {
   int epoch = 0;
   for (size_t k = 0; k < states(); ++k) {
     const int now = restarts ? record.states()[k].gauge_epoch : 0;
@@ -143,7 +143,7 @@ void BatchProblem::addChain(const ForwardRecord& record, const char* name, bool 
     if (!is_new && (state(k).time - state(chain->back().first).time).seconds() < kNode_s) continue;
     // The first keeps the plain name, by which factors look for it.
     const std::string as = chain->empty() ? name : std::string(name) + "@" + std::to_string(chain->size());
-    GlobalState* node = addGlobal(record, name, as);
+    ParameterBlock* node = addGlobal(record, name, as);
     if (node == nullptr) return;
     chain->push_back({k, node, !is_new});
     epoch = now;
@@ -159,8 +159,8 @@ void BatchProblem::addWalk(const Chain& chain, double walk_per_sqrt_s) {
   }
 }
 
-void BatchProblem::addStartPrior(const Rig& rig, const ForwardRecord& record) {
-  const ForwardRecord::StartPrior& start = record.startPrior();
+void BatchProblem::addStartPrior(const Rig& rig, const EstimatorLog& record) {
+  const EstimatorLog::StartPrior& start = record.startPrior();
   const GlobalValues& globals = record.globals();
   Prior prior = start.prior;
   std::vector<std::string> names = start.names;
@@ -177,10 +177,10 @@ void BatchProblem::addStartPrior(const Rig& rig, const ForwardRecord& record) {
     if (name == "pose") value = first.pose.data();
     if (name == "motion") value = first.motion.data();
     if (value == nullptr) {
-      GlobalState* state = window_.findGlobal(name);
+      ParameterBlock* state = window_.findGlobal(name);
       // The cameras' placement is in no chain, and has not been added yet.
       if (state == nullptr) {
-        const Eigen::VectorXd& at = prior.blocks[i].first_estimate;
+        const Eigen::VectorXd& at = prior.blocks[i].linearization_point;
         state = &window_.add({name, {at.data(), at.data() + at.size()}, std::nullopt, 0.0, false});
         const auto end = globals.find(name);
         if (end != globals.end()) state->value = end->second;
@@ -193,7 +193,7 @@ void BatchProblem::addStartPrior(const Rig& rig, const ForwardRecord& record) {
   priors_.push_back(std::move(prior));
   // A magnetometer that was heard only later has states that the start knew nothing of.
   const MagnetometerStates magnetometer(window_);
-  const auto isKnown = [&](const GlobalState* state) {
+  const auto isKnown = [&](const ParameterBlock* state) {
     return std::find(known.begin(), known.end(), state->value.data()) != known.end();
   };
   if (magnetometer.field && !isKnown(magnetometer.field))
@@ -205,24 +205,24 @@ void BatchProblem::addStartPrior(const Rig& rig, const ForwardRecord& record) {
   }
 }
 
-void BatchProblem::holdLenses(const GlobalValues& globals) {
+void BatchProblem::holdIntrinsics(const GlobalValues& globals) {
   CameraCalibrationOptions held = options_.camera_calibration;
   held.focal_length_sigma = held.principal_point_sigma_px = held.radial_sigma = 0.0;
   Prior prior;
-  addLensStates(window_, prior, static_cast<int>(cameras_.size()), held);
+  addIntrinsicsStates(window_, prior, static_cast<int>(cameras_.size()), held);
   if (prior.empty()) return;
-  const std::vector<GlobalState*> lenses = cameraStates(window_).intrinsics;
+  const std::vector<ParameterBlock*> lenses = cameraStates(window_).intrinsics;
   for (size_t camera = 0; camera < lenses.size(); ++camera) {
     const auto end = globals.find(lenses[camera]->name);
     if (end == globals.end()) continue;
     lenses[camera]->value = end->second;
-    prior.blocks[camera].first_estimate =
+    prior.blocks[camera].linearization_point =
         Eigen::Map<const Eigen::VectorXd>(end->second.data(), static_cast<Eigen::Index>(end->second.size()));
   }
   priors_.push_back(std::move(prior));
 }
 
-void BatchProblem::believeInFilesAsBefore(const ForwardRecord& record) {
+void BatchProblem::believeInFilesAsBefore(const EstimatorLog& record) {
   const auto& corrections = record.frames().back().camera_corrections;
   if (corrections) believeInFiles(window_, options_.camera_calibration, corrections->are_files_held);
 }
@@ -230,7 +230,7 @@ void BatchProblem::believeInFilesAsBefore(const ForwardRecord& record) {
 void BatchProblem::addImuAxes(const GlobalValues& globals) {
   addInertialStates(window_, options_.imu_axes);
   const ImuAxesStates axes(window_);
-  for (GlobalState* state : {axes.gyroscope, axes.accelerometer}) {
+  for (ParameterBlock* state : {axes.gyroscope, axes.accelerometer}) {
     if (!state) continue;
     const auto end = globals.find(state->name);
     if (end != globals.end()) state->value = end->second;
@@ -248,9 +248,9 @@ void BatchProblem::orderBlocks() {
   std::vector<size_t> first_seen(states());  // oldest state that shares a landmark
   for (size_t k = 0; k < states(); ++k) first_seen[k] = k > 0 ? k - 1 : 0;
   for (const auto& [id, track] : all_tracks_) {
-    const auto oldest = static_cast<size_t>(track.sightings.front().frame);
-    for (const Sighting& sighting : track.sightings) {
-      size_t& first = first_seen[static_cast<size_t>(sighting.frame)];
+    const auto oldest = static_cast<size_t>(track.observations.front().frame);
+    for (const Observation& observation : track.observations) {
+      size_t& first = first_seen[static_cast<size_t>(observation.frame)];
       first = std::min(first, oldest);
     }
   }

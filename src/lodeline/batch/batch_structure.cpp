@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-bool hosts(const TrackHistory& track) {
+bool hosts(const FeatureTrack& track) {
   return track.seenIn(track.landmark->host) && track.find(track.landmark->host, 0) != nullptr;
 }
 
@@ -40,7 +40,7 @@ struct LandmarkSystem {
 };
 
 /// Moves a landmark to where the robust loss has it, poses as they are. A place in the middle of all
-/// sightings is off by so much where one of them strays that most of the others contradict it.
+/// observations is off by so much where one of them strays that most of the others contradict it.
 void settle(const LandmarkFactors& terms) {
   constexpr int kMostSteps = 10;
   constexpr double kLeastGain = 1e-3;
@@ -66,24 +66,24 @@ std::vector<Vec2> residualsOf(const LandmarkFactors& landmark) {
   return residuals;
 }
 
-void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                   TrackHistory* track) {
-  const auto host = std::find_if(track->sightings.begin(), track->sightings.end(),
-                                 [](const Sighting& sighting) { return sighting.camera == 0; });
-  if (host == track->sightings.end() || track->sightings.size() < 2) return;
+void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkOptions& options,
+                   FeatureTrack* track) {
+  const auto host = std::find_if(track->observations.begin(), track->observations.end(),
+                                 [](const Observation& observation) { return observation.camera == 0; });
+  if (host == track->observations.end() || track->observations.size() < 2) return;
   const CameraStates cameras = cameraStates(window);
-  const auto viewOf = [&](const Sighting& sighting) {
+  const auto viewOf = [&](const Observation& observation) {
     // Pixels over the angle, both axes together.
-    const double pixels = std::sqrt(std::abs(sighting.measurement.sqrt_information.determinant()));
-    return BearingView{factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera),
-                       rayOf(sighting, cameras), 1.0 / pixels};
+    const double pixels = std::sqrt(std::abs(observation.measurement.sqrt_information.determinant()));
+    return BearingView{factors.worldFromCamera(window, *window.find(observation.frame), observation.camera),
+                       rayOf(observation, cameras), 1.0 / pixels};
   };
   std::vector<BearingView> views = {viewOf(*host)};
-  for (const Sighting& sighting : track->sightings) {
-    if (&sighting != &*host) views.push_back(viewOf(sighting));
+  for (const Observation& observation : track->observations) {
+    if (&observation != &*host) views.push_back(viewOf(observation));
   }
   TriangulationOptions wanted;
-  wanted.max_rms_sigmas = 3.0 * options.max_error_sigmas;  // single sightings are judged afterwards
+  wanted.max_rms_sigmas = 3.0 * options.max_error_sigmas;  // single observations are judged afterwards
   const Triangulation point = triangulate(views, wanted);
   const double rho = point.inverse_depth_per_m, sigma = point.inverse_depth_sigma_per_m;
   const bool is_known =
@@ -102,26 +102,26 @@ void placeLandmark(Window& window, const FactorMaker& factors, const LandmarkOpt
   track->landmark = landmark;
 }
 
-int removeContradictions(Window& window, const FactorMaker& factors, const LandmarkOptions& options,
-                         TrackId id, TrackHistory* track, std::vector<SightingError>* errors) {
+int removeContradictions(Window& window, const FactorBuilder& factors, const LandmarkOptions& options,
+                         TrackId id, FeatureTrack* track, std::vector<ObservationError>* errors) {
   const LandmarkFactors terms = factors.landmark(window, *track);
   const std::vector<Vec2> as_placed = residualsOf(terms);
   settle(terms);
   const std::vector<Vec2> settled = residualsOf(terms);
-  std::vector<Sighting> kept;
-  for (size_t i = 0; i < track->sightings.size(); ++i) {
-    const Sighting& sighting = track->sightings[i];
-    const bool is_host = sighting.frame == track->landmark->host && sighting.camera == 0;
-    if (!is_host) errors->push_back({id, sighting.frame, as_placed[i].norm()});
-    if (settled[i].norm() <= options.max_error_sigmas) kept.push_back(sighting);
+  std::vector<Observation> kept;
+  for (size_t i = 0; i < track->observations.size(); ++i) {
+    const Observation& observation = track->observations[i];
+    const bool is_host = observation.frame == track->landmark->host && observation.camera == 0;
+    if (!is_host) errors->push_back({id, observation.frame, as_placed[i].norm()});
+    if (settled[i].norm() <= options.max_error_sigmas) kept.push_back(observation);
   }
-  const int removed = static_cast<int>(track->sightings.size() - kept.size());
-  track->sightings = std::move(kept);
+  const int removed = static_cast<int>(track->observations.size() - kept.size());
+  track->observations = std::move(kept);
   if (!hosts(*track)) moveToNewHost(window, *track, track->landmark->host, factors);
   if (!track->landmark) return removed;
   const double rho = track->landmark->inverseDistance();
   const bool is_sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
-  if (track->sightings.size() < 2 || !is_sane) track->landmark.reset();
+  if (track->observations.size() < 2 || !is_sane) track->landmark.reset();
   return removed;
 }
 

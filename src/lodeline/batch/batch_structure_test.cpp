@@ -9,7 +9,7 @@ namespace lodeline {
 namespace {
 
 // What is off where a landmark is placed widens the robust losses of all its frames: by a lens that the run
-// found to be wrong, batches believed sightings that slide.
+// found to be wrong, batches believed observations that slide.
 TEST(PlaceLandmark, PutsItWhereTheLensOfTheRunSeesIt) {
   const std::vector<double> lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01};
   const Vec3 point_W(3.0, -0.9, 0.4);
@@ -20,7 +20,7 @@ TEST(PlaceLandmark, PutsItWhereTheLensOfTheRunSeesIt) {
         test.add(Rigid3(so3::exp(Vec3(0.01 * i, 0, 0.05 * i)), Vec3(0.1 * i, -0.2 * i, 0.02 * i)));
     for (int camera = 0; camera < 2; ++camera) test.seeThrough(lens, 1, point_W, frame, camera);
   }
-  TrackHistory& track = test.window.tracks().at(1);
+  FeatureTrack& track = test.window.tracks().at(1);
   placeLandmark(test.window, test.factors, test.options.landmark, &track);
   ASSERT_TRUE(track.landmark.has_value());
   EXPECT_LT((test.position(1) - point_W).norm(), 0.002);

@@ -24,14 +24,15 @@ struct Round {
 };
 
 /// A step that lowers the cost; nothing where no damping gives one. `damping` is adapted.
-std::optional<double> lowerCost(BatchProblem& problem, double cost, SkylineMatrix* hessian, double* damping) {
+std::optional<double> lowerCost(BatchProblem& problem, double cost, BlockSkylineCholesky* hessian,
+                                double* damping) {
   constexpr double kLeastDamping = 1e-12, kMostDamping = 1e1;
   const std::vector<double> before = problem.values();
   Eigen::VectorXd gradient;
   while (*damping <= kMostDamping) {
-    problem.linearise(hessian, &gradient);
+    problem.linearize(hessian, &gradient);
     hessian->damp(*damping);
-    if (hessian->factorise()) {
+    if (hessian->factorize()) {
       problem.step(hessian->solve(-gradient));
       const double lowered = problem.cost();
       if (lowered < cost) {
@@ -47,7 +48,8 @@ std::optional<double> lowerCost(BatchProblem& problem, double cost, SkylineMatri
 
 /// With `is_last`, until the solution is reached; else until the next round's landmarks and weights can be
 /// told from it.
-Round solve(BatchProblem& problem, const RefinementOptions& wanted, bool is_last, SkylineMatrix* hessian) {
+Round solve(BatchProblem& problem, const RefinementOptions& wanted, bool is_last,
+            BlockSkylineCholesky* hessian) {
   constexpr double kRoughGain = 1e-4;  // of the cost
   Round round;
   double damping = 1e-7;
@@ -94,7 +96,7 @@ std::vector<MapPoint> mapPoints(const BatchProblem& problem) {
 std::string refusalOf(const RefinementSummary& summary, const RefinementOptions& wanted) {
   if (!std::isfinite(summary.cost)) return "its cost is not finite";
   if (summary.outlier_share > wanted.max_outlier_share) {
-    return fmt::format("{:.0f} % of the sightings contradict it, of {:.0f} % allowed",
+    return fmt::format("{:.0f} % of the observations contradict it, of {:.0f} % allowed",
                        100.0 * summary.outlier_share, 100.0 * wanted.max_outlier_share);
   }
   return {};
@@ -102,7 +104,7 @@ std::string refusalOf(const RefinementSummary& summary, const RefinementOptions&
 
 }  // namespace
 
-Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const ForwardRecord& record,
+Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const EstimatorLog& record,
                   const RefinementOptions& wanted) {
   const EstimatorOptions options = optionsFor(rig, of_run);
   const double start_s = processSeconds();
@@ -114,17 +116,17 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const ForwardR
     return result;
   }
   BatchProblem problem(rig, options, record);
-  SkylineMatrix hessian = problem.emptyMatrix();
+  BlockSkylineCholesky hessian = problem.emptyMatrix();
   summary.states = static_cast<int>(problem.states());
   for (int i = 0; i < wanted.rounds; ++i) {
     if (i > 0) {
       // Of a solution: the errors of the run's poses last themselves.
-      const LastingErrors lasting = problem.lastingErrors();
+      const TimeCorrelatedErrors lasting = problem.timeCorrelatedErrors();
       summary.design_effect = lasting.designEffect();
-      summary.sighting_variance = lasting.variance();
-      problem.relinearise();
+      summary.observation_variance = lasting.variance();
+      problem.resetLinearizationPoints();
       summary.outlier_share = problem.renewLandmarks();
-      problem.weighSightings(summary.sighting_variance);
+      problem.weighObservations(summary.observation_variance);
     }
     const Round round = solve(problem, wanted, i + 1 == wanted.rounds, &hessian);
     if (i == 0) {
@@ -136,16 +138,16 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const ForwardR
     summary.converged = round.converged;
   }
   summary.landmarks = static_cast<int64_t>(problem.landmarks());
-  summary.sightings = static_cast<int64_t>(problem.sightings());
+  summary.observations = static_cast<int64_t>(problem.observations());
   summary.refusal = refusalOf(summary, wanted);
   if (!summary.usable()) return result;
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
     Eigen::VectorXd gradient;
     // What is claimed must also stand for what all tracks have in common, as a lens or a port.
-    problem.weighSightings(std::max(1.0, summary.design_effect / summary.sighting_variance));
-    problem.linearise(&hessian, &gradient);
-    problem.subtractUnclaimed(&hessian);
-    summary.has_covariance = hessian.factorise();
+    problem.weighObservations(std::max(1.0, summary.design_effect / summary.observation_variance));
+    problem.linearize(&hessian, &gradient);
+    problem.subtractRemoved(&hessian);
+    summary.has_covariance = hessian.factorize();
     if (summary.has_covariance) hessian.invert();
   }
   result.frames = refinedFrames(problem, rig, options, record, summary.has_covariance ? &hessian : nullptr);

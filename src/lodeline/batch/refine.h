@@ -3,18 +3,18 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/batch/forward_record.h"
+#include "lodeline/batch/estimator_log.h"
 
 namespace lodeline {
 
 struct RefinementOptions {
-  double state_interval_s = ForwardRecord::kStateInterval_s;  ///< see ForwardRecord
-  int max_iterations = 25;                                    ///< of each round
+  double state_interval_s = EstimatorLog::kStateInterval_s;  ///< see EstimatorLog
+  int max_iterations = 25;                                   ///< of each round
   int rounds = 3;  ///< landmarks and outliers are sorted out before each
   /// A step that lowers the cost by less ends a round: one sigma off the solution, in any direction, costs
   /// 0.5.
   double gain_tolerance = 0.01;
-  /// More sightings than this share that contradict the solution speak against it.
+  /// More observations than this share that contradict the solution speak against it.
   double max_outlier_share = 0.2;
   /// Covariances are left out where the linear system takes more memory than this.
   double max_covariance_MB = 4000.0;
@@ -26,15 +26,16 @@ struct RefinementSummary {
   bool converged = false;  ///< the last round ended by itself
   int states = 0;
   int64_t landmarks = 0;
-  int64_t sightings = 0;           ///< of these
-  double sighting_variance = 1.0;  ///< that they were given, of the stated one: LastingErrors::variance()
-  double design_effect = 1.0;      ///< so many of them count as one in what is claimed: LastingErrors
-  double outlier_share = 0.0;      ///< of the sightings, left out at the end
-  int iterations = 0;              ///< of all rounds
-  double forward_cost = 0.0;       ///< of the forward run's states
-  double first_round_cost = 0.0;   ///< of the same terms after the first round
-  double cost = 0.0;               ///< of the terms that are left, at the end
-  double moved_rms_m = 0.0;        ///< refined against forward positions, over all frames
+  int64_t observations = 0;  ///< of these
+  double observation_variance =
+      1.0;                     ///< that they were given, of the stated one: TimeCorrelatedErrors::variance()
+  double design_effect = 1.0;  ///< so many of them count as one in what is claimed: TimeCorrelatedErrors
+  double outlier_share = 0.0;  ///< of the observations, left out at the end
+  int iterations = 0;          ///< of all rounds
+  double forward_cost = 0.0;   ///< of the forward run's states
+  double first_round_cost = 0.0;  ///< of the same terms after the first round
+  double cost = 0.0;              ///< of the terms that are left, at the end
+  double moved_rms_m = 0.0;       ///< refined against forward positions, over all frames
   double moved_max_m = 0.0;
   double turned_rms_rad = 0.0;
   double forward_sigma_m = 0.0, sigma_m = 0.0;  ///< claimed, at the end: root of the position's trace
@@ -59,7 +60,7 @@ struct Refinement {
 /// comes out higher than that of the forward run; what makes the result doubtful ends up in
 /// RefinementSummary::refusal, with the forward run's frames as they were. `rig` and `options` as of that
 /// run.
-Refinement refine(const Rig& rig, const EstimatorOptions& options, const ForwardRecord& record,
+Refinement refine(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record,
                   const RefinementOptions& wanted = {});
 
 }  // namespace lodeline

@@ -20,7 +20,7 @@ struct ForwardRun {
   EstimatorOptions options;
   Diagnostics diagnostics;
   Estimator estimator;
-  ForwardRecord record;
+  EstimatorLog record;
   std::vector<Comparison> comparisons;  // of the frames that have a pose
 
   using Tamper = std::function<void(double time_s, SimulatedFrame& frame)>;
@@ -79,8 +79,8 @@ TEST_P(RefineTest, LowersTheCostAndTheErrorAndStaysWithinItsSigmas) {
   ASSERT_TRUE(summary.usable()) << summary.refusal;
   EXPECT_TRUE(summary.converged);
   EXPECT_LT(summary.first_round_cost, summary.forward_cost);
-  // Whitened residuals of honest noise: two of each sighting, under a loss that makes them count for less.
-  const double worth = static_cast<double>(summary.sightings) / summary.sighting_variance;
+  // Whitened residuals of honest noise: two of each observation, under a loss that makes them count for less.
+  const double worth = static_cast<double>(summary.observations) / summary.observation_variance;
   EXPECT_NEAR(2.0 * summary.cost / (2.0 * worth), 0.7, 0.2);
   ASSERT_EQ(refinement.frames.size(), run.comparisons.size());
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, RefineTest, testing::Values(1, 2));
 Refinement refinedDive(int keyframes, double duration_s) {
   HeadingTrialOptions dive = exactDive(duration_s);
   dive.estimator.window.keyframes = keyframes;
-  ForwardRecord record(0.0);
+  EstimatorLog record(0.0);
   Rig rig;
   EstimatorOptions options;
   runTrialDive(dive,
@@ -176,7 +176,7 @@ TEST(Refine, CarriesOnThroughDarkness) {
 }
 
 // One camera that has waited for long knows its scale at once. What it believes of its first frame must be on
-// record before any of the frames that it started with is marginalised.
+// record before any of the frames that it started with is marginalized.
 TEST(Refine, StartsFromWhatWasBelievedBeforeAnyFrameWent) {
   const ForwardRun run(smallScene(1), 0.0, {}, [](EstimatorOptions& options) {
     options.window.startup_frames_mono = 2;
@@ -191,8 +191,8 @@ TEST(Refine, StartsFromWhatWasBelievedBeforeAnyFrameWent) {
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
 }
 
-// A landmark in the middle of sightings of which one strays would lose the others as well.
-TEST(Refine, LosesTheStrayingSightingsAlone) {
+// A landmark in the middle of observations of which one strays would lose the others as well.
+TEST(Refine, LosesTheStrayingObservationsAlone) {
   TestSceneOptions options = smallScene(2);
   options.points.outlier_share = 0.05;
   const ForwardRun run(options);
@@ -205,14 +205,14 @@ TEST(Refine, LeavesLensesAsTheRunFoundThem) {
     options.camera_calibration.trust_confirmed_files = false;  // or these, which are right, would be held
   });
   BatchProblem problem(run.scene.rig(), run.options, run.record);
-  SkylineMatrix hessian = problem.emptyMatrix();
+  BlockSkylineCholesky hessian = problem.emptyMatrix();
   Eigen::VectorXd gradient;
-  problem.linearise(&hessian, &gradient);
-  ASSERT_TRUE(hessian.factorise());
+  problem.linearize(&hessian, &gradient);
+  ASSERT_TRUE(hessian.factorize());
   problem.step(hessian.solve(-gradient));
-  const std::vector<GlobalState*> lenses = cameraStates(problem.window()).intrinsics;
+  const std::vector<ParameterBlock*> lenses = cameraStates(problem.window()).intrinsics;
   ASSERT_EQ(lenses.size(), 2u);
-  for (const GlobalState* lens : lenses) {
+  for (const ParameterBlock* lens : lenses) {
     const std::vector<double>& found = run.record.globals().at(lens->name);
     EXPECT_GT(std::abs(found[0]), 1e-5) << "the run has to find something";
     for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(lens->value[i], found[i], 1e-6) << lens->name;
@@ -247,7 +247,7 @@ TEST(Refine, GivesTheSameBytesAgain) {
               second.frames[i].state.world_from_body.translation);
 }
 
-TEST(Refine, RefusesWhatMostSightingsContradict) {
+TEST(Refine, RefusesWhatMostObservationsContradict) {
   const ForwardRun run(smallScene(2));
   RefinementOptions strict;
   strict.max_outlier_share = -1.0;  // any share is too much
@@ -258,7 +258,7 @@ TEST(Refine, RefusesWhatMostSightingsContradict) {
 }
 
 TEST(Refine, RefusesARecordWithoutPoses) {
-  const ForwardRecord record;
+  const EstimatorLog record;
   EXPECT_FALSE(refine(testRig(2), {}, record).summary.usable());
 }
 

@@ -6,8 +6,8 @@
 #include "lodeline/estimator/state/depth_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/state/magnetometer_states.h"
-#include "lodeline/estimator/uncertainty/claimed_covariance.h"
-#include "lodeline/estimator/uncertainty/unmodelled_errors.h"
+#include "lodeline/estimator/uncertainty/covariance_inflation.h"
+#include "lodeline/estimator/uncertainty/reported_covariance.h"
 
 namespace lodeline {
 namespace {
@@ -17,8 +17,8 @@ using Mat15 = Eigen::Matrix<double, 15, 15>;
 class FrameMaker {
  public:
   FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
-             const ForwardRecord& record, const SkylineMatrix* inverse)
-      : problem_(problem), rig_(rig), options_(options), record_(record), unmodelled_(options) {
+             const EstimatorLog& record, const BlockSkylineCholesky* inverse)
+      : problem_(problem), rig_(rig), options_(options), record_(record), covariance_inflation_(options) {
     for (size_t k = 0; inverse && k < problem.states(); ++k) {
       covariances_.push_back(problem.covarianceOf(k, *inverse));
       azimuths_.push_back(problem.azimuth(k, *inverse));
@@ -43,10 +43,10 @@ class FrameMaker {
     refined.accelerometer_axes = accelerometerAxes(problem_.window());
     describeMagnetometer(&refined);
     describeDepth(&refined);
-    unmodelled_.follow(refined.state.world_from_body, forward.scene_distance_m);
-    unmodelled_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
-                       refined.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
-                      &refined.covariance);
+    covariance_inflation_.follow(refined.state.world_from_body, forward.scene_distance_m);
+    covariance_inflation_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
+                                 refined.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
+                                &refined.covariance);
     addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
     refined.magnetometer.heading_sigma_rad =
         std::hypot(std::sqrt(refined.covariance(5, 5)), refined.magnetometer.declination_sigma_rad);
@@ -129,8 +129,8 @@ class FrameMaker {
   const BatchProblem& problem_;
   const Rig& rig_;
   const EstimatorOptions& options_;
-  const ForwardRecord& record_;
-  UnmodelledErrors unmodelled_;
+  const EstimatorLog& record_;
+  CovarianceInflation covariance_inflation_;
   std::vector<Mat15> covariances_;
   std::vector<AzimuthCovariance> azimuths_;
   size_t state_ = 0;  ///< the last one at or before the frame
@@ -139,8 +139,8 @@ class FrameMaker {
 }  // namespace
 
 std::vector<FrameEstimate> refinedFrames(const BatchProblem& problem, const Rig& rig,
-                                         const EstimatorOptions& options, const ForwardRecord& record,
-                                         const SkylineMatrix* inverse) {
+                                         const EstimatorOptions& options, const EstimatorLog& record,
+                                         const BlockSkylineCholesky* inverse) {
   FrameMaker maker(problem, rig, options, record, inverse);
   std::vector<FrameEstimate> frames;
   for (const FrameEstimate& forward : record.frames()) frames.push_back(maker.make(forward));

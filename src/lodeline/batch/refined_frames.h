@@ -11,7 +11,7 @@ namespace lodeline {
 /// out evenly over the time between. `inverse`: of the problem's system, for the covariances, which are nan
 /// where it is null and are interpolated between states.
 std::vector<FrameEstimate> refinedFrames(const BatchProblem& problem, const Rig& rig,
-                                         const EstimatorOptions& options, const ForwardRecord& record,
-                                         const SkylineMatrix* inverse);
+                                         const EstimatorOptions& options, const EstimatorLog& record,
+                                         const BlockSkylineCholesky* inverse);
 
 }  // namespace lodeline

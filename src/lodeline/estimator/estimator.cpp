@@ -13,7 +13,7 @@
 #include "lodeline/estimator/solver/window_update.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
-#include "lodeline/estimator/uncertainty/claimed_covariance.h"
+#include "lodeline/estimator/uncertainty/reported_covariance.h"
 #include "lodeline/estimator/visual/keyframe_policy.h"
 #include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/estimator/visual/landmarks.h"
@@ -57,7 +57,7 @@ void requireCovariance(FrameEstimate* estimate, Diagnostics* diagnostics) {
 
 /// The newest keyframe's landmarks then drop what the oldest saw of them, however long the window still is.
 WindowOptions withoutCut(WindowOptions window) {
-  window.keyframes_after_cut = std::numeric_limits<int>::max();
+  window.split_at_keyframe = std::numeric_limits<int>::max();
   return window;
 }
 
@@ -72,13 +72,13 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       mono_initializer_(rig_, options_, factors_),
       magnetometer_(rig_, options_, diagnostics),
       depth_(rig_, options_, diagnostics),
-      lens_trust_(options_.camera_calibration),
+      intrinsics_model_selection_(options_.camera_calibration),
       scale_(rig_, options_),
-      dormant_(options_.window.dormant_frames),
+      linearization_cache_(options_.window.frozen_frames),
       rest_(rig_, options_.rest),
       monitor_(std::make_unique<InertialMonitor>(options_, diagnostics)),
       known_(Eigen::Matrix<double, 15, 15>::Identity()),
-      unmodelled_(options_) {
+      covariance_inflation_(options_) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
 
@@ -92,39 +92,39 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   FrameEstimate estimate;
   estimate.time = tracks.time;
   checkOrder(tracks.time, imu);
-  const SightingList sightings = sightingsOf(tracks);
+  const ObservationList observations = observationsOf(tracks);
   const bool carries_on = initialized();
   magnetometer_.take(magnetometer, imu, carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero());
   depth_.take(depth);
   rests_ = rest_.add(tracks, imu);
-  if (carries_on) insertFrame(tracks.time, sightings, imu);
+  if (carries_on) insertFrame(tracks.time, observations, imu);
   if (carries_on && rests_) window_.newest().rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
   last_time_ = tracks.time;
   if (carries_on) {
     optimize(&estimate);
-  } else if (initialize(tracks, sightings, imu, &estimate)) {
+  } else if (initialize(tracks, observations, imu, &estimate)) {
     startMagnetometer();
     rememberCovariance(jointCovariance(window_, marginalizer_.prior(), factors_), &estimate);
   } else {
     return estimate;
   }
   report(tracks, &estimate);
-  dead_reckoning_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
-                         estimate.magnetometer.field_W.has_value(), &estimate.covariance);
+  inertial_covariance_propagation_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
+                                          estimate.magnetometer.field_W.has_value(), &estimate.covariance);
   requireCovariance(&estimate, diagnostics_);
   reportImplausibleBias(estimate, options_, diagnostics_);
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);
   ++frames_since_start_;
-  startAgainAfterDarkness(estimate);
+  reinitializeAfterVisionLoss(estimate);
   // Not at the start: whoever records it needs the prior of the first frame as it was.
-  if (carries_on) shortenWindow(estimate);
-  if (is_settled_ && !starting_up_) dormant_.putToSleep(window_, factors_);
-  unmodelled_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
-  unmodelled_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
-                     estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
-                    &estimate.covariance);
+  if (carries_on) marginalizeWindow(estimate);
+  if (is_settled_ && !starting_up_) linearization_cache_.freeze(window_, factors_);
+  covariance_inflation_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
+  covariance_inflation_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
+                               estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
+                              &estimate.covariance);
   monitor_->addTo(estimate.state.world_from_body.translation, &estimate.covariance);
   addHeadingError(estimate.magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
   estimate.magnetometer.heading_sigma_rad =
@@ -152,7 +152,7 @@ void Estimator::checkOrder(Time time, std::span<const ImuSample> imu) const {
   }
 }
 
-void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
+void Estimator::reinitializeAfterVisionLoss(const FrameEstimate& estimate) {
   constexpr double kDarkness_s = 1.0;
   if (estimate.status == Status::Inertial) {
     blind_since_ = blind_since_.value_or(estimate.time);
@@ -161,8 +161,8 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
   const bool was_dark = blind_since_ && (estimate.time - *blind_since_).seconds() > kDarkness_s;
   blind_since_.reset();
   if (!was_dark) return;
-  // The first estimates are those of dead reckoning, which images now move by more than the rig does.
-  marginalizer_.relinearise(window_);
+  // The linearization points are those of dead reckoning, which images now move by more than the rig does.
+  marginalizer_.resetLinearizationPoints(window_);
   if (scale_is_given_) return;
   resetRobustLosses(window_);
   is_settled_ = false;
@@ -170,22 +170,22 @@ void Estimator::startAgainAfterDarkness(const FrameEstimate& estimate) {
   frames_since_start_ = 0;
 }
 
-void Estimator::shortenWindow(const FrameEstimate& estimate) {
+void Estimator::marginalizeWindow(const FrameEstimate& estimate) {
   const bool was_starting_up = starting_up_, was_settled = is_settled_;
   is_settled_ = is_settled_ || isSettled(estimate.covariance);
   frames_since_settled_ = was_settled ? frames_since_settled_ + 1 : 0;
   if (!was_settled) settled_at_ = estimate.time;
-  // What is marginalised keeps the lens that it has then.
-  if (is_settled_) freeLenses();
+  // What is marginalized keeps the lens that it has then.
+  if (is_settled_) freeIntrinsics();
   starting_up_ = starting_up_ &&
                  (is_settled_ ? lossesAdapt() : frames_since_start_ < options_.window.startup_max_frames);
   if (starting_up_) return;
-  if (was_starting_up || !was_settled) marginalizer_.relinearise(window_);
+  if (was_starting_up || !was_settled) marginalizer_.resetLinearizationPoints(window_);
   if (estimate.status == Status::Inertial)
     keepLastView(window_, options_.window.recent_frames, options_.min_landmarks_for_vision);
-  marginalizer_.shorten(window_,
-                        isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
-  if (!is_settled_) marginalizer_.relinearise(window_);
+  marginalizer_.marginalizeToSize(
+      window_, isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
+  if (!is_settled_) marginalizer_.resetLinearizationPoints(window_);
 }
 
 bool Estimator::isWorthKeeping(Time now) const {
@@ -198,10 +198,10 @@ bool Estimator::lossesAdapt() const {
   return !scale_is_given_ && frames_since_settled_ < kFramesToAdapt;
 }
 
-void Estimator::freeLenses() {
+void Estimator::freeIntrinsics() {
   if (!options_.camera_calibration.intrinsics || !cameraStates(window_).intrinsics.empty()) return;
   Prior prior = marginalizer_.prior();
-  addLensStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
+  addIntrinsicsStates(window_, prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration);
   marginalizer_.start(std::move(prior));
 }
 
@@ -216,31 +216,31 @@ bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const
   return sigma < window.startup_scale_sigma;
 }
 
-SightingList Estimator::sightingsOf(const FrameTracks& tracks) const {
-  SightingList sightings;
-  for (const Observation& observation : tracks.observations) {
-    Sighting sighting;
-    sighting.frame = next_frame_id_;
-    sighting.camera = observation.camera;
-    sighting.measurement = DirectionMeasurement::fromBearing(*cameras_[observation.camera],
-                                                             observation.bearing_C, observation.sigma_px);
-    sightings.emplace_back(observation.track, sighting);
+ObservationList Estimator::observationsOf(const FrameTracks& tracks) const {
+  ObservationList observations;
+  for (const FeatureObservation& observation : tracks.observations) {
+    Observation observation;
+    observation.frame = next_frame_id_;
+    observation.camera = observation.camera;
+    observation.measurement = DirectionMeasurement::fromBearing(*cameras_[observation.camera],
+                                                                observation.bearing_C, observation.sigma_px);
+    observations.emplace_back(observation.track, observation);
   }
-  return sightings;
+  return observations;
 }
 
-bool Estimator::initialize(const FrameTracks& tracks, const SightingList& sightings,
+bool Estimator::initialize(const FrameTracks& tracks, const ObservationList& observations,
                            std::span<const ImuSample> imu, FrameEstimate* estimate) {
   camera_rotations_ = tracks.camera_rotations;
   imu_before_start_.insert(imu_before_start_.end(),
                            imu.begin() + (imu_before_start_.empty() || imu.empty() ? 0 : 1), imu.end());
   const Duration longest = Duration::fromSeconds(options_.initial_state.alignment_window_s);
   std::erase_if(imu_before_start_, [&](const ImuSample& s) { return s.time < tracks.time - longest; });
-  const auto stereo_matches = std::count_if(sightings.begin(), sightings.end(),
+  const auto stereo_matches = std::count_if(observations.begin(), observations.end(),
                                             [](const auto& entry) { return entry.second.camera > 0; });
   scale_is_given_ = stereo_matches >= options_.initial_state.min_stereo_tracks;
-  if (scale_is_given_) return startAtOnce(tracks.time, sightings, estimate);
-  if (startMonocular(tracks.time, sightings, imu)) return true;
+  if (scale_is_given_) return startAtOnce(tracks.time, observations, estimate);
+  if (startMonocular(tracks.time, observations, imu)) return true;
   estimate->waiting_for = mono_initializer_.waitingFor();
   if (rig_.cameras.size() > 1) {
     estimate->waiting_for = fmt::format("stereo matches {} of {}, or {}", stereo_matches,
@@ -255,9 +255,9 @@ void Estimator::addCalibration(Prior* prior) {
   addInertialStates(window_, options_.imu_axes);
 }
 
-bool Estimator::startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu) {
-  std::erase_if(sightings, [](const auto& entry) { return entry.second.camera > 0; });
-  if (!mono_initializer_.add(time, sightings, imu, next_frame_id_++, {rests_, rest_.gyroscope()}))
+bool Estimator::startMonocular(Time time, ObservationList observations, std::span<const ImuSample> imu) {
+  std::erase_if(observations, [](const auto& entry) { return entry.second.camera > 0; });
+  if (!mono_initializer_.add(time, observations, imu, next_frame_id_++, {rests_, rest_.gyroscope()}))
     return false;
   window_ = mono_initializer_.takeWindow();
   Prior prior = mono_initializer_.takePrior();
@@ -267,7 +267,7 @@ bool Estimator::startMonocular(Time time, SightingList sightings, std::span<cons
   return true;
 }
 
-bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate) {
+bool Estimator::startAtOnce(Time time, const ObservationList& observations, FrameEstimate* estimate) {
   if (imu_before_start_.empty()) {
     estimate->waiting_for = "inertial readings";
     return false;
@@ -288,7 +288,7 @@ bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstim
   frame->setState(state);
   frame->gyroscope_B = imu_before_start_.back().angular_velocity_B;
   Frame& first = window_.add(std::move(frame));
-  for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+  for (const auto& [track, observation] : observations) window_.addObservation(track, observation);
   Prior prior = startPrior(first, options_.initial_state, up.tilt_sigma_rad);
   tieTiltToAccelerometerBias(first, options_.gravity_W.norm(), &prior);
   addCalibration(&prior);
@@ -296,7 +296,7 @@ bool Estimator::startAtOnce(Time time, const SightingList& sightings, FrameEstim
   return true;
 }
 
-void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu) {
+void Estimator::insertFrame(Time time, const ObservationList& observations, std::span<const ImuSample> imu) {
   const NavigationState before = window_.newest().state();
   auto frame = std::make_unique<Frame>();
   frame->id = next_frame_id_++;
@@ -306,7 +306,7 @@ void Estimator::insertFrame(Time time, const SightingList& sightings, std::span<
   frame->time = time;
   frame->gyroscope_B = imu.back().angular_velocity_B;
   window_.add(std::move(frame));
-  for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+  for (const auto& [track, observation] : observations) window_.addObservation(track, observation);
   monitor_->check(window_, factors_, known_);
   magnetometer_.addToNewest(window_, marginalizer_);
   depth_.addToNewest(window_, marginalizer_);
@@ -329,31 +329,31 @@ void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* es
             "sensor?",
             estimate->time.nanoseconds()));
   }
-  known_ = estimate->covariance = claimedCovariance(covariance, window_, options_, factors_);
-  lens_trust_.remember(covariance, window_);
+  known_ = estimate->covariance = reportedCovariance(covariance, window_, options_, factors_);
+  intrinsics_model_selection_.remember(covariance, window_);
   depth_.remember(covariance, window_);
   magnetometer_.remember(std::move(covariance));
   magnetometer_.relateToNorth(window_, &estimate->covariance);
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
-  dormant_.wakeIfDue(window_);
-  WindowUpdate update =
-      updateWindow(window_, marginalizer_.prior(), factors_,
-                   {options_.solver.max_iterations, options_.solver.function_tolerance}, dormant_);
+  linearization_cache_.invalidateIfStale(window_);
+  WindowUpdate update = updateWindow(window_, marginalizer_.prior(), factors_,
+                                     {options_.solver.max_iterations, options_.solver.function_tolerance},
+                                     linearization_cache_);
   const SolveSummary summary = update.summary;
   rememberCovariance(std::move(update.covariance), estimate);
   estimate->solver_iterations = summary.iterations;
   if (!summary.usable) {
     diagnostics_->report(
         Severity::Serious, "solver_failed",
-        fmt::format("the window's optimisation failed at {} ns; the frame keeps its inertial "
+        fmt::format("the window's optimization failed at {} ns; the frame keeps its inertial "
                     "prediction",
                     estimate->time.nanoseconds()));
   }
-  std::vector<SightingError> errors;
+  std::vector<ObservationError> errors;
   removeOutliers(window_, update.errors_sigmas, options_.landmark, &errors);
-  errors.insert(errors.end(), dormant_.errors().begin(), dormant_.errors().end());
+  errors.insert(errors.end(), linearization_cache_.errors().begin(), linearization_cache_.errors().end());
   // As long as the scale is unknown, small errors do not mean that the poses are right.
   if (is_settled_ || scale_is_given_) adaptRobustLosses(window_, errors, options_.solver);
 }
@@ -372,7 +372,8 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->landmarks = statistics.landmarks;
   estimate->scene_distance_m = meanLandmarkDistance_m(window_, newest.id, 0);
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;
-  for (const Observation& observation : tracks.observations) estimate->tracks += observation.camera == 0;
+  for (const FeatureObservation& observation : tracks.observations)
+    estimate->tracks += observation.camera == 0;
   const bool first = window_.frames().size() == 1;
   const bool sees = first || statistics.landmarks >= options_.min_landmarks_for_vision;
   estimate->status = !sees ? Status::Inertial : monitor_->isAlarmed() ? Status::Degraded : Status::Tracking;

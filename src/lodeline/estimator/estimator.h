@@ -9,16 +9,16 @@
 #include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/pressure/depth_fusion.h"
-#include "lodeline/estimator/problem/factor_list.h"
-#include "lodeline/estimator/self_calibration/lens_trust.h"
+#include "lodeline/estimator/problem/factor_builder.h"
+#include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/solver/marginalizer.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/window.h"
-#include "lodeline/estimator/uncertainty/dead_reckoning.h"
-#include "lodeline/estimator/uncertainty/scale_budget.h"
-#include "lodeline/estimator/uncertainty/unmodelled_errors.h"
-#include "lodeline/estimator/visual/dormant_landmarks.h"
-#include "lodeline/estimator/zero_velocity/rest_watch.h"
+#include "lodeline/estimator/uncertainty/covariance_inflation.h"
+#include "lodeline/estimator/uncertainty/inertial_covariance_propagation.h"
+#include "lodeline/estimator/uncertainty/scale_observability.h"
+#include "lodeline/estimator/visual/landmark_linearization_cache.h"
+#include "lodeline/estimator/zero_velocity/stationary_detector.h"
 #include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
@@ -26,7 +26,7 @@ namespace lodeline {
 class InertialMonitor;
 
 enum class Status {
-  Waiting,   ///< not initialised; no pose
+  Waiting,   ///< not initialized; no pose
   Tracking,  ///< images and inertial readings
   /// The same, but these contradict each other (InertialMonitor): carried on by what is more plausible, with
   /// wider uncertainty.
@@ -89,26 +89,26 @@ class Estimator {
 
  private:
   void checkOrder(Time time, std::span<const ImuSample> imu) const;
-  SightingList sightingsOf(const FrameTracks& tracks) const;
-  bool initialize(const FrameTracks& tracks, const SightingList& sightings, std::span<const ImuSample> imu,
-                  FrameEstimate* estimate);
-  bool startMonocular(Time time, SightingList sightings, std::span<const ImuSample> imu);
-  bool startAtOnce(Time time, const SightingList& sightings, FrameEstimate* estimate);
+  ObservationList observationsOf(const FrameTracks& tracks) const;
+  bool initialize(const FrameTracks& tracks, const ObservationList& observations,
+                  std::span<const ImuSample> imu, FrameEstimate* estimate);
+  bool startMonocular(Time time, ObservationList observations, std::span<const ImuSample> imu);
+  bool startAtOnce(Time time, const ObservationList& observations, FrameEstimate* estimate);
   /// The states of the calibration, for a window that starts.
   void addCalibration(Prior* prior);
-  void insertFrame(Time time, const SightingList& sightings, std::span<const ImuSample> imu);
+  void insertFrame(Time time, const ObservationList& observations, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
   /// After darkness one camera is at a start again: the scale of what it now sees hangs on the speed that
-  /// dead reckoning left, and must not be frozen while that is known badly. Any rig's window is linearised
+  /// dead reckoning left, and must not be frozen while that is known badly. Any rig's window is linearized
   /// anew.
-  void startAgainAfterDarkness(const FrameEstimate& estimate);
-  /// Marginalises what the window has no room for, once it is not starting up any more. Unless it is settled,
-  /// that freezes no first estimate.
-  void shortenWindow(const FrameEstimate& estimate);
-  /// Whether the window may begin to be marginalised for good.
+  void reinitializeAfterVisionLoss(const FrameEstimate& estimate);
+  /// Marginalizes what the window has no room for, once it is not starting up any more. Unless it is settled,
+  /// that freezes no linearization point.
+  void marginalizeWindow(const FrameEstimate& estimate);
+  /// Whether the window may begin to be marginalized for good.
   bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
   /// Lets the lenses, which are held at first, be estimated.
-  void freeLenses();
+  void freeIntrinsics();
   /// Whether what landmarks were seen by is to be kept for good when they outlive the window: not while the
   /// scale is unknown, nor in the first seconds of two cameras, which tell lenses that are off by images that
   /// then count as outliers. One camera's start tells its speed and biases, which are worth more.
@@ -124,29 +124,29 @@ class Estimator {
   std::vector<std::shared_ptr<const Camera>> cameras_;
   EstimatorOptions options_;
   Diagnostics* diagnostics_;
-  FactorMaker factors_;
+  FactorBuilder factors_;
   Marginalizer marginalizer_;
   MonoInitializer mono_initializer_;
   std::vector<Vec3>
       camera_rotations_;  ///< FrameTracks::camera_rotations of the newest frame before the start
   MagnetometerFusion magnetometer_;
   DepthFusion depth_;
-  LensTrust lens_trust_;
-  ScaleBudget scale_;
-  DormantLandmarks dormant_;
-  RestWatch rest_;
+  IntrinsicsModelSelection intrinsics_model_selection_;
+  ScaleObservability scale_;
+  LandmarkLinearizationCache linearization_cache_;
+  StationaryDetector rest_;
   std::unique_ptr<InertialMonitor> monitor_;
   Eigen::Matrix<double, 15, 15> known_;  ///< of the newest frame, before doubts that no state stands for
   bool rests_ = false;                   ///< at the newest frame
-  DeadReckoning dead_reckoning_;
-  UnmodelledErrors unmodelled_;
+  InertialCovariancePropagation inertial_covariance_propagation_;
+  CovarianceInflation covariance_inflation_;
   Window window_;
   std::vector<ImuSample> imu_before_start_;
   std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
   int frames_since_start_ = 0;
-  bool starting_up_ = true;  ///< nothing is marginalised
-  bool is_settled_ = false;  ///< the scale is known: first estimates are kept
+  bool starting_up_ = true;  ///< nothing is marginalized
+  bool is_settled_ = false;  ///< the scale is known: linearization points are kept
   int frames_since_settled_ = 0;
   Time settled_at_;
   bool scale_is_given_ = false;      ///< by a stereo start

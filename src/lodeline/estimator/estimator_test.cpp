@@ -36,7 +36,7 @@ void expectWithinItsSigmas(const Comparison& c) {
         << "at " << c.time_s << " s";
 }
 
-void removeObservations(SimulatedFrame& frame, const std::function<bool(const Observation&)>& which) {
+void removeObservations(SimulatedFrame& frame, const std::function<bool(const FeatureObservation&)>& which) {
   std::erase_if(frame.tracks.observations, which);
 }
 
@@ -223,7 +223,7 @@ TEST_F(EstimatorSceneTest, BridgesAGapInTheInertialReadings) {
 TEST_F(EstimatorSceneTest, DoesWithoutTheRightCameraForAWhile) {
   const auto comparisons = run(smallScene(2, 12.0), [](double time_s, SimulatedFrame& frame) {
     if (time_s > 4.0 && time_s < 9.0)
-      removeObservations(frame, [](const Observation& o) { return o.camera == 1; });
+      removeObservations(frame, [](const FeatureObservation& o) { return o.camera == 1; });
   });
   for (const Comparison& c : comparisons) {
     EXPECT_EQ(c.estimate.status, Status::Tracking);
@@ -234,7 +234,7 @@ TEST_F(EstimatorSceneTest, DoesWithoutTheRightCameraForAWhile) {
 
 TEST_F(EstimatorSceneTest, StartsWithOneCameraWhereTheOtherIsMissing) {
   const auto comparisons = run(smallScene(2, 10.0), [](double, SimulatedFrame& frame) {
-    removeObservations(frame, [](const Observation& o) { return o.camera == 1; });
+    removeObservations(frame, [](const FeatureObservation& o) { return o.camera == 1; });
   });
   EXPECT_THAT(comparisons.front().estimate.waiting_for, testing::HasSubstr("stereo matches 0 of 20"));
   ASSERT_TRUE(comparisons.back().initialized());
@@ -256,7 +256,7 @@ TEST_F(EstimatorSceneTest, SurvivesAFrameOfOutliersOnly) {
   Random random(4, "outliers");
   const auto comparisons = run(smallScene(2, 10.0), [&](double time_s, SimulatedFrame& frame) {
     if (std::abs(time_s - 5.0) > 0.01) return;
-    for (Observation& o : frame.tracks.observations) {
+    for (FeatureObservation& o : frame.tracks.observations) {
       o.bearing_C = Vec3(random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), 1.0).normalized();
     }
   });
@@ -275,7 +275,7 @@ TEST_F(EstimatorSceneTest, BearsATenthOfOutliersAndTracksThatFlicker) {
   options.points.tracks = 100;
   options.points.outlier_share = 0.1;
   const auto comparisons = run(options, [&](double, SimulatedFrame& frame) {
-    removeObservations(frame, [&](const Observation&) { return random.chance(0.3); });
+    removeObservations(frame, [&](const FeatureObservation&) { return random.chance(0.3); });
   });
   for (const Comparison& c : comparisons) EXPECT_LT(c.positionError(), 0.15) << "at " << c.time_s << " s";
   EXPECT_EQ(comparisons.back().estimate.status, Status::Tracking);

@@ -76,12 +76,12 @@ TEST_P(HardScene, TwentyTracksAreEnough) {
   run([](double time_s, SimulatedFrame& frame) {
     if (time_s < kTrouble_s) return;
     std::vector<TrackId> seen;
-    for (const Observation& o : frame.tracks.observations) {
+    for (const FeatureObservation& o : frame.tracks.observations) {
       if (o.camera == 0) seen.push_back(o.track);
     }
     if (seen.size() <= 20) return;
     std::sort(seen.begin(), seen.end());
-    std::erase_if(frame.tracks.observations, [&](const Observation& o) { return o.track > seen[19]; });
+    std::erase_if(frame.tracks.observations, [&](const FeatureObservation& o) { return o.track > seen[19]; });
   });
   // With one camera new points need some way before they count; a moment without eight of them may pass.
   const auto blind = std::count_if(frames_.begin(), frames_.end(), [](const Comparison& c) {
@@ -120,12 +120,12 @@ TEST_P(HardScene, FortyOfAHundredFramesMissing) {
   EXPECT_LT(largestErrorSince(kTrouble_s), 0.2);
 }
 
-// An exposure jump: nothing is recognised from one image to the next, three times.
+// An exposure jump: nothing is recognized from one image to the next, three times.
 TEST_P(HardScene, AllTracksLostAtOnce) {
   constexpr TrackId kApart = 1'000'000;
   run([](double time_s, SimulatedFrame& frame) {
     const int jumps = (time_s > 6.0) + (time_s > 7.5) + (time_s > 9.0);
-    for (Observation& o : frame.tracks.observations) o.track += jumps * kApart;
+    for (FeatureObservation& o : frame.tracks.observations) o.track += jumps * kApart;
   });
   for (const double jump_s : {6.0, 7.5, 9.0}) expectTracking(jump_s + 1.0, jump_s + 1.4);
   expectTracking(10.0);
@@ -142,7 +142,7 @@ TEST_P(HardScene, SomethingMovesThroughTheView) {
     if (!fish && !hand) return;
     const double angle_rad = 0.1 * (time_s - (fish ? 6.0 : 10.0));
     const Quat turn = so3::exp(Vec3(0.3 * angle_rad, angle_rad, 0.0));
-    for (Observation& o : frame.tracks.observations) {
+    for (FeatureObservation& o : frame.tracks.observations) {
       if (o.track % (fish ? 4 : 2) == 0) o.bearing_C = turn * o.bearing_C;
     }
   });
@@ -153,7 +153,7 @@ TEST_P(HardScene, SomethingMovesThroughTheView) {
 
 // Where dead reckoning went wrong is known as soon as images tell the speed again: it is off by what it went
 // wrong by, and positions follow.
-TEST_P(HardScene, DeadReckoningIsMadeGoodWhenImagesReturn) {
+TEST_P(HardScene, InertialCovariancePropagationIsMadeGoodWhenImagesReturn) {
   constexpr double kLight_s = 26.0;
   options_.duration_s = 30.0;
   run([](double time_s, SimulatedFrame& frame) {
@@ -182,9 +182,10 @@ TEST(HardSceneOfTwoCameras, DarknessAfterRestLeavesWhatRestTold) {
       if (scene.secondsOf(frame->truth.time) > 3.0) frame->tracks.observations.clear();
       const Comparison c = estimator.add(*frame);
       ASSERT_TRUE(c.initialized());
-      const double claimed_yaw_rad = std::sqrt(c.estimate.covariance(5, 5));
-      EXPECT_LT(claimed_yaw_rad, 0.02) << "seed " << seed << " at " << c.time_s << " s";
-      EXPECT_LT(std::abs(c.error[5]), 4.0 * claimed_yaw_rad) << "seed " << seed << " at " << c.time_s << " s";
+      const double reported_yaw_rad = std::sqrt(c.estimate.covariance(5, 5));
+      EXPECT_LT(reported_yaw_rad, 0.02) << "seed " << seed << " at " << c.time_s << " s";
+      EXPECT_LT(std::abs(c.error[5]), 4.0 * reported_yaw_rad)
+          << "seed " << seed << " at " << c.time_s << " s";
     }
   }
 }
@@ -219,7 +220,7 @@ class ChanceMatches {
     for (int camera = 0; camera < static_cast<int>(rig_.cameras.size()); ++camera) {
       const Rigid3 other_from_camera =
           rig_.cameras[camera].body_from_camera.inverse() * rig_.cameras[0].body_from_camera;
-      Observation observation;
+      FeatureObservation observation;
       observation.track = match.track;
       observation.camera = camera;
       const double focal_px = rig_.cameras[camera].fx_px;

@@ -46,10 +46,10 @@ Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* 
     : imu_(rig.imu),
       front_end_(rig, frontEndOptions(rig, options)),
       estimator_(rig, options.estimator, diagnostics),
-      fixed_structure_reported_(rig.cameras.size(), false),
+      static_image_mask_reported_(rig.cameras.size(), false),
       turn_reported_(rig.cameras.size() - 1, false),
-      baseline_watch_(rig),
-      stereo_watch_(rig, diagnostics),
+      baseline_monitor_(rig),
+      stereo_monitor_(rig, diagnostics),
       diagnostics_(diagnostics) {}
 
 FrameEstimate Odometry::add(const FramePacket& packet) {
@@ -57,15 +57,15 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   const Quat by_gyroscope = previousFromCurrent(packet);
   const Quat steady = steadilyTurning(packet, by_gyroscope);
   const bool is_doubted = estimator_.isGyroscopeDoubted();
-  const std::vector<cv::Mat> images = stereo_watch_.arrange(packet);
+  const std::vector<cv::Mat> images = stereo_monitor_.arrange(packet);
   tracks_ = front_end_.process(packet.time, images, is_doubted ? steady : by_gyroscope,
                                is_doubted ? by_gyroscope : steady, motion(packet));
-  if (stereo_watch_.judge(packet, images, tracks_)) {
+  if (stereo_monitor_.judge(packet, images, tracks_)) {
     front_end_.forgetTracks();
     tracks_ = FrameTracks{packet.time};
   }
   lookForDelays(packet);
-  reportFixedStructure(packet.time);
+  reportStaticImageMask(packet.time);
   reportTurnedCameras();
   const double tracked_s = threadSeconds();
   const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
@@ -73,7 +73,7 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   times_.estimator_s += threadSeconds() - tracked_s;
   if (estimate.status != Status::Waiting) follow(estimate.state);
   if (estimate.camera_corrections)
-    baseline_watch_.add(packet.time, *estimate.camera_corrections, diagnostics_);
+    baseline_monitor_.add(packet.time, *estimate.camera_corrections, diagnostics_);
   first_ = false;
   return estimate;
 }
@@ -92,14 +92,14 @@ Quat Odometry::steadilyTurning(const FramePacket& packet, const Quat& by_gyrosco
   return so3::exp((packet.time - packet.imu.front().time).seconds() * rate_B_);
 }
 
-void Odometry::reportFixedStructure(Time time) {
-  constexpr double kWorthSaying = 0.005;  // less is a speck, left out all the same
-  for (size_t i = 0; i < fixed_structure_reported_.size(); ++i) {
+void Odometry::reportStaticImageMask(Time time) {
+  constexpr double kWorthSaying = 0.005;  // less is a particle, left out all the same
+  for (size_t i = 0; i < static_image_mask_reported_.size(); ++i) {
     const double share = front_end_.fixedStructures()[i].share();
-    if (share < kWorthSaying || fixed_structure_reported_[i]) continue;
-    fixed_structure_reported_[i] = true;
+    if (share < kWorthSaying || static_image_mask_reported_[i]) continue;
+    static_image_mask_reported_[i] = true;
     diagnostics_->report(
-        Severity::Notice, "fixed_structure",
+        Severity::Notice, "static_image_mask",
         fmt::format(
             "camera '{}': {:.1f} % of the image stays the same at {} ns while the rig turns and moves: "
             "parts of the rig, a hood, dirt on the port or characters in the picture; left out from "

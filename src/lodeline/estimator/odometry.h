@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "lodeline/estimator/estimator.h"
-#include "lodeline/estimator/monitoring/stereo_watch.h"
-#include "lodeline/estimator/self_calibration/baseline_watch.h"
+#include "lodeline/estimator/monitoring/stereo_monitor.h"
+#include "lodeline/estimator/self_calibration/baseline_monitor.h"
 #include "lodeline/frontend/front_end.h"
 #include "lodeline/io/synchronizer/frame_packet.h"
 
@@ -29,7 +29,7 @@ struct StageTimes {
   double estimator_s = 0.0;
 };
 
-/// A further camera that turns out to take its images later than their stamps say.
+/// A secondary camera that turns out to take its images later than their stamps say.
 struct FoundDelay {
   size_t camera = 0;
   double delay_s = 0.0;
@@ -41,7 +41,7 @@ class Odometry {
   /// `diagnostics` must outlive the odometry.
   Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics);
 
-  /// Adds one packet of the synchroniser; packets must come in order.
+  /// Adds one packet of the synchronizer; packets must come in order.
   FrameEstimate add(const FramePacket& packet);
 
   /// A delay found since the last call, to be taken into account by whoever makes the packets
@@ -49,7 +49,7 @@ class Odometry {
   std::optional<FoundDelay> takeDelay() { return std::exchange(found_delay_, std::nullopt); }
 
   /// Reports what can only be said of the whole run.
-  void finish() { stereo_watch_.finish(); }
+  void finish() { stereo_monitor_.finish(); }
 
   Estimator& estimator() { return estimator_; }
   const Estimator& estimator() const { return estimator_; }
@@ -68,7 +68,7 @@ class Odometry {
   Quat steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const;
   void follow(const NavigationState& state);
   /// Of each camera once.
-  void reportFixedStructure(Time time);
+  void reportStaticImageMask(Time time);
   void reportTurnedCameras();
   void lookForDelays(const FramePacket& packet);
 
@@ -81,10 +81,10 @@ class Odometry {
   std::optional<NavigationState> predicted_;  ///< at the packet's time
   Vec3 rate_B_ = Vec3::Zero();                ///< that led to newest_, rad/s
   bool first_ = true;
-  std::vector<bool> fixed_structure_reported_;
+  std::vector<bool> static_image_mask_reported_;
   std::vector<bool> turn_reported_;  ///< of camera 1, 2, ...
-  BaselineWatch baseline_watch_;
-  StereoWatch stereo_watch_;
+  BaselineMonitor baseline_monitor_;
+  StereoMonitor stereo_monitor_;
   std::optional<FoundDelay> found_delay_;
   int frames_ = 0;
   Diagnostics* diagnostics_;

@@ -11,7 +11,7 @@ enum Block { kHost, kTarget, kPoint, kCamera0, kTimeOffset, kTargetCamera };
 template <int Cols>
 using RowMajor2 = Eigen::Matrix<double, 2, Cols, Eigen::RowMajor>;
 
-/// d(q) / d[phi, xi] of a further camera, for the homogeneous point q_0 in camera 0.
+/// d(q) / d[phi, xi] of a secondary camera, for the homogeneous point q_0 in camera 0.
 Eigen::Matrix<double, 3, 6> byFurtherExtrinsics(const Rigid3& camera0_from_target, const double* correction,
                                                 const Vec3& point_C0, double rho) {
   const Mat3 target_rotation = camera0_from_target.rotation.toRotationMatrix().transpose();
@@ -75,18 +75,16 @@ struct CalibratedReprojectionFactor::Chain {
   }
 };
 
-CalibratedReprojectionFactor::CalibratedReprojectionFactor(const DirectionMeasurement& measurement,
-                                                           const LandmarkBase& base,
-                                                           const CameraPlacement& placement,
-                                                           const ImageMotion& host_motion,
-                                                           const ImageMotion& target_motion,
-                                                           const CalibratedFirstEstimates& first_estimates)
+CalibratedReprojectionFactor::CalibratedReprojectionFactor(
+    const DirectionMeasurement& measurement, const LandmarkBase& base, const CameraPlacement& placement,
+    const ImageMotion& host_motion, const ImageMotion& target_motion,
+    const CalibratedLinearizationPoints& linearization_points)
     : measurement_(measurement),
       base_(base),
       placement_(placement),
       host_motion_(host_motion),
       target_motion_(target_motion),
-      first_estimates_(first_estimates) {
+      linearization_points_(linearization_points) {
   set_num_residuals(2);
   *mutable_parameter_block_sizes() = {kPoseSize, kPoseSize, kLandmarkSize, kExtrinsicsSize, kTimeOffsetSize};
   if (placement_.camera0_from_target) mutable_parameter_block_sizes()->push_back(kExtrinsicsSize);
@@ -100,7 +98,7 @@ bool CalibratedReprojectionFactor::Evaluate(double const* const* parameters, dou
   residual = directionResidual(measurement_, chain.point_C, jacobians ? &by_point : nullptr);
   if (!jacobians) return true;
 
-  const CalibratedFirstEstimates& first = first_estimates_;
+  const CalibratedLinearizationPoints& first = linearization_points_;
   if (first.host || first.target || first.camera0 || first.time_offset || first.target_camera) {
     const double* at[] = {first.host ? first.host : parameters[kHost],
                           first.target ? first.target : parameters[kTarget],
@@ -156,11 +154,11 @@ bool CalibratedReprojectionFactor::Evaluate(double const* const* parameters, dou
 
 CalibratedStereoFactor::CalibratedStereoFactor(const DirectionMeasurement& measurement,
                                                const LandmarkBase& base, const Rigid3& camera0_from_target,
-                                               const double* first_estimate)
+                                               const double* linearization_point)
     : measurement_(measurement),
       base_(base),
       camera0_from_target_(camera0_from_target),
-      first_estimate_(first_estimate) {}
+      linearization_point_(linearization_point) {}
 
 bool CalibratedStereoFactor::Evaluate(double const* const* parameters, double* residuals,
                                       double** jacobians) const {
@@ -177,8 +175,8 @@ bool CalibratedStereoFactor::Evaluate(double const* const* parameters, double* r
   Eigen::Map<Vec2> residual(residuals);
   residual = directionResidual(measurement_, seen(camera0_from_target), jacobians ? &by_point : nullptr);
   if (!jacobians) return true;
-  if (first_estimate_) {
-    correction = first_estimate_;
+  if (linearization_point_) {
+    correction = linearization_point_;
     camera0_from_target = correctedExtrinsics(camera0_from_target_, correction);
     directionResidual(measurement_, seen(camera0_from_target), &by_point);
   }

@@ -12,10 +12,10 @@ namespace lodeline {
 // Parameter blocks of the camera calibration that the window estimates, all zero where the calibration files
 // are right:
 //   extrinsics of camera 0          [phi, xi] (rad, m), body axes
-//   extrinsics of a further camera  [phi, xi] (rad, m), axes of camera 0
+//   extrinsics of a secondary camera  [phi, xi] (rad, m), axes of camera 0
 //   time offset                     dt (s), the images' stamps + dt = IMU clock
-// Each further camera is placed relative to camera 0, since a stereo calibration knows the cameras' places to
-// each other far better than to the IMU.
+// Each secondary camera is placed relative to camera 0, since a stereo calibration knows the cameras' places
+// to each other far better than to the IMU.
 
 constexpr int kExtrinsicsSize = 6;  ///< [phi, xi]
 constexpr int kTimeOffsetSize = 1;
@@ -39,7 +39,7 @@ struct CameraPlacement {
 };
 
 /// Where the Jacobian is taken; null: at the current value (factors/parameters.h).
-struct CalibratedFirstEstimates {
+struct CalibratedLinearizationPoints {
   const double* host = nullptr;
   const double* target = nullptr;
   const double* camera0 = nullptr;
@@ -61,7 +61,7 @@ class CalibratedReprojectionFactor final : public ceres::CostFunction {
   CalibratedReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
                                const CameraPlacement& placement, const ImageMotion& host_motion,
                                const ImageMotion& target_motion,
-                               const CalibratedFirstEstimates& first_estimates = {});
+                               const CalibratedLinearizationPoints& linearization_points = {});
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
@@ -71,16 +71,16 @@ class CalibratedReprojectionFactor final : public ceres::CostFunction {
   LandmarkBase base_;
   CameraPlacement placement_;
   ImageMotion host_motion_, target_motion_;
-  CalibratedFirstEstimates first_estimates_;
+  CalibratedLinearizationPoints linearization_points_;
 };
 
 /// The same in the host frame itself, by a camera beside the host camera. Blocks: landmark (3), extrinsics of
 /// that camera (6).
 class CalibratedStereoFactor final : public ceres::SizedCostFunction<2, kLandmarkSize, kExtrinsicsSize> {
  public:
-  /// `first_estimate` of the extrinsics may be null.
+  /// `linearization_point` of the extrinsics may be null.
   CalibratedStereoFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
-                         const Rigid3& camera0_from_target, const double* first_estimate = nullptr);
+                         const Rigid3& camera0_from_target, const double* linearization_point = nullptr);
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
@@ -88,7 +88,7 @@ class CalibratedStereoFactor final : public ceres::SizedCostFunction<2, kLandmar
   DirectionMeasurement measurement_;
   LandmarkBase base_;
   Rigid3 camera0_from_target_;
-  const double* first_estimate_;
+  const double* linearization_point_;
 };
 
 }  // namespace lodeline

@@ -33,7 +33,7 @@ struct Scene : ReprojectionScene {
     return {body_from_camera0, further ? std::optional<Rigid3>(camera0_from_camera1) : std::nullopt};
   }
   CalibratedReprojectionFactor factor(bool further, const Vec3& error_C = Vec3::Zero(),
-                                      const CalibratedFirstEstimates& first = {}) const {
+                                      const CalibratedLinearizationPoints& first = {}) const {
     return {seenFrom(world_from_target, target_motion, further, error_C),
             base(),
             placement(further),
@@ -71,15 +71,15 @@ TEST_P(CalibratedReprojection, JacobiansMatchNumericDifferentiation) {
   expectJacobiansMatch(scene.factor(GetParam(), error_C), at_infinity);
 }
 
-TEST_P(CalibratedReprojection, TakesItsJacobianAtTheFirstEstimates) {
+TEST_P(CalibratedReprojection, TakesItsJacobianAtTheLinearizationPoints) {
   const Scene scene;
   const auto first = scene.parameters(GetParam());
   auto current = first;
   for (size_t b = 0; b < current.size(); ++b) {
     if (b != 2) current[b].head(1).array() += 0.01;
   }
-  const CalibratedFirstEstimates at{first[0].data(), first[1].data(), first[3].data(), first[4].data(),
-                                    GetParam() ? first[5].data() : nullptr};
+  const CalibratedLinearizationPoints at{first[0].data(), first[1].data(), first[3].data(), first[4].data(),
+                                         GetParam() ? first[5].data() : nullptr};
   const auto jacobian = [&](const ceres::CostFunction& factor, const std::vector<Eigen::VectorXd>& blocks) {
     std::vector<const double*> pointers;
     std::vector<Eigen::VectorXd> jacobians;

@@ -125,8 +125,11 @@ void writeNine(const Preintegration::Mat15& whitening, const Eigen::Matrix<doubl
 }  // namespace
 
 InertialFactor::InertialFactor(const Preintegration* preintegration, const Vec3& gravity_W,
-                               const InertialFirstEstimates& first_estimates, EstimatedAxes axes)
-    : preintegration_(preintegration), gravity_W_(gravity_W), first_estimates_(first_estimates), axes_(axes) {
+                               const InertialLinearizationPoints& linearization_points, EstimatedAxes axes)
+    : preintegration_(preintegration),
+      gravity_W_(gravity_W),
+      linearization_points_(linearization_points),
+      axes_(axes) {
   set_num_residuals(kSize);
   *mutable_parameter_block_sizes() = {kPoseSize, kMotionSize, kPoseSize, kMotionSize};
   if (axes.gyroscope) mutable_parameter_block_sizes()->push_back(kSensorAxesSize);
@@ -144,12 +147,13 @@ bool InertialFactor::Evaluate(double const* const* parameters, double* residuals
   if (jacobians == nullptr) return true;
 
   const auto firstOr = [](const double* first, const double* now) { return first != nullptr ? first : now; };
-  const States linearised(
-      firstOr(first_estimates_.pose_k, parameters[0]), firstOr(first_estimates_.motion_k, parameters[1]),
-      firstOr(first_estimates_.pose_k1, parameters[2]), firstOr(first_estimates_.motion_k1, parameters[3]),
-      firstOr(first_estimates_.gyroscope_axes, gyroscope_axes),
-      firstOr(first_estimates_.accelerometer_axes, accelerometer_axes));
-  const InertialJacobians by(linearised, *preintegration_, gravity_W_);
+  const States linearized(firstOr(linearization_points_.pose_k, parameters[0]),
+                          firstOr(linearization_points_.motion_k, parameters[1]),
+                          firstOr(linearization_points_.pose_k1, parameters[2]),
+                          firstOr(linearization_points_.motion_k1, parameters[3]),
+                          firstOr(linearization_points_.gyroscope_axes, gyroscope_axes),
+                          firstOr(linearization_points_.accelerometer_axes, accelerometer_axes));
+  const InertialJacobians by(linearized, *preintegration_, gravity_W_);
   writePose(whitening, by.pose_k, jacobians[0]);
   writeNine(whitening, by.motion_k, jacobians[1]);
   writePose(whitening, by.pose_k1, jacobians[2]);

@@ -9,8 +9,8 @@ namespace lodeline {
 
 constexpr int kSensorAxesSize = 9;
 
-/// Where the inertial factor takes its Jacobian. Null: linearise that block at its current value.
-struct InertialFirstEstimates {
+/// Where the inertial factor takes its Jacobian. Null: linearize that block at its current value.
+struct InertialLinearizationPoints {
   const double* pose_k = nullptr;
   const double* motion_k = nullptr;
   const double* pose_k1 = nullptr;
@@ -26,8 +26,8 @@ struct EstimatedAxes {
 };
 
 /// The IMU between two states, 15 residuals on the blocks pose k, motion k, pose k+1, motion k+1 (layout,
-/// axes of the perturbation and first estimates as in factors/parameters.h), then the axes d of the gyroscope
-/// and of the accelerometer (SensorAxes) where these are estimated.
+/// axes of the perturbation and linearization points as in factors/parameters.h), then the axes d of the
+/// gyroscope and of the accelerometer (SensorAxes) where these are estimated.
 ///
 ///   e = [ R_B_W^k (p^{k+1} - p^k - v^k dt - g dt^2 / 2) - alpha(b^k, d)]   m
 ///       [ R_B_W^k (v^{k+1} - v^k - g dt) - beta(b^k, d)                ]   m/s
@@ -42,14 +42,14 @@ class InertialFactor final : public ceres::CostFunction {
  public:
   /// `preintegration` must outlive the factor and may be repropagated between evaluations, not during one.
   InertialFactor(const Preintegration* preintegration, const Vec3& gravity_W,
-                 const InertialFirstEstimates& first_estimates = {}, EstimatedAxes axes = {});
+                 const InertialLinearizationPoints& linearization_points = {}, EstimatedAxes axes = {});
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const Preintegration* preintegration_;
   Vec3 gravity_W_;
-  InertialFirstEstimates first_estimates_;
+  InertialLinearizationPoints linearization_points_;
   EstimatedAxes axes_;
 };
 

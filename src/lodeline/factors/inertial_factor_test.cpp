@@ -235,7 +235,7 @@ TEST(InertialFactor, TurningAndMovingTheWorldAboutGravityChangesNothing) {
   EXPECT_GT((evaluate(factor, other).residual - residual).norm(), 0.1);
 }
 
-TEST(InertialFactor, TakesJacobiansAtFirstEstimatesAndTheResidualAtTheValue) {
+TEST(InertialFactor, TakesJacobiansAtLinearizationPointsAndTheResidualAtTheValue) {
   const Preintegration p = preintegrate(0.3);
   Gaussian gaussian;
   const Blocks first = moved(trueBlocks(p), 0.05, gaussian);
@@ -257,13 +257,13 @@ TEST(InertialFactor, TakesJacobiansAtFirstEstimatesAndTheResidualAtTheValue) {
   EXPECT_EQ(evaluate(anchored_axes, now_axes).residual, evaluate(plain_axes, now_axes).residual);
   EXPECT_EQ(evaluate(anchored_axes, now_axes).jacobians, evaluate(plain_axes, first_axes).jacobians);
 
-  // Only pose k has a first estimate.
+  // Only pose k has a linearization point.
   const InertialFactor partly(&p, standardGravity_W(), {first[0].data(), nullptr, nullptr, nullptr});
   EXPECT_EQ(evaluate(partly, now).jacobians, evaluate(plain, {first[0], now[1], now[2], now[3]}).jacobians);
 }
 
 // With all Jacobians at one point, a yaw about gravity and a shift of the world stay unobservable.
-TEST(InertialFactor, FirstEstimatesKeepYawAndPositionUnobservable) {
+TEST(InertialFactor, LinearizationPointsKeepYawAndPositionUnobservable) {
   const Preintegration p = preintegrate(0.3);
   Gaussian gaussian;
   const Blocks first = moved(trueBlocks(p), 0.05, gaussian);

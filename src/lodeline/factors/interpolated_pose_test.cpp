@@ -83,8 +83,8 @@ TEST_F(InterpolatedPoseTest, GivesAFactorTheResidualAtThatPose) {
   EXPECT_LT((residual - expected).norm(), 1e-9 * expected.norm());
 }
 
-// Wherever the poses are now, the Jacobian is that of the poses' first estimates.
-TEST_F(InterpolatedPoseTest, TakesItsJacobianAtFirstEstimates) {
+// Wherever the poses are now, the Jacobian is that of the poses' linearization points.
+TEST_F(InterpolatedPoseTest, TakesItsJacobianAtLinearizationPoints) {
   const Eigen::VectorXd host = poseVector(scene_.world_from_host), landmark = scene_.landmark();
   const Eigen::VectorXd before = poseVector(moved_before_), after = poseVector(moved_after_);
   const Eigen::VectorXd between = poseVector(interpolation_.pose(moved_before_, moved_after_));

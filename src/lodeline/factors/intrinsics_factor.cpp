@@ -32,15 +32,16 @@ struct Place {
 
 }  // namespace
 
-Vec2 lensShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics) {
+Vec2 intrinsicsShift(const DirectionMeasurement& measurement, const Vec2& residual,
+                     const double* intrinsics) {
   return Place(measurement, residual).shift(measurement, intrinsics);
 }
 
-LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& residual,
-                      const double* intrinsics) {
+IntrinsicsEffect intrinsicsEffect(const DirectionMeasurement& measurement, const Vec2& residual,
+                                  const double* intrinsics) {
   const Place place(measurement, residual);
   const double squared = place.radius_squared;
-  LensEffect effect;
+  IntrinsicsEffect effect;
   effect.by_intrinsics << Mat2(place.from_centre_sigmas.asDiagonal()),
       measurement.sigmas_per_px * Mat2::Identity(), squared * place.outwards_sigmas,
       squared * squared * place.outwards_sigmas;
@@ -57,12 +58,12 @@ Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsic
   // What is seen there leaves no residual. The shift hardly depends on the residual, so few passes will do.
   constexpr int kPasses = 3;
   Vec2 residual = Vec2::Zero();
-  for (int pass = 0; pass < kPasses; ++pass) residual = -lensShift(measurement, residual, intrinsics);
+  for (int pass = 0; pass < kPasses; ++pass) residual = -intrinsicsShift(measurement, residual, intrinsics);
   const Vec2 offset = measurement.sqrt_information.inverse() * residual;
   return (measurement.bearing_C + measurement.tangent_C * offset).normalized();
 }
 
-CameraCalibration correctedLens(const CameraCalibration& file, const double* intrinsics) {
+CameraCalibration correctedIntrinsics(const CameraCalibration& file, const double* intrinsics) {
   CameraCalibration lens = file;
   lens.fx_px *= 1.0 + intrinsics[0];
   lens.fy_px *= 1.0 + intrinsics[1];
@@ -95,7 +96,7 @@ bool IntrinsicsFactor::Evaluate(double const* const* parameters, double* residua
   const std::vector<int>& sizes = parameter_block_sizes();
   const size_t last = sizes.size() - 1;
   Eigen::Map<Vec2> residual(residuals);
-  const LensEffect effect = lensEffect(measurement_, residual, parameters[last]);
+  const IntrinsicsEffect effect = intrinsicsEffect(measurement_, residual, parameters[last]);
   residual += effect.shift;
   for (size_t block = 0; jacobians && block < sizes.size(); ++block) {
     if (!jacobians[block]) continue;

@@ -21,33 +21,33 @@ namespace lodeline {
 
 constexpr int kIntrinsicsSize = 6;
 
-/// What a lens does to a sighting.
-struct LensEffect {
+/// What a lens does to an observation.
+struct IntrinsicsEffect {
   Vec2 shift;  ///< to add to the residual by the file's lens, sigmas
   Eigen::Matrix<double, 2, kIntrinsicsSize> by_intrinsics;  ///< d(shift)
   Mat2 by_residual;                                         ///< d(residual + shift) / d(residual by the file)
 };
 
-/// Where the file's lens leaves `residual` of a sighting. The shift is taken where the point should be seen,
-/// not where it was: the noise of a sighting is in its residual, and with the noise of its place in the
-/// derivative their product would speak for a longer lens in every sighting (by 0.3 % for half a pixel,
-/// twenty sigmas of a dive; camera_states_test.cpp).
-LensEffect lensEffect(const DirectionMeasurement& measurement, const Vec2& residual,
-                      const double* intrinsics);
+/// Where the file's lens leaves `residual` of an observation. The shift is taken where the point should be
+/// seen, not where it was: the noise of an observation is in its residual, and with the noise of its place in
+/// the derivative their product would speak for a longer lens in every observation (by 0.3 % for half a
+/// pixel, twenty sigmas of a dive; camera_states_test.cpp).
+IntrinsicsEffect intrinsicsEffect(const DirectionMeasurement& measurement, const Vec2& residual,
+                                  const double* intrinsics);
 
-/// LensEffect::shift alone.
-Vec2 lensShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics);
+/// IntrinsicsEffect::shift alone.
+Vec2 intrinsicsShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics);
 
-/// The ray of a sighting that a lens with an intrinsics block put in makes of its pixel, where
+/// The ray of an observation that a lens with an intrinsics block put in makes of its pixel, where
 /// DirectionMeasurement::bearing_C is what the file makes of it.
 Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics);
 
 /// A calibration file's lens with an intrinsics block put in, in its own model (which becomes
 /// radial-tangential where it had no distortion).
-CameraCalibration correctedLens(const CameraCalibration& file, const double* intrinsics);
+CameraCalibration correctedIntrinsics(const CameraCalibration& file, const double* intrinsics);
 
-/// Another reprojection factor of two residuals, with the intrinsics of the camera that made the sighting as
-/// one block more, the last.
+/// Another reprojection factor of two residuals, with the intrinsics of the camera that made the observation
+/// as one block more, the last.
 class IntrinsicsFactor final : public ceres::CostFunction {
  public:
   IntrinsicsFactor(std::unique_ptr<ceres::CostFunction> factor, const DirectionMeasurement& measurement);

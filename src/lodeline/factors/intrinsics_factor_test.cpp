@@ -19,7 +19,7 @@ const Intrinsics kWrongLens = intrinsics(0.006, -0.004, 2.5, -1.5, 0.008, -0.01)
 /// What a camera with `lens` beyond its file sees of the scene's landmark, read with the file.
 DirectionMeasurement seenThrough(const CameraCalibration& file, const Intrinsics& lens, const Vec3& point_C,
                                  double sigma_px) {
-  const Vec2 pixel = *makeCamera(correctedLens(file, lens.data()))->project(point_C);
+  const Vec2 pixel = *makeCamera(correctedIntrinsics(file, lens.data()))->project(point_C);
   const auto camera = makeCamera(file);
   return DirectionMeasurement::fromBearing(*camera, *camera->unproject(pixel), sigma_px);
 }
@@ -52,7 +52,7 @@ TEST_P(IntrinsicsOfAModel, ExplainAWrongProfileOutToTheBorder) {
     const Vec3 ray(0.6 * std::sin(angle_rad), -0.8 * std::sin(angle_rad), std::cos(angle_rad));
     const DirectionMeasurement seen = seenThrough(file_, profile, ray, 1.0);
     const Vec2 by_file_px = directionResidual(seen, ray, nullptr);
-    EXPECT_LT((by_file_px + lensShift(seen, by_file_px, profile.data())).norm(), 0.02) << angle_rad;
+    EXPECT_LT((by_file_px + intrinsicsShift(seen, by_file_px, profile.data())).norm(), 0.02) << angle_rad;
   }
 }
 
@@ -79,8 +79,8 @@ TEST_P(IntrinsicsOfAModel, CountInSigmas) {
   const auto fine = seenThrough(file_, kWrongLens, scene_.point_host_C, 0.5);
   const auto coarse = seenThrough(file_, kWrongLens, scene_.point_host_C, 1.0);
   const Vec2 residual(0.3, -0.2);
-  const LensEffect of_fine = lensEffect(fine, 2.0 * residual, kWrongLens.data());
-  const LensEffect of_coarse = lensEffect(coarse, residual, kWrongLens.data());
+  const IntrinsicsEffect of_fine = intrinsicsEffect(fine, 2.0 * residual, kWrongLens.data());
+  const IntrinsicsEffect of_coarse = intrinsicsEffect(coarse, residual, kWrongLens.data());
   EXPECT_LT((of_fine.by_intrinsics - 2.0 * of_coarse.by_intrinsics).norm(), 1e-9);
   EXPECT_LT((of_fine.shift - 2.0 * of_coarse.shift).norm(), 1e-9);
   EXPECT_LT((of_fine.by_residual - of_coarse.by_residual).norm(), 1e-9);
@@ -92,10 +92,11 @@ TEST_P(IntrinsicsOfAModel, OnTheAxisOnlyTheCentreShows) {
   Eigen::Matrix<double, 2, kIntrinsicsSize> expected;
   expected.setZero();
   expected.block<2, 2>(0, 2).setIdentity();
-  EXPECT_LT((lensEffect(measurement, Vec2::Zero(), kWrongLens.data()).by_intrinsics - expected).norm(), 1e-9);
+  EXPECT_LT((intrinsicsEffect(measurement, Vec2::Zero(), kWrongLens.data()).by_intrinsics - expected).norm(),
+            1e-9);
 }
 
-// A sighting that is off by noise says of the lens what an exact one says.
+// An observation that is off by noise says of the lens what an exact one says.
 TEST_P(IntrinsicsOfAModel, TakeTheirDerivativeWhereThePointShouldBe) {
   const auto camera = makeCamera(file_);
   const auto seenAt = [&](const Vec2& error_px) {
@@ -105,9 +106,9 @@ TEST_P(IntrinsicsOfAModel, TakeTheirDerivativeWhereThePointShouldBe) {
   const DirectionMeasurement exact = seenAt(Vec2::Zero()), noisy = seenAt(Vec2(1.5, -1.0));
   const Vec2 residual = directionResidual(noisy, scene_.point_host_C, nullptr);
   ASSERT_NEAR(residual.norm(), Vec2(1.5, -1.0).norm() / 0.5, 0.05);
-  const auto expected = lensEffect(exact, Vec2::Zero(), kWrongLens.data()).by_intrinsics;
-  const auto found = lensEffect(noisy, residual, kWrongLens.data()).by_intrinsics;
-  const auto measured = lensEffect(noisy, Vec2::Zero(), kWrongLens.data()).by_intrinsics;
+  const auto expected = intrinsicsEffect(exact, Vec2::Zero(), kWrongLens.data()).by_intrinsics;
+  const auto found = intrinsicsEffect(noisy, residual, kWrongLens.data()).by_intrinsics;
+  const auto measured = intrinsicsEffect(noisy, Vec2::Zero(), kWrongLens.data()).by_intrinsics;
   EXPECT_LT((found - expected).norm(), 0.02 * (measured - expected).norm());
 }
 

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-// Memory layout of the parameter blocks that Ceres optimises.
+// Memory layout of the parameter blocks that Ceres optimizes.
 //
 // Pose block, 7 doubles: p_W_B (m), then the quaternion of R_W_B as x y z w. Its perturbation has 6
 // coordinates [dp, dtheta], both in world axes: p <- p + dp, q <- exp(dtheta) * q. World axes keep the
@@ -19,11 +19,11 @@ namespace lodeline {
 // pose block's 7 Jacobian columns and zero into the last; PoseManifold's plus-Jacobian picks those six out
 // again.
 //
-// First estimates: a cost function may be given, per block, a pointer to the block's first estimate. The
-// residual is taken at the current value but the Jacobian at the first estimate, so that blocks which a
-// marginalisation prior touches are linearised at one point for all factors (Huang, Mourikis & Roumeliotis,
+// First estimates: a cost function may be given, per block, a pointer to the block's linearization point. The
+// residual is taken at the current value but the Jacobian at the linearization point, so that blocks which a
+// marginalization prior touches are linearized at one point for all factors (Huang, Mourikis & Roumeliotis,
 // "Observability-based rules for designing consistent EKF SLAM estimators", IJRR 2010). A null pointer means:
-// linearise at the current value.
+// linearize at the current value.
 
 constexpr int kPoseSize = 7;
 constexpr int kPoseTangentSize = 6;

@@ -24,7 +24,7 @@ Eigen::VectorXd Prior::difference(double const* const* values) const {
   Eigen::VectorXd d(tangentSize());
   int row = 0;
   for (size_t i = 0; i < blocks.size(); ++i) {
-    const Eigen::VectorXd& first = blocks[i].first_estimate;
+    const Eigen::VectorXd& first = blocks[i].linearization_point;
     if (blocks[i].isPose()) {
       d.segment<6>(row) = perturbationBetween(poseFromBlock(first.data()), poseFromBlock(values[i]));
     } else {
@@ -38,7 +38,7 @@ Eigen::VectorXd Prior::difference(double const* const* values) const {
 PriorFactor::PriorFactor(const Prior& prior) : prior_(prior) {
   set_num_residuals(static_cast<int>(prior.offset.size()));
   for (const Prior::Block& block : prior.blocks) {
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(block.first_estimate.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(block.linearization_point.size()));
   }
 }
 
@@ -54,7 +54,8 @@ bool PriorFactor::Evaluate(double const* const* parameters, double* residuals, d
     const int tangent = prior_.blocks[i].tangentSize();
     if (jacobians[i]) {
       using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      Eigen::Map<RowMajor> jacobian(jacobians[i], residual.size(), prior_.blocks[i].first_estimate.size());
+      Eigen::Map<RowMajor> jacobian(jacobians[i], residual.size(),
+                                    prior_.blocks[i].linearization_point.size());
       jacobian.setZero();
       jacobian.leftCols(tangent) = prior_.sqrt_information.middleCols(column, tangent);
     }

@@ -9,18 +9,20 @@
 
 namespace lodeline {
 
-/// What marginalisation leaves behind: a quadratic cost over some parameter blocks around their first
+/// What marginalization leaves behind: a quadratic cost over some parameter blocks around their first
 /// estimates,
-///   cost(x) = 1/2 || J d + e ||^2,   d = x (-) first estimate, stacked over the blocks in order,
+///   cost(x) = 1/2 || J d + e ||^2,   d = x (-) linearization point, stacked over the blocks in order,
 /// with pose blocks differing by perturbationBetween() and others by subtraction. J is square and upper
 /// triangular.
 struct Prior {
   struct Block {
     double* value = nullptr;  ///< where the block lives; owned by the window
-    Eigen::VectorXd first_estimate;
+    Eigen::VectorXd linearization_point;
 
-    bool isPose() const { return first_estimate.size() == kPoseSize; }
-    int tangentSize() const { return isPose() ? kPoseTangentSize : static_cast<int>(first_estimate.size()); }
+    bool isPose() const { return linearization_point.size() == kPoseSize; }
+    int tangentSize() const {
+      return isPose() ? kPoseTangentSize : static_cast<int>(linearization_point.size());
+    }
   };
   std::vector<Block> blocks;
   Eigen::MatrixXd sqrt_information;  ///< J
@@ -38,8 +40,8 @@ struct Prior {
   Eigen::VectorXd difference(double const* const* values) const;
 };
 
-/// The prior as a term of the cost; its Jacobian is constant, being taken at the first estimates. The prior
-/// must outlive the factor.
+/// The prior as a term of the cost; its Jacobian is constant, being taken at the linearization points. The
+/// prior must outlive the factor.
 class PriorFactor final : public ceres::CostFunction {
  public:
   explicit PriorFactor(const Prior& prior);

@@ -11,15 +11,15 @@ namespace {
 Prior makePrior(const Rigid3& pose, const Eigen::VectorXd& motion) {
   Prior prior;
   prior.blocks.resize(2);
-  prior.blocks[0].first_estimate = poseVector(pose);
-  prior.blocks[1].first_estimate = motion;
+  prior.blocks[0].linearization_point = poseVector(pose);
+  prior.blocks[1].linearization_point = motion;
   Eigen::MatrixXd full = Eigen::MatrixXd::Random(15, 15) + 5.0 * Eigen::MatrixXd::Identity(15, 15);
   prior.sqrt_information = full.triangularView<Eigen::Upper>();
   prior.offset = Eigen::VectorXd::Zero(15);
   return prior;
 }
 
-TEST(PriorFactor, IsItsOffsetAtTheFirstEstimate) {
+TEST(PriorFactor, IsItsOffsetAtTheLinearizationPoint) {
   const Rigid3 pose(so3::exp(Vec3(0.2, -0.4, 2.0)), Vec3(1, 2, 3));
   const Eigen::VectorXd motion = Eigen::VectorXd::Random(9);
   Prior prior = makePrior(pose, motion);
@@ -32,7 +32,7 @@ TEST(PriorFactor, IsItsOffsetAtTheFirstEstimate) {
   EXPECT_LT((residual - prior.offset).norm(), 1e-12);
 }
 
-TEST(PriorFactor, JacobiansMatchNumericDifferentiationAtTheFirstEstimate) {
+TEST(PriorFactor, JacobiansMatchNumericDifferentiationAtTheLinearizationPoint) {
   const Rigid3 pose(so3::exp(Vec3(0.2, -0.4, 2.0)), Vec3(1, 2, 3));
   const Eigen::VectorXd motion = Eigen::VectorXd::Random(9);
   const Prior prior = makePrior(pose, motion);

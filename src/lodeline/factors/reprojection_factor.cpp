@@ -43,13 +43,14 @@ struct ReprojectionFactor::Chain {
 ReprojectionFactor::ReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
                                        const Rigid3& body_from_host_camera,
                                        const Rigid3& body_from_target_camera,
-                                       const double* host_first_estimate, const double* target_first_estimate)
+                                       const double* host_linearization_point,
+                                       const double* target_linearization_point)
     : measurement_(measurement),
       base_(base),
       body_from_host_camera_(body_from_host_camera),
       body_from_target_camera_(body_from_target_camera),
-      host_first_estimate_(host_first_estimate),
-      target_first_estimate_(target_first_estimate) {}
+      host_linearization_point_(host_linearization_point),
+      target_linearization_point_(target_linearization_point) {}
 
 bool ReprojectionFactor::Evaluate(double const* const* parameters, double* residuals,
                                   double** jacobians) const {
@@ -60,9 +61,10 @@ bool ReprojectionFactor::Evaluate(double const* const* parameters, double* resid
   residual = directionResidual(measurement_, chain.point_C, jacobians ? &by_point : nullptr);
   if (!jacobians) return true;
 
-  if (host_first_estimate_ || target_first_estimate_) {
-    chain = Chain(*this, poseFromBlock(host_first_estimate_ ? host_first_estimate_ : parameters[0]),
-                  poseFromBlock(target_first_estimate_ ? target_first_estimate_ : parameters[1]), landmark);
+  if (host_linearization_point_ || target_linearization_point_) {
+    chain = Chain(*this, poseFromBlock(host_linearization_point_ ? host_linearization_point_ : parameters[0]),
+                  poseFromBlock(target_linearization_point_ ? target_linearization_point_ : parameters[1]),
+                  landmark);
     directionResidual(measurement_, chain.point_C, &by_point);
   }
   const double rho = landmark[2];

@@ -7,7 +7,7 @@
 
 namespace lodeline {
 
-/// A point as seen from its host camera: the direction d = base + tangent * (a, b), not normalised, and the
+/// A point as seen from its host camera: the direction d = base + tangent * (a, b), not normalized, and the
 /// inverse distance rho (1/m) along `base`, so that the point lies at d / rho. The parameter block is (a, b,
 /// rho). Points behind or infinitely far away (rho = 0) need no special case.
 struct LandmarkBase {
@@ -33,10 +33,11 @@ constexpr int kLandmarkSize = 3;
 /// A point that falls behind the target's image plane is a gross outlier: constant error, zero Jacobian.
 class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandmarkSize> {
  public:
-  /// The first estimates may be null (see parameters.h) and must outlive the factor, as must nothing else.
+  /// The linearization points may be null (see parameters.h) and must outlive the factor, as must nothing
+  /// else.
   ReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
                      const Rigid3& body_from_host_camera, const Rigid3& body_from_target_camera,
-                     const double* host_first_estimate, const double* target_first_estimate);
+                     const double* host_linearization_point, const double* target_linearization_point);
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
@@ -46,8 +47,8 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandm
   LandmarkBase base_;
   Rigid3 body_from_host_camera_;
   Rigid3 body_from_target_camera_;
-  const double* host_first_estimate_;
-  const double* target_first_estimate_;
+  const double* host_linearization_point_;
+  const double* target_linearization_point_;
 };
 
 /// The same error in an image that was taken in the host frame itself, by the host camera or a camera beside

@@ -77,7 +77,7 @@ TEST(ReprojectionFactor, IsInvariantUnderAnyMotionOfTheWorld) {
   EXPECT_LT((evaluate(factor, scene.parameters()) - before).norm(), 1e-9);
 }
 
-TEST(ReprojectionFactor, FirstEstimatesKeepTranslationAndYawUnobservable) {
+TEST(ReprojectionFactor, LinearizationPointsKeepTranslationAndYawUnobservable) {
   Scene scene;
   // First estimates that differ from the current poses and from each other's error.
   const Eigen::VectorXd host_first = poseVector(

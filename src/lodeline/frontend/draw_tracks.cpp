@@ -26,10 +26,10 @@ cv::Mat turboColours() {
   return colours;
 }
 
-cv::Scalar colourOfAge(int sightings, int old_sightings) {
+cv::Scalar colourOfAge(int observations, int old_observations) {
   static const cv::Mat colours = turboColours();
   const double age =
-      std::clamp(static_cast<double>(sightings - 1) / std::max(1, old_sightings - 1), 0.0, 1.0);
+      std::clamp(static_cast<double>(observations - 1) / std::max(1, old_observations - 1), 0.0, 1.0);
   const auto bgr = colours.at<cv::Vec3b>(static_cast<int>(std::lround(30.0 + 210.0 * age)));
   return {static_cast<double>(bgr[0]), static_cast<double>(bgr[1]), static_cast<double>(bgr[2])};
 }
@@ -41,7 +41,7 @@ void drawDot(cv::Mat& picture, const Eigen::Vector2f& pixel, const cv::Scalar& c
 
 }  // namespace
 
-cv::Mat drawTracks(const FrontEnd& front_end, const std::vector<cv::Mat>& images, int old_sightings) {
+cv::Mat drawTracks(const FrontEnd& front_end, const std::vector<cv::Mat>& images, int old_observations) {
   constexpr int kBarPx = 24;
   const auto& cameras = front_end.cameras();
   std::vector<int> lefts;
@@ -61,7 +61,7 @@ cv::Mat drawTracks(const FrontEnd& front_end, const std::vector<cv::Mat>& images
     if (!moving.empty()) cv::Mat(part / 3).copyTo(part, moving == 0);
   }
   for (const Track& track : front_end.tracks()) {
-    const cv::Scalar colour = colourOfAge(track.sightings, old_sightings);
+    const cv::Scalar colour = colourOfAge(track.observations, old_observations);
     drawDot(picture, track.warp.position, colour);
     for (size_t m = 0; m < track.matches.size() && m + 1 < lefts.size(); ++m) {
       if (!track.matches[m]) continue;

@@ -32,7 +32,7 @@ FrontEnd::FrontEnd(const Rig& rig, const FrontEndOptions& options)
       body_from_camera_(rig.cameras.front().body_from_camera.rotation),
       tracker_(cameras_.front(), options.tracker),
       detector_(options.detector),
-      fixed_structures_(cameras_.size(), FixedStructure(options.fixed_structure)) {
+      static_image_masks_(cameras_.size(), StaticImageMask(options.static_image_mask)) {
   for (const CameraCalibration& calibration : rig.cameras) masks_.push_back(loadMask(calibration));
   for (size_t i = 1; i < cameras_.size(); ++i) {
     matchers_.emplace_back(cameras_.front(), cameras_[i], options.stereo);
@@ -78,7 +78,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
   const bool was_faint = faint_;
   updateQuality(current);
   if (faint_ != was_faint) current = pyramid(images.front());
-  fixed_structures_.front().add(time, current);
+  static_image_masks_.front().add(time, current);
   const double interval_s = (time - previous_time_).seconds();
   if (interval_s > options_.max_gap_s) {
     statistics_.lost = static_cast<int>(tracks_.size());
@@ -170,8 +170,8 @@ void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings, const 
     bearings.push_back(camera.unproject(track.warp.position.cast<double>()).value_or(Vec3::Zero()));
   }
   const auto agreeing = [&](const Mat3& rotation) {
-    return epipolarConsensus(previous_bearings, bearings, rotation, camera.calibration().fx_px,
-                             options_.consensus);
+    return twoPointRansac(previous_bearings, bearings, rotation, camera.calibration().fx_px,
+                          options_.consensus);
   };
   const auto count = [](const std::vector<bool>& which) {
     return std::count(which.begin(), which.end(), true);
@@ -205,7 +205,7 @@ void FrontEnd::rejectCrowded() {
 }
 
 bool FrontEnd::isHidden(size_t camera, const Eigen::Vector2f& pixel) const {
-  return isMasked(masks_[camera], pixel) || isMasked(fixed_structures_[camera].mask(), pixel);
+  return isMasked(masks_[camera], pixel) || isMasked(static_image_masks_[camera].mask(), pixel);
 }
 
 void FrontEnd::detect(const ImagePyramid& current) {
@@ -213,7 +213,7 @@ void FrontEnd::detect(const ImagePyramid& current) {
   std::vector<Eigen::Vector2f> occupied;
   for (const Track& track : tracks_) occupied.push_back(track.warp.position);
   cv::Mat visible = masks_.front();
-  const cv::Mat& moving = fixed_structures_.front().mask();
+  const cv::Mat& moving = static_image_masks_.front().mask();
   if (visible.empty()) {
     visible = moving;
   } else if (!moving.empty()) {
@@ -243,7 +243,7 @@ void FrontEnd::matchOthers(Time time, const ImagePyramid& current, const std::ve
       continue;
     }
     const ImagePyramid other = pyramid(image);
-    fixed_structures_[m + 1].add(time, other);
+    static_image_masks_[m + 1].add(time, other);
     matchOther(m, current, other);
   }
   for (const Track& track : tracks_) {

@@ -6,12 +6,12 @@
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/frontend/detection/corner_detector.h"
-#include "lodeline/frontend/detection/fixed_structure.h"
 #include "lodeline/frontend/detection/image_quality.h"
+#include "lodeline/frontend/detection/static_image_mask.h"
 #include "lodeline/frontend/stereo/stereo_matcher.h"
-#include "lodeline/frontend/tracking/epipolar_consensus.h"
 #include "lodeline/frontend/tracking/temporal_tracker.h"
 #include "lodeline/frontend/tracking/tracks.h"
+#include "lodeline/frontend/tracking/two_point_ransac.h"
 
 namespace lodeline {
 
@@ -20,8 +20,8 @@ struct FrontEndOptions {
   CornerDetectorOptions detector;
   TemporalTrackerOptions tracker;
   StereoMatcherOptions stereo;
-  EpipolarConsensusOptions consensus;
-  FixedStructureOptions fixed_structure;
+  TwoPointRansacOptions consensus;
+  StaticImageMaskOptions static_image_mask;
   /// Images whose texture (ImageQuality::texture_grey) is below this are smoothed more before tracking, for
   /// noise weighs more in them.
   double faint_texture_grey = 1.5;
@@ -40,7 +40,7 @@ struct FrontEndStatistics {
   int lost = 0;      ///< not found again, or of poor likeness
   int rejected = 0;  ///< found, but against the motion of the others or on top of another track
   int created = 0;
-  int matched = 0;       ///< seen in at least one further camera
+  int matched = 0;       ///< seen in at least one secondary camera
   bool missing = false;  ///< camera 0 gave no image
   ImageQuality image;    ///< of camera 0
 
@@ -75,10 +75,10 @@ class FrontEnd {
   const FrontEndStatistics& statistics() const { return statistics_; }
   const std::vector<Track>& tracks() const { return tracks_; }
   const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
-  /// By how much later than thought a further camera (1, 2, ...) takes its images.
+  /// By how much later than thought a secondary camera (1, 2, ...) takes its images.
   StereoDelay& delay(size_t camera) { return matchers_[camera - 1].delay(); }
   /// What stays at its place in the images of each camera and is not looked at.
-  const std::vector<FixedStructure>& fixedStructures() const { return fixed_structures_; }
+  const std::vector<StaticImageMask>& fixedStructures() const { return static_image_masks_; }
 
  private:
   void check(Time time, const std::vector<cv::Mat>& images) const;
@@ -108,7 +108,7 @@ class FrontEnd {
   TemporalTracker tracker_;
   std::vector<StereoMatcher> matchers_;  ///< camera 0 with camera 1, 2, ...
   CornerDetector detector_;
-  std::vector<FixedStructure> fixed_structures_;  ///< of each camera
+  std::vector<StaticImageMask> static_image_masks_;  ///< of each camera
 
   std::vector<Track> tracks_;  ///< by rising id
   ImagePyramid previous_;

@@ -47,7 +47,7 @@ std::vector<FrameTracks> track(const Recording& recording, FrontEnd& front_end) 
 
 std::map<TrackId, Vec2> pixels(const FrameTracks& frame, int camera) {
   std::map<TrackId, Vec2> result;
-  for (const Observation& observation : frame.observations) {
+  for (const FeatureObservation& observation : frame.observations) {
     if (observation.camera == camera) result[observation.track] = observation.pixel;
   }
   return result;
@@ -160,14 +160,14 @@ TEST(FrontEnd, KeepsItsPromiseOnTheOutput) {
   for (const FrameTracks& frame : track(daylight(), front_end)) {
     std::set<TrackId> now;
     for (size_t i = 0; i < frame.observations.size(); ++i) {
-      const Observation& o = frame.observations[i];
+      const FeatureObservation& o = frame.observations[i];
       EXPECT_NEAR(o.bearing_C.norm(), 1.0, 1e-12);
       const auto& camera = front_end.cameras()[static_cast<size_t>(o.camera)];
       EXPECT_LT((*camera->project(o.bearing_C) - o.pixel).norm(), 1e-6);
       EXPECT_FALSE(ended.contains(o.track)) << "identifier used again";
       now.insert(o.track);
       if (i == 0) continue;
-      const Observation& last = frame.observations[i - 1];
+      const FeatureObservation& last = frame.observations[i - 1];
       EXPECT_LT(std::make_pair(last.track, last.camera), std::make_pair(o.track, o.camera));
     }
     std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
@@ -304,7 +304,7 @@ std::pair<double, size_t> rightRayError(int later, bool motion_is_known) {
         {daylight().images[static_cast<size_t>(i)][0], daylight().images[static_cast<size_t>(i + later)][1]},
         daylight().previousFromCurrent(i), motion);
     const std::map<TrackId, Vec2> left = pixels(tracks, 0);
-    for (const Observation& observation : tracks.observations) {
+    for (const FeatureObservation& observation : tracks.observations) {
       if (observation.camera != 1) continue;
       const auto true_pixel = sequence.truePixel(i, 0, left.at(observation.track), i, 1);
       if (!true_pixel) continue;

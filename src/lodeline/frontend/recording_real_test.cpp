@@ -73,13 +73,13 @@ class Mh01Tracks : public testing::Test {
       frames_.push_back(front_end.process(packet->time, packet->images, rotation));
     }
     for (size_t i = 0; i < frames_.size(); ++i) {
-      for (const Observation& o : frames_[i].observations) {
+      for (const FeatureObservation& o : frames_[i].observations) {
         if (o.camera == 0) tracks_[o.track].push_back({i, o.bearing_C});
       }
     }
   }
 
-  struct Sighting {
+  struct Observation {
     size_t frame;
     Vec3 bearing_C;
   };
@@ -87,18 +87,18 @@ class Mh01Tracks : public testing::Test {
   Diagnostics diagnostics_;
   Rig rig_;
   std::vector<FrameTracks> frames_;
-  std::map<TrackId, std::vector<Sighting>> tracks_;
+  std::map<TrackId, std::vector<Observation>> tracks_;
 };
 
 TEST_F(Mh01Tracks, AreManyAndLongLived) {
   ASSERT_EQ(frames_.size(), 288u);
   double observed = 0.0, survived = 0.0, started = 0.0;
-  for (const auto& [id, sightings] : tracks_) {
-    observed += static_cast<double>(sightings.size());
-    for (const Sighting& sighting : sightings) {
-      if (sighting.frame + 10 >= frames_.size()) continue;
+  for (const auto& [id, observations] : tracks_) {
+    observed += static_cast<double>(observations.size());
+    for (const Observation& observation : observations) {
+      if (observation.frame + 10 >= frames_.size()) continue;
       started += 1.0;
-      survived += sightings.back().frame >= sighting.frame + 10 ? 1.0 : 0.0;
+      survived += observations.back().frame >= observation.frame + 10 ? 1.0 : 0.0;
     }
   }
   EXPECT_GT(observed / static_cast<double>(frames_.size()), 240.0);
@@ -129,12 +129,12 @@ TEST_F(Mh01Tracks, AgreeWithTheTruePoses) {
   // The reference's own error of attitude grows into the last of these.
   for (const auto& [length, bar_px] : std::map<size_t, double>{{2, 0.12}, {10, 0.4}, {20, 0.7}}) {
     std::vector<double> residuals_px;
-    for (const auto& [id, sightings] : tracks_) {
-      for (size_t first = 0; first + length < sightings.size(); first += length) {
+    for (const auto& [id, observations] : tracks_) {
+      for (size_t first = 0; first + length < observations.size(); first += length) {
         std::vector<BearingView> views;
         for (size_t i = first; i <= first + length; ++i) {
-          views.push_back({truth.at(frames_[sightings[i].frame].time) * rig_.cameras[0].body_from_camera,
-                           sightings[i].bearing_C, 1.0 / focal_px});
+          views.push_back({truth.at(frames_[observations[i].frame].time) * rig_.cameras[0].body_from_camera,
+                           observations[i].bearing_C, 1.0 / focal_px});
         }
         residuals_px.push_back(triangulate(views).rms_sigmas);
       }

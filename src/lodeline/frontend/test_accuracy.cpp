@@ -9,7 +9,7 @@ namespace {
 
 std::map<TrackId, Vec2> firstCamera(const FrameTracks& frame) {
   std::map<TrackId, Vec2> pixels;
-  for (const Observation& observation : frame.observations) {
+  for (const FeatureObservation& observation : frame.observations) {
     if (observation.camera == 0) pixels[observation.track] = observation.pixel;
   }
   return pixels;

@@ -15,7 +15,7 @@ struct Rigid3 {
       : rotation(rotation_in), translation(translation_in) {}
 
   /// From a 4x4 homogeneous matrix whose rotation part is orthonormal to 1e-3 or better (it is
-  /// re-orthonormalised); throws InputError, naming `what`, otherwise.
+  /// re-orthonormalized); throws InputError, naming `what`, otherwise.
   static Rigid3 fromMatrix(const Eigen::Matrix4d& matrix, const char* what);
   Eigen::Matrix4d matrix() const;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/geometry/squared.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/imu/rotation_increment.h"
 #include "lodeline/imu/sample_check.h"
@@ -42,8 +43,6 @@ std::vector<Vec3> turnedToLast(std::span<const ImuSample> samples, const Vec3& g
   for (Vec3& force : forces) force = first_from_body.conjugate() * force;
   return forces;
 }
-
-double squared(double x) { return x * x; }
 
 // Variance of the mean force across `up`, per axis, as far as its scatter tells. Differences of neighbours
 // show the white part, which averages out reading by reading; the rest is slow and averages out over its

@@ -20,7 +20,7 @@ using namespace inertial_error;
 const Vec3 kGravity_W(0.0, 0.0, -9.81);
 constexpr int kTruthRate = 200;
 
-// Mean normalised errors squared, each divided by its dimension.
+// Mean normalized errors squared, each divided by its dimension.
 struct Consistency {
   int count = 0;
   double all = 0.0, alpha = 0.0, beta = 0.0, theta = 0.0;
@@ -78,7 +78,7 @@ class RealFlight : public testing::Test {
 
 TEST_F(RealFlight, PreintegrationIsConsistentAtTheDefaultInflation) {
   const PreintegrationOptions options;
-  fmt::print("noise inflation {}; mean normalised error squared / dimension\n", options.noise_inflation);
+  fmt::print("noise inflation {}; mean normalized error squared / dimension\n", options.noise_inflation);
   fmt::print("  dt[s]      n  [a b th]  alpha   beta  theta\n");
   double sum = 0.0;
   int lengths = 0;
@@ -93,7 +93,7 @@ TEST_F(RealFlight, PreintegrationIsConsistentAtTheDefaultInflation) {
   }
   const double mean = sum / lengths;
   fmt::print("  mean over the lengths {:.3f}\n", mean);
-  RecordProperty("normalised_error_squared", std::to_string(mean));
+  RecordProperty("normalized_error_squared", std::to_string(mean));
   EXPECT_GT(mean, 0.7);
   EXPECT_LT(mean, 1.5);
 }

@@ -72,7 +72,7 @@ struct ImuAxes {
   SensorAxes accelerometer = SensorAxes::Zero();
 };
 
-/// IMU readings between two moments, integrated once so that the optimiser need not.
+/// IMU readings between two moments, integrated once so that the optimizer need not.
 ///
 /// Model: measured rate = true rate + b_g + noise, measured force = R_B_W (a_W - g_W) + b_a + noise; white
 /// noises and random walks of the biases with the densities of ImuNoise times `noise_inflation`, and more

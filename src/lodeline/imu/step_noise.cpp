@@ -1,11 +1,11 @@
 #include "lodeline/imu/step_noise.h"
 
+#include "lodeline/geometry/squared.h"
+
 namespace lodeline {
 namespace {
 
 constexpr double kStandardGravity_m_per_s2 = 9.80665;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -48,7 +48,7 @@ std::optional<double> ClockMonitor::add(const FrameTracks& tracks, std::span<con
   if (since_s < kLongestTurn_s) addTurn(tracks);
   rays_.clear();
   rays_time_ = tracks.time;
-  for (const Observation& observation : tracks.observations) {
+  for (const FeatureObservation& observation : tracks.observations) {
     if (observation.camera == 0) rays_[observation.track] = observation.bearing_C;
   }
   if (!next_comparison_) next_comparison_ = tracks.time + Duration::fromSeconds(kWindow_s);
@@ -66,7 +66,7 @@ void ClockMonitor::move(double by_s) {
 
 void ClockMonitor::addTurn(const FrameTracks& tracks) {
   std::vector<Vec3> previous, current;
-  for (const Observation& observation : tracks.observations) {
+  for (const FeatureObservation& observation : tracks.observations) {
     if (observation.camera != 0) continue;
     const auto before = rays_.find(observation.track);
     if (before == rays_.end()) continue;

@@ -46,7 +46,7 @@ class ClockMonitorTest : public testing::Test {
       for (size_t k = 0; k < points_.size(); ++k) {
         const Vec3 ray =
             body_from_camera.conjugate() * (world_from_body.conjugate() * (body_from_camera * points_[k]));
-        Observation seen;
+        FeatureObservation seen;
         seen.track = static_cast<TrackId>(k);
         seen.bearing_C = (ray + Vec3(noise(random_), noise(random_), noise(random_))).normalized();
         tracks.observations.push_back(seen);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kGravity_m_per_s2 = 9.80665;
 
-void add(Inspection* inspection, Severity severity, double harm, const std::string& kind,
-         const std::string& message) {
+void addImuFinding(Inspection* inspection, Severity severity, double harm, const std::string& kind,
+                   const std::string& message) {
   inspection->findings.push_back({severity, harm, "imu0", kind, message});
 }
 
@@ -22,9 +22,9 @@ void judgeDead(const char* name, const char* kind, const TriadSurvey& triad, Ins
     if (triad.is_dead[axis]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[axis]);
   }
   if (axes.empty()) return;
-  add(inspection, Severity::Serious, 90.0, kind,
-      fmt::format("the {}'s {} axis is dead: it never changes; nothing can be estimated with it", name,
-                  axes));
+  addImuFinding(inspection, Severity::Serious, 90.0, kind,
+                fmt::format("the {}'s {} axis is dead: it never changes; nothing can be estimated with it",
+                            name, axes));
 }
 
 /// `least_range`: no sensor on the market has a smaller one; coarse readings of a rig at rest may well have
@@ -32,7 +32,8 @@ void judgeDead(const char* name, const char* kind, const TriadSurvey& triad, Ins
 void judgeSaturation(const char* name, const char* kind, const char* unit, double least_range,
                      const TriadSurvey& triad, Inspection* inspection) {
   if (triad.saturated_share < 1e-3 || triad.limit < least_range) return;
-  add(inspection, Severity::Warning, 55.0, kind,
+  addImuFinding(
+      inspection, Severity::Warning, 55.0, kind,
       fmt::format("the {} is saturated in {:.2g} % of its readings (limit {:.4g} {}); choose a larger range",
                   name, 100.0 * triad.saturated_share, triad.limit, unit));
 }
@@ -40,14 +41,16 @@ void judgeSaturation(const char* name, const char* kind, const char* unit, doubl
 void judgeForceUnit(const ImuSurvey& imu, Inspection* inspection) {
   if (imu.force_to_SI != 1.0) {
     const char* unit = imu.force_to_SI > 1.0 ? "g" : "mg";
-    add(inspection, Severity::Serious, 98.0, "accelerometer_unit",
+    addImuFinding(
+        inspection, Severity::Serious, 98.0, "accelerometer_unit",
         fmt::format("the accelerometer is in {}, not m/s^2: its readings have a size of {:.4g}; multiply "
                     "them by {:.6g}",
                     unit, imu.median_force, imu.force_to_SI));
     return;
   }
   if (imu.median_force > 8.0 && imu.median_force < 12.5) return;
-  add(inspection, Severity::Serious, 97.0, "accelerometer_unit",
+  addImuFinding(
+      inspection, Severity::Serious, 97.0, "accelerometer_unit",
       fmt::format("the accelerometer's readings have a size of {:.4g} m/s^2, where gravity alone has 9.8: "
                   "wrong unit, "
                   "scale, or gravity taken off",
@@ -60,7 +63,8 @@ void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
   // Cheap accelerometers leave the factory with up to 80 mg of bias, which the estimator finds out.
   constexpr double kWorthTelling_m_per_s2 = 0.25, kFaulty_m_per_s2 = 0.9;
   if (imu.force_to_SI == 1.0 && std::abs(error) > kWorthTelling_m_per_s2) {
-    add(inspection, std::abs(error) > kFaulty_m_per_s2 ? Severity::Warning : Severity::Notice, 45.0,
+    addImuFinding(
+        inspection, std::abs(error) > kFaulty_m_per_s2 ? Severity::Warning : Severity::Notice, 45.0,
         "gravity_at_rest",
         fmt::format(
             "at rest the accelerometer reads {:.3f} m/s^2, {:.2f} off gravity; calibrate its scale and bias",
@@ -68,7 +72,8 @@ void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
   }
   constexpr double kLargeBias_rad_per_s = 0.12;
   if (imu.rest_rate_B.norm() * inspection->rate_to_SI > kLargeBias_rad_per_s) {
-    add(inspection, Severity::Warning, 44.0, "gyroscope_bias",
+    addImuFinding(
+        inspection, Severity::Warning, 44.0, "gyroscope_bias",
         fmt::format("at rest the gyroscope reads {:.2f} deg/s", kDegreesPerRadian * imu.rest_rate_B.norm()));
   }
 }
@@ -80,7 +85,8 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
   constexpr double kClear = 0.75;
   if (turning.best_correlation < kClear || turning.correlation > 0.3 * turning.best_correlation) return;
   const bool is_mirrored = turning.correlation < -kClear;
-  add(inspection, Severity::Serious, is_mirrored ? 92.0 : 85.0, "imu_axes",
+  addImuFinding(
+      inspection, Severity::Serious, is_mirrored ? 92.0 : 85.0, "imu_axes",
       is_mirrored
           ? std::string(
                 "the axes of the IMU are swapped: they form a left-handed frame (gravity turns against the "
@@ -95,7 +101,7 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
 void judgeScreening(const ImuSurvey& imu, Inspection* inspection) {
   for (const Finding& finding : imu.screening.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : std::string();
-    add(inspection, finding.severity, 57.0, finding.kind, finding.first_message + times);
+    addImuFinding(inspection, finding.severity, 57.0, finding.kind, finding.first_message + times);
   }
 }
 
@@ -107,7 +113,7 @@ void judgeNoise(Inspection* inspection) {
   Diagnostics judgement;
   plausibleNoise(inspection->rig.imu.noise, inspection->shown_noise, &judgement);
   for (const Finding& finding : judgement.ranked()) {
-    add(inspection, finding.severity, 56.0, finding.kind, finding.first_message);
+    addImuFinding(inspection, finding.severity, 56.0, finding.kind, finding.first_message);
   }
 }
 
@@ -117,7 +123,8 @@ void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
   const double scale = imu.turning->scale;
   if (scale > 2.5 / kDegreesPerRadian || scale < 0.4 / kDegreesPerRadian) return;
   inspection->rate_to_SI = 1.0 / kDegreesPerRadian;
-  add(inspection, Severity::Serious, 99.0, "gyroscope_unit",
+  addImuFinding(
+      inspection, Severity::Serious, 99.0, "gyroscope_unit",
       fmt::format(
           "the gyroscope is in deg/s, not rad/s: gravity turns {:.3g} times as fast as it says; multiply its "
           "readings by pi/180",

@@ -10,22 +10,24 @@
 namespace lodeline::findings {
 namespace {
 
-void add(Inspection* inspection, Severity severity, double harm, const std::string& kind,
-         const std::string& message) {
+void addMagnetometerFinding(Inspection* inspection, Severity severity, double harm, const std::string& kind,
+                            const std::string& message) {
   inspection->findings.push_back({severity, harm, "mag0", kind, message});
 }
 
 void judgeUnit(const MagnetometerSurvey& survey, Inspection* inspection) {
   if (survey.unit == FieldUnit::Tesla) return;
   if (survey.unit == FieldUnit::Raw) {
-    add(inspection, Severity::Serious, 75.0, "magnetometer_unit",
+    addMagnetometerFinding(
+        inspection, Severity::Serious, 75.0, "magnetometer_unit",
         fmt::format("the magnetometer's readings have a size of {:.3g}, which is the Earth's field in no "
                     "unit (22 to 67 uT): "
                     "raw counts, or iron beside the sensor",
                     survey.field_T));
     return;
   }
-  add(inspection, Severity::Serious, 76.0, "magnetometer_unit",
+  addMagnetometerFinding(
+      inspection, Severity::Serious, 76.0, "magnetometer_unit",
       fmt::format(
           "the magnetometer is in {}, not tesla (the field would be {:.3g} T); multiply its readings by {:g}",
           toString(survey.unit), survey.field_T / teslaPer(survey.unit), teslaPer(survey.unit)));
@@ -36,7 +38,8 @@ void judgeSite(const MagnetometerSurvey& survey, Inspection* inspection) {
   const FieldElements expected = fieldElements(*inspection->site_field_W);
   const double error = survey.field_T / expected.total_T - 1.0;
   if (std::abs(error) > 0.1) {
-    add(inspection, Severity::Warning, 42.0, "field_strength",
+    addMagnetometerFinding(
+        inspection, Severity::Warning, 42.0, "field_strength",
         fmt::format("the field has {:.1f} uT, but {:.1f} uT at this place: calibrate the magnetometer (iron "
                     "on the rig)",
                     1e6 * survey.field_T, 1e6 * expected.total_T));
@@ -44,7 +47,8 @@ void judgeSite(const MagnetometerSurvey& survey, Inspection* inspection) {
   if (!survey.inclination_rad) return;
   const double dip_error_deg = kDegreesPerRadian * (*survey.inclination_rad - expected.inclination_rad);
   if (std::abs(dip_error_deg) > 10.0) {
-    add(inspection, Severity::Warning, 41.0, "field_dip",
+    addMagnetometerFinding(
+        inspection, Severity::Warning, 41.0, "field_dip",
         fmt::format("the field points {:.0f} deg below the horizon, but {:.0f} deg at this place: calibrate "
                     "the magnetometer, "
                     "and check its axes",
@@ -61,7 +65,8 @@ void judgeTurning(const MagnetometerSurvey& survey, Inspection* inspection) {
   constexpr double kSteady = 0.1, kMuchBetter = 0.4, kMoving = 0.05;
   if (!turning.best_axes.isIdentity() && turning.scatter > kMoving && turning.best_scatter < kSteady &&
       turning.best_scatter < kMuchBetter * turning.scatter) {
-    add(inspection, Severity::Serious, 72.0, "magnetometer_axes",
+    addMagnetometerFinding(
+        inspection, Severity::Serious, 72.0, "magnetometer_axes",
         fmt::format("the axes of the magnetometer do not fit the gyroscope's: swapped, wrong signs or wrong "
                     "T_BS (in body axes as "
                     "if {}); the field scatters by {:.0f} %, {:.1f} % then",
@@ -72,7 +77,8 @@ void judgeTurning(const MagnetometerSurvey& survey, Inspection* inspection) {
   constexpr double kHarmfulOffset_s = 0.03;
   if (std::abs(turning.time_offset_s) >= kHarmfulOffset_s &&
       turning.scatter_at_offset < 0.7 * turning.scatter) {
-    add(inspection, Severity::Warning, 46.0, "magnetometer_time_offset",
+    addMagnetometerFinding(
+        inspection, Severity::Warning, 46.0, "magnetometer_time_offset",
         fmt::format("time offset: the magnetometer's stamps {} the gyroscope's by about {:.0f} ms",
                     turning.time_offset_s < 0.0 ? "lag behind" : "run ahead of",
                     1e3 * std::abs(turning.time_offset_s)));

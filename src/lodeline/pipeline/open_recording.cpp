@@ -55,19 +55,19 @@ std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
 }
 
 bool isBag(const std::filesystem::path& data) {
-  const RecognisedFile recognised = recogniseFile(data);
-  if (recognised.kind == FileKind::Ros1Bag) return true;
+  const RecognizedFile recognized = recognizeFile(data);
+  if (recognized.kind == FileKind::Ros1Bag) return true;
   const std::string name = data.filename().string();
-  return recognised.kind == FileKind::Missing &&
+  return recognized.kind == FileKind::Missing &&
          (data.extension() == ".bag" || name.ends_with(".bag.active"));
 }
 
 bool isTableOfReadings(const std::filesystem::path& data) {
-  const RecognisedFile recognised = recogniseFile(data);
-  if (recognised.isFolder() || recognised.kind == FileKind::Ros1Bag) return false;
+  const RecognizedFile recognized = recognizeFile(data);
+  if (recognized.isFolder() || recognized.kind == FileKind::Ros1Bag) return false;
   if (isBag(data)) return false;  // one that is missing is reported by its reader
-  if (recognised.kind != FileKind::Table && recognised.kind != FileKind::Text) {
-    refuseFile(recognised, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
+  if (recognized.kind != FileKind::Table && recognized.kind != FileKind::Text) {
+    refuseFile(recognized, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
   }
   return true;
 }
@@ -75,7 +75,7 @@ bool isTableOfReadings(const std::filesystem::path& data) {
 void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments) {
   if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data)) return;
   throw UsageError(
-      fmt::format("--rig is for ROS bags here; {} is {}", data.string(), recogniseFile(data).what));
+      fmt::format("--rig is for ROS bags here; {} is {}", data.string(), recognizeFile(data).what));
 }
 
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
@@ -83,14 +83,14 @@ void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag
   const bool is_for_bags = !bag_arguments.topics.empty() || bag_arguments.use_received_times;
   if (is_for_bags && std::filesystem::exists(data)) {
     throw UsageError(fmt::format("--topic and --received-times are for ROS bags; {} is {}", data.string(),
-                                 recogniseFile(data).what));
+                                 recognizeFile(data).what));
   }
   if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
-    const RecognisedFile recognised = recogniseFile(data);
-    const bool is_table = recognised.kind == FileKind::Table || recognised.kind == FileKind::Text;
+    const RecognizedFile recognized = recognizeFile(data);
+    const bool is_table = recognized.kind == FileKind::Table || recognized.kind == FileKind::Text;
     if (!is_table) return;  // refused by its kind
     throw UsageError(
-        fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognised.what));
+        fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognized.what));
   }
 }
 

@@ -11,7 +11,7 @@ constexpr const char* kLandmarks = "landmarks_refined.ply";
 
 }  // namespace
 
-RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& record,
+RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record,
                             const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
                             Diagnostics* diagnostics) {
   const Refinement refinement = refine(estimator.rig(), estimator.options(), record);

@@ -12,7 +12,7 @@ namespace lodeline {
 /// landmarks_refined.ply beside the run's own files; nothing, but a finding, where the solution is refused.
 /// `result_stamps`: of frames whose results have another stamp than their time. Throws InputError where
 /// writing fails.
-RefinementSummary refineRun(const Estimator& estimator, const ForwardRecord& record,
+RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record,
                             const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
                             Diagnostics* diagnostics);
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/batch/forward_record.h"
+#include "lodeline/batch/estimator_log.h"
 #include "lodeline/estimator/attitude_track.h"
 #include "lodeline/estimator/odometry.h"
 #include "lodeline/inspection/clock_monitor.h"
@@ -61,11 +61,11 @@ class RunSession {
   Diagnostics* diagnostics_;
   Synchronizer synchronizer_;
   Odometry odometry_;
-  Diagnostics unheard_;  ///< what the filter finds wrong with readings, synchroniser and odometry report too
+  Diagnostics unheard_;  ///< what the filter finds wrong with readings, synchronizer and odometry report too
   AttitudeTrack attitude_;
   RunSummary summary_;
   std::optional<RunOutput> output_;
-  std::optional<ForwardRecord> record_;  ///< of a run that is to be refined
+  std::optional<EstimatorLog> record_;  ///< of a run that is to be refined
   std::optional<FramePacket> fetched_;
   FramePacket processed_;
   ClockMonitor clocks_;

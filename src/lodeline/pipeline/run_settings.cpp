@@ -46,7 +46,7 @@ void bindFrontEnd(Settings* settings, FrontEndOptions* options, int* max_tracks)
   settings->bind("front_end.seed", &options->consensus.seed,
                  "of the random choices in that judgement; another one makes another, equally good run");
   settings->bind("front_end.max_gap_s", &options->max_gap_s, "images missing for longer end all tracks");
-  settings->bind("front_end.fixed_structure", &options->fixed_structure.enabled,
+  settings->bind("front_end.static_image_mask", &options->static_image_mask.enabled,
                  "leave out what stays at its place in the images, such as parts of the rig");
   settings->bind("front_end.sigma_px", &options->sigma_px, "standard deviation of an observation",
                  Settings::Sign::Positive);
@@ -101,15 +101,15 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("window.recent_frames", &options->window.recent_frames,
                  "newest frames, with velocity and biases", 2);
   settings->bind("window.keyframes", &options->window.keyframes, "older keyframes");
-  settings->bind("window.keyframes_after_cut", &options->window.keyframes_after_cut,
-                 "of these, whose sightings a landmark goes on with that outlives the oldest one");
+  settings->bind("window.split_at_keyframe", &options->window.split_at_keyframe,
+                 "of these, whose observations a landmark goes on with that outlives the oldest one");
   settings->bind("window.interpolated_spacing_s", &options->window.interpolated_spacing_s,
-                 "at least, of frames between keyframes whose sightings are kept");
+                 "at least, of frames between keyframes whose observations are kept");
   settings->bind("window.interpolated_gap_s", &options->window.interpolated_gap_s,
                  "at most, of the keyframes on both sides of them");
-  settings->bind("window.dormant_frames", &options->window.dormant_frames,
+  settings->bind("window.frozen_frames", &options->window.frozen_frames,
                  "after which landmarks that no recent frame sees are evaluated anew; 0: in each");
-  settings->bind("window.startup_frames", &options->window.startup_frames, "nothing is marginalised before");
+  settings->bind("window.startup_frames", &options->window.startup_frames, "nothing is marginalized before");
   settings->bind("window.startup_frames_mono", &options->window.startup_frames_mono,
                  "the same with one camera");
   settings->bind("keyframe.min_tracked_share", &options->keyframe.min_tracked_share,
@@ -125,7 +125,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("landmark.min_distance_m", &options->landmark.min_distance_m,
                  "nearer ones are taken for errors");
   settings->bind("landmark.max_error_sigmas", &options->landmark.max_error_sigmas,
-                 "sightings beyond are outliers");
+                 "observations beyond are outliers");
   CameraCalibrationOptions* cameras = &options->camera_calibration;
   settings->bind("camera_calibration.enabled", &cameras->enabled,
                  "refine the cameras' calibration on the way");
@@ -136,9 +136,9 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
   settings->bind("camera_calibration.time_offset_sigma_s", &cameras->time_offset_sigma_s,
                  "of the images' stamps; 0 holds it");
   settings->bind("camera_calibration.stereo_rotation_sigma_rad", &cameras->stereo_rotation_sigma_rad,
-                 "of further cameras to camera 0; 0 holds it");
+                 "of secondary cameras to camera 0; 0 holds it");
   settings->bind("camera_calibration.stereo_position_sigma_m", &cameras->stereo_position_sigma_m,
-                 "of further cameras to camera 0; 0 holds it");
+                 "of secondary cameras to camera 0; 0 holds it");
   settings->bind("camera_calibration.intrinsics", &cameras->intrinsics, "refine the lenses as well");
   settings->bind("camera_calibration.focal_length_sigma", &cameras->focal_length_sigma,
                  "relative, of both focal lengths; 0 holds them");
@@ -146,8 +146,9 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
                  "0 holds it");
   settings->bind("camera_calibration.radial_sigma", &cameras->radial_sigma,
                  "of the first two radial coefficients of the lens' model; 0 holds them");
-  settings->bind("camera_calibration.trust_confirmed_files", &cameras->trust_confirmed_files,
-                 "hold lenses and how further cameras are turned at their files while images confirm these");
+  settings->bind(
+      "camera_calibration.trust_confirmed_files", &cameras->trust_confirmed_files,
+      "hold lenses and how secondary cameras are turned at their files while images confirm these");
   settings->bind("solver.max_iterations", &options->solver.max_iterations, "a frame", 1);
   settings->bind("solver.function_tolerance", &options->solver.function_tolerance,
                  "relative gain below which a frame's iterations end");
@@ -156,7 +157,7 @@ void bindEstimator(Settings* settings, EstimatorOptions* options) {
       "width of the Cauchy loss, in medians of a frame's reprojection errors; heavy tails narrow it");
   settings->bind("solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas, "the same, at most");
   settings->bind("solver.track_weights", &options->solver.track_weights,
-                 "weigh each track's sightings by what its own errors say of it");
+                 "weigh each track's observations by what its own errors say of it");
   settings->bind("rest.enabled", &options->rest.enabled,
                  "count the velocity as none where readings and images rest");
   settings->bind("rest.velocity_sigma_m_per_s", &options->rest.velocity_sigma_m_per_s,
@@ -172,13 +173,13 @@ void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
                   {"paper", MagnetometerUse::Paper},
                   {"off", MagnetometerUse::Off}},
                  "automatic: absolute where the magnetometer is calibrated, else off");
-  settings->bind("magnetometer.floor_T", &options->floor_T,
+  settings->bind("magnetometer.correlated_noise_sigma_T", &options->correlated_noise_sigma_T,
                  "lasting errors of the field, one sigma per axis, to start with");
-  settings->bind("magnetometer.floor_correlation_s", &options->floor_correlation_s, "for which they last",
-                 Settings::Sign::Positive);
-  settings->bind("magnetometer.floor_memory_s", &options->floor_memory_s,
+  settings->bind("magnetometer.correlated_noise_time_s", &options->correlated_noise_time_s,
+                 "for which they last", Settings::Sign::Positive);
+  settings->bind("magnetometer.correlated_noise_memory_s", &options->correlated_noise_memory_s,
                  "over which size and dip of the field teach it", Settings::Sign::Positive);
-  settings->bind("magnetometer.floor_freedom", &options->floor_freedom,
+  settings->bind("magnetometer.student_dof", &options->student_dof,
                  "degrees of freedom of the distribution of these errors");
   settings->bind("magnetometer.noise_inflation", &options->noise_inflation,
                  "factor on the noise density of its calibration");
@@ -216,15 +217,15 @@ void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
   settings->bind("magnetometer.gate.release_s", &gate->release_s, "for so long");
   settings->bind("magnetometer.gate.memory_s", &gate->memory_s,
                  "over which rejections lower the weight of what is used", Settings::Sign::Positive);
-  settings->bind("magnetometer.gate.account_s", &gate->account_s,
+  settings->bind("magnetometer.gate.rejection_window_s", &gate->rejection_window_s,
                  "over which agreement and rejection are weighed against each other");
   settings->bind("magnetometer.gate.max_rejected_ratio", &gate->max_rejected_ratio,
                  "of the times of rejection and agreement, beyond which nothing is believed any more");
-  settings->bind("magnetometer.gate.credit_s", &gate->credit_s,
+  settings->bind("magnetometer.gate.rejection_margin_s", &gate->rejection_margin_s,
                  "by which that has to be exceeded, and agreement to prevail before it is believed again");
-  settings->bind("magnetometer.gate.max_lasting_sigma_rad", &gate->max_lasting_sigma_rad,
+  settings->bind("magnetometer.gate.max_correlated_sigma_rad", &gate->max_correlated_sigma_rad,
                  "that the field's lasting error may be worth of heading");
-  settings->bind("magnetometer.gate.distrust_s", &gate->distrust_s, "after which that is tried again");
+  settings->bind("magnetometer.gate.retry_after_s", &gate->retry_after_s, "after which that is tried again");
   settings->bind("magnetometer.gate.readmission_s", &gate->readmission_s,
                  "after which a rejected field counts as a new one");
 }
@@ -236,7 +237,7 @@ void bindDepth(Settings* settings, DepthOptions* options) {
       "density of the water over that which the gauge assumes: 0.975 for a gauge set to salt water "
       "in fresh water");
   settings->bind("pressure.density_ratio_sigma", &options->density_ratio_sigma, "of that ratio; 0 holds it");
-  settings->bind("pressure.known_waters", &options->known_waters,
+  settings->bind("pressure.water_density_prior", &options->water_density_prior,
                  "whether that ratio is rather that of fresh or salt water to a gauge set to either");
   settings->bind("pressure.least_density_sigma", &options->least_density_sigma,
                  "what images tell of that ratio is never taken for better than this in what heights claim");
@@ -247,7 +248,7 @@ void bindDepth(Settings* settings, DepthOptions* options) {
   settings->bind("pressure.noise_inflation", &options->noise_inflation,
                  "factor on the depth_noise_std of its file");
   settings->bind("pressure.floor_m", &options->floor_m, "lasting errors of the readings, one sigma");
-  settings->bind("pressure.floor_correlation_s", &options->floor_correlation_s, "for which they last",
+  settings->bind("pressure.correlated_noise_time_s", &options->correlated_noise_time_s, "for which they last",
                  Settings::Sign::Positive);
   settings->bind("pressure.gate.max_sigmas", &options->gate.max_sigmas, "of a jump that is believed");
   settings->bind("pressure.gate.max_jump_m", &options->gate.max_jump_m, "that is believed in any case");

@@ -165,7 +165,7 @@ void PointSimulation::addObservation(TrackId track, int camera, const Vec2& true
   }
   const auto bearing = given_cameras_[camera]->unproject(pixel);
   if (!bearing) return;
-  Observation observation;
+  FeatureObservation observation;
   observation.track = track;
   observation.camera = camera;
   observation.pixel = pixel;

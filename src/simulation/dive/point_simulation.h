@@ -50,7 +50,7 @@ struct PointSimulationOptions {
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
 };
 
-/// The exact state at a frame, as the estimator parametrises it.
+/// The exact state at a frame, as the estimator parametrizes it.
 struct TrueState {
   Time time;
   MotionState motion;
@@ -62,7 +62,7 @@ struct TrueState {
 struct SimulatedFrame {
   FrameTracks tracks;
   /// From the frame before to this one, both ends on the frames' times; the first from the motion's start. A
-  /// border between two readings is interpolated, as a synchroniser would.
+  /// border between two readings is interpolated, as a synchronizer would.
   std::vector<ImuSample> imu;
   /// After the frame before and up to this one; the first from the motion's start.
   std::vector<MagnetometerSample> magnetometer;

@@ -50,11 +50,11 @@ TEST_F(PointSimulationTest, KeepsTracksInEveryFrame) {
   ASSERT_EQ(frames.size(), 381u);
   for (const SimulatedFrame& frame : frames) {
     std::set<TrackId> tracks;
-    for (const Observation& o : frame.tracks.observations) tracks.insert(o.track);
+    for (const FeatureObservation& o : frame.tracks.observations) tracks.insert(o.track);
     EXPECT_GE(tracks.size(), 135u);
     EXPECT_LE(tracks.size(), 150u);
     EXPECT_TRUE(std::is_sorted(frame.tracks.observations.begin(), frame.tracks.observations.end(),
-                               [](const Observation& a, const Observation& b) {
+                               [](const FeatureObservation& a, const FeatureObservation& b) {
                                  return std::tie(a.track, a.camera) < std::tie(b.track, b.camera);
                                }));
   }
@@ -67,7 +67,7 @@ TEST_F(PointSimulationTest, ReprojectionErrorsAreTheStatedNoise) {
   double squares = 0.0;
   int count = 0;
   while (auto frame = simulation.next()) {
-    for (const Observation& o : frame->tracks.observations) {
+    for (const FeatureObservation& o : frame->tracks.observations) {
       const Rigid3 world_from_camera =
           frame->truth.motion.world_from_body * rig_.cameras[o.camera].body_from_camera;
       const Vec3 point_C = world_from_camera.inverse() * simulation.landmark(o.track);
@@ -125,7 +125,7 @@ TEST_F(PointSimulationTest, TracksEndAndNeverComeBackUnderTheirName) {
   std::map<TrackId, double> first_seen, last_seen;
   for (const SimulatedFrame& frame : run()) {
     const double t = (frame.truth.time - options_.start).seconds();
-    for (const Observation& o : frame.tracks.observations) {
+    for (const FeatureObservation& o : frame.tracks.observations) {
       first_seen.try_emplace(o.track, t);
       last_seen.try_emplace(o.track, t);
       EXPECT_LT(t - last_seen[o.track], 0.051);
@@ -153,7 +153,7 @@ TEST_F(PointSimulationTest, OutliersHaveTheirShare) {
   int far = 0, count = 0;
   while (auto frame = simulation.next()) {
     const Rigid3 world_from_camera = frame->truth.motion.world_from_body * rig_.cameras[0].body_from_camera;
-    for (const Observation& o : frame->tracks.observations) {
+    for (const FeatureObservation& o : frame->tracks.observations) {
       if (o.camera != 0) continue;
       far += (*camera->project(world_from_camera.inverse() * simulation.landmark(o.track)) - o.pixel).norm() >
              3.0;

@@ -67,7 +67,7 @@ inline uint64_t noiseSeed(const Scenario& scenario) { return scenario.noise_seed
 /// The Earth's field at the scenario's site, T.
 Vec3 scenarioField(const Scenario& scenario);
 
-/// All settings as YAML: the scenario's identity, by which an interrupted recording is recognised.
+/// All settings as YAML: the scenario's identity, by which an interrupted recording is recognized.
 std::string describe(const Scenario& scenario);
 
 }  // namespace lodeline

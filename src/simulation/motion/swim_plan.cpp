@@ -35,7 +35,7 @@ std::vector<double> smoothed(std::vector<double> values, double half_width_s) {
   return values;
 }
 
-double smoothStep01(double u) {
+double smootherStep01(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
@@ -62,7 +62,7 @@ SwimPlan::SwimPlan(const SwimPlanOptions& options) : options_(options) {
     }
     kick_.push_back(speed);
     activity_.push_back(activity);
-    turn_.push_back(o.round_trip ? smoothStep01((t - turn_begin_s_) / o.turn_s) : 0.0);
+    turn_.push_back(o.round_trip ? smootherStep01((t - turn_begin_s_) / o.turn_s) : 0.0);
   }
   kick_ = smoothed(kick_, 0.6);
   activity_ = smoothed(activity_, 0.5);

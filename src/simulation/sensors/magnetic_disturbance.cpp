@@ -36,7 +36,7 @@ double momentScale(const Motion& motion, const Vec3& field_W, double begin_s, do
   return low;
 }
 
-// A direction within about 40 degrees of the Earth's field: magnetisation is mostly induced.
+// A direction within about 40 degrees of the Earth's field: magnetization is mostly induced.
 Vec3 inducedDirection(const Vec3& field_W, Random& random) {
   return (field_W.normalized() + 0.6 * random.normal3()).normalized();
 }

@@ -16,7 +16,7 @@ struct LyingDipole {
 };
 
 /// Iron that comes near and goes away: a companion's steel tank. It keeps its place in the diver frame, while
-/// its magnetisation, induced by the Earth's field, keeps its direction in the world.
+/// its magnetization, induced by the Earth's field, keeps its direction in the world.
 struct PassingIron {
   double begin_s = 0.0;
   double duration_s = 0.0;  ///< at full strength; coming and going take `ramp_s` each

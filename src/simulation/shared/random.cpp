@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-// Seed and stream name are hashed together (FNV-1a, then the finaliser of splitmix64), so that neighbouring
+// Seed and stream name are hashed together (FNV-1a, then the finalizer of splitmix64), so that neighbouring
 // seeds give unrelated sequences.
 uint64_t hashed(uint64_t seed, std::string_view stream) {
   uint64_t hash = 14695981039346656037ull ^ seed;

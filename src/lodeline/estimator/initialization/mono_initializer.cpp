@@ -17,7 +17,7 @@ namespace lodeline {
 namespace {
 
 /// Mean square of the whitened inertial errors of a window: about one or less where it is right.
-double inertialDisagreement(Window& window, const FactorMaker& factors) {
+double inertialDisagreement(Window& window, const FactorBuilder& factors) {
   double square_sum = 0.0;
   std::vector<double> residual;
   Frame* before = nullptr;
@@ -30,7 +30,7 @@ double inertialDisagreement(Window& window, const FactorMaker& factors) {
 
 }  // namespace
 
-bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<const ImuSample> imu,
+bool MonoInitializer::add(Time time, const ObservationList& observations, std::span<const ImuSample> imu,
                           FrameId id, const Rest& rest) {
   pending_imu_.insert(pending_imu_.end(), imu.begin() + (pending_imu_.empty() || imu.empty() ? 0 : 1),
                       imu.end());
@@ -43,7 +43,7 @@ bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<co
     waiting_for_ = "inertial readings";
     return false;
   }
-  insert(time, sightings, id);
+  insert(time, observations, id);
   while ((time - window_.frames().front()->time).seconds() > wanted.max_duration_s ||
          (window_.frames().size() > 1 &&
           commonTracks(window_, *window_.frames().front(), window_.newest()).size() <
@@ -63,7 +63,7 @@ bool MonoInitializer::add(Time time, const SightingList& sightings, std::span<co
   return false;
 }
 
-void MonoInitializer::insert(Time time, const SightingList& sightings, FrameId id) {
+void MonoInitializer::insert(Time time, const ObservationList& observations, FrameId id) {
   auto frame = std::make_unique<Frame>();
   frame->id = id;
   frame->time = time;
@@ -77,7 +77,7 @@ void MonoInitializer::insert(Time time, const SightingList& sightings, FrameId i
   if (pending_rest_) frame->rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
   pending_rest_ = false;
   window_.add(std::move(frame));
-  for (const auto& [track, sighting] : sightings) window_.addSighting(track, sighting);
+  for (const auto& [track, observation] : observations) window_.addObservation(track, observation);
 }
 
 void MonoInitializer::dropOldestFrame() {

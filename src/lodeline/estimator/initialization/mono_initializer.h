@@ -7,33 +7,33 @@
 #include <vector>
 
 #include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
-#include "lodeline/estimator/zero_velocity/rest_watch.h"
+#include "lodeline/estimator/zero_velocity/stationary_detector.h"
 
 namespace lodeline {
 
-/// Sightings of one frame with their tracks.
-using SightingList = std::vector<std::pair<TrackId, Sighting>>;
+/// Observations of one frame with their tracks.
+using ObservationList = std::vector<std::pair<TrackId, Observation>>;
 
 /// Finds the first states of a rig whose images overlap only over time: visual structure from the frame that
 /// has moved far enough against an earlier one, then gyroscope bias, gravity, scale and velocities from the
 /// inertial readings, then everything together. Frames are collected until that succeeds.
 class MonoInitializer {
  public:
-  MonoInitializer(const Rig& rig, const EstimatorOptions& options, const FactorMaker& factors)
+  MonoInitializer(const Rig& rig, const EstimatorOptions& options, const FactorBuilder& factors)
       : rig_(rig), options_(options), factors_(factors) {}
 
-  /// What RestWatch has found, as of a frame.
+  /// What StationaryDetector has found, as of a frame.
   struct Rest {
     bool now = false;  ///< its velocity is to be counted as none
     std::optional<GyroscopeAtRest> gyroscope;
   };
 
-  /// Adds a frame: its sightings and the inertial readings since the frame before (as Estimator::add). True
-  /// when the window is complete: states of all its frames in a world with gravity down, zero yaw and origin
-  /// at the first frame, landmarks in metres.
-  bool add(Time time, const SightingList& sightings, std::span<const ImuSample> imu, FrameId id,
+  /// Adds a frame: its observations and the inertial readings since the frame before (as Estimator::add).
+  /// True when the window is complete: states of all its frames in a world with gravity down, zero yaw and
+  /// origin at the first frame, landmarks in metres.
+  bool add(Time time, const ObservationList& observations, std::span<const ImuSample> imu, FrameId id,
            const Rest& rest);
 
   /// What is missing, in words; set whenever add() returned false.
@@ -44,7 +44,7 @@ class MonoInitializer {
   Prior takePrior() { return std::move(prior_); }
 
  private:
-  void insert(Time time, const SightingList& sightings, FrameId id);
+  void insert(Time time, const ObservationList& observations, FrameId id);
   void dropOldestFrame();
   std::vector<Preintegration*> intervals() const;
   bool solveVisualStructure();
@@ -56,7 +56,7 @@ class MonoInitializer {
 
   const Rig& rig_;
   const EstimatorOptions& options_;
-  const FactorMaker& factors_;
+  const FactorBuilder& factors_;
   Window window_;
   Prior prior_;
   std::vector<ImuSample> pending_imu_;  ///< since the newest frame of the window

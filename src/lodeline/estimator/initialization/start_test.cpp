@@ -30,7 +30,7 @@ TEST(StartPrior, HoldsTheStateWithTheStatedSigmas) {
   ASSERT_EQ(prior.blocks.size(), 2u);
   EXPECT_EQ(prior.blocks[0].value, frame.pose.data());
   EXPECT_EQ(prior.blocks[1].value, frame.motion.data());
-  EXPECT_EQ(prior.blocks[1].first_estimate.head<3>(), state.velocity_W);
+  EXPECT_EQ(prior.blocks[1].linearization_point.head<3>(), state.velocity_W);
   EXPECT_EQ(prior.offset.norm(), 0.0);
   Eigen::VectorXd expected(15);
   expected << Vec3::Constant(options.position_sigma_m), 0.07, 0.07, options.yaw_sigma_rad,

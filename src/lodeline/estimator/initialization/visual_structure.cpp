@@ -21,8 +21,8 @@ PointMap triangulatePair(const Window& window, const Frame& a, const Frame& b, c
   const Rigid3 a_from_b = b_from_a.inverse();
   PointMap points;
   for (const auto& [id, track] : window.tracks()) {
-    const Sighting* in_a = track.find(a.id, 0);
-    const Sighting* in_b = track.find(b.id, 0);
+    const Observation* in_a = track.find(a.id, 0);
+    const Observation* in_b = track.find(b.id, 0);
     if (!in_a || !in_b) continue;
     const Triangulation point = triangulate({{Rigid3(), in_a->measurement.bearing_C, max_error_rad},
                                              {a_from_b, in_b->measurement.bearing_C, max_error_rad}},
@@ -38,9 +38,9 @@ std::optional<Rigid3> resect(const Window& window, const Frame& frame, const Poi
   std::vector<cv::Point3d> objects;
   std::vector<cv::Point2d> images;
   for (const auto& [id, point] : points) {
-    const Sighting* sighting = window.tracks().at(id).find(frame.id, 0);
-    if (!sighting || sighting->measurement.bearing_C.z() < 0.17) continue;
-    const Vec3& ray = sighting->measurement.bearing_C;
+    const Observation* observation = window.tracks().at(id).find(frame.id, 0);
+    if (!observation || observation->measurement.bearing_C.z() < 0.17) continue;
+    const Vec3& ray = observation->measurement.bearing_C;
     objects.emplace_back(point.x(), point.y(), point.z());
     images.emplace_back(ray.x() / ray.z(), ray.y() / ray.z());
   }
@@ -87,15 +87,15 @@ std::vector<Quat> gyroscopeRotations(const std::vector<Preintegration*>& interva
 std::vector<BearingPair> commonTracks(const Window& window, const Frame& a, const Frame& b) {
   std::vector<BearingPair> pairs;
   for (const auto& [id, track] : window.tracks()) {
-    const Sighting* in_a = track.find(a.id, 0);
-    const Sighting* in_b = track.find(b.id, 0);
+    const Observation* in_a = track.find(a.id, 0);
+    const Observation* in_b = track.find(b.id, 0);
     if (in_a && in_b) pairs.push_back({in_a->measurement.bearing_C, in_b->measurement.bearing_C});
   }
   return pairs;
 }
 
 bool estimateStructure(Window& window, const std::vector<Preintegration*>& intervals,
-                       const FactorMaker& factors, double focal_px,
+                       const FactorBuilder& factors, double focal_px,
                        const MonoInitializationOptions& options) {
   Frame& oldest = *window.frames().front();
   Frame& newest = window.newest();

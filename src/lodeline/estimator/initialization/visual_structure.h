@@ -4,7 +4,7 @@
 
 #include "lodeline/estimator/initialization/relative_pose.h"
 #include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
 
 namespace lodeline {
@@ -17,6 +17,7 @@ std::vector<BearingPair> commonTracks(const Window& window, const Frame& a, cons
 /// The gyroscope's intervals (between consecutive frames, in order) give first guesses of the rotations
 /// between. False when the images do not agree on a rigid structure.
 bool estimateStructure(Window& window, const std::vector<Preintegration*>& intervals,
-                       const FactorMaker& factors, double focal_px, const MonoInitializationOptions& options);
+                       const FactorBuilder& factors, double focal_px,
+                       const MonoInitializationOptions& options);
 
 }  // namespace lodeline

@@ -89,10 +89,10 @@ void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prio
   }
   // Position, roll and pitch, and velocity have one sigma for all horizontal directions: only the values
   // turn.
-  double* pose = prior->blocks[0].first_estimate.data();
+  double* pose = prior->blocks[0].linearization_point.data();
   poseToBlock(turned_from_world * poseFromBlock(pose), pose);
-  prior->blocks[1].first_estimate.head<3>() =
-      turned_from_world.rotation * Vec3(prior->blocks[1].first_estimate.head<3>());
+  prior->blocks[1].linearization_point.head<3>() =
+      turned_from_world.rotation * Vec3(prior->blocks[1].linearization_point.head<3>());
   prior->sqrt_information(5, 5) = 1.0 / yaw_sigma_rad;
   // What ties roll and pitch, in world axes, to the motion (tieTiltToAccelerometerBias) turns with them.
   constexpr int kTilt = 3;

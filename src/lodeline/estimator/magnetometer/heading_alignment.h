@@ -43,7 +43,7 @@ AzimuthCovariance azimuthCovariance(const Vec3& field_W, const Mat3& field,
 void relateToNorth(const NavigationState& state, const AzimuthCovariance& azimuth,
                    Eigen::Matrix<double, 15, 15>* covariance);
 
-/// Turns the world under a window of which nothing has been marginalised yet, and under the prior on its
+/// Turns the world under a window of which nothing has been marginalized yet, and under the prior on its
 /// first frame (startPrior), whose heading is then known to `yaw_sigma_rad` only.
 void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior);
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "lodeline/estimator/state/inertial_states.h"
-#include "lodeline/estimator/uncertainty/lasting_error.h"
+#include "lodeline/estimator/uncertainty/time_correlated_error.h"
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
@@ -113,17 +113,17 @@ double MagnetometerFusion::offsetSigma() const {
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
-  return std::hypot(deviation_.sigma_T(errors_.floor_T()),
+  return std::hypot(deviation_.sigma_T(errors_.correlated_noise_sigma_T()),
                     calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
 }
 
 void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const {
   const MagnetometerOptions& wanted = options_.magnetometer;
-  const auto add = [&](const char* name, const Vec3& value, double walk) -> GlobalState& {
+  const auto add = [&](const char* name, const Vec3& value, double walk) -> ParameterBlock& {
     return window->add({name, {value.x(), value.y(), value.z()}, std::nullopt, walk, true});
   };
-  GlobalState& field = add(MagnetometerStates::kField, alignment.field_W, 0.0);
-  GlobalState& offset = add(MagnetometerStates::kOffset, Vec3::Zero(), wanted.offset_walk_T_per_sqrt_s);
+  ParameterBlock& field = add(MagnetometerStates::kField, alignment.field_W, 0.0);
+  ParameterBlock& offset = add(MagnetometerStates::kOffset, Vec3::Zero(), wanted.offset_walk_T_per_sqrt_s);
   add(MagnetometerStates::kDisturbance, Vec3::Zero(), wanted.disturbance_walk_T_per_sqrt_s);
   prior->append(field.value.data(), 3, Vec3::Constant(wanted.field_sigma_T));
   if (alignment.reference != HeadingReference::Start) {
@@ -143,8 +143,8 @@ void MagnetometerFusion::remember(JointCovariance covariance) {
   tilt_variance_rad2_ = 0.5 * covariance_.newest().diagonal().segment<2>(3).sum();
 }
 
-LastingError MagnetometerFusion::tiltError() const {
-  const double longest_s = options_.magnetometer.floor_correlation_s;
+TimeCorrelatedError MagnetometerFusion::tiltError() const {
+  const double longest_s = options_.magnetometer.correlated_noise_time_s;
   const double growth_rad2_per_s = gyroscope_density_ * gyroscope_density_;
   return {tilt_variance_rad2_, tilt_variance_rad2_ < longest_s * growth_rad2_per_s
                                    ? tilt_variance_rad2_ / growth_rad2_per_s
@@ -152,7 +152,7 @@ LastingError MagnetometerFusion::tiltError() const {
 }
 
 double MagnetometerFusion::tiltSigma(Time now) {
-  const double shared = lastingErrorShare(now, last_seen_, tiltError().correlation_s);
+  const double shared = timeCorrelatedShare(now, last_seen_, tiltError().correlation_s);
   // An error of the tilt lasts too, but what has been learned of it since is new: of all that the frames so
   // far have said, the part that took the tilt as wrongly as then shall fade. The weighted mean of errors of
   // an estimate whose information grows has twice the variance of its last one, hence the half.
@@ -175,7 +175,7 @@ FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean,
     measurement.noise.sigma_T = std::sqrt(whiteVariance(mean) * mean.readings);
     return measurement;
   }
-  const double shared = lastingErrorShare(mean.time, last_seen_, wanted.floor_correlation_s);
+  const double shared = timeCorrelatedShare(mean.time, last_seen_, wanted.correlated_noise_time_s);
   const double variance_T2 = whiteVariance(mean) + shared * std::pow(floorSigma(mean.field_B), 2);
   measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
   measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
@@ -211,7 +211,7 @@ MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, 
   if (!options_.magnetometer.step.enabled) return mean;
   const MagnetometerStates states(window);
   const Quat body_from_world = window.newest().worldFromBody().rotation.conjugate();
-  FieldStep::Reading reading;
+  MagneticStepDetector::Reading reading;
   reading.time = mean.time;
   reading.difference_B = mean.field_B - body_from_world * states.field_W() - mean.carried * states.offset_B();
   reading.heading_B = body_from_world * Vec3::UnitZ().cross(states.field_W()).normalized();
@@ -244,9 +244,10 @@ void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window,
 void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
   Frame& newest = window.newest();
   comparison_.add(mean, whiteVariance(mean), window);
-  const FieldCheck earth = comparison_.check(window, covariance_, errors_.floor_T(), false);
+  const FieldCheck earth = comparison_.check(window, covariance_, errors_.correlated_noise_sigma_T(), false);
   std::optional<FieldCheck> with_disturbance;
-  if (disturbed_) with_disturbance = comparison_.check(window, covariance_, errors_.floor_T(), true);
+  if (disturbed_)
+    with_disturbance = comparison_.check(window, covariance_, errors_.correlated_noise_sigma_T(), true);
   const GateDecision decision = gate_.decide(mean.time, earth, with_disturbance);
   reportDecision(decision, mean.time);
   status_ = decision.status;
@@ -295,7 +296,7 @@ void MagnetometerFusion::endDisturbance(Window& window, Marginalizer& marginaliz
   for (const auto& frame : window.frames()) {
     if (frame->magnetometer && frame->magnetometer->disturbed) frame->magnetometer.reset();
   }
-  GlobalState& disturbance = *MagnetometerStates(window).disturbance;
+  ParameterBlock& disturbance = *MagnetometerStates(window).disturbance;
   marginalizer.forget(window, disturbance);
   std::fill(disturbance.value.begin(), disturbance.value.end(), 0.0);
   disturbed_ = false;
@@ -348,7 +349,7 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
         std::min(std::numbers::pi, axesSigma() * field_W.norm() / field_W.head<2>().norm());
     estimate.field_W = field_W;
     estimate.offset_B = states.offset_B();
-    estimate.floor_T = errors_.floor_T();
+    estimate.correlated_noise_sigma_T = errors_.correlated_noise_sigma_T();
   }
   return estimate;
 }

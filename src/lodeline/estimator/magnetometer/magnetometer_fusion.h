@@ -6,11 +6,11 @@
 
 #include "lodeline/ahrs/magnetometer_readings.h"
 #include "lodeline/estimator/magnetometer/earth_field_search.h"
-#include "lodeline/estimator/magnetometer/field/field_comparison.h"
-#include "lodeline/estimator/magnetometer/field/field_deviation.h"
-#include "lodeline/estimator/magnetometer/field/field_errors.h"
-#include "lodeline/estimator/magnetometer/field/field_step.h"
+#include "lodeline/estimator/magnetometer/field/field_innovation.h"
+#include "lodeline/estimator/magnetometer/field/magnetic_noise_estimator.h"
+#include "lodeline/estimator/magnetometer/field/magnetic_step_detector.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_gate.h"
+#include "lodeline/estimator/magnetometer/field/student_t_weight.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/problem/covariance.h"
@@ -40,12 +40,12 @@ struct MagnetometerEstimate {
   /// Estimated field of the Earth and offset of the corrected readings, T; nothing unless fused absolutely.
   std::optional<Vec3> field_W;
   std::optional<Vec3> offset_B;
-  std::optional<double> floor_T;  ///< lasting error of the field per axis, as learned
+  std::optional<double> correlated_noise_sigma_T;  ///< lasting error of the field per axis, as learned
 };
 
 /// Brings the magnetometer into a window: sorts its readings, turns the world to north at the start, keeps
-/// the global states, asks the gate, and hands each frame its mean field (Frame::magnetometer), of which
-/// FactorMaker makes a factor. Without a magnetometer, or switched off, it leaves everything as it is.
+/// the parameter blocks, asks the gate, and hands each frame its mean field (Frame::magnetometer), of which
+/// FactorBuilder makes a factor. Without a magnetometer, or switched off, it leaves everything as it is.
 class MagnetometerFusion {
  public:
   /// `options` and `diagnostics` must outlive it. Says so where a magnetometer is on board but not used.
@@ -56,8 +56,8 @@ class MagnetometerFusion {
             const Vec3& gyroscope_bias_B);
 
   /// The window has just started, with `prior` on its first frame: turns both to north where the field
-  /// allows, adds the global states to both and gives the frames their fields. `tilt_sigma_rad`: of the roll
-  /// and pitch that the window knows.
+  /// allows, adds the parameter blocks to both and gives the frames their fields. `tilt_sigma_rad`: of the
+  /// roll and pitch that the window knows.
   void start(double tilt_sigma_rad, Window* window, Prior* prior);
 
   /// The newest frame has just been added.
@@ -104,7 +104,7 @@ class MagnetometerFusion {
   double whiteVariance(const MagnetometerMean& mean) const;
   /// Of roll and pitch, rad^2 per axis, as the window knows them. The gyroscope adds errors all the time;
   /// none lasts for longer than it takes these to make up the whole.
-  LastingError tiltError() const;
+  TimeCorrelatedError tiltError() const;
   /// What a frame at `now` that is used shall be told of the tilt it takes as given, rad per axis.
   double tiltSigma(Time now);
   void learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window);
@@ -119,11 +119,11 @@ class MagnetometerFusion {
   MagnetometerCalibration calibration_;
   double gyroscope_density_ = 0.0;  ///< rad/s/sqrt(Hz), inflated
   MagnetometerReadings readings_;
-  FieldComparison comparison_;
+  FieldInnovation comparison_;
   MagnetometerGate gate_;
-  FieldErrors errors_;
-  FieldDeviation deviation_;
-  FieldStep step_;
+  MagneticNoiseEstimator errors_;
+  StudentTWeight deviation_;
+  MagneticStepDetector step_;
   std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
   HeadingReference heading_reference_ = HeadingReference::Start;
   EarthFieldSearch search_;

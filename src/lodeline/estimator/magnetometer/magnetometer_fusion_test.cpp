@@ -38,9 +38,9 @@ FieldMeasurement measurementOf(const SimulatedFrame& frame) {
   return measurement;
 }
 
-// Runs a window with a magnetometer and without any prior, and returns what its marginalisations claim to
+// Runs a window with a magnetometer and without any prior, and returns what its marginalizations claim to
 // know of a turn of everything about gravity, 1/rad^2.
-double yawInformationAfter(int frames, bool relative, bool keep_first_estimates) {
+double yawInformationAfter(int frames, bool relative, bool keep_linearization_points) {
   TestWindow test(2);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
@@ -57,8 +57,8 @@ double yawInformationAfter(int frames, bool relative, bool keep_first_estimates)
     if (k < 3) continue;
     EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
     removeOutliers(test.window, test.factors, test.options.landmark);
-    marginalizer.shorten(test.window, {.recent_frames = 3, .keyframes = 3});
-    if (keep_first_estimates) continue;
+    marginalizer.marginalizeToSize(test.window, {.recent_frames = 3, .keyframes = 3});
+    if (keep_linearization_points) continue;
     for (const auto& state : test.window.globals()) state->first.reset();
     for (const auto& other : test.window.frames()) {
       other->first_pose.reset();
@@ -74,7 +74,7 @@ double yawInformationAfter(int frames, bool relative, bool keep_first_estimates)
     const bool is_offset = block.value == MagnetometerStates(test.window).offset->value.data();
     has_field = has_field || is_field;
     // Position, velocity or field.
-    if (!is_offset) yaw.segment<3>(row) = Vec3::UnitZ().cross(Vec3(block.first_estimate.head<3>()));
+    if (!is_offset) yaw.segment<3>(row) = Vec3::UnitZ().cross(Vec3(block.linearization_point.head<3>()));
     if (block.isPose()) yaw[row + 5] = 1.0;
     row += block.tangentSize();
   }
@@ -86,7 +86,7 @@ TEST(MagnetometerInTheWindow, LeavesTheYawOfTheWorldUnobservable) {
   // As without a magnetometer (marginalizer_test.cpp): less than 0.1 rad once.
   EXPECT_LT(yawInformationAfter(30, false, true), 1e2);
   EXPECT_LT(yawInformationAfter(30, true, true), 1e2);
-  EXPECT_GT(yawInformationAfter(30, false, false), 1e4) << "first estimates are not needed here?";
+  EXPECT_GT(yawInformationAfter(30, false, false), 1e4) << "linearization points are not needed here?";
 }
 
 HeadingTrialOptions trialOptions(double duration_s) {
@@ -134,7 +134,7 @@ TEST(MagnetometerFusion, StaysOutOfAHeadingThatItCannotImprove) {
   EXPECT_LT(disturbed.share(MagnetometerStatus::Used), 0.8) << "nothing was rejected";
   // A wrong calibration is told from disturbances, here with less patience than there is time for in a dive.
   options.trouble = FieldTrouble::Misalignment;
-  options.estimator.magnetometer.gate.credit_s = 30.0;
+  options.estimator.magnetometer.gate.rejection_margin_s = 30.0;
   const HeadingTrial misaligned = runHeadingTrial(options);
   EXPECT_LT(misaligned.alignedRms(20.0), 1.1 * off.alignedRms(20.0) + 0.02 * kDegree);
   EXPECT_GT(misaligned.share(MagnetometerStatus::Inconsistent), 0.2);
@@ -167,7 +167,7 @@ TEST(MagnetometerFusion, DoubtsAMagnetThatItPasses) {
   // With lens files that images confirm the two are 1.27 apart on this dive: what is compared is the field.
   options.estimator.camera_calibration.trust_confirmed_files = false;
   const HeadingTrial doubted = runHeadingTrial(options);
-  options.estimator.magnetometer.floor_freedom = 1e6;
+  options.estimator.magnetometer.student_dof = 1e6;
   const HeadingTrial believed = runHeadingTrial(options);
   EXPECT_GT(believed.alignedRms(40.0), 1.3 * doubted.alignedRms(40.0)) << "size and dip were not asked";
 }

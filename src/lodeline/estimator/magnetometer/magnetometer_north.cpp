@@ -127,7 +127,7 @@ void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& 
           "the first pose on",
           mean.time.nanoseconds(), moved_rad * kDegreesPerRadian));
   for (const auto& frame : window.frames()) frame->magnetometer.reset();
-  for (GlobalState* state : {states.field, states.offset, states.disturbance}) {
+  for (ParameterBlock* state : {states.field, states.offset, states.disturbance}) {
     marginalizer.forget(window, *state);
     std::fill(state->value.begin(), state->value.end(), 0.0);
     state->sudden_variance = 0.0;
@@ -137,9 +137,9 @@ void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& 
   marginalizer.addKnowledge(*states.offset, Vec3::Constant(offsetSigma()));
   gate_ = MagnetometerGate(options_.magnetometer.gate);
   comparison_.restart();
-  errors_ = FieldErrors(options_.magnetometer, offsetSigma());
-  deviation_ = FieldDeviation(options_.magnetometer);
-  step_ = FieldStep(options_.magnetometer.step);
+  errors_ = MagneticNoiseEstimator(options_.magnetometer, offsetSigma());
+  deviation_ = StudentTWeight(options_.magnetometer);
+  step_ = MagneticStepDetector(options_.magnetometer.step);
   disturbed_ = rejecting_ = false;
   last_seen_.reset();
   least_tilt_variance_rad2_ = 0.0;

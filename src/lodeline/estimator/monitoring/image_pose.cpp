@@ -30,7 +30,7 @@ struct Seen {
 
 class Resection {
  public:
-  Resection(const Window& window, const FactorMaker& factors)
+  Resection(const Window& window, const FactorBuilder& factors)
       : states_(cameraStates(window)), frame_(window.newest()) {
     const Rigid3 camera_W = factors.worldFromCamera(window, frame_, 0);
     body_from_camera_ = frame_.worldFromBody().inverse() * camera_W;
@@ -103,14 +103,14 @@ class Resection {
   }
 
  private:
-  static bool isUsed(const TrackHistory& track, FrameId newest) {
+  static bool isUsed(const FeatureTrack& track, FrameId newest) {
     return track.landmark && track.landmark->host != newest && track.find(newest, 0);
   }
 
   Vec2 residualOf(const Seen& seen, const Vec3& point_C, Mat23* by_point) const {
     Vec2 residual = directionResidual(*seen.measurement, point_C, by_point);
     if (!states_.intrinsics.empty())
-      residual += lensShift(*seen.measurement, residual, states_.intrinsics.front()->value.data());
+      residual += intrinsicsShift(*seen.measurement, residual, states_.intrinsics.front()->value.data());
     return residual;
   }
 
@@ -134,7 +134,7 @@ class Resection {
 
 }  // namespace
 
-std::optional<ImagePose> poseByImages(const Window& window, const FactorMaker& factors,
+std::optional<ImagePose> poseByImages(const Window& window, const FactorBuilder& factors,
                                       std::span<const Rigid3> starts) {
   constexpr int kSteps = 8;
   constexpr double kConverged = 1e-4;  // m and rad

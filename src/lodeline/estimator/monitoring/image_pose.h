@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
 
 namespace lodeline {
@@ -18,11 +18,11 @@ struct ImagePose {
   int agreeing = 0;   ///< of which lie where this pose has them
 };
 
-/// Resection of the newest frame against the window's landmarks, which are held: the pose that minimises a
+/// Resection of the newest frame against the window's landmarks, which are held: the pose that minimizes a
 /// robust sum of camera 0's reprojection errors, from the best of some starts. No inertial reading takes part
 /// but for the few milliseconds of the cameras' time offset. Nothing where landmarks are too few or too
 /// scattered: most of them must agree with one pose.
-std::optional<ImagePose> poseByImages(const Window& window, const FactorMaker& factors,
+std::optional<ImagePose> poseByImages(const Window& window, const FactorBuilder& factors,
                                       std::span<const Rigid3> starts);
 
 }  // namespace lodeline

@@ -40,7 +40,7 @@ void InnovationWatch::add(Time time, double nis) {
   }
 }
 
-void InertialMonitor::check(Window& window, const FactorMaker& factors,
+void InertialMonitor::check(Window& window, const FactorBuilder& factors,
                             const Eigen::Matrix<double, 15, 15>& before) {
   const std::optional<MotionInnovation> innovation =
       motionInnovation(window, factors, before, is_before_placed_);

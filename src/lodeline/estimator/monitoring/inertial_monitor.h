@@ -6,13 +6,13 @@
 
 #include "lodeline/estimator/monitoring/motion_innovation.h"
 #include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
 #include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 
-/// Whether a normalised innovation squared stays beyond chance for longer than chance allows. Its mean over
+/// Whether a normalized innovation squared stays beyond chance for longer than chance allows. Its mean over
 /// half a second decides, each value cut off, so that no single frame can raise an alarm.
 class InnovationWatch {
  public:
@@ -47,9 +47,9 @@ class InertialMonitor {
   InertialMonitor(const EstimatorOptions& options, Diagnostics* diagnostics)
       : initial_(options.initial_state), diagnostics_(diagnostics) {}
 
-  /// Checks the newest frame before it is optimised, and widens its inertial term. `before`: covariance of
+  /// Checks the newest frame before it is optimized, and widens its inertial term. `before`: covariance of
   /// the frame before, see motionInnovation().
-  void check(Window& window, const FactorMaker& factors, const Eigen::Matrix<double, 15, 15>& before);
+  void check(Window& window, const FactorBuilder& factors, const Eigen::Matrix<double, 15, 15>& before);
 
   bool isGyroscopeDoubted() const { return gyroscope_.isAlarmed(); }
   bool isAlarmed() const {

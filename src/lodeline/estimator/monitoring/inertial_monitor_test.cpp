@@ -133,7 +133,7 @@ TEST_F(InertialMonitorTest, FollowsNoImageThatShowsAnotherPlace) {
   const Quat turned = so3::exp(Vec3(0.0, 0.2, 0.0));
   run(scene(2, 10.0), [&](double time_s, SimulatedFrame& frame) {
     if (std::abs(time_s - 6.0) > 0.02) return;
-    for (Observation& observation : frame.tracks.observations)
+    for (FeatureObservation& observation : frame.tracks.observations)
       observation.bearing_C = turned * observation.bearing_C;
   });
   EXPECT_EQ(findings_.count("image_out_of_place"), 1);
@@ -149,7 +149,7 @@ TEST(ImagePose, FindsTheFrameFromFarAway) {
   Diagnostics diagnostics;
   Estimator estimator(scene.rig(), honestOptions(options), &diagnostics);
   while (auto frame = scene.next()) estimator.add(frame->tracks, frame->imu);
-  const FactorMaker factors(scene.rig(), estimator.options());
+  const FactorBuilder factors(scene.rig(), estimator.options());
   const Rigid3 estimated = estimator.window().newest().worldFromBody();
   Eigen::Matrix<double, 6, 1> moved;
   moved << 0.3, -0.2, 0.1, 0.1, -0.2, 0.15;

@@ -28,7 +28,7 @@ ImageMotion steadyMotion(const Window& window) {
           so3::log(world_from_begin.rotation.conjugate() * world_from_end.rotation) / dt_s};
 }
 
-double normalised(const Vec3& innovation, const Mat3& covariance) {
+double normalized(const Vec3& innovation, const Mat3& covariance) {
   return innovation.dot(covariance.ldlt().solve(innovation)) / 3.0;
 }
 
@@ -56,7 +56,7 @@ Mat6 predictionCovariance(const Frame& before, const Preintegration& interval,
 
 }  // namespace
 
-std::optional<MotionInnovation> motionInnovation(Window& window, const FactorMaker& factors,
+std::optional<MotionInnovation> motionInnovation(Window& window, const FactorBuilder& factors,
                                                  const Eigen::Matrix<double, 15, 15>& before,
                                                  bool is_before_placed) {
   Frame& newest = window.newest();
@@ -88,8 +88,8 @@ std::optional<MotionInnovation> motionInnovation(Window& window, const FactorMak
       predictionCovariance(previous, interval, before, is_before_placed) + 2.0 * seen->covariance;
   covariance.diagonal().head<3>().array() += kWayError * kWayError * step.head<3>().squaredNorm();
   covariance.diagonal().tail<3>().array() += kTurnError * kTurnError * step.tail<3>().squaredNorm();
-  innovation.position_nis = normalised(innovation.position_W, covariance.topLeftCorner<3, 3>());
-  innovation.rotation_nis = normalised(innovation.rotation_W, covariance.bottomRightCorner<3, 3>());
+  innovation.position_nis = normalized(innovation.position_W, covariance.topLeftCorner<3, 3>());
+  innovation.rotation_nis = normalized(innovation.rotation_W, covariance.bottomRightCorner<3, 3>());
   return innovation;
 }
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
 
 namespace lodeline {
@@ -12,7 +12,7 @@ namespace lodeline {
 struct MotionInnovation {
   /// Of position (m) and of rotation (rad): images minus inertial prediction.
   Vec3 position_W = Vec3::Zero(), rotation_W = Vec3::Zero();
-  /// Squared and normalised by covariance and dimension: 1 on average where both are as stated.
+  /// Squared and normalized by covariance and dimension: 1 on average where both are as stated.
   double position_nis = 0.0, rotation_nis = 0.0;
   /// Images minus a body that keeps the mean velocity and rate between the two frames before: what images
   /// alone say of accelerations.
@@ -25,7 +25,7 @@ struct MotionInnovation {
 /// (poseByImages()). `before`: covariance of [dp, dtheta, dv, db_g, db_a] of the frame before, of which the
 /// pose counts only where no image placed that frame among the landmarks (`is_before_placed`). Nothing where
 /// images do not tell.
-std::optional<MotionInnovation> motionInnovation(Window& window, const FactorMaker& factors,
+std::optional<MotionInnovation> motionInnovation(Window& window, const FactorBuilder& factors,
                                                  const Eigen::Matrix<double, 15, 15>& before,
                                                  bool is_before_placed);
 

@@ -22,8 +22,9 @@ struct DepthOptions {
   /// 1000, 1020 or 1030 kg/m^3, water has 997 to 1030.
   double density_ratio = 1.0;
   double density_ratio_sigma = 0.02;
-  /// Whether waters and gauges as they mostly are (known_waters.h) say more than that, to who was not told.
-  bool known_waters = true;
+  /// Whether waters and gauges as they mostly are (water_density_prior.h) say more than that, to who was not
+  /// told.
+  bool water_density_prior = true;
   /// Images learn the density from the direction in which they see the rig move. A lens that is not as its
   /// file says puts that off by one or two tenths of a degree for minutes, which no covariance knows: in a
   /// passage that descends by one metre in seven it is worth so much. Heights are claimed no better than
@@ -38,7 +39,7 @@ struct DepthOptions {
   /// Errors that last: resolution, the flow's own pressure, what the lag's model leaves. One sigma, and how
   /// long they stay the same.
   double floor_m = 0.01;
-  double floor_correlation_s = 5.0;
+  double correlated_noise_time_s = 5.0;
   DepthGateOptions gate;
 };
 

@@ -36,20 +36,22 @@ struct MagnetometerGateOptions {
   double readmission_s = 60.0;
   /// Over which rejections lower the weight of what is used.
   double memory_s = 60.0;
-  /// A field that within the last `account_s` was rejected for longer than `max_rejected_ratio` of the time
-  /// for which it agreed, by more than `credit_s`, is that of a wrong calibration or of a magnet on board:
-  /// nothing of it is used. A good sensor among passing iron is rejected for a tenth to a third of the time.
-  double account_s = 600.0;
+  /// A field that within the last `rejection_window_s` was rejected for longer than `max_rejected_ratio` of
+  /// the time for which it agreed, by more than `rejection_margin_s`, is that of a wrong calibration or of a
+  /// magnet on board: nothing of it is used. A good sensor among passing iron is rejected for a tenth to a
+  /// third of the time.
+  double rejection_window_s = 600.0;
   double max_rejected_ratio = 0.5;
-  double credit_s = 90.0;  ///< longer than readmission_s, so that a new field is tried before that
-  /// The same is said of a field whose lasting error (FieldErrors) is worth more of heading than this.
-  double max_lasting_sigma_rad = 0.015;
+  double rejection_margin_s = 90.0;  ///< longer than readmission_s, so that a new field is tried before that
+  /// The same is said of a field whose lasting error (MagneticNoiseEstimator) is worth more of heading than
+  /// this.
+  double max_correlated_sigma_rad = 0.015;
   /// After so long it is tried again, even so.
-  double distrust_s = 1800.0;
+  double retry_after_s = 1800.0;
 };
 
-/// When a change of the field is taken for a current on board that was switched (FieldStep).
-struct FieldStepOptions {
+/// When a change of the field is taken for a current on board that was switched (MagneticStepDetector).
+struct MagneticStepDetectorOptions {
   bool enabled = true;
   double segment_s = 0.6;  ///< four of them in a row are compared
   double min_step_T = 0.1e-6;
@@ -76,13 +78,14 @@ struct MagnetometerOptions {
 
   /// Errors of the field that last: iron far away, currents, what calibration leaves. One sigma per axis, and
   /// the time over which they stay the same; frames within that time are not independent witnesses.
-  /// `floor_T` is where it starts; size and dip of the field teach better (FieldErrors).
-  double floor_T = 0.05e-6;
-  double floor_correlation_s = 5.0;
-  double floor_memory_s = 300.0;
+  /// `correlated_noise_sigma_T` is where it starts; size and dip of the field teach better
+  /// (MagneticNoiseEstimator).
+  double correlated_noise_sigma_T = 0.05e-6;
+  double correlated_noise_time_s = 5.0;
+  double correlated_noise_memory_s = 300.0;
   /// What deviates at a moment by more than the floor weighs as a draw of a Student distribution of so many
-  /// degrees of freedom (FieldDeviation), its deviation averaged over `deviation_s`.
-  double floor_freedom = 4.0;
+  /// degrees of freedom (StudentTWeight), its deviation averaged over `deviation_s`.
+  double student_dof = 4.0;
   double deviation_s = 1.0;
   double noise_inflation = 1.0;  ///< factor on the density of the magnetometer's white noise
 
@@ -108,7 +111,7 @@ struct MagnetometerOptions {
       0.006;  ///< of the field model and the rock, for a heading against true north
 
   MagnetometerGateOptions gate;
-  FieldStepOptions step;
+  MagneticStepDetectorOptions step;
 };
 
 }  // namespace lodeline

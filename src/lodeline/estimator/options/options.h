@@ -44,18 +44,18 @@ struct MonoInitializationOptions {
 struct WindowOptions {
   int recent_frames = 5;  ///< newest frames, kept with velocity and biases
   int keyframes = 12;     ///< older keyframes, kept as poses
-  /// When a landmark outlives the oldest keyframe, its sightings before the newest so many of the older
+  /// When a landmark outlives the oldest keyframe, its observations before the newest so many of the older
   /// keyframes go into the prior, and it goes on as another point with the rest.
-  int keyframes_after_cut = 2;
-  /// Between keyframes of at most this distance in time the sightings of other frames are kept, so far apart
-  /// in time.
+  int split_at_keyframe = 2;
+  /// Between keyframes of at most this distance in time the observations of other frames are kept, so far
+  /// apart in time.
   double interpolated_gap_s = 1.6;
   double interpolated_spacing_s = 0.18;
   /// Landmarks that no recent frame sees are evaluated anew after so many frames; 0: in every frame.
-  int dormant_frames = 8;
-  /// Nothing is marginalised before this many frames, so that no early, bad linearisation is frozen. One
+  int frozen_frames = 8;
+  /// Nothing is marginalized before this many frames, so that no early, bad linearization is frozen. One
   /// camera, whose scale settles slowly, waits longer, and until the scale is known to `startup_scale_sigma`
-  /// (relative). After `startup_max_frames` frames go all the same, but no linearisation is kept until it is.
+  /// (relative). After `startup_max_frames` frames go all the same, but no linearization is kept until it is.
   int startup_frames = 20;
   int startup_frames_mono = 45;
   int startup_max_frames = 60;
@@ -89,7 +89,7 @@ struct LandmarkOptions {
   double max_relative_sigma = 0.4;
   /// ...or absolute, for points that are far away.
   double max_inverse_distance_sigma_per_m = 0.02;
-  double max_error_sigmas = 4.0;  ///< sightings with larger whitened errors are outliers
+  double max_error_sigmas = 4.0;  ///< observations with larger whitened errors are outliers
 };
 
 struct SolverOptions {
@@ -109,7 +109,7 @@ struct CameraCalibrationOptions {
   double position_sigma_m = 0.01;
   double time_offset_sigma_s = 0.005;
   /// Further cameras to camera 0. Their distance is the first ruler of a stereo rig, and files state it well,
-  /// or as wrong as the length of the calibration target was (see FactorMaker::placement).
+  /// or as wrong as the length of the calibration target was (see FactorBuilder::placement).
   double stereo_rotation_sigma_rad = 0.003;
   double stereo_position_sigma_m = 3e-4;
   /// The lens as well (factors/intrinsics_factor.h), as soon as the window has settled: the start of one
@@ -118,8 +118,8 @@ struct CameraCalibrationOptions {
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
   double radial_sigma = 0.005;  ///< of the first two coefficients
-  /// Whether lenses and how further cameras are turned are held at their files while images confirm these,
-  /// see LensTrust.
+  /// Whether lenses and how secondary cameras are turned are held at their files while images confirm these,
+  /// see IntrinsicsModelSelection.
   bool trust_confirmed_files = true;
 };
 
@@ -127,7 +127,7 @@ struct CameraCalibrationOptions {
 struct ImuAxesOptions {
   /// Scale errors and misalignment of the axes of a gyroscope that its maker has calibrated, relative
   /// (SensorAxes); 0 holds them. Some are, to less than a thousandth, and some never were and are off by
-  /// one or two per cent: no Gaussian describes both, see FactorMaker::imuAxes().
+  /// one or two per cent: no Gaussian describes both, see FactorBuilder::imuAxes().
   double gyroscope_sigma = imu_axes::kCalibratedSigma;
   /// Makers calibrate the axes of their better sensors: of an IMU whose gyroscope has less white noise than
   /// this, no more than `gyroscope_sigma` is doubted.
@@ -154,7 +154,7 @@ struct ImuAxesOptions {
   double accelerometerSigma() const { return std::max(gyroscope_sigma, uncalibrated_sigma); }
 };
 
-/// When a rig counts as resting, see RestWatch.
+/// When a rig counts as resting, see StationaryDetector.
 struct RestOptions {
   bool enabled = true;
   double span_s = 1.0;     ///< readings and images rest for so long

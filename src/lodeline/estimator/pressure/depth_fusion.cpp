@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/estimator/uncertainty/lasting_error.h"
-#include "lodeline/estimator/uncertainty/unmodelled_errors.h"
+#include "lodeline/estimator/uncertainty/covariance_inflation.h"
+#include "lodeline/estimator/uncertainty/time_correlated_error.h"
 #include "lodeline/factors/sensors/depth_factor.h"
 
 namespace lodeline {
@@ -173,25 +173,25 @@ DepthFusion::Innovation DepthFusion::innovate(const CarriedDepth& depth, const W
 void DepthFusion::remember(const JointCovariance& covariance, Window& window) {
   covariance_ = covariance;
   const DepthStates states(window);
-  if (!options_.known_waters || options_.density_ratio_sigma <= kOneWaterSigma || !states) return;
-  const std::optional<Belief> seen = seenRatio(*states.scale);
+  if (!options_.water_density_prior || options_.density_ratio_sigma <= kOneWaterSigma || !states) return;
+  const std::optional<ScalarPrior> seen = seenRatio(*states.scale);
   if (!seen) return;
-  const Belief honest{seen->value, std::hypot(seen->sigma, unmodelled_density_sigma_)};
-  known_ratio_ = amongKnownWaters(honest);
-  states.scale->beliefs.clear();
+  const ScalarPrior honest{seen->value, std::hypot(seen->sigma, unmodelled_density_sigma_)};
+  known_ratio_ = amongWaterDensities(honest);
+  states.scale->priors.clear();
   likelihood_ = likelihoodBetween(honest, *known_ratio_);
   if (!likelihood_) return;
   // The window takes what it has seen for better than it is; what it is told has to gain as much to weigh the
   // same.
-  states.scale->beliefs = {{likelihood_->value, likelihood_->sigma * seen->sigma / honest.sigma}};
+  states.scale->priors = {{likelihood_->value, likelihood_->sigma * seen->sigma / honest.sigma}};
 }
 
-std::optional<Belief> DepthFusion::seenRatio(const GlobalState& scale) const {
+std::optional<ScalarPrior> DepthFusion::seenRatio(const ParameterBlock& scale) const {
   const double* value = scale.value.data();
   if (!covariance_.knows(value)) return std::nullopt;
-  const Belief all{scale.value[0], std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0)))};
+  const ScalarPrior all{scale.value[0], std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0)))};
   if (!(all.sigma > 0.0)) return std::nullopt;
-  return scale.beliefs.empty() ? all : without(scale.beliefs.front(), all);
+  return scale.priors.empty() ? all : without(scale.priors.front(), all);
 }
 
 void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer) {
@@ -199,7 +199,7 @@ void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer&
   const double height_m = (window.newest().worldFromBody() * body_from_port.translation).z() - depth.rise_m;
   const double ratio = options_.density_ratio;
   const auto add = [&](const char* name, double value, double sigma, double walk_per_sqrt_s) {
-    GlobalState& state = window.add({name, {value}, std::nullopt, walk_per_sqrt_s, true});
+    ParameterBlock& state = window.add({name, {value}, std::nullopt, walk_per_sqrt_s, true});
     // Small enough to hold a state, large enough to keep the prior well conditioned.
     marginalizer.addKnowledge(state, single(std::max(sigma, 1e-7)));
   };
@@ -211,7 +211,7 @@ void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer&
 
 void DepthFusion::restart(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer) {
   for (const auto& frame : window.frames()) frame->depth.reset();
-  GlobalState& offset = *DepthStates(window).offset;
+  ParameterBlock& offset = *DepthStates(window).offset;
   marginalizer.forget(window, offset);
   offset.value[0] += innovate(depth, window).value_m;
   marginalizer.addKnowledge(offset, single(options_.offset_sigma_m));
@@ -222,7 +222,7 @@ DepthMeasurement DepthFusion::measurementOf(const std::vector<CarriedDepth>& dep
                                             Time time) {
   DepthMeasurement measurement;
   measurement.depth = meanOf(depths);
-  const double shared = lastingErrorShare(time, last_used_, options_.floor_correlation_s);
+  const double shared = timeCorrelatedShare(time, last_used_, options_.correlated_noise_time_s);
   const double variance_m2 = std::pow(health_.readingSigma(), 2) / measurement.depth.readings +
                              shared * std::pow(options_.floor_m, 2);
   measurement.sigma_m = std::sqrt(variance_scale * variance_m2);
@@ -260,7 +260,7 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
   estimate.status = status_;
   const DepthStates states(window);
   if (!states) return estimate;
-  const auto sigma = [&](const GlobalState& state) {
+  const auto sigma = [&](const ParameterBlock& state) {
     const double* value = state.value.data();
     return covariance_.knows(value) ? std::sqrt(std::max(0.0, covariance_.between(value, value)(0, 0))) : 0.0;
   };
@@ -274,7 +274,7 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
       std::sqrt(std::max(0.0, std::pow(gauge.density_ratio_sigma, 2) - window_sigma * window_sigma));
   gauge.told_sigma = options_.density_ratio_sigma;
   if (likelihood_) gauge.told_sigma = 1.0 / std::hypot(1.0 / gauge.told_sigma, 1.0 / likelihood_->sigma);
-  if (!states.scale->beliefs.empty()) gauge.belief = states.scale->beliefs.front();
+  if (!states.scale->priors.empty()) gauge.prior = states.scale->priors.front();
   gauge.lag_s = states.lag_s();
   gauge.lag_sigma_s = sigma(*states.lag);
   gauge.body_depth_m =

@@ -6,9 +6,9 @@
 
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/pressure/depth_gate.h"
-#include "lodeline/estimator/pressure/depth_health.h"
-#include "lodeline/estimator/pressure/known_waters.h"
+#include "lodeline/estimator/pressure/gauge_monitor.h"
 #include "lodeline/estimator/pressure/vertical_motion.h"
+#include "lodeline/estimator/pressure/water_density_prior.h"
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/solver/marginalizer.h"
 #include "lodeline/estimator/state/depth_states.h"
@@ -28,7 +28,7 @@ struct DepthEstimate {
     double unmodelled_sigma = 0.0;
     /// Of the density ratio, before images have said anything of it.
     double told_sigma = 0.0;
-    std::optional<Belief> belief = std::nullopt;  ///< of the density ratio, see GlobalState
+    std::optional<ScalarPrior> prior = std::nullopt;  ///< of the density ratio, see ParameterBlock
   };
   std::optional<Gauge> gauge;  ///< nothing until it was heard
 
@@ -38,8 +38,8 @@ struct DepthEstimate {
   }
 };
 
-/// Brings the pressure sensor into a window: keeps its global states, carries readings to their frame, asks
-/// health and gate, and hands the frame its depth (Frame::depth), of which FactorMaker makes a factor.
+/// Brings the pressure sensor into a window: keeps its parameter blocks, carries readings to their frame,
+/// asks health and gate, and hands the frame its depth (Frame::depth), of which FactorBuilder makes a factor.
 /// Without a sensor, or switched off, it leaves everything as it is.
 class DepthFusion {
  public:
@@ -76,20 +76,20 @@ class DepthFusion {
   /// Takes the gauge's offset as unknown, and back what the window's frames were told.
   void restart(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer);
   DepthMeasurement measurementOf(const std::vector<CarriedDepth>& depths, double variance_scale, Time time);
-  /// What the window says of the ratio by itself, without its belief; nothing while it has no covariance.
-  std::optional<Belief> seenRatio(const GlobalState& scale) const;
+  /// What the window says of the ratio by itself, without its prior; nothing while it has no covariance.
+  std::optional<ScalarPrior> seenRatio(const ParameterBlock& scale) const;
   void report(DepthStatus status, const DepthSample& reading);
 
   DepthOptions options_;
   double unmodelled_density_sigma_ = 0.0;
   /// The ratio as images and known waters have it, and what the latter add; nothing where it was told.
-  std::optional<Belief> known_ratio_, likelihood_;
+  std::optional<ScalarPrior> known_ratio_, likelihood_;
   Diagnostics* diagnostics_;
   std::optional<PressureCalibration> gauge_;
   DepthStatus status_ = DepthStatus::Off;
   std::vector<DepthSample> waiting_;
   VerticalMotion motion_;
-  DepthHealth health_;
+  GaugeMonitor health_;
   DepthGate gate_;
   JointCovariance covariance_;
   bool is_slope_wrong_ = false;

@@ -144,7 +144,7 @@ TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
   options.drift_m_per_s = Vec3(0.0, 0.0, -0.2);
   EstimatorOptions estimator = honestOptions(options);
   estimator.camera_calibration.enabled = true;
-  estimator.depth.known_waters = false;
+  estimator.depth.water_density_prior = false;
   const auto lastWith = [&](double least_density_sigma) {
     estimator.depth.least_density_sigma = least_density_sigma;
     return dive(options, Gauge(), estimator).last();
@@ -176,10 +176,10 @@ FrameEstimate endOfDescent(double density_ratio, const std::function<void(Estima
 
 TEST(DepthFusion, KnowsFreshWaterAndSalt) {
   for (const double ratio : {0.975, 1.0, 1.025}) {
-    const auto descend = [ratio](bool known_waters) {
-      return endOfDescent(ratio, [known_waters](EstimatorOptions* options) {
+    const auto descend = [ratio](bool water_density_prior) {
+      return endOfDescent(ratio, [water_density_prior](EstimatorOptions* options) {
         options->camera_calibration.enabled = false;
-        options->depth.known_waters = known_waters;
+        options->depth.water_density_prior = water_density_prior;
       });
     };
     const FrameEstimate with = descend(true), without = descend(false);
@@ -194,12 +194,12 @@ TEST(DepthFusion, KnowsFreshWaterAndSalt) {
 
 // Images claim the ratio to less than half a per cent here, and are not worth more than 0.7: with a
 // calibration that they have not confirmed, so the right one of this scene is not to be.
-TEST(DepthFusion, WeighsKnownWatersAgainstWhatCrookedCamerasAreWorth) {
-  const auto descend = [](bool known_waters) {
-    return *endOfDescent(1.0, [known_waters](EstimatorOptions* options) {
+TEST(DepthFusion, WeighsWaterDensityPriorAgainstWhatCrookedCamerasAreWorth) {
+  const auto descend = [](bool water_density_prior) {
+    return *endOfDescent(1.0, [water_density_prior](EstimatorOptions* options) {
               options->camera_calibration.enabled = true;
               options->camera_calibration.trust_confirmed_files = false;
-              options->depth.known_waters = known_waters;
+              options->depth.water_density_prior = water_density_prior;
             }).depth.gauge;
   };
   const DepthEstimate::Gauge known = descend(true), seen = descend(false);
@@ -208,11 +208,11 @@ TEST(DepthFusion, WeighsKnownWatersAgainstWhatCrookedCamerasAreWorth) {
 }
 
 TEST(DepthFusion, BelievesWhoWasToldTheDensity) {
-  const auto told = [](bool known_waters) {
-    return endOfDescent(0.99, [known_waters](EstimatorOptions* options) {
+  const auto told = [](bool water_density_prior) {
+    return endOfDescent(0.99, [water_density_prior](EstimatorOptions* options) {
       options->depth.density_ratio = 0.99;
       options->depth.density_ratio_sigma = 0.002;
-      options->depth.known_waters = known_waters;
+      options->depth.water_density_prior = water_density_prior;
     });
   };
   EXPECT_EQ(told(true).state.world_from_body.translation, told(false).state.world_from_body.translation);

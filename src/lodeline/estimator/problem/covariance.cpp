@@ -34,7 +34,7 @@ double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
                              const std::vector<const double*>& eliminated_first) {
   WindowCholesky cholesky(system, eliminated_first, blocks);
-  if (cholesky.factorise(0.0)) return cholesky.covarianceOfLast();
+  if (cholesky.factorize(0.0)) return cholesky.covarianceOfLast();
   // Rounding of the largest informations has swallowed smaller ones, so nothing bounds what they leave open.
   Eigen::Index size = 0;
   for (const double* value : blocks) size += system.find(value)->tangentSize();
@@ -85,7 +85,7 @@ JointCovariance JointCovariance::without(const double* block, const Eigen::Matri
   if (count == 0) return without;
   // (P^-1 - V V^T)^-1 = P + P V (I - V^T P V)^-1 V^T P by Woodbury's identity. The eigenvalues of V^T P V are
   // the shares that the information taken away has of all that is known: what is used of a robust or a moving
-  // belief, or rounding, may make them 1 or more, and the rest would be negative.
+  // prior, or rounding, may make them 1 or more, and the rest would be negative.
   constexpr double kGreatestShare = 1.0 - 1e-6;
   const Eigen::MatrixXd directions =
       told.eigenvectors().rightCols(count) * told.eigenvalues().tail(count).cwiseSqrt().asDiagonal();
@@ -104,13 +104,13 @@ bool isCovariance(const Eigen::MatrixXd& matrix) {
          matrix.diagonal().maxCoeff() < kUnknownVariance;
 }
 
-JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors) {
-  return JointCovariance(linearise(collectTerms(window, prior, factors)), window);
+JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorBuilder& factors) {
+  return JointCovariance(linearize(collectTerms(window, prior, factors)), window);
 }
 
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
-                                               const FactorMaker& factors) {
-  return covarianceOf(linearise(collectTerms(window, prior, factors)), window.newest());
+                                               const FactorBuilder& factors) {
+  return covarianceOf(linearize(collectTerms(window, prior, factors)), window.newest());
 }
 
 }  // namespace lodeline

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/problem/normal_equations.h"
 
 namespace lodeline {
@@ -15,7 +15,7 @@ constexpr double kUnknownVariance = 1e12;
 /// Whether all variances are positive, finite and known.
 bool isCovariance(const Eigen::MatrixXd& matrix);
 
-/// Covariance of one frame's [dp, dtheta, dv, db_g, db_a] in a linearised window.
+/// Covariance of one frame's [dp, dtheta, dv, db_g, db_a] in a linearized window.
 Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame);
 
 /// Joint covariance of some of the blocks that a system holds, stacked in the order given; kUnknownVariance
@@ -24,8 +24,8 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
                              const std::vector<const double*>& eliminated_first = {});
 
-/// Pose and motion of the newest frame, and those global states that the system knows and whose correlation
-/// is wanted (GlobalState::is_correlation_wanted).
+/// Pose and motion of the newest frame, and those parameter blocks that the system knows and whose
+/// correlation is wanted (ParameterBlock::is_correlation_wanted).
 std::vector<const double*> correlatedBlocks(const NormalEquations& system, const Window& window);
 
 /// Joint covariance of the correlatedBlocks() of a window.
@@ -60,8 +60,8 @@ double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>
 
 /// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
-                                               const FactorMaker& factors);
-/// The same with the global states.
-JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorMaker& factors);
+                                               const FactorBuilder& factors);
+/// The same with the parameter blocks.
+JointCovariance jointCovariance(Window& window, const Prior& prior, const FactorBuilder& factors);
 
 }  // namespace lodeline

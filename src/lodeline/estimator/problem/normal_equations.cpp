@@ -121,7 +121,7 @@ void NormalEquations::add(const std::vector<Block>& blocks, const Eigen::MatrixX
   }
 }
 
-/// One factor of a landmark, linearised: the residual, its derivative by the landmark and by every other
+/// One factor of a landmark, linearized: the residual, its derivative by the landmark and by every other
 /// block, all scaled by the loss.
 struct NormalEquations::LandmarkTerm {
   static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, lens
@@ -135,7 +135,7 @@ struct NormalEquations::LandmarkTerm {
   int part_count = 0;
 };
 
-NormalEquations::LandmarkTerm NormalEquations::linearised(const Factor& factor, const double* landmark) {
+NormalEquations::LandmarkTerm NormalEquations::linearized(const Factor& factor, const double* landmark) {
   const std::vector<int>& sizes = factor.function->parameter_block_sizes();
   LandmarkTerm term;
   Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor> by_block[LandmarkTerm::kMaxBlocks];
@@ -181,7 +181,7 @@ void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
   Mat3 h_landmark = Mat3::Zero();
   Vec3 g_landmark = Vec3::Zero();
   for (const Factor& factor : landmark.factors) {
-    const LandmarkTerm term = linearised(factor, landmark.landmark);
+    const LandmarkTerm term = linearized(factor, landmark.landmark);
     h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
     g_landmark.noalias() += term.by_landmark.transpose() * term.residual;
     for (int i = 0; i < term.part_count; ++i) {

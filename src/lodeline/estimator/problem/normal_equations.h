@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 
 namespace lodeline {
 
@@ -12,7 +12,7 @@ namespace lodeline {
 Mat3 landmarkInverseRoot(const Mat3& hessian);
 
 /// The Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
-/// Jacobians are those the factors give (first estimates where they hold them), residuals are current.
+/// Jacobians are those the factors give (linearization points where they hold them), residuals are current.
 class NormalEquations {
  public:
   struct Block {
@@ -68,7 +68,7 @@ class NormalEquations {
     std::vector<Coupling> couplings;
   };
   int offsetOf(double* value, int ambient_size);
-  LandmarkTerm linearised(const Factor& factor, const double* landmark);
+  LandmarkTerm linearized(const Factor& factor, const double* landmark);
   void addProduct(int row, int row_size, int column, int column_size, const Mat6& product);
 
   std::vector<Block> blocks_;

@@ -21,7 +21,7 @@ class NormalEquationsTest : public testing::Test {
   NormalEquationsTest() {
     prior_ = test_.fill();
     test_.disturb(0.01, 3);
-    // Some blocks keep a first estimate that is not their value, as after marginalisation.
+    // Some blocks keep a linearization point that is not their value, as after marginalization.
     Frame& second = *test_.window.frames()[1];
     second.first_pose = second.pose;
     (*second.first_pose)[0] += 0.02;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "lodeline/estimator/problem/wide_products.h"
+#include "lodeline/estimator/problem/simd_gemm.h"
 
 namespace lodeline {
 
 PriorTerms::PriorTerms(const Prior& prior) : prior_(prior) {
   int offset = 0;
   for (const Prior::Block& block : prior.blocks) {
-    blocks_.push_back({block.value, static_cast<int>(block.first_estimate.size()), offset});
+    blocks_.push_back({block.value, static_cast<int>(block.linearization_point.size()), offset});
     offset += block.tangentSize();
   }
   if (prior.information.size() > 0) return;

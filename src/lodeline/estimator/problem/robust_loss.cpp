@@ -35,10 +35,10 @@ double tailOf(double ratio) {
 }
 
 /// `sigmas` of those frames where they are known.
-ErrorsByTrack errorsByTrack(const std::vector<SightingError>& errors,
+ErrorsByTrack errorsByTrack(const std::vector<ObservationError>& errors,
                             const boost::container::flat_map<FrameId, double>& sigmas) {
   ErrorsByTrack by_track;
-  for (const SightingError& error : errors) {
+  for (const ObservationError& error : errors) {
     const auto sigma = sigmas.find(error.frame);
     if (sigma == sigmas.end()) continue;
     TrackErrors& of_track = by_track[error.track];
@@ -89,10 +89,10 @@ double trackWeight(const TrackErrors& errors, double difference) {
   return std::min(std::pow(inverse_variance, 2.0 * difference), kMost);
 }
 
-void adaptRobustLosses(Window& window, const std::vector<SightingError>& errors,
+void adaptRobustLosses(Window& window, const std::vector<ObservationError>& errors,
                        const SolverOptions& options) {
   boost::container::flat_map<FrameId, std::vector<double>> by_frame;
-  for (const SightingError& error : errors) by_frame[error.frame].push_back(error.sigmas);
+  for (const ObservationError& error : errors) by_frame[error.frame].push_back(error.sigmas);
   boost::container::flat_map<FrameId, double> sigmas;
   for (auto& [id, of_frame] : by_frame) {
     const auto found = frameErrors(std::move(of_frame), options);

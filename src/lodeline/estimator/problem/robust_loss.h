@@ -9,8 +9,8 @@
 
 namespace lodeline {
 
-/// Length of a sighting's whitened reprojection error, for all but those that a landmark is hosted at.
-struct SightingError {
+/// Length of an observation's whitened reprojection error, for all but those that a landmark is hosted at.
+struct ObservationError {
   TrackId track = -1;
   FrameId frame = 0;
   double sigmas = 0.0;
@@ -34,10 +34,10 @@ struct FrameErrors {
 /// t distribution", JASA 84, 1989.)
 std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const SolverOptions& options);
 
-/// Squared errors of a track's sightings, in terms of what is usual in their frames (FrameErrors::sigma).
+/// Squared errors of a track's observations, in terms of what is usual in their frames (FrameErrors::sigma).
 struct TrackErrors {
   double sum_of_squares = 0.0;
-  int count = 0;  ///< of sightings, two numbers each
+  int count = 0;  ///< of observations, two numbers each
 
   /// The errors themselves give the landmark's distance.
   int degreesOfFreedom() const { return count > 0 ? 2 * count - 1 : 0; }
@@ -50,11 +50,11 @@ using ErrorsByTrack = boost::container::flat_map<TrackId, TrackErrors>;
 /// quantile of these, made normal (Wilson and Hilferty's cube root). 0 where tracks are too few to tell.
 double differenceOfTracks(const ErrorsByTrack& by_track);
 
-/// Weight of the sightings of a track. A point that slides does so in all of its sightings: each of them
-/// alone looks like one that is off by chance, together they tell. So every track has a variance of its own.
-/// Its sightings count with the square of that variance's inverse, since what slides is off by more than the
-/// window can see, a landmark that fits its errors; the weight of a redescending loss (S. Geman, D. E.
-/// McClure, "Statistical methods for tomographic image reconstruction", Bull. ISI 52, 1987), here of all
+/// Weight of the observations of a track. A point that slides does so in all of its observations: each of
+/// them alone looks like one that is off by chance, together they tell. So every track has a variance of its
+/// own. Its observations count with the square of that variance's inverse, since what slides is off by more
+/// than the window can see, a landmark that fits its errors; the weight of a redescending loss (S. Geman, D.
+/// E. McClure, "Statistical methods for tomographic image reconstruction", Bull. ISI 52, 1987), here of all
 /// errors of a track together. The logarithm of the weight is shrunk by `difference`, so that tracks which
 /// are all alike weigh alike (as in C. N. Morris, "Parametric empirical Bayes inference", JASA 78, 1983).
 /// Twice the usual weight at most: that errors are small does not mean that the lens is right.
@@ -63,7 +63,7 @@ double trackWeight(const TrackErrors& errors, double difference);
 /// Gives the frames the losses and the tracks the weights that their errors after a solution ask for. A frame
 /// that has not been part of one keeps the widest loss: its prediction may be off by more than its points
 /// will be. So has a track without errors the weight 1.
-void adaptRobustLosses(Window& window, const std::vector<SightingError>& errors,
+void adaptRobustLosses(Window& window, const std::vector<ObservationError>& errors,
                        const SolverOptions& options);
 
 /// Takes all of that back, when poses are no longer right.

@@ -88,7 +88,7 @@ double errorAmongShadows(const SolverOptions& solver, uint64_t seed) {
   Comparison last;
   while (auto frame = scene.next()) {
     const double time_s = scene.secondsOf(frame->truth.time);
-    for (Observation& observation : frame->tracks.observations) {
+    for (FeatureObservation& observation : frame->tracks.observations) {
       observation.sigma_px = 1.0;
       const double since_s = time_s - first_seen_s.try_emplace(observation.track, time_s).first->second;
       if (observation.track % 3 != 0) continue;
@@ -117,7 +117,7 @@ TEST(RobustLoss, BelongsToAFrame) {
   const SolverOptions options;
   const FrameId calm = test.add(Rigid3(), true).id, shaken = test.add(Rigid3(), true).id,
                 unknown = test.add(Rigid3(), false).id;
-  std::vector<SightingError> errors;
+  std::vector<ObservationError> errors;
   const auto add = [&](FrameId frame, int count, double sigmas) {
     for (TrackId track = 0; track < count; ++track) errors.push_back({track, frame, sigmas});
   };
@@ -144,12 +144,12 @@ TEST(TrackWeight, GoesWithTheSquareOfTheInverseVarianceOfWhatIsOftenSeen) {
   EXPECT_NEAR(trackWeight({9.0 * 2000.0, 1000}, 1.0), 1.0 / 81.0, 1e-4);
   EXPECT_NEAR(trackWeight({0.8 * 2000.0, 1000}, 1.0), 1.0 / 0.64, 1e-2);
   EXPECT_NEAR(trackWeight({9.0 * 2000.0, 1000}, 0.5), 1.0 / 9.0, 1e-3);
-  // One sighting tells little, and nothing counts for ever so much.
+  // One observation tells little, and nothing counts for ever so much.
   EXPECT_GT(trackWeight({9.0, 1}, 1.0), 2.0 / 81.0);
   EXPECT_DOUBLE_EQ(trackWeight({0.0, 1000}, 1.0), 2.0);
 }
 
-// Tracks of one to 16 sightings; the variance of one in `every` is nine times that of the others.
+// Tracks of one to 16 observations; the variance of one in `every` is nine times that of the others.
 double differenceWhereOneIn(int every, uint64_t seed) {
   Random noise(seed, "difference of tracks");
   ErrorsByTrack by_track;
@@ -178,17 +178,17 @@ TEST(TrackWeight, TellsTracksThatSlideByErrorsWhichAloneAreUsual) {
   constexpr TrackId kTracks = 80, kUnseen = 100;
   const auto slides = [](TrackId track) { return track % 5 == 0; };
   Random noise(3, "track weights");
-  std::vector<SightingError> errors;
+  std::vector<ObservationError> errors;
   for (int i = 0; i < 8; ++i) {
     const FrameId frame = test.add(Rigid3(), true).id;
     for (TrackId track = 0; track < kTracks; ++track) {
-      test.window.addSighting(track, {frame, 0, {}});
+      test.window.addObservation(track, {frame, 0, {}});
       const double usual = 0.1 * std::hypot(noise.normal(), noise.normal());
       // Twice the sigma of one axis: one in seven of the usual errors is as large.
       errors.push_back({track, frame, slides(track) ? 0.2 : usual});
     }
   }
-  test.window.addSighting(kUnseen, {0, 0, {}});
+  test.window.addObservation(kUnseen, {0, 0, {}});
   test.window.tracks().at(kUnseen).weight = 0.3;
   adaptRobustLosses(test.window, errors, SolverOptions());
   double sliding = 0.0, usual = 0.0;
@@ -203,9 +203,9 @@ TEST(TrackWeight, TellsTracksThatSlideByErrorsWhichAloneAreUsual) {
 TEST(TrackWeight, StaysOneWhereAFrameHasTooFewErrorsToTellTheUsualOnes) {
   TestWindow test;
   const FrameId frame = test.add(Rigid3(), true).id;
-  std::vector<SightingError> errors;
+  std::vector<ObservationError> errors;
   for (TrackId track = 0; track < 5; ++track) {
-    test.window.addSighting(track, {frame, 0, {}});
+    test.window.addObservation(track, {frame, 0, {}});
     errors.push_back({track, frame, 0.01});
   }
   adaptRobustLosses(test.window, errors, SolverOptions());

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "lodeline/estimator/problem/wide_products.h"
+#include "lodeline/estimator/problem/simd_gemm.h"
 
 namespace lodeline {
 namespace {
@@ -50,7 +50,7 @@ WindowCholesky::WindowCholesky(const NormalEquations& system, const std::vector<
   }
 }
 
-bool WindowCholesky::factorise(double damping) {
+bool WindowCholesky::factorize(double damping) {
   factor_ = ordered_;
   factor_.diagonal().array() += damping;
   int column = 0;
@@ -76,8 +76,8 @@ std::vector<WindowCholesky::Run> WindowCholesky::runsBelow(int column, int size)
 
 bool WindowCholesky::eliminate(int column, int size) {
   Eigen::Ref<Eigen::MatrixXd> diagonal = factor_.block(column, column, size, size);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorised(diagonal);
-  if (factorised.info() != Eigen::Success) return false;
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorized(diagonal);
+  if (factorized.info() != Eigen::Success) return false;
   const std::vector<Run> runs = runsBelow(column, size);
   for (size_t i = 0; i < runs.size(); ++i) {
     auto below = factor_.block(runs[i].row, column, runs[i].size, size);

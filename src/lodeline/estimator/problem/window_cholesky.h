@@ -20,13 +20,13 @@ class WindowCholesky {
   WindowCholesky(const NormalEquations& system, const std::vector<const double*>& first,
                  const std::vector<const double*>& last);
 
-  /// Factorises H + damping diag(H). False where that is not positive definite.
-  bool factorise(double damping);
+  /// Factorizes H + damping diag(H). False where that is not positive definite.
+  bool factorize(double damping);
 
-  /// The solution x of (H + damping diag(H)) x = b, rows as in the system. After factorise().
+  /// The solution x of (H + damping diag(H)) x = b, rows as in the system. After factorize().
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
 
-  /// Covariance (inverse of H + damping diag(H)) of the blocks `last`, stacked. After factorise().
+  /// Covariance (inverse of H + damping diag(H)) of the blocks `last`, stacked. After factorize().
   Eigen::MatrixXd covarianceOfLast() const;
 
  private:

@@ -15,12 +15,12 @@ class WindowCholeskyTest : public testing::Test {
  protected:
   WindowCholeskyTest() {
     const Prior prior = test_.fill();
-    system_ = linearise(collectTerms(test_.window, prior, test_.factors));
+    system_ = linearize(collectTerms(test_.window, prior, test_.factors));
     const Frame& newest = test_.window.newest();
     last_ = {newest.pose.data(), newest.motion.data()};
   }
 
-  // Of the system with its diagonal damped, by a factorisation that knows nothing of order or zeros.
+  // Of the system with its diagonal damped, by a factorization that knows nothing of order or zeros.
   Eigen::MatrixXd inverse(double damping) const {
     const Eigen::MatrixXd h = system_.hessian();
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
@@ -32,7 +32,7 @@ class WindowCholeskyTest : public testing::Test {
   void expectRight(const std::vector<const double*>& first) const {
     constexpr double kDamping = 1e-3;
     WindowCholesky cholesky(system_, first, last_);
-    ASSERT_TRUE(cholesky.factorise(kDamping));
+    ASSERT_TRUE(cholesky.factorize(kDamping));
     const Eigen::MatrixXd expected = inverse(kDamping);
     const Eigen::VectorXd x = cholesky.solve(system_.gradient());
     EXPECT_LT((x - expected * system_.gradient()).norm(), 1e-9 * x.norm());
@@ -72,7 +72,7 @@ TEST_F(WindowCholeskyTest, RefusesWhatIsNotPositiveDefinite) {
     spoilt.add({{block.value, block.ambient_size, 0}},
                -1e12 * Eigen::MatrixXd::Identity(block.tangentSize(), block.tangentSize()),
                Eigen::VectorXd::Zero(block.tangentSize()));
-    EXPECT_FALSE(WindowCholesky(spoilt, motionsButTheNewest(test_.window), last_).factorise(0.0));
+    EXPECT_FALSE(WindowCholesky(spoilt, motionsButTheNewest(test_.window), last_).factorize(0.0));
   }
 }
 

@@ -13,18 +13,18 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 
 }  // namespace
 
-std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors) {
+std::vector<Factor> collectGlobalTerms(Window& window, const FactorBuilder& factors) {
   std::vector<Factor> terms = factors.imuAxes(window);
-  for (GlobalState* further : cameraStates(window).further) {
+  for (ParameterBlock* further : cameraStates(window).further) {
     if (auto placement = factors.placement(*further)) terms.push_back(std::move(*placement));
   }
   for (const auto& state : window.globals()) {
-    if (auto belief = factors.belief(*state)) terms.push_back(std::move(*belief));
+    if (auto prior = factors.priorOf(*state)) terms.push_back(std::move(*prior));
   }
   return terms;
 }
 
-std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors) {
+std::vector<Factor> collectMotionTerms(Window& window, const FactorBuilder& factors) {
   std::vector<Factor> terms = collectGlobalTerms(window, factors);
   Frame* before = nullptr;
   for (const auto& frame : window.frames()) {
@@ -45,7 +45,7 @@ std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factor
   return terms;
 }
 
-WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors) {
+WindowTerms collectTerms(Window& window, const Prior& prior, const FactorBuilder& factors) {
   WindowTerms terms;
   if (!prior.empty()) terms.dense.push_back(factors.prior(prior));
   for (Factor& factor : collectMotionTerms(window, factors)) terms.dense.push_back(std::move(factor));
@@ -55,7 +55,7 @@ WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& 
   return terms;
 }
 
-NormalEquations linearise(const WindowTerms& terms) {
+NormalEquations linearize(const WindowTerms& terms) {
   NormalEquations system;
   for (const Factor& factor : terms.dense) system.add(factor);
   for (const LandmarkFactors& landmark : terms.landmarks) system.addEliminated(landmark);

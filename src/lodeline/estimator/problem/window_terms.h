@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/problem/normal_equations.h"
 
 namespace lodeline {
@@ -13,19 +13,19 @@ struct WindowTerms {
   std::vector<LandmarkFactors> landmarks;
 };
 
-/// What is known of global states beside all measurements and the prior, whose shape a prior cannot hold or
-/// which may change: axes of the gyroscope, places of further cameras, beliefs.
-std::vector<Factor> collectGlobalTerms(Window& window, const FactorMaker& factors);
+/// What is known of parameter blocks beside all measurements and the prior, whose shape a prior cannot hold
+/// or which may change: axes of the gyroscope, places of secondary cameras, priors.
+std::vector<Factor> collectGlobalTerms(Window& window, const FactorBuilder& factors);
 
 /// Those of them that are no landmarks', without the prior. Inertial terms whose biases moved too far are
 /// integrated again first.
-std::vector<Factor> collectMotionTerms(Window& window, const FactorMaker& factors);
+std::vector<Factor> collectMotionTerms(Window& window, const FactorBuilder& factors);
 
 /// In a fixed order: prior, inertial terms by time, magnetometer and depth terms by time, landmarks by
 /// track. Inertial terms whose biases moved too far are integrated again first.
-WindowTerms collectTerms(Window& window, const Prior& prior, const FactorMaker& factors);
+WindowTerms collectTerms(Window& window, const Prior& prior, const FactorBuilder& factors);
 
 /// The linear system of all terms at the window's present values, landmarks eliminated.
-NormalEquations linearise(const WindowTerms& terms);
+NormalEquations linearize(const WindowTerms& terms);
 
 }  // namespace lodeline

@@ -16,18 +16,18 @@ namespace {
 void schurComplement(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const std::vector<int>& gone,
                      const std::vector<int>& kept, Eigen::MatrixXd* h_kept, Eigen::VectorXd* g_kept) {
   const Eigen::MatrixXd h_gone = h(gone, gone);
-  // Jacobi scaling makes the factorisation insensitive to the mix of units.
+  // Jacobi scaling makes the factorization insensitive to the mix of units.
   const Eigen::VectorXd scale = h_gone.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factorised(scale.asDiagonal() * h_gone * scale.asDiagonal());
+  const Eigen::LDLT<Eigen::MatrixXd> factorized(scale.asDiagonal() * h_gone * scale.asDiagonal());
   const Eigen::MatrixXd coupling = scale.asDiagonal() * h(gone, kept);
-  const Eigen::MatrixXd solved = factorised.solve(coupling);
+  const Eigen::MatrixXd solved = factorized.solve(coupling);
   *h_kept = h(kept, kept) - coupling.transpose() * solved;
   *g_kept = g(kept) - solved.transpose() * (scale.asDiagonal() * g(gone));
 }
 
 /// Upper triangular J and e with J^T J = h and J^T e = g. Directions that h leaves (numerically) free are
 /// held by a jitter far below any real information.
-void factorise(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior) {
+void factorize(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior) {
   const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt();
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * h * scale.cwiseInverse().asDiagonal();
   Eigen::LLT<Eigen::MatrixXd> llt;
@@ -48,15 +48,15 @@ void factorise(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior)
 void addNoise(int row, int size, double variance, Eigen::MatrixXd* h, Eigen::VectorXd* g) {
   Eigen::MatrixXd inner = h->block(row, row, size, size);
   inner.diagonal().array() += 1.0 / variance;
-  const Eigen::LLT<Eigen::MatrixXd> factorised(inner);
+  const Eigen::LLT<Eigen::MatrixXd> factorized(inner);
   const Eigen::MatrixXd rows = h->middleRows(row, size);
   const Eigen::VectorXd gradient = g->segment(row, size);
-  *g -= rows.transpose() * factorised.solve(gradient);
-  *h -= rows.transpose() * factorised.solve(rows);
+  *g -= rows.transpose() * factorized.solve(gradient);
+  *h -= rows.transpose() * factorized.solve(rows);
 }
 
-/// The first estimate of the block at `value`, set to its present value where it has none.
-Eigen::VectorXd firstEstimate(Window& window, const double* value) {
+/// The linearization point of the block at `value`, set to its present value where it has none.
+Eigen::VectorXd linearizationPoint(Window& window, const double* value) {
   for (const auto& frame : window.frames()) {
     if (value == frame->pose.data()) {
       if (!frame->first_pose) frame->first_pose = frame->pose;
@@ -75,7 +75,7 @@ Eigen::VectorXd firstEstimate(Window& window, const double* value) {
   return {};
 }
 
-/// The random walk of the global states among the prior's blocks over `elapsed_s`, and what came over them
+/// The random walk of the parameter blocks among the prior's blocks over `elapsed_s`, and what came over them
 /// suddenly.
 void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, Eigen::MatrixXd* h,
                     Eigen::VectorXd* g) {
@@ -91,8 +91,8 @@ void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, 
   }
 }
 
-/// How the prior's first estimates of the frames' poses and velocities change when everything is turned about
-/// gravity, per rad.
+/// How the prior's linearization points of the frames' poses and velocities change when everything is turned
+/// about gravity, per rad.
 Eigen::VectorXd turnAboutGravity(const Window& window, const Prior& prior) {
   Eigen::VectorXd turn = Eigen::VectorXd::Zero(prior.tangentSize());
   int row = 0;
@@ -100,7 +100,7 @@ Eigen::VectorXd turnAboutGravity(const Window& window, const Prior& prior) {
     for (const auto& frame : window.frames()) {
       const bool is_pose = block.value == frame->pose.data();
       if (!is_pose && block.value != frame->motion.data()) continue;
-      turn.segment<3>(row) = Vec3::UnitZ().cross(block.first_estimate.head<3>());
+      turn.segment<3>(row) = Vec3::UnitZ().cross(block.linearization_point.head<3>());
       if (is_pose) turn[row + 5] = 1.0;
     }
     row += block.tangentSize();
@@ -131,12 +131,12 @@ Eigen::VectorXd yawShares(const Prior& prior) {
 
 }  // namespace
 
-void Marginalizer::shorten(Window& window, const WindowOptions& wanted) {
-  while (window.recentCount() > wanted.recent_frames) retireOldestRecent(window, wanted);
-  while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window, wanted.keyframes_after_cut);
+void Marginalizer::marginalizeToSize(Window& window, const WindowOptions& wanted) {
+  while (window.recentCount() > wanted.recent_frames) marginalizeOldestFrame(window, wanted);
+  while (window.poseOnlyCount() > wanted.keyframes) removeOldestKeyframe(window, wanted.split_at_keyframe);
 }
 
-void Marginalizer::relinearise(Window& window) {
+void Marginalizer::resetLinearizationPoints(Window& window) {
   if (prior_.empty()) return;
   const auto difference = [&] {
     std::vector<const double*> values;
@@ -150,7 +150,8 @@ void Marginalizer::relinearise(Window& window) {
     frame->first_motion.reset();
     for (Prior::Block& block : prior_.blocks) {
       if (block.value == frame->pose.data() || block.value == frame->motion.data())
-        block.first_estimate = Eigen::Map<const Eigen::VectorXd>(block.value, block.first_estimate.size());
+        block.linearization_point =
+            Eigen::Map<const Eigen::VectorXd>(block.value, block.linearization_point.size());
     }
   }
   // Where relative positions have changed, a turn about gravity moves the frames otherwise than it did, and
@@ -166,14 +167,14 @@ void Marginalizer::relinearise(Window& window) {
   window.placeInterpolated();
 }
 
-void Marginalizer::forget(Window& window, GlobalState& state) {
+void Marginalizer::forget(Window& window, ParameterBlock& state) {
   NormalEquations system;
   PriorTerms(prior_).addTo(&system);
   if (system.find(state.value.data())) eliminate(window, system, {state.value.data()});
   state.first.reset();
 }
 
-void Marginalizer::retireOldestRecent(Window& window, const WindowOptions& wanted) {
+void Marginalizer::marginalizeOldestFrame(Window& window, const WindowOptions& wanted) {
   Frame& oldest = *window.oldestRecent();
   Frame& next = *window.after(oldest);
   const double elapsed_s = (next.time - oldest.time).seconds();
@@ -201,8 +202,8 @@ void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
     // A term against the frame before goes with that frame, one against the field with its own.
     if (!frame->magnetometer || frame->magnetometer->relative != (frame == &next)) continue;
     Frame* before = frame == &next ? &oldest : nullptr;
-    // Its Jacobian is to be taken where the field will have its first estimate from now on.
-    if (GlobalState* field = MagnetometerStates(window).field; field && !field->first)
+    // Its Jacobian is to be taken where the field will have its linearization point from now on.
+    if (ParameterBlock* field = MagnetometerStates(window).field; field && !field->first)
       field->first = field->value;
     if (const auto factor = factors_.magnetometer(window, before, *frame)) system->add(*factor);
     frame->magnetometer.reset();
@@ -213,16 +214,16 @@ void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
   oldest.rest_sigma_m_per_s.reset();
 }
 
-void Marginalizer::removeOldestKeyframe(Window& window, int keyframes_after_cut) {
+void Marginalizer::removeOldestKeyframe(Window& window, int split_at_keyframe) {
   Frame& oldest = *window.frames().front();
   const Frame* newest_keyframe = window.newestKeyframe();
-  const FrameId cut = lastBeforeCut(window, keyframes_after_cut);
+  const FrameId cut = lastBeforeCut(window, split_at_keyframe);
   NormalEquations system;
   PriorTerms(prior_).addTo(&system);
   for (auto& [id, track] : window.tracks()) {
     if (!track.landmark || !track.seenIn(oldest.id)) continue;
     if (track.seenIn(newest_keyframe->id)) {
-      if (std::optional<TrackHistory> older = takeOlderPart(window, track, cut, factors_)) {
+      if (std::optional<FeatureTrack> older = splitTrack(window, track, cut, factors_)) {
         system.addEliminated(factors_.landmark(window, *older));
       } else if (track.landmark->host == oldest.id) {
         moveToNewHost(window, track, oldest.id, factors_);
@@ -231,7 +232,7 @@ void Marginalizer::removeOldestKeyframe(Window& window, int keyframes_after_cut)
       system.addEliminated(factors_.landmark(window, track));
       if (const auto point = mapPointOf(window, id, track, factors_)) map_points_.push_back(*point);
       track.landmark.reset();
-      track.sightings.clear();
+      track.observations.clear();
     }
   }
   window.removeEmptyTracks();
@@ -244,7 +245,7 @@ void Marginalizer::eliminate(Window& window, const NormalEquations& system,
   std::vector<int> gone;
   std::vector<int> kept;
   Prior next;
-  Eigen::VectorXd from_first(system.size());  // current value minus first estimate of the kept rows
+  Eigen::VectorXd from_first(system.size());  // current value minus linearization point of the kept rows
   int kept_size = 0;
   for (const NormalEquations::Block& block : system.blocks()) {
     const bool goes = std::find(eliminated.begin(), eliminated.end(), block.value) != eliminated.end();
@@ -252,7 +253,7 @@ void Marginalizer::eliminate(Window& window, const NormalEquations& system,
     for (int i = 0; i < block.tangentSize(); ++i) rows.push_back(block.offset + i);
     if (goes) continue;
     Prior single;
-    single.blocks.push_back({block.value, firstEstimate(window, block.value)});
+    single.blocks.push_back({block.value, linearizationPoint(window, block.value)});
     const double* value = block.value;
     from_first.segment(kept_size, block.tangentSize()) = single.difference(&value);
     kept_size += block.tangentSize();
@@ -261,11 +262,11 @@ void Marginalizer::eliminate(Window& window, const NormalEquations& system,
   Eigen::MatrixXd h_kept;
   Eigen::VectorXd g_kept;
   schurComplement(system.hessian(), system.gradient(), gone, kept, &h_kept, &g_kept);
-  // The system's gradient is taken at the current values; the prior wants it at the first estimates.
+  // The system's gradient is taken at the current values; the prior wants it at the linearization points.
   g_kept -= h_kept * from_first.head(kept_size);
   window.placeInterpolated();
   letGlobalsWalk(window, next, elapsed_s, &h_kept, &g_kept);
-  factorise(h_kept, g_kept, &next);
+  factorize(h_kept, g_kept, &next);
   prior_ = std::move(next);
 }
 

@@ -19,12 +19,12 @@ double yawSigmaAfter(int frames, int keyframe_every, const WindowOptions& wanted
   for (int k = 0; k < frames; ++k) {
     addNext(test, scene, keyframe_every, &marginalizer);
     updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
-    marginalizer.shorten(test.window, wanted);
+    marginalizer.marginalizeToSize(test.window, wanted);
   }
   return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
 }
 
-// What the sightings of an interpolated frame say of the keyframes beside it outlives them.
+// What the observations of an interpolated frame say of the keyframes beside it outlives them.
 TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
   const auto yawSigma = [](double spacing_s) {
     TestWindow test(2, quadraticOptions());
@@ -34,17 +34,17 @@ TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
     return sigma;
   };
   const double dropped = yawSigma(1.0), kept = yawSigma(0.05);
-  // Three times the sightings: 0.58 if they were all there is.
+  // Three times the observations: 0.58 if they were all there is.
   EXPECT_LT(kept, 0.85 * dropped);
   EXPECT_GT(kept, 0.5 * dropped);
 }
 
 // Nor do those of a landmark that outlives the window: all of them, but for what ties both sides of a cut.
 TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
-  const auto yawSigma = [](int keyframes_after_cut) {
+  const auto yawSigma = [](int split_at_keyframe) {
     TestWindow test(2, quadraticOptions());
-    return yawSigmaAfter(
-        80, 2, {.recent_frames = 5, .keyframes = 6, .keyframes_after_cut = keyframes_after_cut}, test);
+    return yawSigmaAfter(80, 2, {.recent_frames = 5, .keyframes = 6, .split_at_keyframe = split_at_keyframe},
+                         test);
   };
   const double dropped = yawSigma(6), kept = yawSigma(2);
   EXPECT_LT(kept, 0.9 * dropped);
@@ -60,20 +60,21 @@ TEST(Marginalizer, CutsNothingWhereNothingIsAskedToBeCut) {
     TestScene scene(sceneOptions(9.0, 10.0));
     for (int k = 0; k < 60; ++k) addNext(test, scene, 2, &marginalizer);
     updateWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6});
-    marginalizer.shorten(test.window, {.recent_frames = 5, .keyframes = 60});
+    marginalizer.marginalizeToSize(test.window, {.recent_frames = 5, .keyframes = 60});
     EXPECT_GT(test.window.poseOnlyCount(), 3 * kKeyframes);
     shorten(marginalizer, test.window);
     return marginalizer.prior().sqrt_information;
   };
-  const auto atOnce = [&](int keyframes_after_cut) {
+  const auto atOnce = [&](int split_at_keyframe) {
     return informationAfter([&](Marginalizer& marginalizer, Window& window) {
-      marginalizer.shorten(
-          window, {.recent_frames = 5, .keyframes = kKeyframes, .keyframes_after_cut = keyframes_after_cut});
+      marginalizer.marginalizeToSize(
+          window, {.recent_frames = 5, .keyframes = kKeyframes, .split_at_keyframe = split_at_keyframe});
     });
   };
   const auto one_by_one = informationAfter([](Marginalizer& marginalizer, Window& window) {
     for (int left = window.poseOnlyCount() - 1; left >= kKeyframes; --left) {
-      marginalizer.shorten(window, {.recent_frames = 5, .keyframes = left, .keyframes_after_cut = left});
+      marginalizer.marginalizeToSize(window,
+                                     {.recent_frames = 5, .keyframes = left, .split_at_keyframe = left});
     }
   });
   EXPECT_EQ(atOnce(kNever), one_by_one);

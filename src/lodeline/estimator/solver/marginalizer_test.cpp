@@ -25,7 +25,7 @@ struct StartedWindow : TestWindow {
 enum class OldTracks { End, LiveOn };
 
 // Eight keyframes at the batch solution. Where old tracks end, the newest frame sees nothing that frame 0
-// does: then all its landmarks go with it, and marginalisation drops nothing.
+// does: then all its landmarks go with it, and marginalization drops nothing.
 class LosslessMarginalizationTest : public testing::Test {
  protected:
   static constexpr int kFrames = 8;
@@ -34,11 +34,11 @@ class LosslessMarginalizationTest : public testing::Test {
     TestScene scene(sceneOptions(1.0 + (kFrames - 1) * 0.2 + 0.01, 5.0));
     std::vector<SimulatedFrame> frames = scene.all();
     ASSERT_EQ(frames.size(), static_cast<size_t>(kFrames));
-    std::erase_if(frames.back().tracks.observations, [&](const Observation& o) {
+    std::erase_if(frames.back().tracks.observations, [&](const FeatureObservation& o) {
       if (old_tracks == OldTracks::LiveOn) return false;
       const auto& first = frames.front().tracks.observations;
       return std::any_of(first.begin(), first.end(),
-                         [&](const Observation& other) { return other.track == o.track; });
+                         [&](const FeatureObservation& other) { return other.track == o.track; });
     });
     for (const SimulatedFrame& frame : frames) {
       test.add(frame);
@@ -59,12 +59,12 @@ TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
   shortened_.disturb(1e-4, 11);
   Marginalizer marginalizer(shortened_.factors);
   marginalizer.start(shortened_.start);
-  marginalizer.shorten(shortened_.window, {.recent_frames = 3, .keyframes = 4});
+  marginalizer.marginalizeToSize(shortened_.window, {.recent_frames = 3, .keyframes = 4});
   ASSERT_EQ(shortened_.window.frames().size(), 7u);
   ASSERT_FALSE(marginalizer.takeMapPoints().empty());
   ASSERT_TRUE(solveWindow(shortened_.window, marginalizer.prior(), shortened_.factors, kToTheEnd).usable);
 
-  // Linearised 1e-4 (m, rad) away from the solution, what remains is of second order: the curvature that
+  // Linearized 1e-4 (m, rad) away from the solution, what remains is of second order: the curvature that
   // Gauss-Newton leaves out, some per cent of that.
   double moved = 0.0;
   for (const auto& frame : shortened_.window.frames()) {
@@ -94,21 +94,21 @@ TEST_F(LosslessMarginalizationTest, CutTracksCountAsTwo) {
   constexpr TrackId kOlder = 1000;
   fill(batch_, OldTracks::LiveOn);
   fill(shortened_, OldTracks::LiveOn);
-  std::vector<std::pair<TrackId, TrackHistory>> older;
+  std::vector<std::pair<TrackId, FeatureTrack>> older;
   for (auto& [id, track] : batch_.window.tracks()) {
     if (!track.landmark || !track.seenIn(0) || !track.seenIn(kFrames - 1)) continue;
-    if (auto part = takeOlderPart(batch_.window, track, kLastBeforeCut, batch_.factors))
+    if (auto part = splitTrack(batch_.window, track, kLastBeforeCut, batch_.factors))
       older.emplace_back(kOlder + id, std::move(*part));
   }
   ASSERT_GT(older.size(), 10u);
   for (auto& [id, track] : older) batch_.window.tracks()[id] = track;
-  WindowOptions wanted{.recent_frames = 3, .keyframes = 4, .keyframes_after_cut = 4};
+  WindowOptions wanted{.recent_frames = 3, .keyframes = 4, .split_at_keyframe = 4};
   Marginalizer two(batch_.factors), cut(shortened_.factors);
   two.start(batch_.start);
   cut.start(shortened_.start);
-  two.shorten(batch_.window, wanted);
-  wanted.keyframes_after_cut = 1;
-  cut.shorten(shortened_.window, wanted);
+  two.marginalizeToSize(batch_.window, wanted);
+  wanted.split_at_keyframe = 1;
+  cut.marginalizeToSize(shortened_.window, wanted);
   EXPECT_EQ(two.takeMapPoints().size(), cut.takeMapPoints().size() + older.size());
 
   const auto expected = newestCovariance(batch_.window, two.prior(), batch_.factors);
@@ -127,7 +127,7 @@ Eigen::Vector4d unobservableInformation(const Prior& prior) {
   Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(prior.tangentSize(), 4);
   int row = 0;
   for (const Prior::Block& block : prior.blocks) {
-    const Vec3 first = block.first_estimate.head<3>();  // position, or velocity
+    const Vec3 first = block.linearization_point.head<3>();  // position, or velocity
     directions.block<3, 1>(row, 3) = Vec3::UnitZ().cross(first);
     if (block.isPose()) {
       directions.block<3, 3>(row, 0).setIdentity();
@@ -148,10 +148,10 @@ InitialStateOptions nearlyNothing() {
 }
 
 // Runs a window without any prior on where it is, or with as good as none, and returns what its
-// marginalisations claim to know of that.
-enum class FirstEstimates { Kept, Forgotten, Relinearised };
+// marginalizations claim to know of that.
+enum class LinearizationPoints { Kept, Forgotten, ResetLinearizationPoints };
 enum class OtherFrames { Dropped, Interpolated };
-Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
+Eigen::Vector4d informationAfter(int frames, LinearizationPoints linearization_points,
                                  OtherFrames other_frames = OtherFrames::Dropped, int keyframes = 3) {
   EstimatorOptions options;
   // A poor IMU: estimates then move far enough from their first values for the difference to show.
@@ -161,7 +161,7 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
   TestWindow test(2, options);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
-  WindowOptions wanted{.recent_frames = 3, .keyframes = keyframes, .keyframes_after_cut = 1};
+  WindowOptions wanted{.recent_frames = 3, .keyframes = keyframes, .split_at_keyframe = 1};
   const bool interpolates = other_frames == OtherFrames::Interpolated;
   if (interpolates) wanted.interpolated_spacing_s = 0.05;
   int interpolated = 0;
@@ -175,11 +175,13 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
                     ? updateWindow(test.window, marginalizer.prior(), test.factors, limits).summary.usable
                     : solveWindow(test.window, marginalizer.prior(), test.factors, limits).usable);
     removeOutliers(test.window, test.factors, options.landmark);
-    if (first_estimates == FirstEstimates::Relinearised) marginalizer.relinearise(test.window);
-    marginalizer.shorten(test.window, wanted);
+    if (linearization_points == LinearizationPoints::ResetLinearizationPoints)
+      marginalizer.resetLinearizationPoints(test.window);
+    marginalizer.marginalizeToSize(test.window, wanted);
     for (const auto& frame : test.window.frames()) interpolated += frame->interpolated.has_value();
-    if (first_estimates == FirstEstimates::Relinearised) marginalizer.relinearise(test.window);
-    if (first_estimates != FirstEstimates::Forgotten) continue;
+    if (linearization_points == LinearizationPoints::ResetLinearizationPoints)
+      marginalizer.resetLinearizationPoints(test.window);
+    if (linearization_points != LinearizationPoints::Forgotten) continue;
     for (const auto& frame : test.window.frames()) {
       frame->first_pose.reset();
       frame->first_motion.reset();
@@ -191,9 +193,10 @@ Eigen::Vector4d informationAfter(int frames, FirstEstimates first_estimates,
 }
 
 TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
-  for (const FirstEstimates first_estimates : {FirstEstimates::Kept, FirstEstimates::Relinearised}) {
-    const Eigen::Vector4d information = informationAfter(30, first_estimates);
-    // What is left is rounding and the factorisation's jitter: less than 10 m and 0.1 rad once.
+  for (const LinearizationPoints linearization_points :
+       {LinearizationPoints::Kept, LinearizationPoints::ResetLinearizationPoints}) {
+    const Eigen::Vector4d information = informationAfter(30, linearization_points);
+    // What is left is rounding and the factorization's jitter: less than 10 m and 0.1 rad once.
     EXPECT_LT(information[0], 1e-2);
     EXPECT_LT(information[1], 1e-2);
     EXPECT_LT(information[2], 1e-2);
@@ -202,7 +205,7 @@ TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
     const InitialStateOptions known = nearlyNothing();
     for (const int keyframes : {3, 6}) {
       const Eigen::Vector4d interpolated =
-          informationAfter(30, first_estimates, OtherFrames::Interpolated, keyframes);
+          informationAfter(30, linearization_points, OtherFrames::Interpolated, keyframes);
       for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(interpolated[i], std::pow(known.position_sigma_m, -2), 1e-4) << "100 m, from rounding";
       EXPECT_NEAR(interpolated[3] * std::pow(known.yaw_sigma_rad, 2), 1.0, 0.01);
@@ -210,20 +213,20 @@ TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
   }
 }
 
-TEST(Marginalizer, WithoutFirstEstimatesWouldInventAHeading) {
-  const Eigen::Vector4d with = informationAfter(30, FirstEstimates::Kept);
-  const Eigen::Vector4d without = informationAfter(30, FirstEstimates::Forgotten);
+TEST(Marginalizer, WithoutLinearizationPointsWouldInventAHeading) {
+  const Eigen::Vector4d with = informationAfter(30, LinearizationPoints::Kept);
+  const Eigen::Vector4d without = informationAfter(30, LinearizationPoints::Forgotten);
   EXPECT_GT(without[3], 1e4) << "a heading known to 0.6 degrees out of nothing";
   EXPECT_GT(without[3], 1e3 * with[3]);
 }
 
-TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
+TEST(Marginalizer, ResetLinearizationPointsSaysTheSameAtThePresentValues) {
   TestWindow test(2);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(3.0, 10.0));
   for (int k = 0; k < 15; ++k) {
     addNext(test, scene, 2, &marginalizer);
-    marginalizer.shorten(test.window, {.recent_frames = 3, .keyframes = 3});
+    marginalizer.marginalizeToSize(test.window, {.recent_frames = 3, .keyframes = 3});
   }
   test.disturb(0.02, 3);
   const auto gradient = [&] {
@@ -236,7 +239,7 @@ TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
   const Eigen::Vector4d information = unobservableInformation(marginalizer.prior());
   ASSERT_GT(cost, 100.0) << "the frames must have moved by more than the prior likes";
 
-  marginalizer.relinearise(test.window);
+  marginalizer.resetLinearizationPoints(test.window);
   EXPECT_NEAR(PriorTerms(marginalizer.prior()).cost(), cost, 1e-6 * cost);
   const Eigen::Vector4d after = unobservableInformation(marginalizer.prior());
   for (int i = 0; i < 4; ++i)
@@ -245,8 +248,8 @@ TEST(Marginalizer, RelinearisedSaysTheSameAtThePresentValues) {
   const Eigen::VectorXd gradient_after = gradient();
   int row = 0;
   for (const Prior::Block& block : marginalizer.prior().blocks) {
-    EXPECT_EQ(block.first_estimate,
-              Eigen::Map<const Eigen::VectorXd>(block.value, block.first_estimate.size()));
+    EXPECT_EQ(block.linearization_point,
+              Eigen::Map<const Eigen::VectorXd>(block.value, block.linearization_point.size()));
     for (int i = 0; i < block.tangentSize(); ++i) {
       if (block.isPose() && i == 5) continue;
       EXPECT_NEAR(gradient_after[row + i], gradient_before[row + i], 1e-6 * gradient_before.norm());
@@ -270,7 +273,7 @@ TEST_P(MarginalizersBooks, AreInOrder) {
   std::map<TrackId, MapPoint> map;
   for (int k = 0; k < 30; ++k) {
     addNext(test, scene, 3, &marginalizer);
-    marginalizer.shorten(test.window, wanted);
+    marginalizer.marginalizeToSize(test.window, wanted);
     for (const MapPoint& point : marginalizer.takeMapPoints()) map[point.track] = point;
 
     const Window& window = test.window;
@@ -290,7 +293,8 @@ TEST_P(MarginalizersBooks, AreInOrder) {
       before = frame.get();
     }
     for (const auto& [id, track] : window.tracks()) {
-      for (const Sighting& sighting : track.sightings) ASSERT_NE(window.find(sighting.frame), nullptr);
+      for (const Observation& observation : track.observations)
+        ASSERT_NE(window.find(observation.frame), nullptr);
       if (track.landmark) {
         ASSERT_NE(window.find(track.landmark->host), nullptr);
         ASSERT_NE(track.find(track.landmark->host, 0), nullptr) << "the host must see its landmark";
@@ -309,11 +313,12 @@ TEST_P(MarginalizersBooks, AreInOrder) {
   }
   EXPECT_TRUE(marginalizer.takeMapPoints().empty());
   EXPECT_EQ(interpolated > 0, GetParam() < 0.1);
-  // Frames stand at the truth, so points are as good as their sightings: half a pixel over a short baseline.
+  // Frames stand at the truth, so points are as good as their observations: half a pixel over a short
+  // baseline.
   ASSERT_GT(map.size(), 10u);
   double squares = 0.0;
   for (const auto& [id, point] : map) {
-    EXPECT_GE(point.sightings, 2);
+    EXPECT_GE(point.observations, 2);
     const double range_m = scene.landmark(id).norm();
     squares += (point.position_W - scene.landmark(id)).squaredNorm() / (range_m * range_m);
   }

@@ -69,7 +69,7 @@ ceres::Solver::Options solverOptions(const SolveLimits& limits) {
 
 }  // namespace
 
-SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
+SolveSummary solveWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                          const SolveLimits& limits) {
   const WindowTerms terms = collectTerms(window, prior, factors);
   BlockCopies copies;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 
 namespace lodeline {
 
@@ -12,14 +12,14 @@ struct SolveSummary {
   bool converged = false;  ///< before the limit of iterations
 };
 
-/// Minimises the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
+/// Minimizes the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
 /// thread, so that the same input gives the same bytes). Inertial terms whose biases moved too far are
 /// integrated again first.
 struct SolveLimits {
   int max_iterations = 4;
   double function_tolerance = 1e-4;  ///< relative change of the cost that ends the iterations
 };
-SolveSummary solveWindow(Window& window, const Prior& prior, const FactorMaker& factors,
+SolveSummary solveWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                          const SolveLimits& limits);
 
 }  // namespace lodeline

@@ -36,7 +36,7 @@ TEST(WindowSolver, FindsBackToTheTruth) {
   const SolveSummary summary = solveWindow(test.window, prior, test.factors, {50, 1e-9});
   EXPECT_TRUE(summary.usable);
   EXPECT_LT(summary.final_cost, 0.01 * summary.initial_cost);
-  // A tenth of a pixel: 0.2 mrad a sighting, and as many metres as that at 5 m over 5 sightings' root.
+  // A tenth of a pixel: 0.2 mrad an observation, and as many metres as that at 5 m over 5 observations' root.
   for (size_t k = 0; k < truth.size(); ++k) {
     const auto error = perturbationBetween(truth[k], test.window.frames()[k]->worldFromBody());
     EXPECT_LT(error.head<3>().norm(), 5e-3) << "frame " << k;

@@ -8,7 +8,7 @@
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/prior_terms.h"
 #include "lodeline/estimator/problem/window_cholesky.h"
-#include "lodeline/estimator/visual/visual_terms.h"
+#include "lodeline/estimator/visual/reprojection_system.h"
 
 namespace lodeline {
 namespace {
@@ -54,18 +54,19 @@ int tangentSizeOf(const Window& window) {
 /// All terms of a window, in a form that is quick to evaluate again and again.
 class QuickTerms {
  public:
-  QuickTerms(Window& window, const Prior& prior, const FactorMaker& factors, const DormantLandmarks& dormant)
+  QuickTerms(Window& window, const Prior& prior, const FactorBuilder& factors,
+             const LandmarkLinearizationCache& frozen)
       : prior_(prior),
         motion_(collectMotionTerms(window, factors)),
-        visual_(window, factors, VisualTerms::Of::kAwake),
-        dormant_(dormant),
+        visual_(window, factors, ReprojectionSystem::Of::kLive),
+        linearization_cache_(frozen),
         size_(tangentSizeOf(window)) {}
 
   /// After blocks have moved.
   void update() { visual_.update(); }
 
   double cost() {
-    double cost = prior_.cost() + visual_.cost() + dormant_.cost();
+    double cost = prior_.cost() + visual_.cost() + linearization_cache_.cost();
     for (const Factor& factor : motion_) cost += costOf(factor, residual_);
     return cost;
   }
@@ -74,13 +75,13 @@ class QuickTerms {
 
   Snapshot snapshot(const Window& window) const { return {window, visual_.landmarks()}; }
 
-  NormalEquations linearise() {
+  NormalEquations linearize() {
     NormalEquations system;
     system.reserve(size_);
     prior_.addTo(&system);
     for (const Factor& factor : motion_) system.add(factor);
     visual_.addTo(&system);
-    dormant_.addTo(&system);
+    linearization_cache_.addTo(&system);
     return system;
   }
 
@@ -101,22 +102,22 @@ class QuickTerms {
  private:
   PriorTerms prior_;
   std::vector<Factor> motion_;
-  VisualTerms visual_;
-  const DormantLandmarks& dormant_;
+  ReprojectionSystem visual_;
+  const LandmarkLinearizationCache& linearization_cache_;
   int size_;
   std::vector<double> residual_;
 };
 
 }  // namespace
 
-WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker& factors,
-                          const SolveLimits& limits, const DormantLandmarks& dormant) {
+WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
+                          const SolveLimits& limits, const LandmarkLinearizationCache& frozen) {
   // None at first. After darkness the window is known to metres as a whole and its frames among one another
   // to micrometres: however little damping there is beside the latter, it holds the whole where dead
   // reckoning left it.
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e-1;
-  QuickTerms terms(window, prior, factors, dormant);
+  QuickTerms terms(window, prior, factors, frozen);
   WindowUpdate update;
   double cost = terms.cost();
   update.summary.initial_cost = cost;
@@ -127,14 +128,14 @@ WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorMaker&
   bool is_damped = false;
   while (update.summary.iterations < limits.max_iterations) {
     ++update.summary.iterations;
-    system = terms.linearise();
+    system = terms.linearize();
     correlated = correlatedBlocks(system, window);
     cholesky.emplace(system, motionsButTheNewest(window), correlated);
     const Snapshot before = terms.snapshot(window);
     double gain = 0.0;
     while (!(gain > 0.0) && damping <= kMostDamping) {
       is_damped = damping > 0.0;
-      if (cholesky->factorise(damping)) {
+      if (cholesky->factorize(damping)) {
         terms.apply(window, system, -cholesky->solve(system.gradient()));
         gain = cost - terms.cost();
         if (!(gain > 0.0)) {

@@ -20,11 +20,11 @@ std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera
 
 void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
               const Vec3& start = Vec3::Zero()) {
-  GlobalState state;
+  ParameterBlock state;
   state.name = name;
   state.value.assign(static_cast<size_t>(sigmas.size()), 0.0);
   if (!start.isZero()) std::copy_n(start.data(), 3, state.value.begin());
-  GlobalState& added = window.add(std::move(state));
+  ParameterBlock& added = window.add(std::move(state));
   prior.append(added.value.data(), static_cast<int>(sigmas.size()), sigmas.cwiseMax(kHeld));
 }
 
@@ -34,7 +34,7 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
-/// Of a further camera's position only that it is somewhere on the rig: FactorMaker::placement() has the
+/// Of a secondary camera's position only that it is somewhere on the rig: FactorBuilder::placement() has the
 /// rest.
 Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
   constexpr double kSomewhere_m = 0.05;
@@ -48,9 +48,9 @@ Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options) {
   return Vec3::Constant(std::max(options.stereo_rotation_sigma_rad, kHeld));
 }
 
-double placementLossWidth(const GlobalState& further) { return further.beliefs.empty() ? 1.0 : 0.5; }
+double placementLossWidth(const ParameterBlock& further) { return further.priors.empty() ? 1.0 : 0.5; }
 
-Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options) {
+Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options) {
   Eigen::VectorXd sigmas(kIntrinsicsSize);
   sigmas << Vec2::Constant(options.focal_length_sigma), Vec2::Constant(options.principal_point_sigma_px),
       Vec2::Constant(options.radial_sigma);
@@ -66,14 +66,14 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
   for (size_t camera = 1; camera < static_cast<size_t>(cameras); ++camera) {
     addState(window, prior, extrinsicsName(camera), stereoSigmas(options),
              camera <= rotations.size() ? rotations[camera - 1] : Vec3::Zero());
-    window.findGlobal(extrinsicsName(camera))->is_correlation_wanted = true;  // claimedCovariance()
+    window.findGlobal(extrinsicsName(camera))->is_correlation_wanted = true;  // reportedCovariance()
   }
 }
 
-void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
+void addIntrinsicsStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
   if (!options.enabled || !options.intrinsics) return;
   for (int camera = 0; camera < cameras; ++camera)
-    addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), lensSigmas(options));
+    addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), intrinsicsSigmas(options));
 }
 
 CameraStates cameraStates(const Window& window) {
@@ -81,17 +81,17 @@ CameraStates cameraStates(const Window& window) {
   states.camera0 = window.findGlobal(extrinsicsName(0));
   if (!states.camera0) return states;
   states.time_offset = window.findGlobal(kTimeOffset);
-  while (GlobalState* further = window.findGlobal(extrinsicsName(states.further.size() + 1)))
+  while (ParameterBlock* further = window.findGlobal(extrinsicsName(states.further.size() + 1)))
     states.further.push_back(further);
-  while (GlobalState* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
+  while (ParameterBlock* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
     states.intrinsics.push_back(lens);
   return states;
 }
 
-Vec3 rayOf(const Sighting& sighting, const CameraStates& states) {
-  if (states.intrinsics.empty()) return sighting.measurement.bearing_C;
-  const GlobalState* lens = states.intrinsics[static_cast<size_t>(sighting.camera)];
-  return rayThrough(sighting.measurement, lens->value.data());
+Vec3 rayOf(const Observation& observation, const CameraStates& states) {
+  if (states.intrinsics.empty()) return observation.measurement.bearing_C;
+  const ParameterBlock* lens = states.intrinsics[static_cast<size_t>(observation.camera)];
+  return rayThrough(observation.measurement, lens->value.data());
 }
 
 std::optional<CameraCorrections> cameraCorrections(const Window& window) {
@@ -100,12 +100,12 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   if (!states) return std::nullopt;
   CameraCorrections corrections;
   corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(states.camera0->value.data()));
-  for (const GlobalState* further : states.further)
+  for (const ParameterBlock* further : states.further)
     corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(further->value.data()));
   corrections.time_offset_s = states.timeOffset_s();
-  for (const GlobalState* lens : states.intrinsics)
+  for (const ParameterBlock* lens : states.intrinsics)
     corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));
-  corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->beliefs.empty();
+  corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->priors.empty();
   return corrections;
 }
 

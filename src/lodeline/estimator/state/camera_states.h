@@ -9,39 +9,40 @@
 
 namespace lodeline {
 
-/// The global states of the camera calibration, see factors/calibrated_reprojection_factor.h; null and empty
-/// where it is not estimated.
+/// The parameter blocks of the camera calibration, see factors/calibrated_reprojection_factor.h; null and
+/// empty where it is not estimated.
 struct CameraStates {
-  GlobalState* camera0 = nullptr;
-  GlobalState* time_offset = nullptr;
-  std::vector<GlobalState*> further;     ///< of camera 1, 2, ...
-  std::vector<GlobalState*> intrinsics;  ///< of every camera; empty where the lenses are not estimated
+  ParameterBlock* camera0 = nullptr;
+  ParameterBlock* time_offset = nullptr;
+  std::vector<ParameterBlock*> further;     ///< of camera 1, 2, ...
+  std::vector<ParameterBlock*> intrinsics;  ///< of every camera; empty where the lenses are not estimated
 
   explicit operator bool() const { return camera0 != nullptr; }
   double timeOffset_s() const { return time_offset ? time_offset->value[0] : 0.0; }
 };
 
 /// Adds placement and delay of as many cameras as the rig has, and to the prior what `options` say of them.
-/// `rotations`: from which those of further cameras start, see FrameTracks::camera_rotations.
+/// `rotations`: from which those of secondary cameras start, see FrameTracks::camera_rotations.
 void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options,
                      const std::vector<Vec3>& rotations = {});
 /// The same for their lenses, where these are to be estimated.
-void addLensStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
+void addIntrinsicsStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
 
 CameraStates cameraStates(const Window& window);
 
-/// Width of the Cauchy loss on where a further camera sits, in sigmas of what its file says
-/// (FactorMaker::placement): half as wide where its file is held, which is then wrong in lengths or not at
+/// Width of the Cauchy loss on where a secondary camera sits, in sigmas of what its file says
+/// (FactorBuilder::placement): half as wide where its file is held, which is then wrong in lengths or not at
 /// all.
-double placementLossWidth(const GlobalState& further);
+double placementLossWidth(const ParameterBlock& further);
 
-/// Prior sigmas of each coordinate of a further camera's rotation (the first of its placement) and of a lens.
+/// Prior sigmas of each coordinate of a secondary camera's rotation (the first of its placement) and of a
+/// lens.
 Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options);
-Eigen::VectorXd lensSigmas(const CameraCalibrationOptions& options);
+Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options);
 
-/// The ray of a sighting (its camera's frame) by the lens that the states say, by the file's where they are
-/// empty.
-Vec3 rayOf(const Sighting& sighting, const CameraStates& states);
+/// The ray of an observation (its camera's frame) by the lens that the states say, by the file's where they
+/// are empty.
+Vec3 rayOf(const Observation& observation, const CameraStates& states);
 
 /// What the states say at present.
 struct CameraCorrections {
@@ -49,7 +50,7 @@ struct CameraCorrections {
   double time_offset_s = 0.0;                           ///< to add to the images' stamps
   /// Of each camera as in factors/intrinsics_factor.h; empty where the lenses are not estimated.
   std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
-  bool are_files_held = false;  ///< of lenses and further cameras' rotations, see LensTrust
+  bool are_files_held = false;  ///< of lenses and secondary cameras' rotations, see IntrinsicsModelSelection
 };
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 

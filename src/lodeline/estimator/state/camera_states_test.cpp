@@ -96,7 +96,7 @@ CameraCalibrationOptions calibrationOfWrongFiles(bool lenses) {
 
 /// The scene's tracks as someone reads them who takes `files` for the cameras.
 FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
-  for (Observation& observation : tracks.observations) {
+  for (FeatureObservation& observation : tracks.observations) {
     const auto camera = static_cast<size_t>(observation.camera);
     const Vec2 pixel = *makeCamera(truth.cameras[camera])->project(observation.bearing_C);
     observation.bearing_C = *makeCamera(files.cameras[camera])->unproject(pixel);
@@ -113,7 +113,7 @@ double squaredPositionError_m2(bool lenses, uint64_t seed, const Eigen::Matrix<d
   TestScene scene(scene_options);
   Rig files = scene.rig();
   const Eigen::Matrix<double, 6, 1> undone = -lens;
-  for (CameraCalibration& camera : files.cameras) camera = correctedLens(camera, undone.data());
+  for (CameraCalibration& camera : files.cameras) camera = correctedIntrinsics(camera, undone.data());
   EstimatorOptions options = honestOptions(scene_options);
   options.camera_calibration = calibrationOfWrongFiles(lenses);
   Diagnostics diagnostics;
@@ -216,7 +216,7 @@ TEST(CameraStates, StartWhereTheFrontEndFoundACamera) {
   EXPECT_EQ(Vec3(corrections->extrinsics[1].head<3>()), turn);
   EXPECT_TRUE(corrections->extrinsics[2].isZero());
   // What is known beforehand counts from there.
-  const Eigen::VectorXd known = prior.blocks[2].first_estimate;
+  const Eigen::VectorXd known = prior.blocks[2].linearization_point;
   EXPECT_EQ(Vec3(known.head<3>()), turn);
 }
 
@@ -238,8 +238,8 @@ TEST(CameraStates, AreHeldByASigmaOfZeroAndAbsentWhenOff) {
   EXPECT_LT((held.state.world_from_body.translation - off.state.world_from_body.translation).norm(), 1e-4);
 }
 
-// Sightings half a pixel off, whose noise must not speak for a longer lens: of each alone it is a trifle, but
-// all of them would say the same.
+// Observations half a pixel off, whose noise must not speak for a longer lens: of each alone it is a trifle,
+// but all of them would say the same.
 TEST(CameraStates, NoiseMakesNoLensLonger) {
   constexpr int kDives = 3;
   double mean = 0.0;

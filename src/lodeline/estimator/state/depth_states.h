@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// The global states by which a window knows the depth gauge; all null where it is not fused.
+/// The parameter blocks by which a window knows the depth gauge; all null where it is not fused.
 struct DepthStates {
   static constexpr const char* kOffset = "depth_at_origin";  ///< d_0, m
   static constexpr const char* kScale = "depth_scale";       ///< k
@@ -18,9 +18,9 @@ struct DepthStates {
   double density_ratio() const { return scale->value[0]; }
   double lag_s() const { return lag->value[0]; }
 
-  GlobalState* offset;
-  GlobalState* scale;
-  GlobalState* lag;
+  ParameterBlock* offset;
+  ParameterBlock* scale;
+  ParameterBlock* lag;
 };
 
 }  // namespace lodeline

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kGyroscopeAxes = "imu.gyro_axes";
 constexpr const char* kAccelerometerAxes = "imu.accel_axes";
 
-std::optional<SensorAxes> valueOf(const GlobalState* axes) {
+std::optional<SensorAxes> valueOf(const ParameterBlock* axes) {
   if (!axes) return std::nullopt;
   return SensorAxes(axes->value.data());
 }
@@ -34,7 +34,7 @@ EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options) {
 void addInertialStates(Window& window, const ImuAxesOptions& options) {
   const auto add = [&](const char* name, double sigma) {
     if (sigma <= 0.0) return;
-    GlobalState state;
+    ParameterBlock state;
     state.name = name;
     state.value.assign(kSensorAxesSize, 0.0);
     window.add(std::move(state));

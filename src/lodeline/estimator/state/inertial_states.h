@@ -16,14 +16,14 @@ EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options);
 /// Adds the axes of gyroscope and accelerometer (factors/inertial_factor.h), unless they are to be held.
 /// Every turn then teaches what the next one needs: vision, and the magnetometer where there is one, say how
 /// far the rig has really turned, and a rig that tilts turns its accelerometer in a gravity that is known.
-/// FactorMaker::imuAxes() keeps them near what is known beforehand.
+/// FactorBuilder::imuAxes() keeps them near what is known beforehand.
 void addInertialStates(Window& window, const ImuAxesOptions& options);
 
 /// Null where the axes are held.
 struct ImuAxesStates {
   explicit ImuAxesStates(const Window& window);
-  GlobalState* gyroscope;
-  GlobalState* accelerometer;
+  ParameterBlock* gyroscope;
+  ParameterBlock* accelerometer;
 };
 /// None where they are held.
 std::optional<SensorAxes> gyroscopeAxes(const Window& window);

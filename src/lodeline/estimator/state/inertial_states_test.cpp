@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/trials/consistency.h"
 #include "lodeline/estimator/trials/scene.h"
-#include "lodeline/estimator/uncertainty/unmodelled_errors.h"
+#include "lodeline/estimator/uncertainty/covariance_inflation.h"
 
 namespace lodeline {
 namespace {
@@ -26,7 +26,7 @@ struct Outcome {
   double first_heading_variance_rad2 = 0.0;  ///< claimed after 3 s
   /// By what lenses make of turns the last heading claims more where gyroscopes are not known to be
   /// calibrated.
-  double variance_by_lenses_rad2 = 0.0;
+  double variance_by_intrinsicses_rad2 = 0.0;
   /// What the rotation's error has changed by since the middle of the scene, root mean square.
   double drift_rad = 0.0;
 };
@@ -55,7 +55,7 @@ Outcome runWith(const ImuAxes& axes, const ImuAxesOptions& axes_options, uint64_
   EstimatorOptions options = honestOptions(scene_options);
   options.imu_axes = axes_options;
   ComparedEstimator estimator(scene, options);
-  UnmodelledErrors lenses(options);
+  CovarianceInflation lenses(options);
   Outcome outcome;
   std::optional<Vec3> error_before;
   double squares = 0.0;
@@ -80,7 +80,7 @@ Outcome runWith(const ImuAxes& axes, const ImuAxesOptions& axes_options, uint64_
   for (const bool is_known : {false, true}) {
     Eigen::Matrix<double, 15, 15> added = Eigen::Matrix<double, 15, 15>::Zero();
     lenses.addTo({.is_scale_given = true, .are_gyroscope_axes_known = is_known}, &added);
-    outcome.variance_by_lenses_rad2 += is_known ? -added(5, 5) : added(5, 5);
+    outcome.variance_by_intrinsicses_rad2 += is_known ? -added(5, 5) : added(5, 5);
   }
   return outcome;
 }
@@ -167,8 +167,8 @@ double costOfAxes(double error) {
   ImuAxesStates(window).gyroscope->value[0] = error;
   std::vector<double> residual;
   double cost = 0.0;
-  for (const Factor& belief : FactorMaker(Rig(), EstimatorOptions()).imuAxes(window))
-    cost += costOf(belief, residual);
+  for (const Factor& prior : FactorBuilder(Rig(), EstimatorOptions()).imuAxes(window))
+    cost += costOf(prior, residual);
   return cost;
 }
 
@@ -206,7 +206,8 @@ TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   EXPECT_GT(doubted.covariance(3, 3), std::pow(kUncalibrated, 2));
   EXPECT_GT(doubted.covariance(4, 4), std::pow(kUncalibrated, 2));
   EXPECT_GT(in_doubt.first_heading_variance_rad2, 1.02 * taken_for_calibrated.first_heading_variance_rad2);
-  EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_lenses_rad2, 1.02 * believed.covariance(5, 5))
+  EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_intrinsicses_rad2,
+            1.02 * believed.covariance(5, 5))
       << "turns have told by now";
   EXPECT_EQ(doubted.magnetometer.heading_sigma_rad, std::sqrt(doubted.covariance(5, 5)));
 }

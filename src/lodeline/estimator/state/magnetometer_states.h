@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// The global states by which a window knows the magnetometer; all null where it is not fused absolutely.
+/// The parameter blocks by which a window knows the magnetometer; all null where it is not fused absolutely.
 struct MagnetometerStates {
   static constexpr const char* kField = "magnetic_field";              ///< m_W, T
   static constexpr const char* kOffset = "magnetometer_offset";        ///< o_B, T
@@ -23,9 +23,9 @@ struct MagnetometerStates {
   Vec3 offset_B() const { return Vec3(offset->value.data()); }
   Vec3 disturbance_W() const { return Vec3(disturbance->value.data()); }
 
-  GlobalState* field;
-  GlobalState* offset;
-  GlobalState* disturbance;
+  ParameterBlock* field;
+  ParameterBlock* offset;
+  ParameterBlock* disturbance;
 };
 
 /// Of the hard iron that is left of a magnetometer's readings at the start of a dive, T per axis.

@@ -25,28 +25,31 @@ void Frame::updateImageMotion() {
   if (has_motion) image_motion = {velocity_W(), gyroscope_B - gyroscopeBias()};
 }
 
-std::span<const Sighting> TrackHistory::in(FrameId frame) const {
-  const auto before = [](const Sighting& sighting, FrameId id) { return sighting.frame < id; };
-  const auto begin = std::lower_bound(sightings.begin(), sightings.end(), frame, before);
-  return {begin, std::find_if(begin, sightings.end(), [&](const Sighting& s) { return s.frame != frame; })};
+std::span<const Observation> FeatureTrack::in(FrameId frame) const {
+  const auto before = [](const Observation& observation, FrameId id) { return observation.frame < id; };
+  const auto begin = std::lower_bound(observations.begin(), observations.end(), frame, before);
+  return {begin,
+          std::find_if(begin, observations.end(), [&](const Observation& s) { return s.frame != frame; })};
 }
 
-const Sighting* TrackHistory::find(FrameId frame, int camera) const {
-  for (const Sighting& sighting : in(frame)) {
-    if (sighting.camera == camera) return &sighting;
+const Observation* FeatureTrack::find(FrameId frame, int camera) const {
+  for (const Observation& observation : in(frame)) {
+    if (observation.camera == camera) return &observation;
   }
   return nullptr;
 }
 
-int TrackHistory::frameCount() const {
+int FeatureTrack::frameCount() const {
   int count = 0;
-  for (size_t i = 0; i < sightings.size(); ++i)
-    count += i == 0 || sightings[i].frame != sightings[i - 1].frame;
+  for (size_t i = 0; i < observations.size(); ++i)
+    count += i == 0 || observations[i].frame != observations[i - 1].frame;
   return count;
 }
 
-void removeShortTracks(Tracks& tracks, size_t least_sightings) {
-  const auto is_short = [&](const auto& entry) { return entry.second.sightings.size() < least_sightings; };
+void removeShortTracks(Tracks& tracks, size_t least_observations) {
+  const auto is_short = [&](const auto& entry) {
+    return entry.second.observations.size() < least_observations;
+  };
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), is_short), tracks.end());
 }
 
@@ -55,8 +58,8 @@ Frame& Window::add(std::unique_ptr<Frame> frame) {
   return *frames_.back();
 }
 
-void Window::addSighting(TrackId track, const Sighting& sighting) {
-  tracks_[track].sightings.push_back(sighting);
+void Window::addObservation(TrackId track, const Observation& observation) {
+  tracks_[track].observations.push_back(observation);
 }
 
 Frame* Window::find(FrameId id) const {
@@ -95,11 +98,11 @@ Frame* Window::after(const Frame& frame) const {
   return found == frames_.end() ? nullptr : found->get();
 }
 
-GlobalState& Window::add(GlobalState state) {
-  return *globals_.emplace_back(std::make_unique<GlobalState>(std::move(state)));
+ParameterBlock& Window::add(ParameterBlock state) {
+  return *globals_.emplace_back(std::make_unique<ParameterBlock>(std::move(state)));
 }
 
-GlobalState* Window::findGlobal(std::string_view name) const {
+ParameterBlock* Window::findGlobal(std::string_view name) const {
   const auto found = std::find_if(globals_.begin(), globals_.end(),
                                   [name](const auto& state) { return state->name == name; });
   return found == globals_.end() ? nullptr : found->get();
@@ -135,7 +138,8 @@ void Window::remove(FrameId id) {
   }
   const auto goes = [&](FrameId frame) { return std::find(gone.begin(), gone.end(), frame) != gone.end(); };
   for (auto& [track_id, track] : tracks_)
-    std::erase_if(track.sightings, [&](const Sighting& sighting) { return goes(sighting.frame); });
+    std::erase_if(track.observations,
+                  [&](const Observation& observation) { return goes(observation.frame); });
   removeEmptyTracks();
   std::erase_if(frames_, [&](const auto& frame) { return goes(frame->id); });
 }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lodeline/ahrs/magnetometer_mean.h"
-#include "lodeline/estimator/state/global_state.h"
+#include "lodeline/estimator/state/parameter_block.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/interpolated_pose.h"
 #include "lodeline/factors/parameters.h"
@@ -60,7 +60,7 @@ struct Frame {
   Vec3 gyroscope_B = Vec3::Zero();  ///< the gyroscope's reading at `time`, rad/s
   /// As of the last time that the frame had its motion, see updateImageMotion().
   ImageMotion image_motion;
-  /// Where the block was first linearised by the marginalisation prior; empty while the prior does not touch
+  /// Where the block was first linearized by the marginalization prior; empty while the prior does not touch
   /// it.
   std::optional<PoseBlock> first_pose;
   std::optional<MotionBlock> first_motion;
@@ -82,14 +82,14 @@ struct Frame {
   void setState(const NavigationState& state);
   /// Brings `image_motion` up to date, which old keyframes keep.
   void updateImageMotion();
-  /// Where Jacobians are taken: at the first estimate, or at the present value where there is none.
+  /// Where Jacobians are taken: at the linearization point, or at the present value where there is none.
   Rigid3 firstWorldFromBody() const { return poseFromBlock(first_pose ? first_pose->data() : pose.data()); }
   const double* firstPose() const { return first_pose ? first_pose->data() : nullptr; }
   const double* firstMotion() const { return first_motion ? first_motion->data() : nullptr; }
 };
 
 /// One image's view of a track.
-struct Sighting {
+struct Observation {
   FrameId frame = 0;
   int camera = 0;
   DirectionMeasurement measurement;
@@ -108,37 +108,37 @@ struct Landmark {
 struct MapPoint {
   TrackId track = -1;
   Vec3 position_W = Vec3::Zero();  ///< m
-  int sightings = 0;               ///< in the window when it left
+  int observations = 0;            ///< in the window when it left
 };
 
 /// All that the window knows of one tracked point.
-struct TrackHistory {
-  std::vector<Sighting> sightings;  ///< in order of time, then camera
+struct FeatureTrack {
+  std::vector<Observation> observations;  ///< in order of time, then camera
   std::optional<Landmark> landmark;
-  double weight = 1.0;      ///< of its reprojection errors, squared (robust_loss.h)
-  bool is_dormant = false;  ///< its terms are among DormantLandmarks
+  double weight = 1.0;     ///< of its reprojection errors, squared (robust_loss.h)
+  bool is_frozen = false;  ///< its terms are among LandmarkLinearizationCache
 
-  std::span<const Sighting> in(FrameId frame) const;
-  const Sighting* find(FrameId frame, int camera) const;  ///< null where there is none
+  std::span<const Observation> in(FrameId frame) const;
+  const Observation* find(FrameId frame, int camera) const;  ///< null where there is none
   bool seenIn(FrameId frame) const { return !in(frame).empty(); }
   int frameCount() const;  ///< frames that see it, with whatever camera
   /// Whether it is the one that its landmark is hosted at.
-  bool isHosted(const Sighting& sighting) const {
-    return landmark && sighting.frame == landmark->host && sighting.camera == 0;
+  bool isHosted(const Observation& observation) const {
+    return landmark && observation.frame == landmark->host && observation.camera == 0;
   }
 };
 
 /// By their numbers, side by side in memory: a frame walks through them many times over. New ones come last.
-using Tracks = boost::container::flat_map<TrackId, TrackHistory>;
-/// Tracks with fewer sightings are forgotten.
-void removeShortTracks(Tracks& tracks, size_t least_sightings);
+using Tracks = boost::container::flat_map<TrackId, FeatureTrack>;
+/// Tracks with fewer observations are forgotten.
+void removeShortTracks(Tracks& tracks, size_t least_observations);
 
 /// The sliding window: old keyframes (poses) and interpolated frames between them, then the most recent
 /// frames (poses and motions), the tracks they see, and what belongs to no frame.
 class Window {
  public:
   Frame& add(std::unique_ptr<Frame> frame);
-  void addSighting(TrackId track, const Sighting& sighting);
+  void addObservation(TrackId track, const Observation& observation);
 
   bool empty() const { return frames_.empty(); }
   /// In order of time. Pointers stay valid until the frame is removed.
@@ -157,28 +157,28 @@ class Window {
   const Tracks& tracks() const { return tracks_; }
 
   /// Adds a state that belongs to no frame; the reference stays valid as long as the window's contents.
-  GlobalState& add(GlobalState state);
+  ParameterBlock& add(ParameterBlock state);
   /// In the order in which they were added.
-  const std::vector<std::unique_ptr<GlobalState>>& globals() const { return globals_; }
+  const std::vector<std::unique_ptr<ParameterBlock>>& globals() const { return globals_; }
   /// Null where there is none of that name.
-  GlobalState* findGlobal(std::string_view name) const;
+  ParameterBlock* findGlobal(std::string_view name) const;
 
   /// Lets the pose of a frame, which loses its motion, follow from those of two keyframes from now on. Its
-  /// sightings stay.
+  /// observations stay.
   void interpolate(Frame& frame, const Frame& before, const Frame& after);
-  /// Brings poses and first estimates of interpolated frames up to date, after keyframes have moved.
+  /// Brings poses and linearization points of interpolated frames up to date, after keyframes have moved.
   void placeInterpolated();
 
-  /// Forgets a frame, and those interpolated from it, with all their sightings. No landmark may be hosted
+  /// Forgets a frame, and those interpolated from it, with all their observations. No landmark may be hosted
   /// there any more.
   void remove(FrameId id);
-  /// Tracks without sightings are forgotten.
+  /// Tracks without observations are forgotten.
   void removeEmptyTracks();
 
  private:
   std::deque<std::unique_ptr<Frame>> frames_;
   Tracks tracks_;
-  std::vector<std::unique_ptr<GlobalState>> globals_;
+  std::vector<std::unique_ptr<ParameterBlock>> globals_;
 };
 
 }  // namespace lodeline

@@ -61,13 +61,13 @@ TEST_F(WindowTest, KnowsWhichFramesAreOldRecentAndKey) {
   EXPECT_EQ(window_.oldestRecent(), nullptr);
 }
 
-TEST_F(WindowTest, ForgetsAFrameWithItsSightings) {
+TEST_F(WindowTest, ForgetsAFrameWithItsObservations) {
   const Frame* kept = window_.find(2);
   window_.remove(1);
   EXPECT_EQ(window_.find(2), kept) << "pointers to other frames stay valid";
   EXPECT_EQ(window_.tracks().count(11), 0u) << "nothing is left of this track";
-  const TrackHistory& track = window_.tracks().at(10);
-  EXPECT_EQ(track.sightings.size(), 4u);
+  const FeatureTrack& track = window_.tracks().at(10);
+  EXPECT_EQ(track.observations.size(), 4u);
   EXPECT_FALSE(track.seenIn(1));
   EXPECT_TRUE(track.seenIn(2));
 }
@@ -94,11 +94,11 @@ TEST_F(WindowTest, ForgetsAKeyframeWithWhatHangsOnIt) {
   window_.remove(0);
   EXPECT_EQ(window_.find(1), nullptr);
   EXPECT_EQ(window_.frames().size(), 3u);
-  EXPECT_EQ(window_.tracks().at(10).sightings.size(), 3u);
+  EXPECT_EQ(window_.tracks().at(10).observations.size(), 3u);
 }
 
-TEST_F(WindowTest, FindsSightingsByFrameAndCamera) {
-  const TrackHistory& track = window_.tracks().at(11);
+TEST_F(WindowTest, FindsObservationsByFrameAndCamera) {
+  const FeatureTrack& track = window_.tracks().at(11);
   ASSERT_NE(track.find(1, 1), nullptr);
   EXPECT_EQ(track.find(1, 1)->camera, 1);
   EXPECT_EQ(track.find(1, 0)->camera, 0);

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// Whether the estimator's errors are as large as its covariance says. The normalised estimation error
+/// Whether the estimator's errors are as large as its covariance says. The normalized estimation error
 /// squared (NEES) e^T P^-1 e of an honest estimator has as mean the number of coordinates in e (Bar-Shalom,
 /// Li & Kirubarajan, "Estimation with applications to tracking and navigation", 2001, section 5.4).
 struct NeesSample {

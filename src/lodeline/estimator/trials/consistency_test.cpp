@@ -12,9 +12,9 @@ TEST(NeesBounds, AreThoseOfTheChiSquaredDistribution) {
   EXPECT_NEAR(bounds.high, 153.17 / 20.0, 0.01);
 }
 
-// The first metres of a heading that only first estimates keep honest. The robust loss counts good sightings
-// as 0.7 of their worth, which makes the estimator's sigmas some 1.2 times too large: hence the lower bound
-// at half of what an exact covariance would give.
+// The first metres of a heading that only linearization points keep honest. The robust loss counts good
+// observations as 0.7 of their worth, which makes the estimator's sigmas some 1.2 times too large: hence the
+// lower bound at half of what an exact covariance would give.
 void expectConsistent(int cameras) {
   ConsistencyOptions options;
   options.scene.cameras = cameras;
@@ -22,7 +22,7 @@ void expectConsistent(int cameras) {
   options.scene.points.frame_rate_hz = 10.0;
   options.estimator = honestOptions(options.scene);
   // The scene's cameras are what their files say; an estimator that doubts them claims errors of lenses which
-  // do not happen here (unmodelled_errors.h).
+  // do not happen here (covariance_inflation.h).
   options.estimator.camera_calibration.enabled = false;
   options.seeds = 12;
   options.times_s = {8.0};

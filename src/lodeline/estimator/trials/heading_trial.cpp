@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/estimator/magnetometer/field/field_errors.h"
+#include "lodeline/estimator/magnetometer/field/magnetic_noise_estimator.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
 #include "lodeline/util/thread_clock.h"
@@ -51,9 +51,9 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
   }
 }
 
-/// Of sizes as FieldErrors expects them.
+/// Of sizes as MagneticNoiseEstimator expects them.
 double drawSize(double root_mean_square, Random& random) {
-  const double spread = std::log(FieldErrors::kPriorFactor);
+  const double spread = std::log(MagneticNoiseEstimator::kPriorFactor);
   return root_mean_square * std::exp(spread * (random.normal() - spread));
 }
 
@@ -62,8 +62,9 @@ void drawAsBelieved(const HeadingTrialOptions& options, PointMagnetometer* magne
   const MagnetometerOptions& believed = options.estimator.magnetometer;
   Random random(options.seed, "heading trial/as believed");
   magnetometer->errors.hard_iron_walk_T_per_sqrt_s = drawSize(believed.offset_walk_T_per_sqrt_s, random);
-  magnetometer->disturbances.wandering = drawWanderingField(
-      options.duration_s, drawSize(believed.floor_T, random), believed.floor_correlation_s, options.seed);
+  magnetometer->disturbances.wandering =
+      drawWanderingField(options.duration_s, drawSize(believed.correlated_noise_sigma_T, random),
+                         believed.correlated_noise_time_s, options.seed);
 }
 
 /// What is wrong with the calibration.
@@ -246,7 +247,7 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
     const Quat& truth = frame.truth.motion.world_from_body.rotation;
     const MagnetometerEstimate& magnetometer = estimate.magnetometer;
     trial.reference = magnetometer.heading_reference;
-    trial.floor_T = magnetometer.floor_T.value_or(0.0);
+    trial.correlated_noise_sigma_T = magnetometer.correlated_noise_sigma_T.value_or(0.0);
     headings_rad.push_back(so3::log(estimated * truth.conjugate()).z());
     if (!first_rad) first_rad = headings_rad.back();
     north_rad = magnetometer.north_from_world_rad.value_or(-*first_rad);

@@ -59,8 +59,8 @@ struct HeadingSample {
 struct HeadingTrial {
   std::vector<HeadingSample> samples;  ///< of every frame
   HeadingReference reference = HeadingReference::Start;
-  double floor_T = 0.0;      ///< of the field, as learned by the end
-  double estimator_s = 0.0;  ///< processor time
+  double correlated_noise_sigma_T = 0.0;  ///< of the field, as learned by the end
+  double estimator_s = 0.0;               ///< processor time
 
   /// Root mean square over the samples from `begin_s` on.
   double rms(double begin_s = 60.0) const;

@@ -7,7 +7,7 @@
 
 namespace lodeline {
 
-/// A short dive of 40 points an image, for tests of the marginaliser.
+/// A short dive of 40 points an image, for tests of the marginalizer.
 inline TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {
   TestSceneOptions options;
   options.duration_s = duration_s;
@@ -22,7 +22,7 @@ inline EstimatorOptions quadraticOptions() {
   return options;
 }
 
-/// One frame more of a scene, each `keyframe_every`th a keyframe; the first one starts the marginaliser.
+/// One frame more of a scene, each `keyframe_every`th a keyframe; the first one starts the marginalizer.
 inline void addNext(TestWindow& test, TestScene& scene, FrameId keyframe_every, Marginalizer* marginalizer) {
   const FrameId count = test.window.empty() ? 0 : test.window.newest().id + 1;
   Frame& added = test.add(*scene.next(), count % keyframe_every == 0);

@@ -126,13 +126,13 @@ EstimatorOptions honestOptions(const TestSceneOptions& scene) {
   return options;
 }
 
-Rigid3 estimateFromTruth(const Rigid3& first_estimate, const Rigid3& first_truth) {
+Rigid3 estimateFromTruth(const Rigid3& linearization_point, const Rigid3& first_truth) {
   Quat heading = Quat::Identity();
   for (int pass = 0; pass < 20; ++pass) {
-    const Vec3 left = so3::log(heading * first_truth.rotation * first_estimate.rotation.conjugate());
+    const Vec3 left = so3::log(heading * first_truth.rotation * linearization_point.rotation.conjugate());
     heading = so3::exp(Vec3(0.0, 0.0, -left.z())) * heading;
   }
-  return Rigid3(heading, first_estimate.translation - heading * first_truth.translation);
+  return Rigid3(heading, linearization_point.translation - heading * first_truth.translation);
 }
 
 Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEstimate& estimate,
@@ -145,15 +145,16 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
   if (!estimate_from_truth_) true_poses_[frame.truth.time] = truth;
   if (!result.initialized()) return result;
   if (!estimate_from_truth_) {
-    // The prior knows the oldest frame best, at its first estimate.
+    // The prior knows the oldest frame best, at its linearization point.
     const Frame& oldest = *estimator.window().frames().front();
-    const Rigid3 first_estimate =
+    const Rigid3 linearization_point =
         oldest.firstPose() ? poseFromBlock(oldest.firstPose()) : oldest.worldFromBody();
     const Rigid3& first_truth = true_poses_.at(oldest.time);
-    estimate_from_truth_ = estimateFromTruth(first_estimate, first_truth);
+    estimate_from_truth_ = estimateFromTruth(linearization_point, first_truth);
     if (estimate.magnetometer.heading_reference != HeadingReference::Start) {
       // The heading is the field's, which the simulation lets point along the world's y axis.
-      *estimate_from_truth_ = Rigid3(Quat::Identity(), first_estimate.translation - first_truth.translation);
+      *estimate_from_truth_ =
+          Rigid3(Quat::Identity(), linearization_point.translation - first_truth.translation);
     }
     true_poses_.clear();
   }

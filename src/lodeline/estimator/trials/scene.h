@@ -56,9 +56,9 @@ EstimatorOptions honestOptions(const TestSceneOptions& scene);
 
 /// What turns true poses into the estimator's world, whose origin and heading are those of its first frame.
 /// The prior on that frame holds the z component of its rotation's perturbation at zero, so that is how the
-/// true heading is carried over, however far off the first tilt was. `first_estimate` is the pose that the
-/// prior was built around.
-Rigid3 estimateFromTruth(const Rigid3& first_estimate, const Rigid3& first_truth);
+/// true heading is carried over, however far off the first tilt was. `linearization_point` is the pose that
+/// the prior was built around.
+Rigid3 estimateFromTruth(const Rigid3& linearization_point, const Rigid3& first_truth);
 
 /// An estimate beside the truth.
 struct Comparison {
@@ -81,7 +81,7 @@ class TruthComparison {
   Comparison compare(const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator& estimator);
 
  private:
-  std::map<Time, Rigid3> true_poses_;  // until initialised
+  std::map<Time, Rigid3> true_poses_;  // until initialized
   std::optional<Rigid3> estimate_from_truth_;
 };
 

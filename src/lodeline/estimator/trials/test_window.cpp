@@ -38,9 +38,9 @@ Frame& TestWindow::add(const SimulatedFrame& simulated, bool is_keyframe) {
     frame.from_previous = std::make_unique<Preintegration>(
         simulated.imu, before->gyroscopeBias(), before->accelerometerBias(), rig.imu, options.preintegration);
   }
-  for (const Observation& o : simulated.tracks.observations) {
+  for (const FeatureObservation& o : simulated.tracks.observations) {
     if (o.camera < static_cast<int>(cameras_.size()))
-      addSighting(o.track, o.bearing_C, frame, o.camera, o.sigma_px);
+      addObservation(o.track, o.bearing_C, frame, o.camera, o.sigma_px);
   }
   return frame;
 }
@@ -57,11 +57,11 @@ Prior TestWindow::fill() {
   return startPrior(*window.frames().front(), options.initial_state, 0.05);
 }
 
-void TestWindow::addSighting(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera,
-                             double sigma_px) {
+void TestWindow::addObservation(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera,
+                                double sigma_px) {
   const DirectionMeasurement measurement =
       DirectionMeasurement::fromBearing(*cameras_[camera], bearing_C, sigma_px);
-  window.addSighting(track, {frame.id, camera, measurement});
+  window.addObservation(track, {frame.id, camera, measurement});
 }
 
 Vec3 TestWindow::pointInCamera(const Vec3& point_W, const Frame& frame, int camera) const {
@@ -72,31 +72,31 @@ void TestWindow::see(TrackId track, const Vec3& point_W, const Frame& frame, int
                      const Vec2& error_px) {
   const std::optional<Vec2> pixel = cameras_[camera]->project(pointInCamera(point_W, frame, camera));
   ASSERT_TRUE(pixel && cameras_[camera]->contains(*pixel)) << "track " << track << " is out of view";
-  addSighting(track, *cameras_[camera]->unproject(*pixel + error_px), frame, camera, 1.0);
+  addObservation(track, *cameras_[camera]->unproject(*pixel + error_px), frame, camera, 1.0);
 }
 
 void TestWindow::seeAlong(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera) {
-  addSighting(track, bearing_C.normalized(), frame, camera, 1.0);
+  addObservation(track, bearing_C.normalized(), frame, camera, 1.0);
 }
 
 void TestWindow::calibrate(const std::vector<double>& lens) {
   const int cameras = static_cast<int>(cameras_.size());
   Prior prior;
   addCameraStates(window, prior, cameras, options.camera_calibration);
-  addLensStates(window, prior, cameras, options.camera_calibration);
-  for (GlobalState* state : cameraStates(window).intrinsics) state->value = lens;
+  addIntrinsicsStates(window, prior, cameras, options.camera_calibration);
+  for (ParameterBlock* state : cameraStates(window).intrinsics) state->value = lens;
 }
 
 void TestWindow::seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W,
                             const Frame& frame, int camera) {
-  const auto through = makeCamera(correctedLens(rig.cameras[camera], lens.data()));
+  const auto through = makeCamera(correctedIntrinsics(rig.cameras[camera], lens.data()));
   const std::optional<Vec2> pixel = through->project(pointInCamera(point_W, frame, camera));
   ASSERT_TRUE(pixel && cameras_[camera]->contains(*pixel)) << "track " << track << " is out of view";
-  addSighting(track, *cameras_[camera]->unproject(*pixel), frame, camera, 1.0);
+  addObservation(track, *cameras_[camera]->unproject(*pixel), frame, camera, 1.0);
 }
 
 Landmark& TestWindow::place(TrackId track, const Vec3& point_W, const Frame& host) {
-  TrackHistory& history = window.tracks().at(track);
+  FeatureTrack& history = window.tracks().at(track);
   Landmark landmark;
   landmark.host = host.id;
   landmark.base = LandmarkBase(history.find(host.id, 0)->measurement.bearing_C);
@@ -163,7 +163,7 @@ void addDense(const Factor& factor, DenseSystem* system) {
 
 }  // namespace
 
-DenseSystem denseSystem(Window& window, const Prior& prior, const FactorMaker& factors) {
+DenseSystem denseSystem(Window& window, const Prior& prior, const FactorBuilder& factors) {
   DenseSystem system;
   int rows = 0;
   const auto append = [&](const double* block, int tangent) {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/trials/scene.h"
 
 namespace lodeline {
@@ -18,7 +18,7 @@ class TestWindow {
   /// A simulated frame at its true state, with its tracks and the inertial term to the frame before.
   Frame& add(const SimulatedFrame& frame, bool is_keyframe = true);
 
-  /// A sighting of `point_W` from where the frame stands now, off by `error_px`. Fails the test where the
+  /// An observation of `point_W` from where the frame stands now, off by `error_px`. Fails the test where the
   /// camera cannot see it.
   void see(TrackId track, const Vec3& point_W, const Frame& frame, int camera = 0,
            const Vec2& error_px = Vec2::Zero());
@@ -27,7 +27,7 @@ class TestWindow {
 
   /// Adds the states of the camera calibration, with `lens` (factors/intrinsics_factor.h) for every camera.
   void calibrate(const std::vector<double>& lens);
-  /// A sighting through such a lens. Fails the test where the camera cannot see the point.
+  /// An observation through such a lens. Fails the test where the camera cannot see the point.
   void seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W, const Frame& frame,
                   int camera);
 
@@ -44,12 +44,12 @@ class TestWindow {
 
   Rig rig;
   EstimatorOptions options;
-  FactorMaker factors;
+  FactorBuilder factors;
   Window window;
 
  private:
   Vec3 pointInCamera(const Vec3& point_W, const Frame& frame, int camera) const;
-  void addSighting(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera, double sigma_px);
+  void addObservation(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera, double sigma_px);
 
   std::vector<std::shared_ptr<const Camera>> cameras_;
   FrameId next_id_ = 0;
@@ -66,7 +66,7 @@ struct DenseSystem {
 
   int offsetOf(const double* block) const;
 };
-DenseSystem denseSystem(Window& window, const Prior& prior, const FactorMaker& factors);
+DenseSystem denseSystem(Window& window, const Prior& prior, const FactorBuilder& factors);
 
 /// h_kk - h_kg h_gg^-1 h_gk over the first `kept` rows, and the gradient with it.
 struct Reduced {

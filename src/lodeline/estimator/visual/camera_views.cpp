@@ -5,8 +5,8 @@
 #include "lodeline/geometry/so3.h"
 
 namespace lodeline {
-CameraViews::CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at,
-                         std::vector<int> hosts)
+CameraViews::CameraViews(const Window& window, const CameraStates& states, const FactorBuilder& factors,
+                         At at, std::vector<int> hosts)
     : window_(window),
       states_(states),
       factors_(factors),
@@ -28,13 +28,13 @@ void CameraViews::update() {
   }
 }
 
-const double* CameraViews::valueOf(const GlobalState& state) const {
-  return at_ == At::kFirstEstimates && state.first ? state.first->data() : state.value.data();
+const double* CameraViews::valueOf(const ParameterBlock& state) const {
+  return at_ == At::kLinearizationPoints && state.first ? state.first->data() : state.value.data();
 }
 
 CameraViews::Placement CameraViews::placeFrame(const Frame& frame) const {
   const double* pose =
-      at_ == At::kFirstEstimates && frame.first_pose ? frame.first_pose->data() : frame.pose.data();
+      at_ == At::kLinearizationPoints && frame.first_pose ? frame.first_pose->data() : frame.pose.data();
   Rigid3 world_from_body = poseFromBlock(pose);
   Rigid3 body_from_camera = factors_.bodyFromCamera(0);
   Placement placement;
@@ -64,7 +64,7 @@ CameraViews::Further CameraViews::placeFurther(int camera) const {
   Further further;
   further.left_jacobian.setIdentity();
   if (states_) {
-    const double* correction = valueOf(*states_.further[static_cast<size_t>(camera) - 1]);
+    const double* correction = valueOf(*states_.secondary[static_cast<size_t>(camera) - 1]);
     camera0_from_camera = correctedExtrinsics(camera0_from_camera, correction);
     further.left_jacobian = so3::leftJacobian(Vec3(correction));
   }

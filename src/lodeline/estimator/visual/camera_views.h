@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 
 namespace lodeline {
 
-/// The cameras of every frame of a window, placed once for all the sightings that need them: by the blocks'
-/// present values, or where Jacobians are taken (factors/parameters.h).
+/// The cameras of every frame of a window, placed once for all the observations that need them: by the
+/// blocks' present values, or where Jacobians are taken (factors/parameters.h).
 class CameraViews {
  public:
-  enum class At { kValues, kFirstEstimates };
+  enum class At { kValues, kLinearizationPoints };
 
   /// Camera 0 of one frame at the true time of its images. Its pose moves by [dp, dtheta] in world axes, like
   /// that of a body.
@@ -37,7 +37,7 @@ class CameraViews {
 
   /// All three must outlive the views. `hosts`: the frames that a landmark has for its host. Nothing is
   /// placed before the first update().
-  CameraViews(const Window& window, const CameraStates& states, const FactorMaker& factors, At at,
+  CameraViews(const Window& window, const CameraStates& states, const FactorBuilder& factors, At at,
               std::vector<int> hosts);
 
   /// Places all cameras anew, after a block has moved.
@@ -56,11 +56,11 @@ class CameraViews {
   Placement placeFrame(const Frame& frame) const;
   Further placeFurther(int camera) const;
   void relate(int host, int target);
-  const double* valueOf(const GlobalState& state) const;
+  const double* valueOf(const ParameterBlock& state) const;
 
   const Window& window_;
   const CameraStates& states_;
-  const FactorMaker& factors_;
+  const FactorBuilder& factors_;
   At at_;
   int frames_;
   int cameras_;

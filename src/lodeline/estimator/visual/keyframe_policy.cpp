@@ -6,14 +6,14 @@
 namespace lodeline {
 
 std::optional<double> medianParallax(const Window& window, const Frame& a, const Frame& b,
-                                     const FactorMaker& factors) {
+                                     const FactorBuilder& factors) {
   const Rigid3& body_from_camera = factors.bodyFromCamera(0);
   const Quat b_from_a = (b.worldFromBody().rotation * body_from_camera.rotation).conjugate() *
                         (a.worldFromBody().rotation * body_from_camera.rotation);
   std::vector<double> angles;
   for (const auto& [id, track] : window.tracks()) {
-    const Sighting* in_a = track.find(a.id, 0);
-    const Sighting* in_b = track.find(b.id, 0);
+    const Observation* in_a = track.find(a.id, 0);
+    const Observation* in_b = track.find(b.id, 0);
     if (!in_a || !in_b) continue;
     const Vec3 turned = b_from_a * in_a->measurement.bearing_C;
     angles.push_back(std::atan2(turned.cross(in_b->measurement.bearing_C).norm(),
@@ -51,7 +51,7 @@ std::optional<KeyframesAbout> keyframesAbout(const Window& window, const Frame& 
   return KeyframesAbout{before, after};
 }
 
-bool wantsKeyframe(const Window& window, const FactorMaker& factors, const KeyframeOptions& options) {
+bool wantsKeyframe(const Window& window, const FactorBuilder& factors, const KeyframeOptions& options) {
   const Frame* last = window.newestKeyframe();
   if (!last) return true;
   const Frame& newest = window.newest();

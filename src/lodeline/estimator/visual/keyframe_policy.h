@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_list.h"
+#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
 
 namespace lodeline {
@@ -9,10 +9,10 @@ namespace lodeline {
 /// Whether the newest frame should become a keyframe: when it sees too few of what the last keyframe saw, has
 /// moved far enough against it, or vision is short of landmarks. A rig that stands still makes no keyframes,
 /// so that its window keeps what it knows.
-bool wantsKeyframe(const Window& window, const FactorMaker& factors, const KeyframeOptions& options);
+bool wantsKeyframe(const Window& window, const FactorBuilder& factors, const KeyframeOptions& options);
 
 /// Where images have ended: the last frame that saw at least so many landmarks becomes a keyframe when it is
-/// about to leave the `recent_frames`. Any other frame's sightings would be dropped with it, and with them
+/// about to leave the `recent_frames`. Any other frame's observations would be dropped with it, and with them
 /// all that images said of the motion since the last keyframe: of a rig that has rested so far, everything.
 void keepLastView(Window& window, int recent_frames, int least_landmarks);
 
@@ -30,6 +30,6 @@ std::optional<KeyframesAbout> keyframesAbout(const Window& window, const Frame& 
 /// Median angle (rad) by which the tracks common to two frames have shifted in camera 0, rotation taken out;
 /// nothing without common tracks.
 std::optional<double> medianParallax(const Window& window, const Frame& a, const Frame& b,
-                                     const FactorMaker& factors);
+                                     const FactorBuilder& factors);
 
 }  // namespace lodeline

@@ -78,9 +78,9 @@ class TakeOlderPartTest : public testing::Test {
     for (int i = first; i < end; ++i)
       test_.see(kTrack, kPoint_W, *test_.window.frames()[static_cast<size_t>(i)]);
   }
-  TrackHistory& track() { return test_.window.tracks().at(kTrack); }
-  std::optional<TrackHistory> take() { return takeOlderPart(test_.window, track(), kLast, test_.factors); }
-  Vec3 position(const TrackHistory& track) {
+  FeatureTrack& track() { return test_.window.tracks().at(kTrack); }
+  std::optional<FeatureTrack> take() { return splitTrack(test_.window, track(), kLast, test_.factors); }
+  Vec3 position(const FeatureTrack& track) {
     return mapPointOf(test_.window, kTrack, track, test_.factors)->position_W;
   }
 
@@ -88,19 +88,19 @@ class TakeOlderPartTest : public testing::Test {
   TestWindow test_{1};
 };
 
-TEST_F(TakeOlderPartTest, SharesOutSightingsAndKeepsThePoint) {
+TEST_F(TakeOlderPartTest, SharesOutObservationsAndKeepsThePoint) {
   seeFrom(0, 8);
   for (const int host : {0, 6}) {
     SCOPED_TRACE(host);
-    track().sightings.clear();
+    track().observations.clear();
     seeFrom(0, 8);
     test_.place(kTrack, kPoint_W, *test_.window.frames()[static_cast<size_t>(host)]);
-    const std::optional<TrackHistory> older = take();
+    const std::optional<FeatureTrack> older = take();
     ASSERT_TRUE(older.has_value());
-    EXPECT_EQ(older->sightings.size(), 5u);
-    EXPECT_EQ(older->sightings.back().frame, kLast);
-    EXPECT_EQ(track().sightings.size(), 3u);
-    EXPECT_EQ(track().sightings.front().frame, kLast + 1);
+    EXPECT_EQ(older->observations.size(), 5u);
+    EXPECT_EQ(older->observations.back().frame, kLast);
+    EXPECT_EQ(track().observations.size(), 3u);
+    EXPECT_EQ(track().observations.front().frame, kLast + 1);
     EXPECT_EQ(older->landmark->host, host == 0 ? 0 : kLast);
     EXPECT_EQ(track().landmark->host, 6);
     EXPECT_LT((position(*older) - kPoint_W).norm(), 1e-12);
@@ -109,20 +109,20 @@ TEST_F(TakeOlderPartTest, SharesOutSightingsAndKeepsThePoint) {
 }
 
 TEST_F(TakeOlderPartTest, LeavesATrackAloneThatIsTooShortOnEitherSide) {
-  const auto expectWhole = [&](size_t sightings) {
+  const auto expectWhole = [&](size_t observations) {
     const FrameId host = track().landmark->host;
     EXPECT_FALSE(take().has_value());
-    EXPECT_EQ(track().sightings.size(), sightings);
+    EXPECT_EQ(track().observations.size(), observations);
     EXPECT_EQ(track().landmark->host, host);
   };
   seeFrom(2, 8);  // three before the cut
   test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
   expectWhole(6);
-  track().sightings.clear();
+  track().observations.clear();
   seeFrom(0, 6);  // one after it, in no keyframe
   test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
   expectWhole(6);
-  track().sightings.clear();
+  track().observations.clear();
   seeFrom(0, 6);  // two after it, neither in a keyframe
   seeFrom(7, 8);
   test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
@@ -133,11 +133,11 @@ TEST_F(MoveToNewHostTest, PointsTooFarAwayHaveNoPositionOnTheMap) {
   const Vec3 point_W(4.0, 0.3, 0.5);
   test_.see(1, point_W, frame(0));
   test_.place(1, point_W, frame(0));
-  const TrackHistory& track = test_.window.tracks().at(1);
+  const FeatureTrack& track = test_.window.tracks().at(1);
   const auto point = mapPointOf(test_.window, 1, track, test_.factors);
   ASSERT_TRUE(point.has_value());
   EXPECT_EQ(point->track, 1);
-  EXPECT_EQ(point->sightings, 1);
+  EXPECT_EQ(point->observations, 1);
   EXPECT_LT((point->position_W - point_W).norm(), 1e-12);
   landmark(1).parameters[2] = 5e-4;
   EXPECT_FALSE(mapPointOf(test_.window, 1, track, test_.factors).has_value());

@@ -5,30 +5,31 @@
 #include <vector>
 
 #include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/visual/visual_terms.h"
+#include "lodeline/estimator/visual/reprojection_system.h"
 #include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 namespace {
 
-/// Sighting by camera 0 in the newest keyframe that has one.
-const Sighting* hostSighting(const Window& window, const TrackHistory& track) {
-  for (auto sighting = track.sightings.rbegin(); sighting != track.sightings.rend(); ++sighting) {
-    if (sighting->camera == 0 && window.find(sighting->frame)->is_keyframe) return &*sighting;
+/// Observation by camera 0 in the newest keyframe that has one.
+const Observation* hostObservation(const Window& window, const FeatureTrack& track) {
+  for (auto observation = track.observations.rbegin(); observation != track.observations.rend();
+       ++observation) {
+    if (observation->camera == 0 && window.find(observation->frame)->is_keyframe) return &*observation;
   }
   return nullptr;
 }
 
 /// What the lens adds to the residual of a point that is seen there, sigmas.
-Vec2 shiftByLens(const Sighting& sighting, const CameraStates& cameras) {
+Vec2 shiftByIntrinsics(const Observation& observation, const CameraStates& cameras) {
   if (cameras.intrinsics.empty()) return Vec2::Zero();
-  const GlobalState* lens = cameras.intrinsics[static_cast<size_t>(sighting.camera)];
-  return lensShift(sighting.measurement, Vec2::Zero(), lens->value.data());
+  const ParameterBlock* lens = cameras.intrinsics[static_cast<size_t>(observation.camera)];
+  return intrinsicsShift(observation.measurement, Vec2::Zero(), lens->value.data());
 }
 
-/// Inverse distance along a host's ray from all other sightings; every candidate asks for it in every frame,
-/// so it is a closed form and not the full fit of features/triangulation.h. With the host's direction d held,
-/// each sighting says
+/// Inverse distance along a host's ray from all other observations; every candidate asks for it in every
+/// frame, so it is a closed form and not the full fit of features/triangulation.h. With the host's direction
+/// d held, each observation says
 ///   B^T (R d + rho t) = 0,
 /// which is linear in rho, but for what the lens adds; a second pass weights by the depth that the first one
 /// found.
@@ -38,24 +39,24 @@ struct InverseDistance {
   double rms_sigmas = 1e9;
 };
 
-InverseDistance solveInverseDistance(const Window& window, const TrackHistory& track, const Sighting& host,
-                                     const FactorMaker& factors, const CameraStates& cameras) {
+InverseDistance solveInverseDistance(const Window& window, const FeatureTrack& track, const Observation& host,
+                                     const FactorBuilder& factors, const CameraStates& cameras) {
   struct Equation {
-    Vec3 direction;  // R d
-    Vec3 baseline;   // t
-    Vec2 by_lens;    // sigmas
+    Vec3 direction;      // R d
+    Vec3 baseline;       // t
+    Vec2 by_intrinsics;  // sigmas
     const DirectionMeasurement* measurement;
   };
   std::vector<Equation> equations;
   const Rigid3 world_from_host = factors.worldFromCamera(window, *window.find(host.frame), 0);
   const Vec3 host_ray = rayOf(host, cameras);
-  for (const Sighting& sighting : track.sightings) {
-    if (&sighting == &host) continue;
+  for (const Observation& observation : track.observations) {
+    if (&observation == &host) continue;
     const Rigid3 target_from_host =
-        factors.worldFromCamera(window, *window.find(sighting.frame), sighting.camera).inverse() *
+        factors.worldFromCamera(window, *window.find(observation.frame), observation.camera).inverse() *
         world_from_host;
     equations.push_back({target_from_host.rotation * host_ray, target_from_host.translation,
-                         shiftByLens(sighting, cameras), &sighting.measurement});
+                         shiftByIntrinsics(observation, cameras), &observation.measurement});
   }
   InverseDistance result;
   for (int pass = 0; pass < 3; ++pass) {
@@ -67,7 +68,7 @@ InverseDistance solveInverseDistance(const Window& window, const TrackHistory& t
       const Mat23 weight = e.measurement->sqrt_information * e.measurement->tangent_C.transpose() / depth;
       const Vec2 slope = weight * e.baseline;
       information += slope.squaredNorm();
-      right_side -= slope.dot(weight * e.direction + e.by_lens);
+      right_side -= slope.dot(weight * e.direction + e.by_intrinsics);
     }
     if (information <= 0.0) return {};
     result.value = right_side / information;
@@ -76,7 +77,7 @@ InverseDistance solveInverseDistance(const Window& window, const TrackHistory& t
   double squared_error = 0.0;
   for (const Equation& e : equations) {
     const Vec3 point = e.direction + result.value * e.baseline;
-    squared_error += (directionResidual(*e.measurement, point, nullptr) + e.by_lens).squaredNorm();
+    squared_error += (directionResidual(*e.measurement, point, nullptr) + e.by_intrinsics).squaredNorm();
   }
   result.rms_sigmas = std::sqrt(squared_error / (2.0 * static_cast<double>(equations.size())));
   return result;
@@ -112,31 +113,31 @@ bool isUsable(const InverseDistance& rho, std::optional<double> usual, const Lan
 
 }  // namespace
 
-int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
+int createLandmarks(Window& window, const FactorBuilder& factors, const LandmarkOptions& options) {
   const int min_frames = std::min(options.min_frames, static_cast<int>(window.frames().size()));
-  std::vector<TrackHistory*> candidates;
+  std::vector<FeatureTrack*> candidates;
   int landmarks = 0;
   int in_view = 0;
   for (auto& [id, track] : window.tracks()) {
     if (track.landmark) {
       ++landmarks;
       in_view += track.seenIn(window.newest().id);
-    } else if (track.sightings.size() >= 2 && track.seenIn(window.newest().id) &&
+    } else if (track.observations.size() >= 2 && track.seenIn(window.newest().id) &&
                track.frameCount() >= min_frames) {
       candidates.push_back(&track);
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const TrackHistory* a, const TrackHistory* b) {
-    return a->sightings.size() > b->sightings.size();
+  std::stable_sort(candidates.begin(), candidates.end(), [](const FeatureTrack* a, const FeatureTrack* b) {
+    return a->observations.size() > b->observations.size();
   });
   const CameraStates cameras = cameraStates(window);
   const std::optional<double> usual = usualInverseDistance(window);
   const int wanted = std::max(options.max_landmarks - landmarks,
                               std::min(options.least_in_view, options.max_landmarks) - in_view);
   int created = 0;
-  for (TrackHistory* track : candidates) {
+  for (FeatureTrack* track : candidates) {
     if (created >= wanted) break;
-    const Sighting* host = hostSighting(window, *track);
+    const Observation* host = hostObservation(window, *track);
     if (!host) continue;
     const InverseDistance rho = solveInverseDistance(window, *track, *host, factors, cameras);
     if (!isUsable(rho, usual, options)) continue;
@@ -151,51 +152,54 @@ int createLandmarks(Window& window, const FactorMaker& factors, const LandmarkOp
 }
 
 int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, const LandmarkOptions& options,
-                   std::vector<SightingError>* errors) {
+                   std::vector<ObservationError>* errors) {
   int removed = 0;
   auto next = errors_sigmas.begin();
   for (auto& [id, track] : window.tracks()) {
-    if (!track.landmark || track.is_dormant) continue;
+    if (!track.landmark || track.is_frozen) continue;
     bool host_kept = false;
     bool other_kept = false;
-    auto kept = track.sightings.begin();
-    for (const Sighting& sighting : track.sightings) {
+    auto kept = track.observations.begin();
+    for (const Observation& observation : track.observations) {
       const double sigmas = *next++;
-      const bool is_host = track.isHosted(sighting);
-      if (errors && !is_host) errors->push_back({id, sighting.frame, sigmas});
+      const bool is_host = track.isHosted(observation);
+      if (errors && !is_host) errors->push_back({id, observation.frame, sigmas});
       if (sigmas > options.max_error_sigmas) continue;
       (is_host ? host_kept : other_kept) = true;
-      if (&*kept != &sighting) *kept = sighting;
+      if (&*kept != &observation) *kept = observation;
       ++kept;
     }
-    removed += static_cast<int>(track.sightings.end() - kept);
-    track.sightings.erase(kept, track.sightings.end());
+    removed += static_cast<int>(track.observations.end() - kept);
+    track.observations.erase(kept, track.observations.end());
     const double rho = track.landmark->inverseDistance();
     const bool sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
     if (host_kept && other_kept && sane) continue;
-    // What remains is inconsistent with itself or with the poses: start over with later sightings.
+    // What remains is inconsistent with itself or with the poses: start over with later observations.
     track.landmark.reset();
-    track.sightings.clear();
+    track.observations.clear();
   }
   window.removeEmptyTracks();
   return removed;
 }
 
-int removeOutliers(Window& window, const FactorMaker& factors, const LandmarkOptions& options) {
-  return removeOutliers(window, VisualTerms(window, factors, VisualTerms::Of::kAwake).errors(), options);
+int removeOutliers(Window& window, const FactorBuilder& factors, const LandmarkOptions& options) {
+  return removeOutliers(window, ReprojectionSystem(window, factors, ReprojectionSystem::Of::kLive).errors(),
+                        options);
 }
 
-ReprojectionStatistics reprojectionStatistics(Window& window, const FactorMaker& factors, FrameId frame) {
+ReprojectionStatistics reprojectionStatistics(Window& window, const FactorBuilder& factors, FrameId frame) {
   ReprojectionStatistics statistics;
   for (const auto& [id, track] : window.tracks()) {
     if (track.landmark) statistics.landmarks += track.seenIn(frame);
   }
   double squared = 0.0;
-  for (const double sigmas : VisualTerms(window, factors, VisualTerms::Of::kAll, frame).errors()) {
+  for (const double sigmas :
+       ReprojectionSystem(window, factors, ReprojectionSystem::Of::kAll, frame).errors()) {
     squared += sigmas * sigmas;
-    ++statistics.sightings;
+    ++statistics.observations;
   }
-  if (statistics.sightings > 0) statistics.rms_sigmas = std::sqrt(squared / (2.0 * statistics.sightings));
+  if (statistics.observations > 0)
+    statistics.rms_sigmas = std::sqrt(squared / (2.0 * statistics.observations));
   return statistics;
 }
 

@@ -28,7 +28,7 @@ class LandmarksTest : public testing::Test {
   }
   int create() { return createLandmarks(test_.window, test_.factors, options_); }
   int clean() { return removeOutliers(test_.window, test_.factors, options_); }
-  const TrackHistory& track(TrackId id) const { return test_.window.tracks().at(id); }
+  const FeatureTrack& track(TrackId id) const { return test_.window.tracks().at(id); }
 
   TestWindow test_;
   LandmarkOptions options_;
@@ -67,7 +67,7 @@ TEST_F(LandmarksTest, WithNoiseComeOutWithinTheirUncertainty) {
   }
 }
 
-TEST_F(LandmarksTest, NeedTwoSightingsAKeyframeAndTheNewestFrame) {
+TEST_F(LandmarksTest, NeedTwoObservationsAKeyframeAndTheNewestFrame) {
   const Vec3 point_W(3.0, -0.5, 0.0);
   const auto& frames = test_.window.frames();
   test_.see(1, point_W, *frames[3]);  // once
@@ -234,7 +234,7 @@ TEST_F(LandmarksTest, AreMadeWhenFewAreInViewHoweverManyTheWindowHolds) {
   EXPECT_EQ(create(), 0);
 }
 
-TEST_F(LandmarksTest, LoseASightingThatContradictsThem) {
+TEST_F(LandmarksTest, LoseAObservationThatContradictsThem) {
   const Vec3 point_W(3.0, -0.5, 0.2);
   for (const auto& frame : test_.window.frames()) {
     const Vec2 error(frame->id == 1 ? 30.0 : 0.0, 0.0);
@@ -243,7 +243,7 @@ TEST_F(LandmarksTest, LoseASightingThatContradictsThem) {
   }
   test_.place(1, point_W, *test_.window.frames()[2]);
   EXPECT_EQ(clean(), 1);
-  EXPECT_EQ(track(1).sightings.size(), 7u);
+  EXPECT_EQ(track(1).observations.size(), 7u);
   EXPECT_EQ(track(1).find(1, 0), nullptr);
   EXPECT_TRUE(track(1).landmark.has_value());
   EXPECT_EQ(clean(), 0);
@@ -255,7 +255,7 @@ TEST_F(LandmarksTest, DisappearWhenTheirHostContradictsThemOrTheyFallBehind) {
   seeInAll(2, point_W);
   seeInAll(3, point_W);
   const Frame& host = *test_.window.frames()[2];
-  test_.place(1, point_W, host).parameters[0] += 0.2;  // the host's own sighting is 90 px off
+  test_.place(1, point_W, host).parameters[0] += 0.2;  // the host's own observation is 90 px off
   test_.place(2, point_W, host).parameters[2] = -0.3;  // behind
   test_.place(3, point_W, host);
   clean();
@@ -264,7 +264,7 @@ TEST_F(LandmarksTest, DisappearWhenTheirHostContradictsThemOrTheyFallBehind) {
   EXPECT_TRUE(track(3).landmark.has_value());
 }
 
-TEST_F(LandmarksTest, StatisticsCountTheFramesOwnSightings) {
+TEST_F(LandmarksTest, StatisticsCountTheFramesOwnObservations) {
   Random noise(2, "landmarks");
   for (int i = 0; i < 100; ++i) {
     const Vec3 point_W(3.0, -1.0 + 0.1 * (i % 10), -0.5 + 0.1 * (i / 10));
@@ -275,7 +275,7 @@ TEST_F(LandmarksTest, StatisticsCountTheFramesOwnSightings) {
   // root mean square is 0.14.
   const ReprojectionStatistics statistics = reprojectionStatistics(test_.window, test_.factors, 3);
   EXPECT_EQ(statistics.landmarks, 100);
-  EXPECT_EQ(statistics.sightings, 200);
+  EXPECT_EQ(statistics.observations, 200);
   EXPECT_NEAR(statistics.rms_sigmas, 1.0, 0.14);
 }
 

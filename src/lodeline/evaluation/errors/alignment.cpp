@@ -54,7 +54,7 @@ Moments computeMoments(const PosePairs& pairs) {
   return m;
 }
 
-/// The rotation R that maximises trace(R^T * covariance) and the trace it reaches.
+/// The rotation R that maximizes trace(R^T * covariance) and the trace it reaches.
 struct Rotation {
   Mat3 matrix = Mat3::Identity();
   double trace = 0.0;
@@ -70,7 +70,7 @@ Rotation bestRotation(const Mat3& covariance) {
           singular(0) > 0.0 && singular(1) > kDegenerateRatio * singular(0)};
 }
 
-/// The rotation about z that maximises trace(Rz^T * covariance).
+/// The rotation about z that maximizes trace(Rz^T * covariance).
 Rotation bestYaw(const Mat3& covariance) {
   const double sine = covariance(1, 0) - covariance(0, 1);
   const double cosine = covariance(0, 0) + covariance(1, 1);

@@ -8,9 +8,9 @@
 namespace lodeline {
 namespace {
 
-const ClaimedPose& nearest(const std::vector<ClaimedPose>& claims, Time time) {
+const ReportedPose& nearest(const std::vector<ReportedPose>& claims, Time time) {
   const auto after = std::lower_bound(claims.begin(), claims.end(), time,
-                                      [](const ClaimedPose& claim, Time t) { return claim.pose.time < t; });
+                                      [](const ReportedPose& claim, Time t) { return claim.pose.time < t; });
   if (after == claims.begin()) return *after;
   const auto before = std::prev(after);
   return after == claims.end() || time - before->pose.time < after->pose.time - time ? *before : *after;
@@ -24,7 +24,7 @@ class AxesSum {
     squared_ += ratio.square();
     ++count_;
   }
-  ClaimedAxes result() const {
+  ReportedAxes result() const {
     return {100.0 * within_.matrix() / count_, (squared_ / count_).sqrt().matrix()};
   }
 
@@ -36,25 +36,25 @@ class AxesSum {
 
 }  // namespace
 
-ClaimCheck checkClaims(const RunClaims& claims, const Trajectory& reference,
-                       const AssociationOptions& association) {
-  ClaimCheck check;
+ConsistencyCheck checkConsistency(const ReportedUncertainty& claims, const Trajectory& reference,
+                                  const AssociationOptions& association) {
+  ConsistencyCheck check;
   check.basis = claims.basis;
   if (claims.poses.empty() || reference.time_base != TimeBase::Stamps) return check;
   Trajectory estimate;
-  for (const ClaimedPose& claim : claims.poses) estimate.poses.push_back(claim.pose);
+  for (const ReportedPose& claim : claims.poses) estimate.poses.push_back(claim.pose);
   const PosePairs pairs = associate(estimate, withZUp(reference), association);
   const Alignment alignment = alignStarts(claims.basis, pairs);
   const std::vector<Rigid3> poses = applyAlignment(alignment, pairs.estimate);
-  const Quat claimed_from_reference = alignment.reference_from_estimate.rotation.conjugate();
+  const Quat reported_from_reference = alignment.reference_from_estimate.rotation.conjugate();
   const Duration offset = Duration::fromSeconds(association.time_offset_s);
   AxesSum position, rotation;
   for (size_t i = 1; i < poses.size(); ++i) {
-    const ClaimedPose& claim = nearest(claims.poses, pairs.time[i] - offset);
-    position.add(claimed_from_reference * (poses[i].translation - pairs.reference[i].translation),
+    const ReportedPose& claim = nearest(claims.poses, pairs.time[i] - offset);
+    position.add(reported_from_reference * (poses[i].translation - pairs.reference[i].translation),
                  claim.position_sigma_m);
     rotation.add(
-        claimed_from_reference * so3::log(poses[i].rotation * pairs.reference[i].rotation.conjugate()),
+        reported_from_reference * so3::log(poses[i].rotation * pairs.reference[i].rotation.conjugate()),
         claim.rotation_sigma_rad);
     ++check.poses;
   }

@@ -49,7 +49,7 @@ struct Evaluation {
   double drift_m = 0.0;           ///< position error of the last pair once the first pair is made to coincide
 
   Completion completion;
-  ClaimCheck claims;  ///< no poses unless filled in by checkClaims()
+  ConsistencyCheck claims;  ///< no poses unless filled in by checkConsistency()
 
   double percentOfPath(double length_m) const;
 };

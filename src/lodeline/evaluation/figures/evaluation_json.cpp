@@ -59,7 +59,7 @@ Json toJson(const Diagnostics& diagnostics) {
 
 Json toJson(const Vec3& axes) { return {axes.x(), axes.y(), axes.z()}; }
 
-Json toJson(const ClaimedAxes& axes) {
+Json toJson(const ReportedAxes& axes) {
   return {{"within_3_sigma_percent", toJson(axes.within_3_sigma_percent)},
           {"rms_sigmas", toJson(axes.rms_sigmas)}};
 }

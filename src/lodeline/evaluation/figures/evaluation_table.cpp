@@ -93,14 +93,14 @@ std::string endPointLines(const Evaluation& e) {
       e.end_point_m, e.percentOfPath(e.end_point_m), e.drift_m, e.percentOfPath(e.drift_m));
 }
 
-std::string claimsRow(const char* name, const ClaimedAxes& axes) {
+std::string claimsRow(const char* name, const ReportedAxes& axes) {
   return fmt::format("  {:<16}{:>10.1f}{:>8.1f}{:>8.1f}{:>16.2f}{:>8.2f}{:>8.2f}\n", name,
                      axes.within_3_sigma_percent.x(), axes.within_3_sigma_percent.y(),
                      axes.within_3_sigma_percent.z(), axes.rms_sigmas.x(), axes.rms_sigmas.y(),
                      axes.rms_sigmas.z());
 }
 
-std::string claimsTable(const ClaimCheck& claims) {
+std::string claimsTable(const ConsistencyCheck& claims) {
   if (claims.poses == 0) return "";
   std::string text = fmt::format(
       "errors against claimed sigmas from equal {}, {} poses\n",

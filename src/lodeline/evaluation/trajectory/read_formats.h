@@ -11,7 +11,7 @@ Trajectory readColmapText(const std::filesystem::path& path, const TrajectoryRea
 Trajectory readColmapBinary(const std::filesystem::path& path, const TrajectoryReadOptions& options,
                             Diagnostics& diagnostics);
 
-/// Position and quaternion of a line as a pose, the quaternion normalised. Nothing, with a warning, when a
+/// Position and quaternion of a line as a pose, the quaternion normalized. Nothing, with a warning, when a
 /// value is NaN or infinite; InputError when the quaternion's norm is more than 5 % off one.
 std::optional<Rigid3> poseFromNumbers(const std::string& where, const Vec3& position_m, const Quat& rotation,
                                       Diagnostics& diagnostics);

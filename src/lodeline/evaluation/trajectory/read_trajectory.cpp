@@ -103,14 +103,14 @@ TrajectoryFormat trajectoryFormatFromString(const std::string& name) {
 
 TrajectorySource findTrajectory(const std::filesystem::path& path, std::optional<TrajectoryFormat> format) {
   std::error_code ignored;
-  const RecognisedFile recognised = recogniseFile(path);
-  if (recognised.kind == FileKind::Missing) {
-    throw InputError(fmt::format("{}: {}", path.string(), recognised.what));
+  const RecognizedFile recognized = recognizeFile(path);
+  if (recognized.kind == FileKind::Missing) {
+    throw InputError(fmt::format("{}: {}", path.string(), recognized.what));
   }
   const auto file = std::filesystem::is_directory(path, ignored) ? findInFolder(path) : path;
-  const bool is_other = !recognised.isFolder() && !recognised.isText() &&
-                        recognised.kind != FileKind::Compressed && file.extension() != ".bin";
-  if (is_other) refuseFile(recognised, "give a trajectory (TUM, KITTI, EuRoC or COLMAP)");
+  const bool is_other = !recognized.isFolder() && !recognized.isText() &&
+                        recognized.kind != FileKind::Compressed && file.extension() != ".bin";
+  if (is_other) refuseFile(recognized, "give a trajectory (TUM, KITTI, EuRoC or COLMAP)");
   return {file, format ? *format : detectFormat(file)};
 }
 

@@ -94,7 +94,7 @@ TEST(DepthFactor, WhitenedNoiseHasUnitVariance) {
   EXPECT_NEAR(squares, 1.0, 4.0 * std::sqrt(2.0 / kRuns));
 }
 
-TEST(DepthFactor, FirstEstimatesKeepTheHeightOfTheWorldUnobservable) {
+TEST(DepthFactor, LinearizationPointsKeepTheHeightOfTheWorldUnobservable) {
   const Eigen::VectorXd first_pose =
       poseVector(Rigid3(so3::exp(Vec3(0.01, 0.02, -0.03)) * kPose.rotation, Vec3(3.0, -2.0, 1.4)));
   const double first_scale = 1.01;

@@ -20,7 +20,7 @@ class ResidualThroughALens : public testing::TestWithParam<DistortionModel> {
   Vec3 towards_the_corner_C_ = *camera_->unproject(Vec2(60.0, 40.0));
 };
 
-// As many sightings on one side of the truth as on the other.
+// As many observations on one side of the truth as on the other.
 TEST_P(ResidualThroughALens, HasNoMeanWhereNoiseHasNone) {
   constexpr double kSigma_px = 0.5, kNoise_px = 1.0;
   const Vec2 pixel = *camera_->project(towards_the_corner_C_);

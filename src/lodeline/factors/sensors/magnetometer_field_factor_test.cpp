@@ -140,8 +140,9 @@ TEST(MagnetometerFieldFactor, TurningTheWorldAboutGravityChangesNothing) {
   }
 }
 
-// With first estimates, the yaw of the pose and that of the field cancel exactly, whatever the values are.
-TEST(MagnetometerFieldFactor, FirstEstimatesKeepTheYawOfTheWorldUnobservable) {
+// With linearization points, the yaw of the pose and that of the field cancel exactly, whatever the values
+// are.
+TEST(MagnetometerFieldFactor, LinearizationPointsKeepTheYawOfTheWorldUnobservable) {
   const Eigen::VectorXd first_pose =
       poseVector(Rigid3(so3::exp(Vec3(0.01, 0.02, -0.03)) * kPose.rotation, Vec3::Zero()));
   const Vec3 first_field = kField_W + Vec3(2e-6, 1e-6, -1e-6);

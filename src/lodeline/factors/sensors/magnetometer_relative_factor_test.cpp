@@ -105,7 +105,7 @@ TEST(MagnetometerRelativeFactor, TurningTheWorldChangesNothing) {
   EXPECT_LT((residualOf(factor, other) - residualOf(factor, trueBlocks())).norm(), 1e-9);
 }
 
-TEST(MagnetometerRelativeFactor, FirstEstimatesKeepTheYawOfTheWorldUnobservable) {
+TEST(MagnetometerRelativeFactor, LinearizationPointsKeepTheYawOfTheWorldUnobservable) {
   const Blocks first = moved(Vec3(0.02, 0.01, 0.1), Vec3(-0.01, 0.02, 0.05));
   const MagnetometerRelativeFactor factor = Interval(1e-6).factor(first[0].data(), first[1].data());
   Eigen::Matrix<double, 3, kPoseSize, Eigen::RowMajor> by_k, by_k1;

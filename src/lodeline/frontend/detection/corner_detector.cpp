@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
-#include "lodeline/frontend/detection/speck.h"
+#include "lodeline/frontend/detection/particle_filter.h"
 #include "lodeline/frontend/detection/structure_tensor.h"
 
 namespace lodeline {
@@ -69,16 +69,16 @@ class CellSearch {
   CellSearch(const cv::Mat& picture, const cv::Rect& cell, int scale, const Occupancy& occupancy)
       : picture_(picture), cell_(cell), scale_(scale), occupancy_(occupancy), tensor_(picture, cell) {}
 
-  /// The strongest that is free and none of a speck's. Strength zero where there is none: a cell with more
-  /// specks than a few shows water and not rock.
+  /// The strongest that is free and none of a particle's. Strength zero where there is none: a cell with more
+  /// particles than a few shows water and not rock.
   Corner strongestOnRock(float min_strength) {
-    constexpr size_t kMostSpecks = 3;
-    while (specks_.size() <= kMostSpecks) {
+    constexpr size_t kMostParticles = 3;
+    while (particles_.size() <= kMostParticles) {
       const Corner best = strongest();
       if (best.strength < min_strength) break;
       const cv::Point corner = toPicture(best.pixel);
-      if (!isSpeck(picture_, corner)) return best;
-      specks_.push_back(corner);
+      if (!isParticle(picture_, corner)) return best;
+      particles_.push_back(corner);
     }
     return {};
   }
@@ -91,7 +91,7 @@ class CellSearch {
         const float strength = tensor_.weakerGradientGreyPerPx(x, y);
         if (strength <= best.strength) continue;
         const cv::Point at = cell_.tl() + cv::Point(x, y);
-        if (!occupancy_.isFree(at.x * scale_, at.y * scale_) || isOfSpeck(at)) continue;
+        if (!occupancy_.isFree(at.x * scale_, at.y * scale_) || isOfParticle(at)) continue;
         best = {Eigen::Vector2f(static_cast<float>(at.x * scale_), static_cast<float>(at.y * scale_)),
                 strength};
       }
@@ -102,10 +102,10 @@ class CellSearch {
     return {static_cast<int>(pixel.x()) / scale_, static_cast<int>(pixel.y()) / scale_};
   }
   /// A dot makes corners wherever the tensor's window touches it.
-  bool isOfSpeck(const cv::Point& at) const {
+  bool isOfParticle(const cv::Point& at) const {
     constexpr int kReach = 2 * StructureTensor::kWindowRadius + 1;
-    return std::any_of(specks_.begin(), specks_.end(), [&](const cv::Point& speck) {
-      return std::max(std::abs(at.x - speck.x), std::abs(at.y - speck.y)) <= kReach;
+    return std::any_of(particles_.begin(), particles_.end(), [&](const cv::Point& particle) {
+      return std::max(std::abs(at.x - particle.x), std::abs(at.y - particle.y)) <= kReach;
     });
   }
 
@@ -114,7 +114,7 @@ class CellSearch {
   int scale_;
   const Occupancy& occupancy_;
   StructureTensor tensor_;
-  std::vector<cv::Point> specks_;
+  std::vector<cv::Point> particles_;
 };
 
 /// Mean absolute second difference, over steps of two pixels, of the smoothest tenth of a picture's blocks,
@@ -164,7 +164,7 @@ std::vector<Eigen::Vector2f> CornerDetector::detect(const ImagePyramid& image, c
   }
 
   const int border = std::max({static_cast<int>(std::ceil(options_.border_px / scale)),
-                               StructureTensor::kWindowRadius + 2, kSpeckReachPx});
+                               StructureTensor::kWindowRadius + 2, kParticleReachPx});
   const cv::Rect usable(border, border, picture.cols - 2 * border, picture.rows - 2 * border);
   const double noise_grey = noisy ? noiseGrey(picture) : 0.0;
   const auto least_gradient = static_cast<float>(

@@ -24,7 +24,7 @@ struct CornerDetectorOptions {
 /// Finds points worth following where there are none: the image is divided into as many cells as points are
 /// wanted, and the strongest corner of each empty cell is taken (smaller eigenvalue of the structure tensor,
 /// J. Shi and C. Tomasi, "Good features to track", CVPR 1994). Corners are rated on the half-size image,
-/// where noise is lower and the window is about as large as a patch. Specks (speck.h) are passed over.
+/// where noise is lower and the window is about as large as a patch. Particles (particle.h) are passed over.
 class CornerDetector {
  public:
   explicit CornerDetector(const CornerDetectorOptions& options) : options_(options) {}

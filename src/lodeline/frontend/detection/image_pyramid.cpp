@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "lodeline/util/wide_vectors.h"
+#include "lodeline/util/simd_dispatch.h"
 
 namespace lodeline {
 namespace {

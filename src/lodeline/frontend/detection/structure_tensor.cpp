@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "lodeline/util/wide_vectors.h"
+#include "lodeline/util/simd_dispatch.h"
 
 namespace lodeline {
 namespace {

@@ -14,7 +14,7 @@ namespace lodeline {
 /// depth rho lies off its line by
 ///   e = -focal_px (w . (b x n) + rho n . v) d + focal_px (b x n) . theta,
 /// with n the unit normal of the epipolar plane and theta a constant turn of the camera against its file. w
-/// and v change from frame to frame, which tells d from theta. Minimises the sum of |e - model| over the
+/// and v change from frame to frame, which tells d from theta. Minimizes the sum of |e - model| over the
 /// latest matches, right and wrong ones (iteratively reweighted least squares).
 class StereoDelay {
  public:

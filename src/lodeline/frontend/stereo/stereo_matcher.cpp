@@ -138,13 +138,13 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
   int coarsest = options_.coarsest_level;
   bool is_near = false;
   // A point that is not seen in the other camera would be searched for in vain in every frame.
-  const bool search_again = !hint && (track.id + track.sightings) % kFramesBetweenSearches == 0;
+  const bool search_again = !hint && (track.id + track.observations) % kFramesBetweenSearches == 0;
   if (track.inverse_depth_per_m && !search_again) {
     const auto expected = projectAt(*first_bearing, *track.inverse_depth_per_m);
     if (expected) warp = PatchWarp{expected->cast<float>(), Eigen::Matrix2f::Identity()};
     if (warp && hint) warp->linear = hint->linear;
     is_near = hint.has_value();
-  } else if (track.sightings == 1 || search_again) {
+  } else if (track.observations == 1 || search_again) {
     warp = search(second, *first_bearing, track.current);
     coarsest = kSearchLevel;
   }

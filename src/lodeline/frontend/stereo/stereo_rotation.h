@@ -25,7 +25,7 @@ std::optional<Vec3> epipolarNormal(const Rigid3& second_from_first, const Vec3& 
 /// With n the normal of the plane through both cameras and the point by the file, a turn theta of the second
 /// camera (in its axes, second_from_first becomes exp(theta) second_from_first) leaves of a match b
 ///   e(theta) = focal_px n^T exp(-theta) b,
-/// whose absolute values are minimised over the newest matches, right and wrong ones (iteratively reweighted
+/// whose absolute values are minimized over the newest matches, right and wrong ones (iteratively reweighted
 /// least squares).
 class StereoRotation {
  public:

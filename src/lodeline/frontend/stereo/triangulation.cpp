@@ -56,7 +56,7 @@ struct NormalEquations {
   double cost = 0.0;  ///< sum of squared whitened residuals
 };
 
-NormalEquations linearise(const std::vector<BearingView>& views, const FirstViewPoint& point,
+NormalEquations linearize(const std::vector<BearingView>& views, const FirstViewPoint& point,
                           const Mat32& ray_basis_W) {
   NormalEquations equations;
   for (const BearingView& view : views) {
@@ -92,7 +92,7 @@ Triangulation triangulate(const std::vector<BearingView>& views, const Triangula
   NormalEquations equations;
   for (int i = 0; i < kMaxIterations; ++i) {
     const Mat32 basis = tangentBasis(point.ray_W);
-    equations = linearise(views, point, basis);
+    equations = linearize(views, point, basis);
     equations.hessian(2, 2) += kWeakest;
     const Vec3 step = -equations.hessian.ldlt().solve(equations.gradient);
     if (!step.allFinite()) break;

@@ -35,7 +35,7 @@ bool PatchTemplate::fillLevel(const cv::Mat& image, const Eigen::Vector2f& centr
   if (!staysInside(image, {centre, Eigen::Matrix2f::Identity()}, 1.0F)) return false;
   const PatchBlock block(image, centre);
   block.values(level.values);
-  norm = normalise(level.values);
+  norm = normalize(level.values);
   if (norm < kMinContrastGrey) return false;
 
   block.gradients(1.0F / norm, jacobian[0], jacobian[1]);
@@ -48,7 +48,7 @@ bool PatchTemplate::fillLevel(const cv::Mat& image, const Eigen::Vector2f& centr
     }
   }
   const size_t parameters = motion == PatchMotion::Deformation ? kParameters : 2;
-  for (size_t p = 0; p < parameters; ++p) projectOutNormalisation(level.values, jacobian[p]);
+  for (size_t p = 0; p < parameters; ++p) projectOutNormalization(level.values, jacobian[p]);
 
   const float xx = dot(jacobian[0], jacobian[0]), yy = dot(jacobian[1], jacobian[1]);
   const float xy = dot(jacobian[0], jacobian[1]);
@@ -106,7 +106,7 @@ bool PatchTemplate::shiftOnLevel(const Level& level, const cv::Mat& image, float
     sample(image, warp, values);
     // The gain's rows are orthogonal to the template, so it need not be subtracted from the values.
     const auto along =
-        normalisedAlong<3>(values, {&level.values, &level.shift_gain[0], &level.shift_gain[1]});
+        normalizedAlong<3>(values, {&level.values, &level.shift_gain[0], &level.shift_gain[1]});
     correlation = along[0];
     const Eigen::Vector2f move = warp.linear * Eigen::Vector2f(along[1], along[2]);
     warp.position -= move;
@@ -124,7 +124,7 @@ bool PatchTemplate::deform(const cv::Mat& image, PatchWarp& warp, float& correla
     if (!staysInside(image, warp, 0.0F)) return false;
     PatchValues values;
     sample(image, warp, values);
-    const auto along = normalisedAlong(values, rows);
+    const auto along = normalizedAlong(values, rows);
     correlation = along[0];
     // As the gain's, these rows are orthogonal to the template.
     const Eigen::Matrix<float, kParameters, 1> step =
@@ -177,7 +177,7 @@ std::optional<float> PatchTemplate::correlate(const ImagePyramid& image, int lev
   if (!staysInside(image.level(level), scaled, 0.0F)) return std::nullopt;
   PatchValues values;
   sample(image.level(level), scaled, values);
-  return normalisedAlong<1>(values, {&levels_[static_cast<size_t>(level)].values})[0];
+  return normalizedAlong<1>(values, {&levels_[static_cast<size_t>(level)].values})[0];
 }
 
 }  // namespace lodeline

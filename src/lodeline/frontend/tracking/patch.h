@@ -14,15 +14,15 @@ enum class PatchMotion { Shift, Deformation };
 
 /// How well a patch was found.
 struct PatchMatch {
-  float correlation = 0.0F;    ///< of the normalised patches at the finest level, 1 = equal
-  float residual_grey = 0.0F;  ///< RMS difference after normalisation, grey levels of the template
+  float correlation = 0.0F;    ///< of the normalized patches at the finest level, 1 = equal
+  float residual_grey = 0.0F;  ///< RMS difference after normalization, grey levels of the template
 };
 
 /// The looks of a small neighbourhood, on several pyramid levels, with everything that can be computed once
 /// for finding it again in other images.
 ///
 /// Alignment is inverse compositional Gauss-Newton (S. Baker, I. Matthews, "Lucas-Kanade 20 years on", IJCV
-/// 2004) on normalised values: constant, linear trend and gain are taken out of template and image alike, for
+/// 2004) on normalized values: constant, linear trend and gain are taken out of template and image alike, for
 /// a lamp that moves with the camera draws a pool of light over the rock that is bright, steep, and stands
 /// still in the image; whatever of it is left in the residual holds the patch back.
 class PatchTemplate {
@@ -52,12 +52,12 @@ class PatchTemplate {
   using Jacobian = std::array<PatchValues, kParameters>;
   struct Level {
     bool valid = false;
-    PatchValues values{};  ///< normalised
-    /// Pseudo-inverse of the Jacobian of the normalised values by the shift, row by row.
+    PatchValues values{};  ///< normalized
+    /// Pseudo-inverse of the Jacobian of the normalized values by the shift, row by row.
     std::array<PatchValues, 2> shift_gain{};
   };
 
-  /// The Jacobian of the normalised values by the shift, or by (shift, linear part).
+  /// The Jacobian of the normalized values by the shift, or by (shift, linear part).
   static bool fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, PatchMotion motion, Level& level,
                         Jacobian& jacobian, float& norm);
   void invertInformation();

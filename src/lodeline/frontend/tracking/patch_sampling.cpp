@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lodeline/util/wide_vectors.h"
+#include "lodeline/util/simd_dispatch.h"
 
 namespace lodeline {
 namespace {
@@ -71,7 +71,7 @@ void detrend(PatchValues& values) {
   for (size_t i = 0; i < values.size(); ++i) values[i] -= mean + slope_u * kPatchU[i] + slope_v * kPatchV[i];
 }
 
-float normalise(PatchValues& values) {
+float normalize(PatchValues& values) {
   detrend(values);
   const float norm = std::sqrt(dot(values, values));
   const float scale = norm > 0.0F ? 1.0F / norm : 0.0F;
@@ -80,7 +80,7 @@ float normalise(PatchValues& values) {
 }
 
 template <size_t kRows>
-std::array<float, kRows> normalisedAlong(const PatchValues& values,
+std::array<float, kRows> normalizedAlong(const PatchValues& values,
                                          const std::array<const PatchValues*, kRows>& rows) {
   // All sums side by side: one after the other, each would wait for its own additions.
   using Lanes = Eigen::Array4f;
@@ -106,17 +106,17 @@ std::array<float, kRows> normalisedAlong(const PatchValues& values,
   return result;
 }
 
-template std::array<float, 1> normalisedAlong<1>(const PatchValues&,
+template std::array<float, 1> normalizedAlong<1>(const PatchValues&,
                                                  const std::array<const PatchValues*, 1>&);
-template std::array<float, 3> normalisedAlong<3>(const PatchValues&,
+template std::array<float, 3> normalizedAlong<3>(const PatchValues&,
                                                  const std::array<const PatchValues*, 3>&);
-template std::array<float, 7> normalisedAlong<7>(const PatchValues&,
+template std::array<float, 7> normalizedAlong<7>(const PatchValues&,
                                                  const std::array<const PatchValues*, 7>&);
 
-void projectOutNormalisation(const PatchValues& normalised, PatchValues& column) {
+void projectOutNormalization(const PatchValues& normalized, PatchValues& column) {
   detrend(column);
-  const float along = dot(column, normalised);
-  for (size_t i = 0; i < column.size(); ++i) column[i] -= along * normalised[i];
+  const float along = dot(column, normalized);
+  for (size_t i = 0; i < column.size(); ++i) column[i] -= along * normalized[i];
 }
 
 PatchBlock::PatchBlock(const cv::Mat& image, const Eigen::Vector2f& centre) {

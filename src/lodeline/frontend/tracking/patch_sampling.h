@@ -26,17 +26,17 @@ float dot(const PatchValues& a, const PatchValues& b);
 void detrend(PatchValues& values);
 
 /// Detrends and scales to unit norm; returns the norm before.
-float normalise(PatchValues& values);
+float normalize(PatchValues& values);
 
-/// What normalised values would be along rows that are free of trend, without normalising them: the trend
+/// What normalized values would be along rows that are free of trend, without normalizing them: the trend
 /// drops out of every such product. All zero where the values have no contrast.
 template <size_t kRows>
-std::array<float, kRows> normalisedAlong(const PatchValues& values,
+std::array<float, kRows> normalizedAlong(const PatchValues& values,
                                          const std::array<const PatchValues*, kRows>& rows);
 
-/// Derivative of `normalise`, up to the scale, applied to a column of a Jacobian: trend and the normalised
+/// Derivative of `normalize`, up to the scale, applied to a column of a Jacobian: trend and the normalized
 /// values themselves are projected out.
-void projectOutNormalisation(const PatchValues& normalised, PatchValues& column);
+void projectOutNormalization(const PatchValues& normalized, PatchValues& column);
 
 /// Upright surroundings of a point, resampled so that every sample of the pattern and its four neighbours
 /// fall on it: cheaper than sampling each of them alone.

@@ -17,26 +17,26 @@ PatchValues texture(float contrast, float phase) {
   return values;
 }
 
-TEST(PatchSampling, ProductsWithNormalisedValuesNeedNoNormalising) {
+TEST(PatchSampling, ProductsWithNormalizedValuesNeedNoNormalizing) {
   PatchValues pattern = texture(30.0F, 0.4F);
-  normalise(pattern);
+  normalize(pattern);
   std::array<PatchValues, 2> rows{texture(20.0F, 1.9F), texture(25.0F, 3.1F)};
   for (PatchValues& row : rows) detrend(row);
   const PatchValues values = texture(3.0F, 1.0F);
-  const auto along = normalisedAlong<3>(values, {&pattern, &rows[0], &rows[1]});
-  PatchValues normalised = values;
-  normalise(normalised);
-  EXPECT_GT(std::abs(dot(normalised, pattern)), 0.1F);
-  EXPECT_NEAR(along[0], dot(normalised, pattern), 1e-3F);
+  const auto along = normalizedAlong<3>(values, {&pattern, &rows[0], &rows[1]});
+  PatchValues normalized = values;
+  normalize(normalized);
+  EXPECT_GT(std::abs(dot(normalized, pattern)), 0.1F);
+  EXPECT_NEAR(along[0], dot(normalized, pattern), 1e-3F);
   for (size_t i = 0; i < rows.size(); ++i)
-    EXPECT_NEAR(along[1 + i], dot(normalised, rows[i]), 1e-3F * std::sqrt(dot(rows[i], rows[i])));
+    EXPECT_NEAR(along[1 + i], dot(normalized, rows[i]), 1e-3F * std::sqrt(dot(rows[i], rows[i])));
 }
 
 TEST(PatchSampling, WhatHasNoContrastLiesAlongNothing) {
   PatchValues flat, pattern = texture(30.0F, 0.4F);
-  normalise(pattern);
+  normalize(pattern);
   flat.fill(77.0F);
-  EXPECT_EQ(normalisedAlong<1>(flat, {&pattern})[0], 0.0F);
+  EXPECT_EQ(normalizedAlong<1>(flat, {&pattern})[0], 0.0F);
 }
 
 }  // namespace

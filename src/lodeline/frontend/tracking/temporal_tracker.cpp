@@ -76,7 +76,7 @@ bool TemporalTracker::follow(const ImagePyramid& previous, const ImagePyramid& c
   if (!returns(previous, predicted, previous_position, track)) return false;
   track.prediction_error_px = (track.warp.position - predicted.position).norm();
   track.parallax_px = track.warp.position - rotated->position;
-  ++track.sightings;
+  ++track.observations;
   return true;
 }
 

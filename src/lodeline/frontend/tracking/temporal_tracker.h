@@ -11,7 +11,7 @@ namespace lodeline {
 struct TemporalTrackerOptions {
   /// Against the image before.
   MatchQuality quality{.min_correlation = 0.7};
-  /// Against the first sighting, which may have become another sight of the place.
+  /// Against the first observation, which may have become another sight of the place.
   MatchQuality reference_quality{.min_correlation = 0.9};
   int coarsest_level = 3;
   double max_forward_backward_px = 1.0;

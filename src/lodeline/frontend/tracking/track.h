@@ -11,7 +11,7 @@ namespace lodeline {
 /// A point while the front end follows it. It lives in camera 0 and is matched into the others.
 struct Track {
   TrackId id = -1;
-  int sightings = 1;  ///< images of camera 0 it was seen in
+  int observations = 1;  ///< images of camera 0 it was seen in
   /// Its looks when it was first seen, or when it last had to be renewed. Comparing with this and not with
   /// the image before keeps small errors of alignment from adding up.
   PatchTemplate reference;
@@ -24,7 +24,7 @@ struct Track {
   PatchTemplate current;
   /// 1/m along the ray of camera 0, from the last match in another camera.
   std::optional<double> inverse_depth_per_m;
-  /// Where it lies in the last image of each further camera (index 0: camera 1).
+  /// Where it lies in the last image of each secondary camera (index 0: camera 1).
   std::vector<std::optional<PatchWarp>> matches;
 };
 

@@ -11,8 +11,8 @@ namespace lodeline {
 /// Identifies one physical point as long as it is tracked; never reused.
 using TrackId = int64_t;
 
-/// One sighting of a tracked point in one image.
-struct Observation {
+/// One observation of a tracked point in one image.
+struct FeatureObservation {
   TrackId track = -1;
   int camera = 0;                  ///< index into Rig::cameras
   Vec2 pixel = Vec2::Zero();       ///< in the image as recorded (distorted)
@@ -24,7 +24,7 @@ struct Observation {
 /// camera.
 struct FrameTracks {
   Time time;
-  std::vector<Observation> observations = {};
+  std::vector<FeatureObservation> observations = {};
   /// How camera 1, 2, ... are turned against what the rig says, where their epipolar lines say so beyond
   /// doubt: phi in rad, axes of camera 0, whose exp(phi) comes before the rotation of camera0_from_camera.
   /// Zero where the rig may be right; empty where nothing was compared.

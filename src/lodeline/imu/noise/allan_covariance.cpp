@@ -14,7 +14,7 @@ constexpr double kCorrelatedRatio = 40.0;
 constexpr std::array<double, 3> kSecondDifference = {1.0, -2.0, 1.0};
 
 /// Autocovariance of the integrated noise at a lag, of coefficient 1, up to polynomials that second
-/// differences take away. Quantisation is white in the integral: it has none but at lag zero.
+/// differences take away. Quantization is white in the integral: it has none but at lag zero.
 KindValues integralAutocovariance(double lag_s, double interval_s) {
   const double t = std::abs(lag_s);
   const bool is_zero = t < 0.5 * interval_s;

@@ -10,13 +10,13 @@ namespace lodeline {
 
 /// The noises that an Allan variance is made of, in the order of their slope. With coefficient squared c^2
 /// (two-sided densities, as in Kalibr):
-///   Quantisation  Q  [u s]             3 Q^2 / tau^2
+///   Quantization  Q  [u s]             3 Q^2 / tau^2
 ///   White         N  [u/sqrt(Hz)]      N^2 / tau
 ///   Flicker       B  [u]               B^2 2 ln2 / pi      ("bias instability")
 ///   Walk          K  [u/s/sqrt(Hz)]    K^2 tau / 3
 ///   Ramp          R  [u/s]             R^2 tau^2 / 2       (a steady drift, not random)
 /// (IEEE 952-1997, annex C.)
-enum class NoiseKind { Quantisation, White, Flicker, Walk, Ramp };
+enum class NoiseKind { Quantization, White, Flicker, Walk, Ramp };
 constexpr int kNoiseKinds = 5;
 constexpr int kRandomKinds = 4;  ///< all but Ramp
 
@@ -40,7 +40,7 @@ class AllanCovariance {
   /// For the given points of a curve, in ascending order of averaging time.
   AllanCovariance(const std::vector<AllanPoint>& points, double interval_s, double duration_s);
 
-  /// `squared`: c^2 of Quantisation, White, Flicker, Walk.
+  /// `squared`: c^2 of Quantization, White, Flicker, Walk.
   Eigen::MatrixXd operator()(const std::array<double, kRandomKinds>& squared) const;
 
  private:

@@ -51,7 +51,7 @@ std::optional<size_t> whiteBegin(const Sampled& s, double tolerance, bool* is_fi
   for (size_t i = 0; i + 1 < s.points.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double here = slope(s.points[i], s.points[i + 1], s.variance[k], s.variance[k + 1]);
-    // At the very beginning a steeper slope is quantisation, which the model holds.
+    // At the very beginning a steeper slope is quantization, which the model holds.
     if (i == 0 && here < least) return i;
     // After a filter's corner, white noise comes out only gradually.
     if (here >= least) continue;
@@ -213,7 +213,7 @@ double NoiseFit::variance(double tau_s) const {
   auto unit = unitAllanVariance(tau_s);
   unit[static_cast<size_t>(NoiseKind::Flicker)] *= flickerShare(tau_s, flicker_corner_s);
   double sum = 0.0;
-  const std::array<const NoiseFigure*, kNoiseKinds> all = {&quantisation, &white, &instability, &walk, &ramp};
+  const std::array<const NoiseFigure*, kNoiseKinds> all = {&quantization, &white, &instability, &walk, &ramp};
   for (size_t kind = 0; kind < all.size(); ++kind) sum += all[kind]->value * all[kind]->value * unit[kind];
   return sum;
 }
@@ -246,7 +246,7 @@ std::optional<NoiseFit> fitNoise(const AllanCurve& curve, std::optional<int> axi
   const auto figureOf = [&](NoiseKind kind) {
     return figure(best.squared(kind), sigmas[static_cast<int>(kind)]);
   };
-  fit.quantisation = figureOf(NoiseKind::Quantisation);
+  fit.quantization = figureOf(NoiseKind::Quantization);
   fit.white = figureOf(NoiseKind::White);
   fit.instability = figureOf(NoiseKind::Flicker);
   fit.walk = figureOf(NoiseKind::Walk);

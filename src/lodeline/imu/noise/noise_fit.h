@@ -19,7 +19,7 @@ struct NoiseFigure {
 /// Densities are two-sided (Kalibr: a reading at rate f has sigma = density * sqrt(f)); the one-sided
 /// spectrum's square root is sqrt(2) times as large. [u]: unit of the reading.
 struct NoiseFit {
-  NoiseFigure quantisation;  ///< Q, [u s]
+  NoiseFigure quantization;  ///< Q, [u s]
   NoiseFigure white;         ///< N, [u/sqrt(Hz)]
   NoiseFigure instability;   ///< B, [u]; the Allan deviation's floor is 0.664 B
   NoiseFigure walk;          ///< K, [u/s/sqrt(Hz)]
@@ -56,7 +56,7 @@ struct NoiseFitOptions {
 };
 
 /// Fits the Allan variance of one axis (0 to 2), or without an axis the mean variance of all three, which is
-/// three times as certain, by generalised least squares with non-negative coefficients. The weights are the
+/// three times as certain, by generalized least squares with non-negative coefficients. The weights are the
 /// inverse covariance that AllanCovariance gives for the fitted noises, found by iteration, so that neither
 /// the many certain short averaging times nor the few, correlated long ones weigh more than they know.
 /// Empty for a curve of fewer than six octaves, and for one that is all zero.

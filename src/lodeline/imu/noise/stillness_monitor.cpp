@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kWindow_s = 10.0;
 constexpr double kUnusualScatter = 3.0;  ///< times the median window's
-constexpr int kFewestReadings = 4;
+constexpr int kFewestInAMean = 4;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void StillnessMonitor::add(Time time, const Vec3& reading) {
 }
 
 void StillnessMonitor::close() {
-  if (count_ >= kFewestReadings) {
+  if (count_ >= kFewestInAMean) {
     const Vec3 mean_offset = sum_ / count_;
     const double variance = (squares_ / count_ - mean_offset.cwiseAbs2()).cwiseMax(0.0).mean();
     const Vec3 mean = origin_ + mean_offset;

@@ -22,7 +22,7 @@ double robustWeight(double residual, double scale) {
   return 1.0 / (1.0 + residual * residual / (scale * scale));
 }
 
-/// The rotation R that minimises the robust sum of |f1 - R f2|^2.
+/// The rotation R that minimizes the robust sum of |f1 - R f2|^2.
 Quat alignedRotation(const std::vector<Vec3>& previous, const std::vector<Vec3>& current) {
   Quat rotation = Quat::Identity();
   double scale = 0.3;  // of all sizes at first: a far too large one only weighs all rays alike

@@ -77,7 +77,7 @@ bool isSensorName(const std::string& key) {
          std::find(kSingleSensors.begin(), kSingleSensors.end(), key) != kSingleSensors.end();
 }
 
-CalibrationKind recogniseCalibration(const YAML::Node& root) {
+CalibrationKind recognizeCalibration(const YAML::Node& root) {
   if (!root.IsMap()) return CalibrationKind::Other;
   if (isOkvis(root)) return CalibrationKind::Okvis;
   if (isBasalt(root)) return CalibrationKind::Basalt;

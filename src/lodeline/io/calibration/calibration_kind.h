@@ -21,7 +21,7 @@ enum class CalibrationKind {
   Other,
 };
 
-CalibrationKind recogniseCalibration(const YAML::Node& root);
+CalibrationKind recognizeCalibration(const YAML::Node& root);
 
 /// In words that fit behind "is ".
 const char* describe(CalibrationKind kind);

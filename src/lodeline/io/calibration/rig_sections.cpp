@@ -36,7 +36,7 @@ class SectionCollector {
 
   void take(const std::filesystem::path& file) {
     const YAML::Node root = loadYamlFile(file);
-    const CalibrationKind kind = recogniseCalibration(root);
+    const CalibrationKind kind = recognizeCalibration(root);
     switch (kind) {
       case CalibrationKind::Rig:
         return takeRig(file, root);

@@ -40,11 +40,11 @@ std::string withBlankAfterKey(const std::string& line) {
 }  // namespace
 
 YAML::Node loadYamlFile(const std::filesystem::path& file) {
-  const RecognisedFile recognised = recogniseFile(file);
-  if (recognised.kind == FileKind::Missing) {
+  const RecognizedFile recognized = recognizeFile(file);
+  if (recognized.kind == FileKind::Missing) {
     throw InputError(fmt::format("{}: calibration file missing", file.string()));
   }
-  if (!recognised.isText()) refuseFile(recognised, "a YAML file is needed here");
+  if (!recognized.isText()) refuseFile(recognized, "a YAML file is needed here");
   std::ifstream stream(file);
   std::string text;
   bool is_opencv = false;

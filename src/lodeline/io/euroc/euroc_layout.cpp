@@ -18,14 +18,14 @@ std::filesystem::path findMav0(const std::filesystem::path& data) {
   for (const char* sensor : {"cam0", "imu0", "mag0"}) {
     if (std::filesystem::is_directory(data / sensor)) return data;
   }
-  const RecognisedFile recognised = recogniseFile(data);
-  if (!recognised.isFolder() || !recognised.advice.empty()) {
-    refuseFile(recognised, "give the folder that contains mav0, or a ROS 1 bag");
+  const RecognizedFile recognized = recognizeFile(data);
+  if (!recognized.isFolder() || !recognized.advice.empty()) {
+    refuseFile(recognized, "give the folder that contains mav0, or a ROS 1 bag");
   }
   throw InputError(
       fmt::format("{}: is {}; it holds neither mav0 nor sensors (cam0, imu0, mag0). Give the folder of a "
                   "recording in the EuRoC ASL layout (mav0/cam0/data.csv, mav0/imu0/data.csv, …)",
-                  data.string(), recognised.what));
+                  data.string(), recognized.what));
 }
 
 /// Why a folder camN gives no images, or nothing where it does or is not there.

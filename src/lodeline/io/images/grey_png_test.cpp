@@ -13,7 +13,7 @@ namespace lodeline {
 namespace {
 
 /// Smooth shading with noise, so that encoders choose every filter.
-cv::Mat picture(int width_px, int height_px) {
+cv::Mat greyPicture(int width_px, int height_px) {
   cv::Mat image(height_px, width_px, CV_8UC1);
   uint32_t state = 1;
   for (int y = 0; y < height_px; ++y) {
@@ -100,7 +100,7 @@ TEST(GreyPng, UndoesFiltersRowByRowAndAbreastAlike) {
 
 TEST(GreyPng, GivesBackWhatWasEncoded) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(1, 7), cv::Size(752, 480), cv::Size(33, 20)}) {
-    const cv::Mat image = picture(size.width, size.height);
+    const cv::Mat image = greyPicture(size.width, size.height);
     for (const int strategy : {cv::IMWRITE_PNG_STRATEGY_DEFAULT, cv::IMWRITE_PNG_STRATEGY_FILTERED,
                                cv::IMWRITE_PNG_STRATEGY_RLE}) {
       const std::vector<uint8_t> bytes = encode(image, {cv::IMWRITE_PNG_STRATEGY, strategy});
@@ -119,7 +119,7 @@ TEST(GreyPng, LeavesOtherKindsToOthers) {
 }
 
 TEST(GreyPng, RefusesDamageWhereverItIs) {
-  const std::vector<uint8_t> good = encode(picture(24, 16));
+  const std::vector<uint8_t> good = encode(greyPicture(24, 16));
   for (size_t i = 0; i < good.size(); ++i) {
     std::vector<uint8_t> damaged = good;
     damaged[i] ^= 0x40;

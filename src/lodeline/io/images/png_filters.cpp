@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "lodeline/util/wide_vectors.h"
+#include "lodeline/util/simd_dispatch.h"
 
 namespace lodeline::png {
 namespace {

@@ -86,8 +86,8 @@ class Scan {
       throw InputError(fmt::format("{}: a bag of an old format ({}); convert it with `rosbag fix`", name,
                                    text.substr(0, text.find('\n'))));
     }
-    const RecognisedFile recognised = recogniseFile(file_.path());
-    if (recognised.kind != FileKind::Ros1Bag) refuseFile(recognised, "a ROS 1 bag begins with #ROSBAG V2.0");
+    const RecognizedFile recognized = recognizeFile(file_.path());
+    if (recognized.kind != FileKind::Ros1Bag) refuseFile(recognized, "a ROS 1 bag begins with #ROSBAG V2.0");
     throw InputError(name + ": no ROS 1 bag (it does not begin with #ROSBAG V2.0)");
   }
 
@@ -159,7 +159,7 @@ class Scan {
                                       description->text("md5sum")};
   }
 
-  /// `record` may have been recognised without being all there. Returns the position to go on at.
+  /// `record` may have been recognized without being all there. Returns the position to go on at.
   uint64_t passDamage(uint64_t position, const std::optional<RecordView>& record) {
     const std::optional<uint64_t> next = findChunk(file_, position + 1);
     const uint64_t end = next.value_or(file_.size());

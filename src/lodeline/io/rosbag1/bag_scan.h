@@ -32,7 +32,7 @@ struct BagContents {
 
 /// Walks through the records of a bag from the front, passing over the contents of chunks that have an index
 /// record behind them and looking through the others, and enters the chunks in `chunks`. Past damaged bytes
-/// it goes on at the next chunk that can be recognised. Reports as BagFile says. Throws InputError where the
+/// it goes on at the next chunk that can be recognized. Reports as BagFile says. Throws InputError where the
 /// file is no bag of format 2.0 or is encrypted.
 BagContents scanBag(ChunkCache* chunks, Diagnostics* diagnostics);
 

@@ -138,7 +138,7 @@ TEST_F(ImageRepeatsTest, AFrozenCameraOfARigThatGlidesIsNoRest) {
   EXPECT_EQ(diagnostics_.count("images_frozen"), 1);
 }
 
-TEST_F(ImageRepeatsTest, RecognisesRepeatsThatWereEncodedOnceMore) {
+TEST_F(ImageRepeatsTest, RecognizesRepeatsThatWereEncodedOnceMore) {
   std::vector<cv::Mat> images;
   for (int i = 0; i < 60; ++i) images.push_back(i < 20 ? picture(i, 1) : picture(i / 2 + 10, 1 + i % 2));
   const std::vector<bool> kept_images = kept(images, {}, [](double) { return 0.9; });

@@ -27,7 +27,7 @@ struct LiveSourceOptions {
 };
 
 /// Sensors at work as a source: whoever hears them pushes readings, from any thread and without ever waiting;
-/// the synchroniser pulls, on one other thread, and waits. Readings pushed in time make the same packets as a
+/// the synchronizer pulls, on one other thread, and waits. Readings pushed in time make the same packets as a
 /// recording of them would. Where a camera or a slower sensor is silent longer than the patience, the source
 /// gives nothing (as at a stream's end) and the packet goes without; what comes after that is dropped and
 /// reported as `image_late`, `magnetometer_late`, `depth_late`, what finds no room as `image_dropped`,
@@ -46,7 +46,7 @@ class LiveSource : public RecordedSource {
   void close();
 
   /// Waits for some readings of the IMU and of every camera, and settles the rig's rates by them as
-  /// settleRate() does. To be called before a synchroniser is made. False where it was closed before that.
+  /// settleRate() does. To be called before a synchronizer is made. False where it was closed before that.
   bool settleRates();
   /// Sensors that settleRates() is still waiting for, by name.
   std::vector<std::string> unheard() const;

@@ -36,7 +36,7 @@ struct PendingImage {
   std::function<LoadedImage()> load;
   /// The same image as it is stored; sources that no recording stands behind have none.
   std::function<StoredImage()> stored = {};
-  Time recorded = {};  ///< the stamp as it was stored, whatever is done to `time`; set by the synchroniser
+  Time recorded = {};  ///< the stamp as it was stored, whatever is done to `time`; set by the synchronizer
 };
 
 /// The same for images that are stored under the same name.
@@ -74,7 +74,7 @@ class RecordedSource : public MeasurementSource {
   }
   /// The next reading as it was stored.
   virtual std::optional<ImuSample> nextRecordedImu() = 0;
-  /// Replaces what the recording's own files say about the magnetometer, before a synchroniser is made.
+  /// Replaces what the recording's own files say about the magnetometer, before a synchronizer is made.
   void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
   /// The same of the IMU's noise.
   void setImuNoise(const ImuNoise& noise) { rig_.imu.noise = noise; }

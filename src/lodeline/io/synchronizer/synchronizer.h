@@ -47,7 +47,7 @@ struct SynchronizerOptions {
 /// frozen. Memory does not grow with the length of the recording.
 class Synchronizer {
  public:
-  /// `source` and `diagnostics` must outlive the synchroniser.
+  /// `source` and `diagnostics` must outlive the synchronizer.
   Synchronizer(MeasurementSource* source, const SynchronizerOptions& options, Diagnostics* diagnostics);
 
   /// The next packet; nothing at the end. Images of another size than the calibration says are left out and
@@ -60,7 +60,7 @@ class Synchronizer {
 
   /// Moves the images that are still to come by so much, as their clock was found to be off.
   void moveImages(Duration by);
-  /// From the next images on, a further camera (1, 2, ...) counts as taking them so much later.
+  /// From the next images on, a secondary camera (1, 2, ...) counts as taking them so much later.
   void delayCamera(size_t camera, double by_s);
 
   /// Readings and images held at present, for tests of its boundedness.

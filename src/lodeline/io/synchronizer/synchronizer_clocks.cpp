@@ -5,7 +5,7 @@
 
 #include "lodeline/io/synchronizer/synchronizer.h"
 
-/// What the synchroniser does where a clock jumped ahead in mid-recording. A clock that was set back shows in
+/// What the synchronizer does where a clock jumped ahead in mid-recording. A clock that was set back shows in
 /// its own stream (OrderedStream); one that was set ahead looks like lost data until the streams are
 /// compared.
 namespace lodeline {

@@ -53,7 +53,7 @@ class MemoryBytes : public ByteSource {
   std::size_t position_ = 0;
 };
 
-/// Bytes that were read to recognise the encoding, then the rest.
+/// Bytes that were read to recognize the encoding, then the rest.
 class Rejoined : public ByteSource {
  public:
   Rejoined(std::string head, std::unique_ptr<ByteSource> rest)

@@ -22,7 +22,7 @@ std::unique_ptr<ByteSource> openFile(const std::filesystem::path& file);
 /// Bytes that are in memory already.
 std::unique_ptr<ByteSource> bytesInMemory(std::string bytes);
 
-/// The same text in UTF-8. UTF-16 is recognised by its byte order mark, or without one by the zero byte in
+/// The same text in UTF-8. UTF-16 is recognized by its byte order mark, or without one by the zero byte in
 /// each pair. A byte order mark is left out. Throws InputError, with `name`, where the bytes are no text.
 std::unique_ptr<ByteSource> inUtf8(std::unique_ptr<ByteSource> bytes, const std::string& name);
 

@@ -12,7 +12,7 @@ namespace lodeline {
 namespace {
 
 struct Unit {
-  std::string_view name;  ///< as normalised
+  std::string_view name;  ///< as normalized
   double to_si;
 };
 
@@ -101,7 +101,7 @@ constexpr Sign kSigns[] = {{"\u00ce\u00bc", "u"}, {"\u00c2", ""},    {"\u00b5", 
                            {" s^-2", "/s^2"},     {" s-2", "/s^2"},  {" ", ""}};
 
 /// Lower case without blanks; signs as ASCII.
-std::string normalised(std::string_view unit) {
+std::string normalized(std::string_view unit) {
   std::string text;
   for (const char c : trimmed(unit)) text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   for (const Sign& sign : kSigns) text = replaced(text, sign.from, sign.to);
@@ -147,7 +147,7 @@ const char* toString(Quantity quantity) {
 }
 
 std::optional<double> unitFactor(Quantity quantity, std::string_view unit) {
-  const std::string name = normalised(unit);
+  const std::string name = normalized(unit);
   for (const Unit& known : unitsOf(quantity)) {
     if (known.name == name) return known.to_si;
   }

@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// One term of a spherical harmonic magnetic model, Schmidt semi-normalised.
+/// One term of a spherical harmonic magnetic model, Schmidt semi-normalized.
 struct GaussCoefficient {
   int degree;
   int order;

@@ -58,15 +58,15 @@ std::optional<Ellipsoid> fromCoefficients(const Vec6& quadratic, const Vec4& lin
 }
 
 /// Points moved to their mean and scaled to unit spread, for the numbers' sake.
-struct Normalised {
+struct Normalized {
   Vec3 mean = Vec3::Zero();
   double scale = 0.0;
   std::vector<Vec3> points;
   bool flat = true;  ///< they fill no space
 };
 
-Normalised normalise(std::span<const Vec3> points) {
-  Normalised result;
+Normalized normalize(std::span<const Vec3> points) {
+  Normalized result;
   const double count = static_cast<double>(points.size());
   for (const Vec3& p : points) result.mean += p / count;
   Mat3 spread = Mat3::Zero();
@@ -87,7 +87,7 @@ Vec3 Ellipsoid::semiAxes() const {
 
 std::optional<Ellipsoid> fitEllipsoid(std::span<const Vec3> points) {
   if (points.size() < kFewestPoints) return std::nullopt;
-  const Normalised data = normalise(points);
+  const Normalized data = normalize(points);
   if (data.flat) return std::nullopt;
   Mat10 scatter = Mat10::Zero();
   for (const Vec3& p : data.points) {
@@ -109,7 +109,7 @@ std::optional<Ellipsoid> fitEllipsoid(std::span<const Vec3> points) {
 
 std::optional<Ellipsoid> fitSphere(std::span<const Vec3> points) {
   if (points.size() < 4) return std::nullopt;
-  const Normalised data = normalise(points);
+  const Normalized data = normalize(points);
   if (data.flat) return std::nullopt;
   Mat4 normal = Mat4::Zero();
   Vec4 right = Vec4::Zero();

@@ -45,7 +45,7 @@ IronParameters moved(const IronParameters& from, const Vec9& step) {
 bool positiveDefinite(const Mat3& matrix) { return Eigen::LLT<Mat3>(matrix).info() == Eigen::Success; }
 
 /// Levenberg-Marquardt over the chosen readings.
-IronParameters minimise(std::span<const Vec3> readings, const std::vector<bool>& used, IronParameters at,
+IronParameters minimize(std::span<const Vec3> readings, const std::vector<bool>& used, IronParameters at,
                         const IronFitOptions& options) {
   double damping = 1e-6;
   NormalEquations normal = accumulate(readings, used, at);
@@ -179,7 +179,7 @@ IronFit fitIron(std::span<const Vec3> readings, const IronParameters& start, con
   fit.used = within(kWild_sigmas, distances(scaled, fit.parameters));
   constexpr int kMostRounds = 30;
   for (int round = 0; round < kMostRounds; ++round) {
-    fit.parameters = minimise(scaled, fit.used, fit.parameters, options);
+    fit.parameters = minimize(scaled, fit.used, fit.parameters, options);
     std::vector<bool> used = within(options.rejection_sigmas, distances(scaled, fit.parameters));
     const bool settled = used == fit.used;
     fit.used = std::move(used);

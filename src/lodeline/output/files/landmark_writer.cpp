@@ -20,7 +20,7 @@ std::string worldOf(HeadingReference reference) {
 }
 
 constexpr const char* kAfterCount =
-    "\nproperty float x\nproperty float y\nproperty float z\nproperty int sightings\nend_header\n";
+    "\nproperty float x\nproperty float y\nproperty float z\nproperty int observations\nend_header\n";
 
 }  // namespace
 
@@ -39,9 +39,9 @@ LandmarkWriter::~LandmarkWriter() {
 void LandmarkWriter::write(const std::vector<MapPoint>& points) {
   for (const MapPoint& point : points) {
     const Eigen::Vector3f position = point.position_W.cast<float>();
-    const int32_t sightings = point.sightings;
+    const int32_t observations = point.observations;
     stream_.write(reinterpret_cast<const char*>(position.data()), sizeof(float) * 3);
-    stream_.write(reinterpret_cast<const char*>(&sightings), sizeof(sightings));
+    stream_.write(reinterpret_cast<const char*>(&observations), sizeof(observations));
     ++count_;
   }
   // A run that is killed leaves what it has found.

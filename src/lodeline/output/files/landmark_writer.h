@@ -10,9 +10,9 @@
 
 namespace lodeline {
 
-/// Writes `landmarks.ply` (binary, positions in the world in metres and the number of sightings), streaming:
-/// finish() fills in the header. Without it the header says that the run was not completed, and the
-/// destructor fills in the count alone.
+/// Writes `landmarks.ply` (binary, positions in the world in metres and the number of observations),
+/// streaming: finish() fills in the header. Without it the header says that the run was not completed, and
+/// the destructor fills in the count alone.
 class LandmarkWriter {
  public:
   /// Throws InputError where the folder cannot be written to.

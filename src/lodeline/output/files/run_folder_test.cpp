@@ -189,11 +189,11 @@ TEST_F(RunFolder, LandmarksCanBeReadBack) {
   const size_t data = ply.find("end_header\n") + 11;
   ASSERT_EQ(ply.size() - data, 2u * 16u);
   float second[3];
-  int32_t sightings;
+  int32_t observations;
   std::memcpy(second, ply.data() + data + 16, sizeof(second));
-  std::memcpy(&sightings, ply.data() + data + 28, sizeof(sightings));
+  std::memcpy(&observations, ply.data() + data + 28, sizeof(observations));
   EXPECT_EQ(second[1], 0.5f);
-  EXPECT_EQ(sightings, 5);
+  EXPECT_EQ(observations, 5);
 }
 
 TEST_F(RunFolder, SummaryCountsPathCompletionAndFindings) {

@@ -76,7 +76,7 @@ nlohmann::ordered_json json(const NoiseFit& fit) {
   return {{"white_noise", json(fit.white)},
           {"bias_instability", json(fit.instability)},
           {"random_walk", json(fit.walk)},
-          {"quantisation", json(fit.quantisation)},
+          {"quantization", json(fit.quantization)},
           {"ramp_per_s", fit.ramp.value},
           {"white_noise_one_sided", std::numbers::sqrt2 * fit.white.value},
           {"flicker_corner_s", fit.flicker_corner_s},

@@ -105,11 +105,12 @@ nlohmann::ordered_json toJson(const DepthEstimate::Gauge& gauge) {
 std::string describe(const RefinementSummary& refined) {
   if (!refined.usable()) return "refused: " + refined.refusal + "; the forward run is what there is";
   return fmt::format(
-      "{} states, {} landmarks, {} sightings ({:.1f} % left out, {:.1f} of them count as one), {} steps{}; "
+      "{} states, {} landmarks, {} observations ({:.1f} % left out, {:.1f} of them count as one), {} "
+      "steps{}; "
       "cost {:.4g} of {:.4g}; moved "
       "by "
       "{:.3f} m and {:.2f} deg rms, {:.3f} m at most; {:.1f} core-s",
-      refined.states, refined.landmarks, refined.sightings, 100.0 * refined.outlier_share,
+      refined.states, refined.landmarks, refined.observations, 100.0 * refined.outlier_share,
       refined.design_effect, refined.iterations, refined.converged ? "" : " (not converged)",
       refined.first_round_cost, refined.forward_cost, refined.moved_rms_m,
       refined.turned_rms_rad * 180.0 / M_PI, refined.moved_max_m, refined.processor_s);
@@ -122,8 +123,8 @@ nlohmann::ordered_json toJson(const RefinementSummary& refined) {
   json["converged"] = refined.converged;
   json["states"] = refined.states;
   json["landmarks"] = refined.landmarks;
-  json["sightings"] = refined.sightings;
-  json["sighting_variance"] = refined.sighting_variance;
+  json["observations"] = refined.observations;
+  json["observation_variance"] = refined.observation_variance;
   json["design_effect"] = refined.design_effect;
   json["outlier_share"] = refined.outlier_share;
   json["iterations"] = refined.iterations;
@@ -378,7 +379,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
     const Vec3& offset = *magnetometer.offset_B;
     json["magnetometer"]["field_W_T"] = {field.x(), field.y(), field.z()};
     json["magnetometer"]["offset_B_T"] = {offset.x(), offset.y(), offset.z()};
-    json["magnetometer"]["floor_T"] = *magnetometer.floor_T;
+    json["magnetometer"]["correlated_noise_sigma_T"] = *magnetometer.correlated_noise_sigma_T;
   }
   for (const auto& [status, frames] : depth_frames_) json["pressure"]["frames"][toString(status)] = frames;
   if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);

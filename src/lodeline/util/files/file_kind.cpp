@@ -146,7 +146,7 @@ FileKind kindOfText(const fs::path& path, std::string_view head) {
   return has_columns ? FileKind::Table : FileKind::Text;
 }
 
-RecognisedFile recogniseText(const fs::path& path, std::string_view head) {
+RecognizedFile recognizeText(const fs::path& path, std::string_view head) {
   const FileKind kind = kindOfText(path, head);
   switch (kind) {
     case FileKind::Yaml:
@@ -161,7 +161,7 @@ RecognisedFile recogniseText(const fs::path& path, std::string_view head) {
   }
 }
 
-RecognisedFile recogniseRegular(const fs::path& path) {
+RecognizedFile recognizeRegular(const fs::path& path) {
   const std::string head = headOf(path);
   for (const Signature& known : kSignatures) {
     if (head.size() < known.offset) continue;
@@ -174,7 +174,7 @@ RecognisedFile recogniseRegular(const fs::path& path) {
     if (extension == known.name) return {path, known.kind, known.what, known.advice};
   }
   if (head.empty()) return {path, FileKind::Empty, "empty", "copy it again"};
-  if (looksLikeText(head)) return recogniseText(path, head);
+  if (looksLikeText(head)) return recognizeText(path, head);
   return {path, FileKind::Binary, "of an unknown kind (no text)", ""};
 }
 
@@ -211,7 +211,7 @@ void take(const fs::directory_entry& entry, Entries* entries) {
   }
 }
 
-RecognisedFile recogniseFolder(const fs::path& path) {
+RecognizedFile recognizeFolder(const fs::path& path) {
   constexpr size_t kMostEntries = 100'000;
   Entries entries;
   std::error_code error;
@@ -245,7 +245,7 @@ RecognisedFile recogniseFolder(const fs::path& path) {
 
 }  // namespace
 
-RecognisedFile recogniseFile(const fs::path& path) {
+RecognizedFile recognizeFile(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -255,19 +255,19 @@ RecognisedFile recogniseFile(const fs::path& path) {
         is_absent ? "missing (no such folder or file)" : fmt::format("not readable ({})", error.message()),
         ""};
   }
-  if (fs::is_directory(status)) return recogniseFolder(path);
+  if (fs::is_directory(status)) return recognizeFolder(path);
   // Pipes and devices can be read only once, so nothing of them may be read here.
   if (!fs::is_regular_file(status)) return {path, FileKind::Text, "no regular file", ""};
   if (!std::ifstream(path)) return {path, FileKind::Missing, "not readable (see its permissions)", ""};
-  return recogniseRegular(path);
+  return recognizeRegular(path);
 }
 
-std::string refusalText(const RecognisedFile& file, const std::string& needed) {
+std::string refusalText(const RecognizedFile& file, const std::string& needed) {
   return fmt::format("{}: is {}; {}", file.path.string(), file.what,
                      file.advice.empty() ? needed : file.advice);
 }
 
-void refuseFile(const RecognisedFile& file, const std::string& needed) {
+void refuseFile(const RecognizedFile& file, const std::string& needed) {
   throw InputError(refusalText(file, needed));
 }
 

@@ -31,7 +31,7 @@ enum class FileKind {
 };
 
 /// A kind, in words that fit behind "is ", and what to do with such a file where it is of no use as it is.
-struct RecognisedFile {
+struct RecognizedFile {
   std::filesystem::path path;
   FileKind kind = FileKind::Missing;
   std::string what;
@@ -42,11 +42,11 @@ struct RecognisedFile {
 };
 
 /// Never throws; a file that cannot be read is Missing, and `what` says why.
-RecognisedFile recogniseFile(const std::filesystem::path& path);
+RecognizedFile recognizeFile(const std::filesystem::path& path);
 
 /// "PATH: is WHAT; ADVICE", or where no advice is known "PATH: is WHAT; NEEDED".
-std::string refusalText(const RecognisedFile& file, const std::string& needed);
+std::string refusalText(const RecognizedFile& file, const std::string& needed);
 /// Throws InputError with that text.
-[[noreturn]] void refuseFile(const RecognisedFile& file, const std::string& needed);
+[[noreturn]] void refuseFile(const RecognizedFile& file, const std::string& needed);
 
 }  // namespace lodeline

@@ -23,7 +23,7 @@ class SettingsTest : public testing::Test {
  protected:
   SettingsTest() {
     settings_.bind("front_end.max_features", &max_features_, "features kept per image");
-    settings_.bind("front_end.equalise", &equalise_, "local contrast");
+    settings_.bind("front_end.equalize", &equalize_, "local contrast");
     settings_.bind("magnetometer.model", &model_,
                    {{"paper", Model::Paper}, {"absolute", Model::Absolute}, {"off", Model::Off}}, "residual");
     settings_.bind("magnetometer.prior.sigma_T", &sigma_T_, "offset\nprior");
@@ -44,7 +44,7 @@ class SettingsTest : public testing::Test {
   }
 
   int max_features_ = 300;
-  bool equalise_ = true;
+  bool equalize_ = true;
   Model model_ = Model::Absolute;
   double sigma_T_ = 3e-7;
   std::vector<double> scales_ = {1.0, 0.1};
@@ -54,10 +54,10 @@ class SettingsTest : public testing::Test {
 
 TEST_F(SettingsTest, LoadsEveryKind) {
   settings_.load(
-      file("front_end:\n  max_features: 12\n  equalise: off\n  scales: [1, 2.5e-3]\n"
+      file("front_end:\n  max_features: 12\n  equalize: off\n  scales: [1, 2.5e-3]\n"
            "magnetometer:\n  model: paper\n  prior: {sigma_T: 1e-6}\nname: Devil's Eye\r\n"));
   EXPECT_EQ(max_features_, 12);
-  EXPECT_FALSE(equalise_);
+  EXPECT_FALSE(equalize_);
   EXPECT_THAT(scales_, ElementsAre(1.0, 2.5e-3));
   EXPECT_EQ(model_, Model::Paper);
   EXPECT_EQ(sigma_T_, 1e-6);
@@ -85,7 +85,7 @@ TEST_F(SettingsTest, WrongKindSaysWhatIsExpected) {
       ThrowsMessage<UsageError>(AllOf(HasSubstr(":1"), HasSubstr("a whole number, 0 or more, not '3.5'"))));
   EXPECT_THAT(loading("front_end: {max_features: }"), testing::Throws<UsageError>());
   EXPECT_THAT(loading("front_end: 3"), ThrowsMessage<UsageError>(HasSubstr("is a section")));
-  EXPECT_THAT(loading("front_end: {equalise: 1}"), ThrowsMessage<UsageError>(HasSubstr("true or false")));
+  EXPECT_THAT(loading("front_end: {equalize: 1}"), ThrowsMessage<UsageError>(HasSubstr("true or false")));
   EXPECT_THAT(loading("front_end: {scales: 1}"), ThrowsMessage<UsageError>(HasSubstr("a list of numbers")));
   EXPECT_THAT(loading("front_end: {scales: [1, x]}"), ThrowsMessage<UsageError>(HasSubstr("not '[1, x]'")));
   EXPECT_THAT(loading("name: {a: b}"), ThrowsMessage<UsageError>(HasSubstr("must be a text")));
@@ -109,7 +109,7 @@ TEST_F(SettingsTest, WritesSectionsTogetherWithDocumentation) {
   EXPECT_EQ(written.str(),
             "front_end:\n"
             "  # features kept per image\n  max_features: 300\n"
-            "  # local contrast\n  equalise: true\n"
+            "  # local contrast\n  equalize: true\n"
             "  # pyramid\n  scales: [1, 0.1]\n"
             "magnetometer:\n"
             "  # residual (one of paper, absolute, off)\n  model: absolute\n"
@@ -138,10 +138,10 @@ TEST_F(SettingsTest, ReadsBackWhatItWroteToTheLastBit) {
 TEST_F(SettingsTest, CommandLineTakesYamlSpelling) {
   settings_.set("front_end.scales", "[3, 4]");
   settings_.set("name", "C: [x");
-  settings_.set("front_end.equalise", "false");
+  settings_.set("front_end.equalize", "false");
   EXPECT_THAT(scales_, ElementsAre(3.0, 4.0));
   EXPECT_EQ(name_, "C: [x");
-  EXPECT_FALSE(equalise_);
+  EXPECT_FALSE(equalize_);
 }
 
 TEST_F(SettingsTest, ListsOfWholeNumbersTakeNoFractions) {

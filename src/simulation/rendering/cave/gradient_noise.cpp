@@ -12,11 +12,6 @@ int wrap(int i, int period) {
   return rest < 0 ? rest + period : rest;
 }
 
-int floorToInt(float x) {
-  const int truncated = static_cast<int>(x);
-  return truncated - (static_cast<float>(truncated) > x ? 1 : 0);
-}
-
 uint32_t latticeHash(int x, int y, int z, uint32_t seed) {
   uint32_t h = seed * 0x9E3779B1u;
   h ^= static_cast<uint32_t>(x) * 0x85EBCA77u;

@@ -6,6 +6,12 @@
 
 namespace lodeline {
 
+/// The greatest integer that is not greater than x.
+inline int floorToInt(float x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (static_cast<float>(truncated) > x ? 1 : 0);
+}
+
 /// Gradient noise (K. Perlin, "Improving noise", SIGGRAPH 2002) with hashed lattice gradients in place of a
 /// permutation table: smooth, zero at lattice points, about -1..1, one feature per unit length. With `period`
 /// above zero the noise repeats after that many units along every axis.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "lodeline/util/wide_vectors.h"
+#include "lodeline/util/simd_dispatch.h"
 #include "simulation/rendering/cave/gradient_noise.h"
 #include "simulation/rendering/optics/fast_exp.h"
 #include "simulation/shared/random.h"
@@ -78,13 +78,8 @@ void strew(const Strewn& kind, Random random, int n, std::vector<RockValue>& val
   }
 }
 
-int8_t quantise(float value) {
+int8_t quantize(float value) {
   return static_cast<int8_t>(std::lround(127.0f * std::clamp(value, -1.0f, 1.0f)));
-}
-
-int floorToInt(float x) {
-  const int truncated = static_cast<int>(x);
-  return truncated - (static_cast<float>(truncated) > x ? 1 : 0);
 }
 
 }  // namespace
@@ -113,13 +108,13 @@ SolidTexture::SolidTexture(uint64_t seed) {
       for (int x = 0; x <= n; ++x) {
         const float half = 0.5f * n / kSlopeRange;
         Voxel& voxel = levels_[0].voxels[(static_cast<size_t>(z) * n + y) * (n + 1) + x];
-        voxel.channel[0] = quantise(values[index(x, y, z)].reflectance - offset);
+        voxel.channel[0] = quantize(values[index(x, y, z)].reflectance - offset);
         voxel.channel[1] =
-            quantise(half * (values[index(x + 1, y, z)].height - values[index(x - 1, y, z)].height));
+            quantize(half * (values[index(x + 1, y, z)].height - values[index(x - 1, y, z)].height));
         voxel.channel[2] =
-            quantise(half * (values[index(x, y + 1, z)].height - values[index(x, y - 1, z)].height));
+            quantize(half * (values[index(x, y + 1, z)].height - values[index(x, y - 1, z)].height));
         voxel.channel[3] =
-            quantise(half * (values[index(x, y, z + 1)].height - values[index(x, y, z - 1)].height));
+            quantize(half * (values[index(x, y, z + 1)].height - values[index(x, y, z - 1)].height));
       }
   });
   while (static_cast<int>(levels_.size()) < kLevels) addCoarserLevel();

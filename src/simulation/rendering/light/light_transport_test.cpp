@@ -42,7 +42,7 @@ TEST(Lamp, HalvesAtItsHalfAnglesAndFallsWithTheSquare) {
   EXPECT_NEAR(flood.irradiance(towards, 1.0f) / flood.irradiance(towards, 3.0f), 9.0, 1e-3);
 }
 
-TEST(Water, PhaseFunctionIsNormalised) {
+TEST(Water, PhaseFunctionIsNormalized) {
   WaterOptions options;
   options.asymmetry = 0.8;
   const Water water(options, 0.0, 1);

@@ -22,7 +22,7 @@ struct RenderSettings {
   WaterOptions water;
   SnowOptions snow;
   std::optional<SecondDiver> second_diver;
-  LensOptions lens;
+  IntrinsicsOptions lens;
   SensorOptions sensor;
   bool motion_blur = true;
 

@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-CameraOptics::CameraOptics(const CameraCalibration& calibration, const LensOptions& lens)
+CameraOptics::CameraOptics(const CameraCalibration& calibration, const IntrinsicsOptions& lens)
     : width_(calibration.width_px),
       height_(calibration.height_px),
       body_from_camera_(calibration.body_from_camera),

@@ -11,7 +11,7 @@
 namespace lodeline {
 
 /// What lies between the water and the image plane.
-struct LensOptions {
+struct IntrinsicsOptions {
   std::optional<FlatPort> port;  ///< the calibration then describes the camera in air
   double vignetting = 0.35;      ///< loss of light in the image's corners beyond the cosine law, 0..1
   double blur_sigma_px = 0.55;   ///< point spread function of lens and pixel
@@ -20,7 +20,7 @@ struct LensOptions {
 /// The ray of every pixel of one camera, computed once with the exact inverse of its distortion.
 class CameraOptics {
  public:
-  CameraOptics(const CameraCalibration& calibration, const LensOptions& lens);
+  CameraOptics(const CameraCalibration& calibration, const IntrinsicsOptions& lens);
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -62,7 +62,7 @@ TEST(MotionBlur, TurnSpreadsAPointAlongItsPath) {
   calibration.fx_px = calibration.fy_px = 100.0;
   calibration.cx_px = 80.0;
   calibration.cy_px = 60.0;
-  const CameraOptics optics(calibration, LensOptions{});
+  const CameraOptics optics(calibration, IntrinsicsOptions{});
   cv::Mat light(120, 160, CV_32F, cv::Scalar(0)), range(120, 160, CV_32F, cv::Scalar(2.0));
   light.at<float>(60, 80) = 1.0f;
   // Yaw of 0.1 rad during the exposure: ten pixels.

@@ -5,7 +5,7 @@
 namespace lodeline {
 
 /// Scrambles 64 bits; equal inputs give equal outputs on every machine, which keeps pictures reproducible
-/// whatever the order of their pixels. The finaliser of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
+/// whatever the order of their pixels. The finalizer of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
 inline uint64_t scrambleBits(uint64_t x) {
   x += 0x9E3779B97F4A7C15ull;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;

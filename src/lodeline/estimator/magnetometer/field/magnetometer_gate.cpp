@@ -99,7 +99,7 @@ GateDecision MagnetometerGate::decide(Time time, const FieldCheck& earth,
 }
 
 void MagnetometerGate::keepAccount(MagnetometerStatus status, double since_s) {
-  const double kept = std::exp(-since_s / options_.account_s);
+  const double kept = std::exp(-since_s / options_.rejection_window_s);
   agreed_s_ *= kept;
   rejected_s_ *= kept;
   // A readmitted field agrees with nothing but itself.
@@ -108,13 +108,13 @@ void MagnetometerGate::keepAccount(MagnetometerStatus status, double since_s) {
 }
 
 bool MagnetometerGate::isInconsistent(const FieldCheck& earth) const {
-  return rejected_s_ > options_.max_rejected_ratio * agreed_s_ + options_.credit_s ||
-         earth.lasting_sigma_rad > options_.max_lasting_sigma_rad;
+  return rejected_s_ > options_.max_rejected_ratio * agreed_s_ + options_.rejection_margin_s ||
+         earth.correlated_sigma_rad > options_.max_correlated_sigma_rad;
 }
 
 bool MagnetometerGate::rehabilitated(Time time, const FieldCheck& earth) {
-  const bool prevails = agreed_s_ > rejected_s_ + options_.credit_s && !isInconsistent(earth);
-  if (!prevails && (time - *distrusted_since_).seconds() < options_.distrust_s) return false;
+  const bool prevails = agreed_s_ > rejected_s_ + options_.rejection_margin_s && !isInconsistent(earth);
+  if (!prevails && (time - *distrusted_since_).seconds() < options_.retry_after_s) return false;
   distrusted_since_.reset();
   if (!prevails) agreed_s_ = rejected_s_ = 0.0;
   rejected_since_ = time;

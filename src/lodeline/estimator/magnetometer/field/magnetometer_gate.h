@@ -26,7 +26,8 @@ struct FieldCheck {
   double norm_error = 0.0, norm_sigma = 0.0;  ///< relative to the expected field
   double dip_error_rad = 0.0, dip_sigma_rad = 0.0;
   double heading_error_rad = 0.0, heading_sigma_rad = 0.0;
-  double lasting_sigma_rad = 0.0;  ///< of a heading from this field, by what FieldErrors has learned
+  double correlated_sigma_rad =
+      0.0;  ///< of a heading from this field, by what MagneticNoiseEstimator has learned
 };
 
 struct GateDecision {

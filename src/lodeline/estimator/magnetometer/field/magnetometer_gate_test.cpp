@@ -191,7 +191,7 @@ TEST_F(MagnetometerGateTest, BelievesASensorThatIsDisturbedAQuarterOfTheTime) {
 
 TEST_F(MagnetometerGateTest, BelievesNothingOfAFieldThatNeverAgreesWell) {
   FieldCheck poor = headingOff(0.01);
-  poor.lasting_sigma_rad = 0.03;
+  poor.correlated_sigma_rad = 0.03;
   run(10.0, poor);
   EXPECT_EQ(last_.status, Status::Inconsistent);
   // It takes both agreement and a field that has become steady.

@@ -9,7 +9,7 @@
 #include "lodeline/io/rosbag1/image_messages.h"
 #include "lodeline/io/rosbag1/messages.h"
 
-// Reading all messages of a bag that lies in the file cache, topic by topic side by side as the synchroniser
+// Reading all messages of a bag that lies in the file cache, topic by topic side by side as the synchronizer
 // does.
 
 namespace lodeline {

@@ -39,7 +39,7 @@ TypeDescription describe(const std::string& type) {
   throw std::logic_error("no definition of " + type);
 }
 
-/// Bytes in ROS's serialisation with the description of their type. ROS's own message structs are not used:
+/// Bytes in ROS's serialization with the description of their type. ROS's own message structs are not used:
 /// those of Debian 12 do not compile as C++20.
 struct SerializedMessage {
   TypeDescription type;

@@ -19,7 +19,7 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// `type`: e.g. "sensor_msgs/Imu"; of those in messages.h. `message` in ROS's serialisation. Throws
+  /// `type`: e.g. "sensor_msgs/Imu"; of those in messages.h. `message` in ROS's serialization. Throws
   /// InputError for a time before 1970 or after 2106, which a bag cannot hold.
   void write(const std::string& topic, const std::string& type, Time received, wire::Bytes message);
   /// Completes the file. Throws InputError where that fails.

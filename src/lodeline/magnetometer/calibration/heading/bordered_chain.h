@@ -9,7 +9,7 @@ namespace lodeline {
 /// Gauss-Newton normal equations of a chain of small states x_0 … x_n, each tied to the next, and of a few
 /// parameters p that touch all of them. Eliminating the states one after the other (forward sweep, then back
 /// substitution) is the batch form of a Kalman filter with Rauch-Tung-Striebel smoothing: what is left are
-/// the parameters' equations with the states marginalised.
+/// the parameters' equations with the states marginalized.
 template <int kParameters>
 class BorderedChain {
  public:

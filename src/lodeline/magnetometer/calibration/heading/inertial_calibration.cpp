@@ -54,7 +54,7 @@ class Calibrator {
              const InertialCalibrationOptions& options)
       : options_(options), smoother_(field, imu, start, options), stated_(noise) {
     noise_.gyroscope_density = noise.gyroscope_density_rad_per_s_sqrtHz;
-    smoother_.linearise();
+    smoother_.linearize();
     noise_.reading_sigma = std::max(1e-6, residualRms());
     noise_.acceleration_sigma = std::max(0.02, smoother_.accelerationRms());
   }
@@ -87,7 +87,7 @@ class Calibrator {
   /// Gauss-Newton until the steps vanish.
   void iterate(bool with_time_offset) {
     for (int i = 0; i < options_.max_iterations; ++i) {
-      smoother_.linearise();
+      smoother_.linearize();
       InertialSmoother::Chain chain = smoother_.equations(noise_);
       const auto marginal = chain.eliminate();
       const Basis active = activeBasis(options_, smoother_.parameters().soft_iron, with_time_offset);
@@ -96,7 +96,7 @@ class Calibrator {
       smoother_.step(reduced.step, chain.statesFor(reduced.step));
       noise_.acceleration_sigma = std::max(0.02, smoother_.accelerationRms());
       if (reduced.step.head<kDip>().cwiseAbs().maxCoeff() < 1e-7) {
-        smoother_.linearise();
+        smoother_.linearize();
         return;
       }
     }
@@ -114,7 +114,7 @@ class Calibrator {
   }
 
   /// One coordinate's minimum by golden section in its logarithm.
-  void minimise(double SmootherNoise::*sigma, double least, double greatest, const Basis& active) {
+  void minimize(double SmootherNoise::*sigma, double least, double greatest, const Basis& active) {
     constexpr double kGolden = 0.618033988749895;
     double a = std::log(least), b = std::log(greatest);
     const auto value = [&](double log_sigma) {
@@ -148,8 +148,8 @@ class Calibrator {
     constexpr int kRounds = 2;
     for (int round = 0; round < kRounds; ++round) {
       const double rms = std::max(1e-9, residualRms());
-      minimise(&SmootherNoise::reading_sigma, 0.5 * rms, 3.0 * rms, active);
-      minimise(&SmootherNoise::gyroscope_density, 0.5 * stated, 100.0 * stated, active);
+      minimize(&SmootherNoise::reading_sigma, 0.5 * rms, 3.0 * rms, active);
+      minimize(&SmootherNoise::gyroscope_density, 0.5 * stated, 100.0 * stated, active);
     }
   }
 

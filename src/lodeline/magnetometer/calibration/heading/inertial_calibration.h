@@ -50,7 +50,7 @@ struct InertialCalibration {
 /// together with the parameters from gyroscope, accelerometer and magnetometer, so that the readings are
 /// compared with the turned field and not only with its size. Here the orientations are smoothed in batch
 /// (BorderedChain) where the paper filters, and the standard deviations of magnetometer and gyroscope noise
-/// are those that maximise the likelihood with orientations and parameters integrated out (Laplace).
+/// are those that maximize the likelihood with orientations and parameters integrated out (Laplace).
 ///
 /// `field`: readings in units of the field's size, uncorrected, in order of time, without outliers. `start`:
 /// soft and hard iron from the fit of the ellipsoid, rotation and time offset from alignField(). Throws

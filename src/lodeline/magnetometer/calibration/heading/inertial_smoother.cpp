@@ -89,7 +89,7 @@ void InertialSmoother::orient(const GyroscopePath& path) {
   terms_.resize(moments_.size());
 }
 
-void InertialSmoother::linearise() {
+void InertialSmoother::linearize() {
   const GyroscopePath path(imu_, parameters_.gyroscope_bias_B);
   const Duration offset = Duration::fromSeconds(parameters_.time_offset_s);
   std::vector<GyroscopePath::Point> points;

@@ -16,7 +16,7 @@ struct SmootherNoise {
 };
 
 /// The orientations at the moments of a record and everything that ties them to each other and to the
-/// parameters, linearised at one point.
+/// parameters, linearized at one point.
 class InertialSmoother {
  public:
   using Chain = BorderedChain<inertial_parameter::kSize>;
@@ -36,7 +36,7 @@ class InertialSmoother {
   const InertialParameters& parameters() const { return parameters_; }
 
   /// Takes all residuals and Jacobians anew at the present orientations and parameters.
-  void linearise();
+  void linearize();
   /// The normal equations, half the sum of squares in them.
   Chain equations(const SmootherNoise& noise) const;
   /// Sum of the logarithms of the standard deviations of everything in equations().
@@ -45,7 +45,7 @@ class InertialSmoother {
   void step(const Eigen::Matrix<double, inertial_parameter::kSize, 1>& parameters,
             const std::vector<Vec3>& rotations);
 
-  /// Field residuals at the last linearisation, per moment.
+  /// Field residuals at the last linearization, per moment.
   Vec3 fieldResidualAt(size_t moment) const { return terms_[moment].field.value; }
   size_t readingsAt(size_t moment) const { return moments_[moment].stamps.size(); }
   /// RMS per axis of the specific force's distance from gravity, m/s^2.

@@ -26,7 +26,7 @@ std::optional<size_t> poseNear(const Trajectory& trajectory, Time time) {
   return static_cast<size_t>(nearest - poses.begin());
 }
 
-/// Corrections of camera 0 are in body axes, those of further cameras in camera 0's.
+/// Corrections of camera 0 are in body axes, those of secondary cameras in camera 0's.
 void correct(const std::vector<Eigen::Matrix<double, 6, 1>>& corrections,
              std::vector<CameraCalibration>* cameras) {
   if (corrections.empty() || corrections.size() != cameras->size()) return;
@@ -69,9 +69,9 @@ MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagn
     }
   }
   correct(run.camera_corrections, &result.cameras);
-  if (run.lens_corrections.size() == result.cameras.size()) {
+  if (run.intrinsics_corrections.size() == result.cameras.size()) {
     for (size_t i = 0; i < result.cameras.size(); ++i)
-      result.cameras[i] = correctedLens(result.cameras[i], run.lens_corrections[i].data());
+      result.cameras[i] = correctedIntrinsics(result.cameras[i], run.intrinsics_corrections[i].data());
   }
   if (result.images.empty()) {
     diagnostics->report(Severity::Warning, "no_image_with_pose",

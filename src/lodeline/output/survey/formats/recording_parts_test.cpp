@@ -87,7 +87,7 @@ TEST(RecordingImages, BelongToThePosesOfTheirTimes) {
   source.rig_.cameras = {camera};
   Eigen::Matrix<double, 6, 1> lens = Eigen::Matrix<double, 6, 1>::Zero();
   lens[0] = 0.01;
-  run.lens_corrections = {lens};
+  run.intrinsics_corrections = {lens};
   Diagnostics diagnostics;
   const MapImages images = recordingImages(source, run, &diagnostics);
   ASSERT_EQ(images.images.size(), 2U);

@@ -65,7 +65,7 @@ struct ColmapImage {
 struct ColmapModel {
   std::string cameras, images, points3D;
 };
-/// Landmarks come without sightings, of which a run keeps only the number.
+/// Landmarks come without observations, of which a run keeps only the number.
 ColmapModel colmapModel(const DiveMap& map, const std::vector<CameraCalibration>& cameras,
                         const std::vector<ColmapImage>& images);
 

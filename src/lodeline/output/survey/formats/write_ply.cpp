@@ -19,12 +19,12 @@ void append(std::string* bytes, const Value& value) {
 }
 
 void appendVertex(std::string* bytes, const Vec3& position, const Vec3& normal, const Colour& colour,
-                  int sightings) {
+                  int observations) {
   for (const Vec3& vector : {position, normal}) {
     for (int axis = 0; axis < 3; ++axis) append(bytes, static_cast<float>(vector[axis]));
   }
   append(bytes, colour);
-  append(bytes, static_cast<int32_t>(sightings));
+  append(bytes, static_cast<int32_t>(observations));
 }
 
 /// Shallow is yellow, deep is blue.
@@ -46,8 +46,8 @@ std::string header(const DiveMap& map, size_t vertices, size_t edges) {
   text += fmt::format("element vertex {}\n", vertices);
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) text += fmt::format("property float {}\n", name);
   for (const char* name : {"red", "green", "blue"}) text += fmt::format("property uchar {}\n", name);
-  text += fmt::format("property int sightings\nelement edge {}\nproperty int vertex1\nproperty int vertex2\n",
-                      edges);
+  text += fmt::format(
+      "property int observations\nelement edge {}\nproperty int vertex1\nproperty int vertex2\n", edges);
   return text + "end_header\n";
 }
 
@@ -67,7 +67,7 @@ std::string plyBytes(const DiveMap& map) {
   }
   const std::vector<Vec3> normals = normalsTowards(walls, way);
   for (size_t i = 0; i < walls.size(); ++i) {
-    appendVertex(&bytes, walls[i], normals[i], kWallColour, map.landmarks[i].sightings);
+    appendVertex(&bytes, walls[i], normals[i], kWallColour, map.landmarks[i].observations);
   }
   for (size_t i = 1; i < way.size(); ++i) {
     append(&bytes, static_cast<int32_t>(i - 1));

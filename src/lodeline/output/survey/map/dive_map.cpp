@@ -189,7 +189,7 @@ void survey(const DiveMapOptions& options, const std::vector<Vec3>& extra_walls_
   map->survey.leg_sigma_ENU = legSigma(endSigma(*map, options, diagnostics), map->survey.legs());
   std::vector<Vec3> walls = extra_walls_ENU;
   for (const MapLandmark& landmark : map->landmarks) {
-    if (landmark.sightings >= options.min_sightings) walls.push_back(landmark.position);
+    if (landmark.observations >= options.min_observations) walls.push_back(landmark.position);
   }
   measurePassage(walls, options.passage, &map->survey);
 }

@@ -35,7 +35,7 @@ struct DiveMapOptions {
   std::optional<double> relative_sigma;  ///< of the end, by the length of the line; else as the run says
   StationOptions stations;
   PassageOptions passage;
-  int min_sightings = 3;  ///< of a landmark that is taken for wall
+  int min_observations = 3;  ///< of a landmark that is taken for wall
   bool is_closed = false;
   std::vector<std::string> notes;  ///< what else the headers are to say
 };

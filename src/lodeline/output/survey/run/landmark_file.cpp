@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little, "landmarks.ply is read
 /// One vertex as it lies in the file.
 struct Vertex {
   std::array<float, 3> position;
-  int32_t sightings;
+  int32_t observations;
 };
 static_assert(sizeof(Vertex) == 16);
 
@@ -34,7 +34,7 @@ static_assert(sizeof(Vertex) == 16);
 /// Reads the header and gives the number of vertices; nothing where the file ends before its header does.
 std::optional<size_t> readHeader(std::ifstream& stream, const std::filesystem::path& file) {
   constexpr std::array<const char*, 4> kProperties = {"property float x", "property float y",
-                                                      "property float z", "property int sightings"};
+                                                      "property float z", "property int observations"};
   std::string line, properties, wanted;
   for (const char* property : kProperties) wanted += std::string(property) + "\n";
   std::optional<size_t> count;
@@ -64,7 +64,7 @@ std::vector<MapLandmark> readLandmarkFile(const std::filesystem::path& file, Dia
     ++read;
     const Vertex vertex = std::bit_cast<Vertex>(bytes);
     const Vec3 position(vertex.position[0], vertex.position[1], vertex.position[2]);
-    if (position.allFinite()) landmarks.push_back({position, vertex.sightings});
+    if (position.allFinite()) landmarks.push_back({position, vertex.observations});
   }
   if (!count || read != *count) {
     diagnostics->report(Severity::Warning, "landmarks_incomplete",

@@ -11,7 +11,7 @@ namespace lodeline {
 /// A point of a map, in the world of the map's trajectory.
 struct MapLandmark {
   Vec3 position = Vec3::Zero();  ///< m
-  int sightings = 0;
+  int observations = 0;
 };
 
 /// Reads `landmarks.ply` as `lodeline run` writes it; points that are not finite are left out. Of a run that

@@ -28,9 +28,9 @@ Trajectory readPoses(const fs::path& folder, std::string* file, Diagnostics* dia
     options.format = TrajectoryFormat::Tum;
     return readTrajectory(folder / name, options, *diagnostics);
   }
-  const RecognisedFile recognised = recogniseFile(folder);
+  const RecognizedFile recognized = recognizeFile(folder);
   const std::string needed = "no trajectory.tum there; give the folder that `lodeline run -o` wrote";
-  if (!recognised.isFolder()) refuseFile(recognised, needed);
+  if (!recognized.isFolder()) refuseFile(recognized, needed);
   throw InputError(fmt::format("{}: {}", folder.string(), needed));
 }
 
@@ -132,7 +132,7 @@ void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
       correction[row + 2] = camera.at("principal_point_px").at(i).get<double>();
       correction[row + 4] = camera.at("radial").at(i).get<double>();
     }
-    run->lens_corrections.push_back(correction);
+    run->intrinsics_corrections.push_back(correction);
   }
 }
 

@@ -37,7 +37,7 @@ struct RunFolder {
   /// empty where it estimated none.
   std::vector<Eigen::Matrix<double, 6, 1>> camera_corrections;
   std::vector<Eigen::Matrix<double, 6, 1>>
-      lens_corrections;  ///< as in factors/intrinsics_factor.h; may be empty
+      intrinsics_corrections;  ///< as in factors/intrinsics_factor.h; may be empty
 };
 
 /// Reads a run folder: poses from `trajectory_refined.tum` where there is one (with `states_refined.csv` and

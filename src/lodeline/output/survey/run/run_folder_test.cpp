@@ -27,12 +27,12 @@ constexpr const char* kSummary =
 std::string plyOf(const std::vector<MapLandmark>& landmarks) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment x\nelement vertex " + std::to_string(landmarks.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nproperty int sightings\nend_header\n";
+      "\nproperty float x\nproperty float y\nproperty float z\nproperty int observations\nend_header\n";
   for (const MapLandmark& landmark : landmarks) {
     const Eigen::Vector3f position = landmark.position.cast<float>();
-    const int32_t sightings = landmark.sightings;
+    const int32_t observations = landmark.observations;
     bytes.append(reinterpret_cast<const char*>(position.data()), 12);
-    bytes.append(reinterpret_cast<const char*>(&sightings), 4);
+    bytes.append(reinterpret_cast<const char*>(&observations), 4);
   }
   return bytes;
 }
@@ -64,7 +64,7 @@ TEST_F(RunFolderTest, GivesWhatTheRunKnew) {
   EXPECT_EQ(run.uncertainties[1].covariance(2, 1), 2.0);
   EXPECT_EQ(run.uncertainties[1].covariance(2, 2), 16.0);
   ASSERT_EQ(run.landmarks.size(), 1U);
-  EXPECT_EQ(run.landmarks[0].sightings, 7);
+  EXPECT_EQ(run.landmarks[0].observations, 7);
   EXPECT_EQ(run.heading_reference, HeadingReference::Magnetic);
   EXPECT_EQ(run.program, "lodeline 9");
   ASSERT_TRUE(run.site);
@@ -79,7 +79,7 @@ TEST_F(RunFolderTest, PrefersTheRefinedTrajectory) {
   const RunFolder run = read();
   EXPECT_EQ(run.trajectory.poses[1].world_from_body.translation.x(), 9.0);
   ASSERT_EQ(run.landmarks.size(), 2U);
-  EXPECT_EQ(run.landmarks[1].sightings, 9);
+  EXPECT_EQ(run.landmarks[1].observations, 9);
   EXPECT_EQ(run.uncertainties.size(), 2U) << "of states.csv, where there is no refined one";
 }
 

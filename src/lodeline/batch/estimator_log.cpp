@@ -1,0 +1,154 @@
+#include "lodeline/batch/estimator_log.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodeline {
+namespace {
+
+constexpr double kLongestStart_s = 10.0;  // for which frames before the first pose are kept
+
+/// One measurement in place of `count`, which the run took for as many independent ones.
+void weighAs(int count, FieldMeasurement* measurement) {
+  const double share = 1.0 / std::sqrt(static_cast<double>(count));
+  measurement->noise.sigma_T *= share;
+  measurement->noise.rotation_sigma_rad *= share;
+  measurement->noise.tilt_sigma_rad *= share;
+}
+
+}  // namespace
+
+void EstimatorLog::add(const FrameTracks& tracks, std::span<const ImuSample> imu,
+                       const FrameEstimate& estimate, const Estimator& estimator) {
+  for (const ImuSample& sample : imu) {
+    if (imu_.empty() || sample.time > imu_.back().time) imu_.push_back(sample);
+  }
+  RecordedState state;
+  state.state.time = tracks.time;
+  state.observations = tracks.observations;
+  if (!imu.empty()) state.gyroscope_B = imu.back().angular_velocity_B;
+  if (estimate.status == Status::Waiting) {
+    waiting_.push_back(std::move(state));
+    const Time oldest = tracks.time - Duration::fromSeconds(kLongestStart_s);
+    std::erase_if(waiting_, [&](const RecordedState& s) { return s.state.time < oldest; });
+    std::erase_if(imu_, [&](const ImuSample& sample) { return sample.time < oldest; });
+    return;
+  }
+  frames_.push_back(estimate);
+  state.frame = frames_.size() - 1;
+  if (frames_.size() == 1) {
+    waiting_.push_back(std::move(state));
+    start(estimate, estimator);
+    return;
+  }
+  if (estimate.magnetometer.field_epoch != field_epoch_) forgetFields(estimate.magnetometer.field_epoch);
+  const Frame& newest = estimator.window().newest();
+  state.state = estimate.state;
+  state.is_keyframe = estimate.is_keyframe;
+  if (newest.magnetometer && !newest.magnetometer->disturbed && !newest.magnetometer->relative)
+    state.magnetometer = newest.magnetometer;
+  state.depth = newest.depth;
+  gauge_epoch_ += estimate.depth.status == DepthStatus::Restarted;
+  state.gauge_epoch = gauge_epoch_;
+  append(std::move(state));
+}
+
+void EstimatorLog::start(const FrameEstimate& estimate, const Estimator& estimator) {
+  for (const auto& frame : estimator.window().frames()) {
+    const auto seen = std::find_if(waiting_.begin(), waiting_.end(), [&](const RecordedState& state) {
+      return state.state.time == frame->time;
+    });
+    if (seen == waiting_.end()) continue;
+    RecordedState state = std::move(*seen);
+    state.state = frame->time == estimate.time ? estimate.state : frame->state();
+    state.is_keyframe = true;
+    states_.push_back(std::move(state));
+  }
+  waiting_.clear();
+  rememberPrior(estimator);
+}
+
+void EstimatorLog::forgetFields(int epoch) {
+  field_epoch_ = epoch;
+  fields_ = 0;
+  for (RecordedState& state : states_) state.magnetometer.reset();
+  if (newest_) newest_->magnetometer.reset();
+}
+
+void EstimatorLog::rememberPrior(const Estimator& estimator) {
+  start_prior_.prior = estimator.prior();
+  for (const Prior::Block& block : start_prior_.prior.blocks) {
+    std::string name;
+    for (const auto& frame : estimator.window().frames()) {
+      if (block.value == frame->pose.data()) name = "pose";
+      if (block.value == frame->motion.data()) name = "motion";
+    }
+    for (const auto& state : estimator.window().globals()) {
+      if (block.value == state->value.data()) name = state->name;
+    }
+    start_prior_.names.push_back(name);
+  }
+}
+
+bool EstimatorLog::isState(const RecordedState& candidate) const {
+  const double since_s = (candidate.state.time - states_.back().state.time).seconds();
+  // Images come at times that are not exactly even.
+  constexpr double kTolerance_s = 1e-3;
+  const double depth_interval_s = 0.4 * state_interval_s_;
+  return candidate.is_keyframe || since_s > state_interval_s_ - kTolerance_s ||
+         (candidate.depth && since_s > depth_interval_s);
+}
+
+void EstimatorLog::append(RecordedState state) {
+  fields_ += state.magnetometer.has_value();
+  depths_ += state.depth.has_value();
+  if (!isState(state)) {
+    newest_ = std::move(state);
+    return;
+  }
+  newest_.reset();
+  if (state.magnetometer) {
+    weighAs(fields_, &*state.magnetometer);
+    fields_ = 0;
+  }
+  if (state.depth) {
+    state.depth->sigma_m /= std::sqrt(static_cast<double>(depths_));
+    depths_ = 0;
+  }
+  states_.push_back(std::move(state));
+}
+
+void EstimatorLog::finish(const Estimator& estimator) {
+  if (newest_) states_.push_back(std::move(*newest_));
+  newest_.reset();
+  for (const auto& state : estimator.window().globals()) globals_[state->name] = state->value;
+}
+
+std::span<const ImuSample> EstimatorLog::imuBetween(Time begin, Time end) const {
+  const auto before = [](const ImuSample& sample, Time time) { return sample.time < time; };
+  const auto first = std::lower_bound(imu_.begin(), imu_.end(), begin, before);
+  const auto last = std::lower_bound(first, imu_.end(), end, before);
+  const size_t count = static_cast<size_t>(last - first) + (last != imu_.end() ? 1 : 0);
+  return std::span(imu_).subspan(static_cast<size_t>(first - imu_.begin()), count);
+}
+
+InertialDoubt EstimatorLog::doubtBetween(Time begin, Time end) const {
+  const auto first =
+      std::upper_bound(frames_.begin(), frames_.end(), begin,
+                       [](Time time, const FrameEstimate& frame) { return time < frame.time; });
+  InertialDoubt sum;
+  for (auto frame = first; frame != frames_.end() && frame->time <= end; ++frame) {
+    const InertialDoubt& doubt = frame->inertial_doubt;
+    sum.gyroscope_density_rad_per_s_sqrtHz =
+        std::max(sum.gyroscope_density_rad_per_s_sqrtHz, doubt.gyroscope_density_rad_per_s_sqrtHz);
+    sum.accelerometer_density_m_per_s2_sqrtHz =
+        std::max(sum.accelerometer_density_m_per_s2_sqrtHz, doubt.accelerometer_density_m_per_s2_sqrtHz);
+    sum.gyroscope_bias_step_rad_per_s =
+        std::hypot(sum.gyroscope_bias_step_rad_per_s, doubt.gyroscope_bias_step_rad_per_s);
+    sum.accelerometer_bias_step_m_per_s2 =
+        std::hypot(sum.accelerometer_bias_step_m_per_s2, doubt.accelerometer_bias_step_m_per_s2);
+  }
+  return sum;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,265 @@
+#include "lodeline/estimator/problem/factor_builder.h"
+
+#include <ceres/normal_prior.h>
+
+#include "lodeline/estimator/state/depth_states.h"
+#include "lodeline/estimator/state/inertial_states.h"
+#include "lodeline/estimator/state/magnetometer_states.h"
+#include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/inertial_factor.h"
+#include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/factors/sensors/magnetometer_relative_factor.h"
+
+namespace lodeline {
+
+namespace {
+
+std::shared_ptr<const ceres::LossFunction> lossOf(const FeatureTrack& track, double scale_sigmas) {
+  return std::make_shared<ceres::ScaledLoss>(new ceres::CauchyLoss(scale_sigmas), track.weight,
+                                             ceres::TAKE_OWNERSHIP);
+}
+
+/// The target of a reprojection factor, as the pose that two keyframes stand in for.
+void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor) {
+  constexpr size_t kTarget = 1;  // of the blocks of such factors
+  const auto& [before_id, after_id, between] = *target.interpolated;
+  Frame &before = *window.find(before_id), &after = *window.find(after_id);
+  factor->function = std::make_unique<InterpolatedPoseFactor>(std::move(factor->function), kTarget, between,
+                                                              before.firstPose(), after.firstPose());
+  factor->blocks[kTarget] = before.pose.data();
+  factor->blocks.push_back(after.pose.data());
+}
+
+/// That a state is zero, with so much on each of its entries.
+Factor zeroPrior(ParameterBlock& state, double sigma) {
+  const auto size = static_cast<Eigen::Index>(state.value.size());
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(ceres::Matrix::Identity(size, size) / sigma,
+                                                         ceres::Vector::Zero(size));
+  factor.blocks = {state.value.data()};
+  return factor;
+}
+
+}  // namespace
+
+double costOf(const Factor& factor, std::vector<double>& residual) {
+  residual.resize(factor.function->num_residuals());
+  factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
+  const double squared = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()).squaredNorm();
+  if (!factor.loss) return 0.5 * squared;
+  double rho[3];
+  factor.loss->Evaluate(squared, rho);
+  return 0.5 * rho[0];
+}
+
+FactorBuilder::FactorBuilder(const Rig& rig, const EstimatorOptions& options)
+    : gravity_W_(options.gravity_W),
+      imu_axes_(options.imu_axes),
+      placement_sigma_m_(options.camera_calibration.stereo_position_sigma_m),
+      robust_scale_(options.solver.robust_scale_sigmas) {
+  if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
+  for (const CameraCalibration& camera : rig.cameras) {
+    body_from_camera_.push_back(camera.body_from_camera);
+    camera0_from_camera_.push_back(body_from_camera_.front().inverse() * camera.body_from_camera);
+  }
+}
+
+Factor FactorBuilder::inertial(const Window& window, Frame& before, Frame& frame) const {
+  Factor factor;
+  const ImuAxesStates axes(window);
+  const InertialLinearizationPoints linearization_points{
+      before.firstPose(),
+      before.firstMotion(),
+      frame.firstPose(),
+      frame.firstMotion(),
+      axes.gyroscope ? axes.gyroscope->linearizationPoint() : nullptr,
+      axes.accelerometer ? axes.accelerometer->linearizationPoint() : nullptr};
+  factor.function = std::make_unique<InertialFactor>(
+      frame.from_previous.get(), gravity_W_, linearization_points,
+      EstimatedAxes{axes.gyroscope != nullptr, axes.accelerometer != nullptr});
+  factor.blocks = {before.pose.data(), before.motion.data(), frame.pose.data(), frame.motion.data()};
+  if (axes.gyroscope) factor.blocks.push_back(axes.gyroscope->value.data());
+  if (axes.accelerometer) factor.blocks.push_back(axes.accelerometer->value.data());
+  return factor;
+}
+
+std::vector<Factor> FactorBuilder::imuAxes(const Window& window) const {
+  constexpr double kUsualNorm = 3.0;  // of nine sigmas
+  std::vector<Factor> priors;
+  const auto add = [&](ParameterBlock* axes, double sigma) {
+    if (!axes) return;
+    priors.push_back(zeroPrior(*axes, sigma));
+    priors.back().loss = std::make_shared<ceres::CauchyLoss>(kUsualNorm);
+    priors.push_back(zeroPrior(*axes, imu_axes_.worst_sigma));
+  };
+  const ImuAxesStates axes(window);
+  add(axes.gyroscope, imu_axes_.gyroscope_sigma);
+  add(axes.accelerometer, imu_axes_.accelerometer_sigma);
+  return priors;
+}
+
+std::optional<Factor> FactorBuilder::magnetometer(const Window& window, Frame* before, Frame& frame) const {
+  if (!frame.magnetometer) return std::nullopt;
+  const FieldMeasurement& measured = *frame.magnetometer;
+  Factor factor;
+  if (measured.relative) {
+    if (!before || !frame.from_previous) return std::nullopt;
+    const Quat gamma =
+        frame.from_previous->correctedFor(before->gyroscopeBias(), before->accelerometerBias()).gamma;
+    factor.function = std::make_unique<MagnetometerRelativeFactor>(
+        measured.mean.newest_B, gamma * measured.mean.field_B, measured.mean.readings, measured.noise.sigma_T,
+        before->firstPose(), frame.firstPose());
+    factor.blocks = {before->pose.data(), frame.pose.data()};
+    return factor;
+  }
+  const MagnetometerStates states(window);
+  const double* first_pose = frame.firstPose();
+  const Quat reference = poseFromBlock(first_pose ? first_pose : frame.pose.data()).rotation;
+  const Vec3 field_W = states.field_W() + (measured.disturbed ? states.disturbance_W() : Vec3::Zero());
+  factor.function = std::make_unique<MagnetometerFieldFactor>(
+      measured.mean.field_B, measured.mean.carried, reference, field_W, measured.noise, measured.disturbed,
+      first_pose, states.field->linearizationPoint());
+  factor.blocks = {frame.pose.data(), states.field->value.data(), states.offset->value.data()};
+  if (measured.disturbed) factor.blocks.push_back(states.disturbance->value.data());
+  return factor;
+}
+
+std::optional<Factor> FactorBuilder::depth(const Window& window, Frame& frame) const {
+  if (!frame.depth) return std::nullopt;
+  const DepthStates states(window);
+  Factor factor;
+  factor.function = std::make_unique<DepthFactor>(frame.depth->depth, port_B_, frame.depth->sigma_m,
+                                                  frame.firstPose(), states.scale->linearizationPoint());
+  factor.blocks = {frame.pose.data(), states.offset->value.data(), states.scale->value.data(),
+                   states.lag->value.data()};
+  return factor;
+}
+
+std::optional<Factor> FactorBuilder::priorOf(ParameterBlock& state) const {
+  if (state.priors.empty()) return std::nullopt;
+  const auto size = static_cast<Eigen::Index>(state.priors.size());
+  ceres::Vector value(size), information_root(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const ScalarPrior& prior = state.priors[static_cast<size_t>(i)];
+    value[i] = prior.value;
+    information_root[i] = 1.0 / prior.sigma;
+  }
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(ceres::Matrix(information_root.asDiagonal()), value);
+  factor.blocks = {state.value.data()};
+  return factor;
+}
+
+std::optional<Factor> FactorBuilder::placement(ParameterBlock& further) const {
+  if (placement_sigma_m_ <= 0.0) return std::nullopt;
+  ceres::Matrix whitening = ceres::Matrix::Zero(3, kExtrinsicsSize);
+  whitening.rightCols<3>().diagonal().setConstant(1.0 / placement_sigma_m_);
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Zero(kExtrinsicsSize));
+  factor.loss = std::make_shared<ceres::CauchyLoss>(placementLossWidth(further));
+  factor.blocks = {further.value.data()};
+  return factor;
+}
+
+std::optional<Factor> FactorBuilder::rest(Frame& frame) const {
+  if (!frame.rest_sigma_m_per_s) return std::nullopt;
+  const ceres::Matrix whitening = ceres::Matrix::Identity(3, kMotionSize) / *frame.rest_sigma_m_per_s;
+  Factor factor;
+  factor.function = std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Zero(kMotionSize));
+  factor.blocks = {frame.motion.data()};
+  return factor;
+}
+
+Factor FactorBuilder::prior(const Prior& prior) const {
+  Factor factor;
+  factor.function = std::make_unique<PriorFactor>(prior);
+  for (const Prior::Block& block : prior.blocks) factor.blocks.push_back(block.value);
+  return factor;
+}
+
+Rigid3 FactorBuilder::worldFromCamera(const Window& window, const Frame& frame, int camera) const {
+  const CameraStates states = cameraStates(window);
+  if (!states) return frame.worldFromBody() * body_from_camera_[camera];
+  const Rigid3 world_from_camera0 =
+      frame.image_motion.poseAfter(frame.worldFromBody(), states.timeOffset_s()) *
+      correctedExtrinsics(body_from_camera_[0], states.camera0->value.data());
+  if (camera == 0) return world_from_camera0;
+  return world_from_camera0 *
+         correctedExtrinsics(camera0_from_camera_[camera], states.further[camera - 1]->value.data());
+}
+
+LandmarkFactors FactorBuilder::landmark(Window& window, FeatureTrack& track) const {
+  const CameraStates states = cameraStates(window);
+  return states ? calibratedLandmark(window, track, states) : plainLandmark(window, track);
+}
+
+LandmarkFactors FactorBuilder::calibratedLandmark(Window& window, FeatureTrack& track,
+                                                  const CameraStates& states) const {
+  Landmark& landmark = *track.landmark;
+  Frame& host = *window.find(landmark.host);
+  LandmarkFactors result;
+  result.landmark = landmark.parameters.data();
+  result.factors.reserve(track.observations.size());
+  for (const Observation& observation : track.observations) {
+    Factor& factor = result.factors.emplace_back();
+    Frame& target = *window.find(observation.frame);
+    factor.loss = lossOf(track, robustScale(target));
+    const bool in_host = observation.frame == landmark.host;
+    ParameterBlock* further = observation.camera > 0 ? states.further[observation.camera - 1] : nullptr;
+    if (in_host && !further) {
+      factor.function =
+          std::make_unique<HostReprojectionFactor>(observation.measurement, landmark.base, Rigid3());
+      factor.blocks = {result.landmark};
+    } else if (in_host) {
+      factor.function = std::make_unique<CalibratedStereoFactor>(observation.measurement, landmark.base,
+                                                                 camera0_from_camera_[observation.camera],
+                                                                 further->linearizationPoint());
+      factor.blocks = {result.landmark, further->value.data()};
+    } else {
+      CameraPlacement placement{body_from_camera_[0], std::nullopt};
+      if (further) placement.camera0_from_target = camera0_from_camera_[observation.camera];
+      const CalibratedLinearizationPoints first{
+          host.firstPose(), target.firstPose(), states.camera0->linearizationPoint(),
+          states.time_offset->linearizationPoint(), further ? further->linearizationPoint() : nullptr};
+      factor.function = std::make_unique<CalibratedReprojectionFactor>(
+          observation.measurement, landmark.base, placement, host.image_motion, target.image_motion, first);
+      factor.blocks = {host.pose.data(), target.pose.data(), result.landmark, states.camera0->value.data(),
+                       states.time_offset->value.data()};
+      if (further) factor.blocks.push_back(further->value.data());
+      if (target.interpolated) hangOnNeighbours(window, target, &factor);
+    }
+    if (states.intrinsics.empty()) continue;
+    factor.function = std::make_unique<IntrinsicsFactor>(std::move(factor.function), observation.measurement);
+    factor.blocks.push_back(states.intrinsics[observation.camera]->value.data());
+  }
+  return result;
+}
+
+LandmarkFactors FactorBuilder::plainLandmark(Window& window, FeatureTrack& track) const {
+  Landmark& landmark = *track.landmark;
+  Frame& host = *window.find(landmark.host);
+  LandmarkFactors result;
+  result.landmark = landmark.parameters.data();
+  result.factors.reserve(track.observations.size());
+  const Rigid3& body_from_host_camera = body_from_camera_[0];
+  for (const Observation& observation : track.observations) {
+    Factor& factor = result.factors.emplace_back();
+    Frame& target = *window.find(observation.frame);
+    factor.loss = lossOf(track, robustScale(target));
+    const Rigid3& body_from_target_camera = body_from_camera_[observation.camera];
+    if (observation.frame == landmark.host) {
+      factor.function = std::make_unique<HostReprojectionFactor>(
+          observation.measurement, landmark.base, body_from_target_camera.inverse() * body_from_host_camera);
+      factor.blocks = {result.landmark};
+    } else {
+      factor.function =
+          std::make_unique<ReprojectionFactor>(observation.measurement, landmark.base, body_from_host_camera,
+                                               body_from_target_camera, host.firstPose(), target.firstPose());
+      factor.blocks = {host.pose.data(), target.pose.data(), result.landmark};
+      if (target.interpolated) hangOnNeighbours(window, target, &factor);
+    }
+  }
+  return result;
+}
+
+}  // namespace lodeline

@@ -1,0 +1,88 @@
+#include "lodeline/estimator/uncertainty/covariance_inflation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+
+double unmodelledDensitySigma(const EstimatorOptions& options) {
+  if (!options.camera_calibration.enabled) return 0.0;
+  // Who was told the density better than that learns nothing of it from images.
+  return std::min(options.depth.least_density_sigma, options.depth.density_ratio_sigma);
+}
+
+void CovarianceInflation::follow(const Rigid3& world_from_body, std::optional<double> scene_distance_m) {
+  scene_distance_m_ = scene_distance_m.value_or(scene_distance_m_);
+  if (newest_) {
+    const Rigid3 step = newest_->inverse() * world_from_body;
+    const Mat3 world_from_newest = newest_->rotation.toRotationMatrix();
+    const Vec3 turn = so3::log(step.rotation);
+    for (int k = 0; k < 3; ++k) {
+      by_way_[k] += step.translation[k] * world_from_newest;
+      by_turn_[k] += scene_distance_m_ * turn[k] * world_from_newest;
+    }
+    const Vec3 step_W = world_from_body.translation - newest_->translation;
+    bent_by_turns_.follow(turn, world_from_newest, step_W);
+    bent_by_the_way_.follow(step.translation, world_from_newest, step_W);
+  }
+  newest_ = world_from_body;
+}
+
+Mat3 CovarianceInflation::byTheWay() const {
+  Mat3 covariance = Mat3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    covariance += kWayPerWaySigma * kWayPerWaySigma * by_way_[k] * by_way_[k].transpose();
+    covariance += kWayPerTurnSigma * kWayPerTurnSigma * by_turn_[k] * by_turn_[k].transpose();
+  }
+  return covariance;
+}
+
+void CovarianceInflation::Bend::follow(const Vec3& cause_B, const Mat3& world_from_body, const Vec3& step_W) {
+  x -= step_W.y() * heading;
+  y += step_W.x() * heading;
+  heading += world_from_body.row(2).transpose() * cause_B.transpose();
+}
+
+void CovarianceInflation::Bend::addTo(double sigma, Eigen::Matrix<double, 15, 15>* covariance) const {
+  const std::array<std::pair<int, const Mat3*>, 3> moved{{{0, &x}, {1, &y}, {5, &heading}}};
+  for (const auto& [row, by_row] : moved) {
+    for (const auto& [column, by_column] : moved)
+      (*covariance)(row, column) += sigma * sigma * by_row->cwiseProduct(*by_column).sum();
+  }
+}
+
+void CovarianceInflation::addTo(const EstimateSources& sources,
+                                Eigen::Matrix<double, 15, 15>* covariance) const {
+  if (!options_.camera_calibration.enabled || !newest_) return;
+  const Vec3& position_W = newest_->translation;
+  Mat3 added = byTheWay();
+  if (!sources.is_scale_given) {
+    const Vec3 by_scale = kOneCameraScaleSigma * position_W;
+    added += by_scale * by_scale.transpose();
+  }
+  if (sources.density_sigma) {
+    const double held = std::min(1.0, kHeldHeightSigma_m / std::sqrt(std::max(added(2, 2), 1e-12)));
+    added.row(2) *= held;
+    added.col(2) *= held;
+    const double height_sigma_m = *sources.density_sigma * position_W.z();
+    added(2, 2) += height_sigma_m * height_sigma_m;
+  }
+  covariance->topLeftCorner<3, 3>() += added;
+  if (sources.has_magnetometer) return;
+  bent_by_turns_.addTo(sources.are_gyroscope_axes_known ? kHeldTurnPerTurnSigma : kTurnPerTurnSigma,
+                       covariance);
+  if (!sources.is_scale_given) bent_by_the_way_.addTo(kTurnPerWaySigma_rad_per_m, covariance);
+}
+
+void addHeadingError(double sigma_rad, const NavigationState& state,
+                     Eigen::Matrix<double, 15, 15>* covariance) {
+  Eigen::Matrix<double, 9, 1> moved;
+  moved << Vec3::UnitZ().cross(state.world_from_body.translation), Vec3::UnitZ(),
+      Vec3::UnitZ().cross(state.velocity_W);
+  covariance->topLeftCorner<9, 9>() += sigma_rad * sigma_rad * moved * moved.transpose();
+}
+
+}  // namespace lodeline

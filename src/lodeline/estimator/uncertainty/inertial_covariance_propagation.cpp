@@ -1,0 +1,62 @@
+#include "lodeline/estimator/uncertainty/inertial_covariance_propagation.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/estimator/problem/normal_equations.h"
+
+namespace lodeline {
+namespace {
+
+using Matrix15 = Eigen::Matrix<double, 15, 15>;
+
+/// The covariance of the newest frame's state when that of the frame before is `known` and inertial readings
+/// lead from the one to the other.
+Matrix15 carriedByInertialReadings(Window& window, const FactorBuilder& factors, const Matrix15& known) {
+  Frame& newest = window.newest();
+  Frame& before = *window.frames()[window.frames().size() - 2];
+  NormalEquations system;
+  system.add(factors.inertial(window, before, newest));
+  const Eigen::MatrixXd hessian = system.hessian();
+  const auto coupling = [&](Frame& rows, Frame& columns) {
+    Matrix15 block;
+    int row = 0;
+    for (const double* r : {rows.pose.data(), rows.motion.data()}) {
+      const NormalEquations::Block& from = *system.find(r);
+      int column = 0;
+      for (const double* c : {columns.pose.data(), columns.motion.data()}) {
+        const NormalEquations::Block& to = *system.find(c);
+        block.block(row, column, from.tangentSize(), to.tangentSize()) =
+            hessian.block(from.offset, to.offset, from.tangentSize(), to.tangentSize());
+        column += to.tangentSize();
+      }
+      row += from.tangentSize();
+    }
+    return block;
+  };
+  // Whitened residual J_b b + J_n n with as many rows as n: n = -J_n^-1 J_b b plus noise of (J_n^T J_n)^-1.
+  const Eigen::LLT<Matrix15> of_newest(coupling(newest, newest));
+  const Matrix15 transition = -of_newest.solve(coupling(newest, before));
+  return transition * known * transition.transpose() + of_newest.solve(Matrix15::Identity());
+}
+
+}  // namespace
+
+void InertialCovariancePropagation::follow(Window& window, const FactorBuilder& factors, bool is_blind,
+                                           bool is_heading_told, Matrix15* claimed) {
+  const bool is_known = isCovariance(*claimed);
+  if ((!is_blind && is_known) || !carried_ || !window.newest().from_previous) {
+    carried_ = *claimed;
+    return;
+  }
+  carried_ = carriedByInertialReadings(window, factors, *carried_);
+  if (!is_known) *claimed = *carried_;
+  constexpr int kHeading = 5;
+  for (const int i : {0, 1, kHeading, 6, 7}) {
+    if (i == kHeading && is_heading_told) continue;
+    (*claimed)(i, i) = std::max((*claimed)(i, i), (*carried_)(i, i));
+  }
+}
+
+}  // namespace lodeline

@@ -1,0 +1,371 @@
+#include "lodeline/estimator/visual/reprojection_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "lodeline/estimator/problem/simd_gemm.h"
+#include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+using Columns = ObservationColumns;
+
+/// v^T [a]x for both rows v^T of a 2x3 matrix.
+Mat23 timesSkew(const Mat23& rows, const Vec3& a) {
+  Mat23 product;
+  product.row(0) = rows.row(0).cross(a);
+  product.row(1) = rows.row(1).cross(a);
+  return product;
+}
+
+std::vector<FrameId> idsOf(const Window& window) {
+  std::vector<FrameId> ids;
+  for (const auto& frame : window.frames()) ids.push_back(frame->id);
+  return ids;
+}
+
+/// Of a frame, counted from the oldest.
+int placeOf(FrameId id, const std::vector<FrameId>& ids) {
+  return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+}
+
+bool isAmong(const FeatureTrack& track, ReprojectionSystem::Of which) {
+  return track.landmark && (which == ReprojectionSystem::Of::kAll ||
+                            track.is_frozen == (which == ReprojectionSystem::Of::kFrozen));
+}
+
+/// The frames that a landmark has for its host, counted from the oldest.
+std::vector<int> hostsOf(const Window& window, ReprojectionSystem::Of which) {
+  const std::vector<FrameId> ids = idsOf(window);
+  std::vector<bool> is_host(ids.size(), false);
+  for (const auto& [id, track] : window.tracks()) {
+    if (isAmong(track, which)) is_host[static_cast<size_t>(placeOf(track.landmark->host, ids))] = true;
+  }
+  std::vector<int> hosts;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (is_host[i]) hosts.push_back(static_cast<int>(i));
+  }
+  return hosts;
+}
+
+/// From derivatives by the pose of a host's camera (columns) to those by that of a target's, to which the
+/// host has the baseline given: moving the one is moving the other backwards.
+Mat6 byTarget(const Mat6& by_host, const Vec3& baseline_W) {
+  const Eigen::Matrix<double, 6, 3> by_position = by_host.leftCols<3>();
+  Mat6 by_target;
+  by_target << -by_position, by_position * so3::skew(baseline_W) - by_host.rightCols<3>();
+  return by_target;
+}
+
+}  // namespace
+
+/// One observation's residual and derivatives, scaled by the loss.
+struct ReprojectionSystem::Linearized {
+  ObservationRows by_nodes = ObservationRows::Zero();
+  Mat23 by_landmark;
+
+  auto residual() const { return by_nodes.col(Columns::kResidual); }
+  auto by(int column) const { return by_nodes.middleCols<6>(column); }
+  auto by(int column) { return by_nodes.middleCols<6>(column); }
+};
+
+ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& factors, Of which,
+                                       std::optional<FrameId> only)
+    : states_(cameraStates(window)),
+      values_(window, states_, factors, CameraViews::At::kValues, hostsOf(window, which)),
+      first_(window, states_, factors, CameraViews::At::kLinearizationPoints, values_.hosts()),
+      frames_(static_cast<int>(window.frames().size())),
+      cameras_(factors.cameraCount()),
+      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())),
+      blocks_(window, states_, first_, nodes_) {
+  const std::vector<FrameId> ids = idsOf(window);
+  std::vector<double> scales;
+  for (const auto& frame : window.frames()) scales.push_back(factors.robustScale(*frame));
+  for (auto& [id, track] : window.tracks()) {
+    if (isAmong(track, which)) add(track, only, ids, scales);
+  }
+  arrangeColumns();
+  update();
+}
+
+void ReprojectionSystem::add(FeatureTrack& track, std::optional<FrameId> only,
+                             const std::vector<FrameId>& ids, const std::vector<double>& scales) {
+  Landmark landmark{};
+  landmark.value = track.landmark->parameters.data();
+  landmark.host = placeOf(track.landmark->host, ids);
+  landmark.base = track.landmark->base;
+  landmark.weight = track.weight;
+  landmark.first_frame = landmark.host;
+  landmark.end_frame = landmark.host + 1;
+  landmark.first_observation = observations_.size();
+  const std::span<const lodeline::Observation> all(track.observations);
+  int frame = 0;
+  for (const lodeline::Observation& observation : only ? track.in(*only) : all) {
+    // They come in order of time.
+    while (ids[static_cast<size_t>(frame)] < observation.frame) ++frame;
+    landmark.first_frame = std::min(landmark.first_frame, frame);
+    landmark.end_frame = std::max(landmark.end_frame, frame + 1);
+    const double scale = scales[static_cast<size_t>(frame)];
+    observations_.push_back({frame, observation.camera, &observation.measurement, scale * scale});
+  }
+  landmark.end_observation = observations_.size();
+  landmarks_.push_back(landmark);
+}
+
+/// Most landmarks are seen by some frames of the window only. With columns in the order of the time that
+/// landmarks were seen, a stretch of them touches few frames more than each does.
+void ReprojectionSystem::arrangeColumns() {
+  constexpr size_t kStretch = 16;
+  std::vector<Landmark*> by_time;
+  for (Landmark& landmark : landmarks_) by_time.push_back(&landmark);
+  std::stable_sort(by_time.begin(), by_time.end(), [](const Landmark* a, const Landmark* b) {
+    return std::pair(a->end_frame, a->first_frame) < std::pair(b->end_frame, b->first_frame);
+  });
+  for (size_t i = 0; i < by_time.size(); ++i) {
+    Landmark& landmark = *by_time[i];
+    landmark.column = kLandmarkSize * static_cast<Eigen::Index>(i);
+    if (i % kStretch == 0)
+      stretches_.push_back({{}, landmark.column, 0, landmark.first_frame, landmark.end_frame});
+    Stretch& stretch = stretches_.back();
+    stretch.landmarks.push_back(&landmark);
+    stretch.columns += kLandmarkSize;
+    stretch.first_frame = std::min(stretch.first_frame, landmark.first_frame);
+    stretch.end_frame = std::max(stretch.end_frame, landmark.end_frame);
+  }
+}
+
+void ReprojectionSystem::update() {
+  values_.update();
+  residuals_.resize(observations_.size());
+  for (const Landmark& landmark : landmarks_) {
+    const Vec3 direction = landmark.base.direction(landmark.value);
+    const double rho = landmark.value[2];
+    for (size_t i = landmark.first_observation; i < landmark.end_observation; ++i) {
+      const Observation& observation = observations_[i];
+      const CameraViews::Relative& seen =
+          values_.relative(landmark.host, observation.frame, observation.camera);
+      const Vec3 point_C = seen.rotation * direction + rho * seen.translation;
+      Residual& residual = residuals_[i];
+      residual.by_file = residual.by_intrinsics =
+          directionResidual(*observation.measurement, point_C, nullptr);
+      if (states_.intrinsics.empty()) continue;
+      residual.by_intrinsics +=
+          intrinsicsShift(*observation.measurement, residual.by_file, intrinsicsOf(observation.camera));
+    }
+  }
+}
+
+double ReprojectionSystem::cost() const {
+  double sum = 0.0;
+  for (const Landmark& landmark : landmarks_) {
+    double of_landmark = 0.0;
+    for (size_t i = landmark.first_observation; i < landmark.end_observation; ++i) {
+      const double squared = residuals_[i].by_intrinsics.squaredNorm();
+      of_landmark += observations_[i].scale_squared * std::log1p(squared / observations_[i].scale_squared);
+    }
+    sum += landmark.weight * of_landmark;
+  }
+  return 0.5 * sum;
+}
+
+std::vector<double> ReprojectionSystem::errors() const {
+  std::vector<double> errors;
+  errors.reserve(residuals_.size());
+  for (const Residual& residual : residuals_) errors.push_back(residual.by_intrinsics.norm());
+  return errors;
+}
+
+std::vector<double*> ReprojectionSystem::landmarks() const {
+  std::vector<double*> landmarks;
+  landmarks.reserve(landmarks_.size());
+  for (const Landmark& landmark : landmarks_) landmarks.push_back(landmark.value);
+  return landmarks;
+}
+
+ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& landmark,
+                                                             const Observation& observation,
+                                                             const Residual& residual) const {
+  const double rho = landmark.value[2];
+  const Vec3 direction = landmark.base.direction(landmark.value);
+  const CameraViews::Relative& seen = first_.relative(landmark.host, observation.frame, observation.camera);
+  Linearized term;
+  Mat23 by_point;
+  directionResidual(*observation.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
+  if (!states_.intrinsics.empty()) {
+    const IntrinsicsEffect lens =
+        intrinsicsEffect(*observation.measurement, residual.by_file, intrinsicsOf(observation.camera));
+    by_point = (lens.by_residual * by_point).eval();
+    term.by(Columns::kIntrinsics) = lens.by_intrinsics;
+  }
+  const double weight =
+      std::sqrt(landmark.weight / (1.0 + residual.by_intrinsics.squaredNorm() / observation.scale_squared));
+  term.by_nodes.col(Columns::kResidual) = weight * residual.by_intrinsics;
+  by_point *= weight;
+  const Mat23 by_direction = by_point * seen.rotation;
+  term.by_landmark << by_direction * landmark.base.tangent_C, by_point * seen.translation;
+
+  term.by(Columns::kIntrinsics) *= weight;
+  if (observation.camera > 0) {
+    const CameraViews::Further& further = first_.further(observation.camera);
+    const CameraViews::Relative& camera0 = first_.relative(landmark.host, observation.frame, 0);
+    const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - further.position_C0);
+    const Mat23 by_point_C0 = by_point * further.camera0_from_camera.transpose();
+    term.by(Columns::kSecondary) << timesSkew(by_point_C0, offset_C0) * further.left_jacobian,
+        -rho * by_point_C0;
+  }
+  if (observation.frame == landmark.host) return term;
+  const Mat3& world_from_host = first_.placement(landmark.host).world_from_camera;
+  const Mat23 by_world = by_direction * world_from_host.transpose();
+  term.by(Columns::kHost) << rho * by_world, -timesSkew(by_world, world_from_host * direction);
+  return term;
+}
+
+void ReprojectionSystem::eliminate(Landmark* of) {
+  Landmark& landmark = *of;
+  auto coupling = couplings_.middleCols<kLandmarkSize>(landmark.column);
+  Mat3 h_landmark = Mat3::Zero();
+  Vec3 g_landmark = Vec3::Zero();
+  for (size_t i = landmark.first_observation; i < landmark.end_observation; ++i) {
+    const Observation& observation = observations_[i];
+    const Linearized term = linearize(landmark, observation, residuals_[i]);
+    h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
+    g_landmark.noalias() += term.by_landmark.transpose() * term.residual();
+    const auto couple = [&](int node, int columns) {
+      coupling.middleRows<6>(6 * node).noalias() += term.by(columns).transpose() * term.by_landmark;
+    };
+    if (observation.frame != landmark.host) {
+      addProducts(term.by_nodes, &by_host_[indexOf(landmark.host, observation.frame, observation.camera)]);
+      couple(observation.frame, Columns::kHost);
+    }
+    if (!states_) continue;
+    addProducts(term.by_nodes, &by_calibration_[static_cast<size_t>(observation.camera)]);
+    if (observation.camera > 0) couple(secondaryNode(observation.camera), Columns::kSecondary);
+    if (!states_.intrinsics.empty()) couple(intrinsicsNode(observation.camera), Columns::kIntrinsics);
+  }
+  // What the targets' poses do follows from what the host's would do with each target alone.
+  auto of_host = coupling.middleRows<6>(6 * landmark.host);
+  for (int frame = landmark.first_frame; frame < landmark.end_frame; ++frame) {
+    if (frame == landmark.host) continue;
+    auto of_target = coupling.middleRows<6>(6 * frame);
+    of_host += of_target;
+    of_target.bottomRows<3>() += so3::skew(baseline_W(landmark.host, frame)) * of_target.topRows<3>();
+    of_target = -of_target;
+  }
+  landmark.inverse_root = landmarkInverseRoot(h_landmark);
+  const auto root = [&](auto rows) { rows *= landmark.inverse_root; };
+  root(coupling.middleRows(6 * landmark.first_frame, 6 * (landmark.end_frame - landmark.first_frame)));
+  root(coupling.bottomRows(6 * (nodes_ - frames_)));
+  rooted_gradients_.segment<kLandmarkSize>(landmark.column) = landmark.inverse_root.transpose() * g_landmark;
+}
+
+void ReprojectionSystem::addPair(int host, int target) {
+  const auto block = [&](int row, int column) { return hessian_.block<6, 6>(6 * row, 6 * column); };
+  const Vec3 baseline_W = this->baseline_W(host, target);
+  HostProducts sum = HostProducts::Zero();
+  const auto addCalibration = [&](int node, const auto& by_host) {
+    block(node, host) += by_host;
+    block(node, target) += byTarget(by_host, baseline_W);
+  };
+  for (int camera = 0; camera < cameras_; ++camera) {
+    const HostProducts& of_camera = by_host_[indexOf(host, target, camera)];
+    sum += of_camera;
+    if (camera > 0 && states_)
+      addCalibration(secondaryNode(camera), of_camera.middleCols<6>(Columns::kSecondary).transpose());
+    if (!states_.intrinsics.empty())
+      addCalibration(intrinsicsNode(camera), of_camera.middleCols<6>(Columns::kIntrinsics).transpose());
+  }
+  const Mat6 by_host = sum.middleCols<6>(Columns::kHost);
+  const Mat6 by_both = byTarget(by_host, baseline_W);
+  block(host, host) += by_host;
+  block(target, target) += byTarget(by_both.transpose(), baseline_W);
+  if (host > target) {
+    block(host, target) += by_both;
+  } else {
+    block(target, host) += by_both.transpose();
+  }
+  const Vec6 gradient = sum.col(Columns::kResidual);
+  gradient_.segment<6>(6 * host) += gradient;
+  gradient_.segment<3>(6 * target) -= gradient.head<3>();
+  gradient_.segment<3>(6 * target + 3) -= gradient.tail<3>() + baseline_W.cross(gradient.head<3>());
+}
+
+void ReprojectionSystem::addCalibration(int camera) {
+  const CalibrationProducts& sum = by_calibration_[static_cast<size_t>(camera)];
+  const auto add = [&](int row, int row_columns, int column, int columns) {
+    hessian_.block<6, 6>(6 * row, 6 * column) += sum.block<6, 6>(row_columns, columns);
+  };
+  const auto addNode = [&](int node, int columns) {
+    add(node, columns, node, columns);
+    gradient_.segment<6>(6 * node) += sum.col(Columns::kResidual).segment<6>(columns);
+  };
+  if (camera > 0) addNode(secondaryNode(camera), Columns::kSecondary);
+  if (states_.intrinsics.empty()) return;
+  addNode(intrinsicsNode(camera), Columns::kIntrinsics);
+  if (camera > 0)
+    add(intrinsicsNode(camera), Columns::kIntrinsics, secondaryNode(camera), Columns::kSecondary);
+}
+
+void ReprojectionSystem::addTo(NormalEquations* system) {
+  first_.update();
+  blocks_.update();
+  const int rows = 6 * nodes_;
+  by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
+  by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
+  hessian_.setZero(rows, rows);
+  gradient_.setZero(rows);
+  couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
+  rooted_gradients_.resize(kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
+  // While a stretch's couplings are at hand.
+  for (const Stretch& stretch : stretches_) {
+    couplingsOfFrames(stretch).setZero();
+    couplingsOfCalibration(stretch).setZero();
+    for (Landmark* landmark : stretch.landmarks) eliminate(landmark);
+    subtractEliminated(stretch);
+  }
+  for (const int host : first_.hosts()) {
+    for (int target = 0; target < frames_; ++target) {
+      if (target != host) addPair(host, target);
+    }
+  }
+  for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
+  Eigen::MatrixXd h;
+  Eigen::VectorXd g;
+  blocks_.transform(hessian_, gradient_, &h, &g);
+  system->add(blocks_.blocks(), h, g);
+}
+
+void ReprojectionSystem::subtractEliminated(const Stretch& stretch) {
+  const int calibration = 6 * (nodes_ - frames_);
+  const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
+  const auto by_frames = couplingsOfFrames(stretch);
+  const auto by_calibration = couplingsOfCalibration(stretch);
+  const auto rooted = rooted_gradients_.segment(stretch.column, stretch.columns);
+  gradient_.segment(first, rows).noalias() -= by_frames * rooted;
+  gradient_.tail(calibration).noalias() -= by_calibration * rooted;
+  subtractSquare(by_frames, hessian_.block(first, first, rows, rows));
+  subtractProduct(by_calibration, by_frames, hessian_.block(6 * frames_, first, calibration, rows));
+  subtractSquare(by_calibration, hessian_.bottomRightCorner(calibration, calibration));
+}
+
+void ReprojectionSystem::stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step) {
+  const Eigen::VectorXd of_nodes = blocks_.stepOfNodes(system, step);
+  Eigen::VectorXd rooted = rooted_gradients_;
+  for (const Stretch& stretch : stretches_) {
+    const auto by_frames = couplingsOfFrames(stretch);
+    const auto by_calibration = couplingsOfCalibration(stretch);
+    auto of_stretch = rooted.segment(stretch.column, stretch.columns);
+    of_stretch.noalias() +=
+        by_frames.transpose() * of_nodes.segment(6 * stretch.first_frame, by_frames.rows());
+    of_stretch.noalias() += by_calibration.transpose() * of_nodes.tail(by_calibration.rows());
+  }
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    Eigen::Map<Vec3>(landmarks_[i].value) -=
+        landmarks_[i].inverse_root * rooted.segment<kLandmarkSize>(landmarks_[i].column);
+  }
+}
+
+}  // namespace lodeline

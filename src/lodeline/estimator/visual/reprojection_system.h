@@ -1,0 +1,132 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "lodeline/estimator/problem/normal_equations.h"
+#include "lodeline/estimator/visual/camera_to_body_chain_rule.h"
+#include "lodeline/estimator/visual/camera_views.h"
+#include "lodeline/estimator/visual/reprojection_hessian.h"
+
+namespace lodeline {
+
+/// All reprojection terms of a window at once: the same cost and derivatives as the factors of
+/// FactorBuilder::landmark(), which remain the reference, at a fraction of their price. Landmarks are
+/// eliminated against the poses of the cameras, of which each frame has one; what those mean for the poses of
+/// the bodies and for the calibration is worked out once for the sum, not for every observation.
+class ReprojectionSystem {
+ public:
+  /// All landmarks of the window, or apart those that LandmarkLinearizationCache stand for and the others.
+  enum class Of { kAll, kLive, kFrozen };
+
+  /// Window and factors must outlive the terms, and tracks must stay as they are. With `only`, of the
+  /// observations in that frame alone.
+  ReprojectionSystem(Window& window, const FactorBuilder& factors, Of which = Of::kAll,
+                     std::optional<FrameId> only = {});
+  ReprojectionSystem(const ReprojectionSystem&) = delete;
+  ReprojectionSystem& operator=(const ReprojectionSystem&) = delete;
+
+  /// Takes the blocks' present values: to be called after they have moved. All of the following is at the
+  /// values taken last, at first those of the construction.
+  void update();
+
+  double cost() const;
+
+  /// Length of the whitened error of every observation, landmarks in the order of their tracks.
+  std::vector<double> errors() const;
+
+  /// The blocks of the landmarks in that order.
+  std::vector<double*> landmarks() const;
+
+  /// Adds the terms, landmarks eliminated. Jacobians are taken at linearization points where blocks hold
+  /// them.
+  void addTo(NormalEquations* system);
+
+  /// Moves the landmarks along with a step of `system`, to which the terms were added last.
+  void stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step);
+
+ private:
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  struct Observation {
+    int frame, camera;
+    const DirectionMeasurement* measurement;
+    double scale_squared;  ///< of the robust loss
+  };
+  struct Landmark {
+    double* value;
+    int host;
+    LandmarkBase base;
+    double weight;  ///< of its errors, squared
+    size_t first_observation, end_observation;
+    int first_frame, end_frame;  ///< of those that see it and its host
+    Eigen::Index column;         ///< of its couplings
+    Mat3 inverse_root;           ///< of the last linearization: W with W W^T the inverse of its Hessian
+  };
+  /// Landmarks whose couplings are side by side, and the frames that any of them touches.
+  struct Stretch {
+    std::vector<Landmark*> landmarks;
+    Eigen::Index column, columns;
+    int first_frame, end_frame;
+  };
+  /// Of an observation, by the lens of the calibration file and by the lens as it is estimated.
+  struct Residual {
+    Vec2 by_file, by_intrinsics;
+  };
+  struct Linearized;
+
+  Linearized linearize(const Landmark& landmark, const Observation& observation,
+                       const Residual& residual) const;
+  void add(FeatureTrack& track, std::optional<FrameId> only, const std::vector<FrameId>& ids,
+           const std::vector<double>& scales);
+  void arrangeColumns();
+  void eliminate(Landmark* landmark);
+  void subtractEliminated(const Stretch& stretch);
+  void addPair(int host, int target);
+  void addCalibration(int camera);
+  size_t indexOf(int host, int target, int camera) const {
+    return static_cast<size_t>((host * frames_ + target) * cameras_ + camera);
+  }
+  auto couplingsOfFrames(const Stretch& stretch) {
+    return couplings_.block(6 * stretch.first_frame, stretch.column,
+                            6 * (stretch.end_frame - stretch.first_frame), stretch.columns);
+  }
+  auto couplingsOfCalibration(const Stretch& stretch) {
+    return couplings_.block(6 * frames_, stretch.column, 6 * (nodes_ - frames_), stretch.columns);
+  }
+  /// From a target's camera 0 to a host's.
+  Vec3 baseline_W(int host, int target) const {
+    return first_.placement(host).position_W - first_.placement(target).position_W;
+  }
+  int secondaryNode(int camera) const { return frames_ + camera - 1; }
+  int intrinsicsNode(int camera) const {
+    return frames_ + static_cast<int>(states_.secondary.size()) + camera;
+  }
+  const double* intrinsicsOf(int camera) const {
+    return states_.intrinsics[static_cast<size_t>(camera)]->value.data();
+  }
+
+  CameraStates states_;
+  CameraViews values_;
+  CameraViews first_;
+  int frames_;
+  int cameras_;
+  int nodes_;
+  CameraToBodyChainRule blocks_;
+  std::vector<Landmark> landmarks_;
+  std::vector<Stretch> stretches_;
+  std::vector<Observation> observations_;
+  std::vector<Residual> residuals_;  ///< of the observations
+  // Nodes are what landmarks are eliminated against, six coordinates each: the camera poses of the frames in
+  // the window's order, then the extrinsics of secondary cameras, then the lenses where they are estimated.
+  std::vector<HostProducts> by_host_;                ///< by indexOf()
+  std::vector<CalibrationProducts> by_calibration_;  ///< by camera
+  Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle
+  Eigen::VectorXd gradient_;
+  /// Of nodes (rows) and landmarks, times the latter's inverse roots. Of the frames that a stretch does not
+  /// touch it says nothing.
+  Eigen::MatrixXd couplings_;
+  Eigen::VectorXd rooted_gradients_;  ///< of landmarks, by the transposed inverse roots
+};
+
+}  // namespace lodeline
