@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Repeats the paper's experiments on replicas of its dives and writes docs/experiments.md from what was measured.
+# Repeats the paper's experiments on replicas of its dives and writes docs/lab-notes/experiments.md from what was measured.
 # Rendering all dives takes many hours; ended early and started again, it goes on where it was.
 #
 #   EXPERIMENTS=DIR  recordings in DIR/NAME_REALISM, results in DIR/results (experiments)
@@ -13,8 +13,8 @@ cd "$(dirname "$0")/.."
 
 lodeline=build/release/bin/lodeline
 experiments=${EXPERIMENTS:-experiments}
-document=docs/experiments.md
-figures=docs/experiments
+document=docs/lab-notes/experiments.md
+figures=docs/lab-notes/experiments
 dives=(cave1_short_field cave1_long_field dos_ojos_field cave1_short_clean cave1_long_clean dos_ojos_clean)
 failed=()
 
