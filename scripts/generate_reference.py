@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Writes the pages of docs/reference that the program itself can tell: commands.md and settings.md.
+
+Usage: scripts/generate_reference.py [--program FILE] [--config FILE] [--check]
+
+--program FILE  the program (build/release/bin/lodeline)
+--config FILE   a config.yaml with all defaults, in place of one from a run of the program
+--check         write nothing; end with exit code 1 where a page is not up to date
+
+Commands come from `lodeline --help` and `lodeline COMMAND --help`. Settings and their defaults come from the config.yaml
+of a run on a small simulated recording. What a setting means is told by scripts/reference/settings.txt; for a setting
+that is missing there, the program's own words are used and a warning is printed.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = ROOT / "docs" / "reference"
+MEANINGS = ROOT / "scripts" / "reference" / "settings.txt"
+WIDTH = 100  # of help texts on the page
+
+
+def help_of(program, *words):
+    return subprocess.run([program, *words, "--help"], check=True, capture_output=True, text=True).stdout.rstrip()
+
+
+def subcommands(text):
+    """Name and description of what a help text lists below `Subcommands:`."""
+    if "\nSubcommands:\n" not in text:
+        return []
+    listing = text.split("\nSubcommands:\n")[1].split("\n\n")[0]
+    return [tuple(part.strip() for part in re.split(r"\s{2,}", line.strip(), maxsplit=1))
+            for line in listing.splitlines() if line.strip()]
+
+
+def wrapped(line):
+    """A long line of a help text, continued below where its description begins."""
+    if len(line) <= WIDTH:
+        return [line]
+    option = re.match(r"^(  \S.*?\s{2,}|\s{20,})(\S.*)$", line)
+    indent = len(option.group(1)) if option else len(line) - len(line.lstrip()) + 2
+    return textwrap.wrap(line, WIDTH, subsequent_indent=" " * min(indent, 40), break_long_words=False,
+                         break_on_hyphens=False, drop_whitespace=True)
+
+
+def commands_page(program):
+    leaves = []
+    for name, summary in subcommands(help_of(program)):
+        inner = subcommands(help_of(program, name))
+        leaves += [((name, word), text) for word, text in inner] or [((name,), summary)]
+    page = ["# Commands", "",
+            "*The script `scripts/generate_reference.py` writes this page from the help texts of the program.*", "",
+            "| command | purpose |", "| --- | --- |"]
+    for words, summary in leaves:
+        name = " ".join(words)
+        page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
+    page += ["", "`lodeline COMMAND --help` prints the text of one command. `lodeline --version` prints the version.",
+             "[Exit codes](exit-codes.md) are the same for all commands."]
+    for words, _ in leaves:
+        text = help_of(program, *words)
+        lines = [part for line in text.splitlines() for part in wrapped(line.rstrip())]
+        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *lines, "```"]
+    return "\n".join(page) + "\n"
+
+
+def config_of(program):
+    with tempfile.TemporaryDirectory() as folder:
+        recording, result = Path(folder) / "recording", Path(folder) / "result"
+        subprocess.run([program, "simulate", "demo", "--seconds", "10", "--width", "128", "--camera-rate-hz", "5",
+                        "--quiet", "-o", recording], check=True, capture_output=True)
+        # So small a recording may give no trajectory. The settings are written before that is known.
+        subprocess.run([program, "run", recording, "-o", result, "--no-report", "--quiet"], capture_output=True)
+        return (result / "config.yaml").read_text(encoding="utf-8")
+
+
+def settings_of(config):
+    """Name, default and the program's own words for each setting, in order."""
+    settings, path, words = [], [], []
+    for line in config.splitlines():
+        stripped = line.strip()
+        if stripped.startswith("#"):
+            words.append(stripped[1:].strip())
+        elif stripped:
+            depth = (len(line) - len(line.lstrip())) // 2
+            key, _, value = stripped.partition(":")
+            path = path[:depth] + [key]
+            if value.strip():
+                settings.append((".".join(path), value.strip(), " ".join(words)))
+            words = []
+    return settings
+
+
+def read_meanings():
+    """Introductions by section, and meanings by setting."""
+    sections, meanings = [], {}
+    for number, line in enumerate(MEANINGS.read_text(encoding="utf-8").splitlines(), 1):
+        if line.startswith("## "):
+            name, _, title = line[3:].partition(": ")
+            sections.append([name, title, ""])
+        elif line.startswith("> "):
+            sections[-1][2] = line[2:]
+        elif line.strip() and not line.startswith("#"):
+            name, colon, meaning = line.partition(": ")
+            if not colon:
+                sys.exit(f"{MEANINGS}:{number}: neither a section nor `setting: meaning`")
+            meanings[name] = meaning
+    return sections, meanings
+
+
+def settings_page(config):
+    settings = settings_of(config)
+    sections, meanings = read_meanings()
+    for name in sorted(set(meanings) - {name for name, _, _ in settings}):
+        print(f"{MEANINGS.name}: the program has no setting {name}", file=sys.stderr)
+    page = ["# Settings", "",
+            "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
+            "The defaults serve all recordings. Change a setting on the command line, `--set front_end.max_tracks=300`,",
+            "or in a YAML file, `-c config.yaml`. The command line goes over the file. Every run writes all settings in",
+            "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
+            "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",
+            "deviation. An unknown setting is an error that names the nearest known one."]
+    def section_of(name):
+        fitting = [section for section, _, _ in sections if name == section or name.startswith(section + ".")]
+        return max(fitting, key=len) if fitting else ""
+    told = set()
+    for section, title, introduction in sections:
+        rows = [setting for setting in settings if section_of(setting[0]) == section]
+        if not rows:
+            continue
+        page += ["", f"## {title}", ""] + ([*textwrap.wrap(introduction, 118), ""] if introduction else [])
+        page += ["| setting | default | meaning |", "| --- | --- | --- |"]
+        for name, default, words in rows:
+            told.add(name)
+            if name not in meanings:
+                print(f"{MEANINGS.name}: no meaning of {name}", file=sys.stderr)
+            page.append(f"| `{name}` | `{default}` | {meanings.get(name, words).replace('|', '/')} |")
+    for name in [name for name, _, _ in settings if name not in told]:
+        sys.exit(f"{MEANINGS.name}: no section for {name}")
+    return "\n".join(page) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=str(ROOT / "build" / "release" / "bin" / "lodeline"))
+    parser.add_argument("--config")
+    parser.add_argument("--check", action="store_true")
+    arguments = parser.parse_args()
+    if not Path(arguments.program).exists():
+        sys.exit(f"{arguments.program}: no such program; `make build` makes it, --program names another")
+    config = Path(arguments.config).read_text(encoding="utf-8") if arguments.config else config_of(arguments.program)
+    stale = False
+    for name, text in (("commands.md", commands_page(arguments.program)), ("settings.md", settings_page(config))):
+        file = PAGES / name
+        if file.exists() and file.read_text(encoding="utf-8") == text:
+            continue
+        stale = True
+        if arguments.check:
+            print(f"{file.relative_to(ROOT)}: not up to date; run scripts/generate_reference.py", file=sys.stderr)
+        else:
+            file.write_text(text, encoding="utf-8")
+            print(f"written: {file.relative_to(ROOT)}")
+    return 1 if stale and arguments.check else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
