@@ -1,5 +1,6 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything fuzz faults dependencies demo experiments test test-sanitized bench install package format check-format clean
+.PHONY: build everything fuzz faults dependencies demo docs docs-reference experiments test test-sanitized bench install package format \
+  check-format clean
 PREFIX ?= /usr/local
 CODE = src apps studies examples ros fuzz
 
@@ -21,7 +22,7 @@ demo: build
 	./scripts/demo.sh
 
 # Renders replicas of the paper's dives (many hours; goes on where it was ended), compares the methods on them and
-# writes docs/experiments.md. Options are listed in the script.
+# writes docs/lab-notes/experiments.md. Options are listed in the script.
 experiments: build
 	./scripts/experiments.sh
 
@@ -61,6 +62,18 @@ install: build
 # A Debian package in build/release.
 package: build
 	cd build/release && cpack
+
+# The documentation as a site in build/docs, with the reference of the library in build/docs/api. It needs Debian's
+# packages mkdocs-material, libjs-katex and doxygen.
+docs:
+	./scripts/check_links.py
+	mkdocs build --strict
+	mkdir -p build/docs/api
+	doxygen docs/Doxyfile
+
+# The pages of docs/reference that the program itself can tell: commands and settings.
+docs-reference: build
+	./scripts/generate_reference.py
 
 format:
 	clang-format-14 -i $$(find $(CODE) -name '*.h' -o -name '*.cpp')
