@@ -12,9 +12,9 @@ RUN make build && make package && mv build/release/*.deb /lodeline.deb
 
 FROM debian:12
 ENV DEBIAN_FRONTEND=noninteractive
-COPY --from=build /lodeline.deb /tmp/lodeline.deb
-RUN apt-get update && apt-get install -y --no-install-recommends /tmp/lodeline.deb gnuplot-nox \
- && rm -rf /var/lib/apt/lists/* /tmp/lodeline.deb
+COPY --from=build /lodeline.deb /lodeline.deb
+RUN apt-get update && apt-get install -y --no-install-recommends /lodeline.deb gnuplot-nox \
+ && rm -rf /var/lib/apt/lists/* /lodeline.deb
 WORKDIR /data
 ENTRYPOINT ["lodeline"]
 CMD ["--help"]
