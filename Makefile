@@ -67,6 +67,7 @@ package: build
 # packages mkdocs-material, libjs-katex and doxygen.
 docs:
 	./scripts/check_links.py
+	./scripts/check_findings.py
 	mkdocs build --strict
 	mkdir -p build/docs/api
 	doxygen docs/Doxyfile
