@@ -82,15 +82,15 @@ void BatchProblem::addTracks(const EstimatorLog& record) {
   std::unordered_map<TrackId, Piece> pieces;
   TrackId next = 0;
   for (size_t k = 0; k < states(); ++k) {
-    for (const FeatureObservation& observation : record.states()[k].observations) {
-      const auto [entry, is_new] = pieces.try_emplace(observation.track, Piece{next, k});
+    for (const FeatureObservation& seen : record.states()[k].observations) {
+      const auto [entry, is_new] = pieces.try_emplace(seen.track, Piece{next, k});
       if (!is_new && k - entry->second.first >= kLongestTrack) entry->second = {next, k};
       if (entry->second.id == next) ++next;
       Observation observation;
       observation.frame = static_cast<FrameId>(k);
-      observation.camera = observation.camera;
-      observation.measurement = DirectionMeasurement::fromBearing(
-          *cameras_[static_cast<size_t>(observation.camera)], observation.bearing_C, observation.sigma_px);
+      observation.camera = seen.camera;
+      observation.measurement = DirectionMeasurement::fromBearing(*cameras_[static_cast<size_t>(seen.camera)],
+                                                                  seen.bearing_C, seen.sigma_px);
       all_tracks_[entry->second.id].observations.push_back(observation);
     }
   }

@@ -218,13 +218,13 @@ bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const
 
 ObservationList Estimator::observationsOf(const FrameTracks& tracks) const {
   ObservationList observations;
-  for (const FeatureObservation& observation : tracks.observations) {
+  for (const FeatureObservation& seen : tracks.observations) {
     Observation observation;
     observation.frame = next_frame_id_;
-    observation.camera = observation.camera;
-    observation.measurement = DirectionMeasurement::fromBearing(*cameras_[observation.camera],
-                                                                observation.bearing_C, observation.sigma_px);
-    observations.emplace_back(observation.track, observation);
+    observation.camera = seen.camera;
+    observation.measurement =
+        DirectionMeasurement::fromBearing(*cameras_[seen.camera], seen.bearing_C, seen.sigma_px);
+    observations.emplace_back(seen.track, observation);
   }
   return observations;
 }
