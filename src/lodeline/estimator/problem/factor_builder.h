@@ -53,7 +53,7 @@ class FactorBuilder {
   /// else anywhere. A Cauchy loss, narrower where lenses are held at their files (IntrinsicsModelSelection):
   /// who measured those well is off by a wrong length of the target or by nothing. Outside of the
   /// marginalization prior.
-  std::optional<Factor> placement(ParameterBlock& further) const;
+  std::optional<Factor> placement(ParameterBlock& secondary) const;
   /// That its velocity is zero, where the rig rests at that frame.
   std::optional<Factor> rest(Frame& frame) const;
   Factor prior(const Prior& prior) const;

@@ -28,7 +28,8 @@ StatesWithSigmas judgedStates(const Window& window, const CameraCalibrationOptio
   StatesWithSigmas judged;
   const CameraStates states = cameraStates(window);
   if (!options.trust_confirmed_files || states.intrinsics.empty()) return judged;
-  for (ParameterBlock* further : states.further) judged.emplace_back(further, stereoRotationSigmas(options));
+  for (ParameterBlock* secondary : states.secondary)
+    judged.emplace_back(secondary, stereoRotationSigmas(options));
   for (ParameterBlock* lens : states.intrinsics) judged.emplace_back(lens, intrinsicsSigmas(options));
   return judged;
 }

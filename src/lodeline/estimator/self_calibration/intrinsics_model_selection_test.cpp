@@ -164,7 +164,7 @@ Eigen::MatrixXd removedWhereFound(double off_m, Rig* rig) {
   Window window;
   Prior prior;
   addCameraStates(window, prior, 2, options.camera_calibration, {});
-  double* found = cameraStates(window).further.front()->value.data();
+  double* found = cameraStates(window).secondary.front()->value.data();
   found[3] = off_m;
   const auto removed = removedCalibration(window, options, FactorBuilder(*rig, options));
   if (removed.size() != 1 || removed.front().first != found) return {};
@@ -198,8 +198,8 @@ TEST(Placement, IsNotClaimedWhereTheFileIsOff) {
   options.drift_m_per_s = Vec3(0.3, 0.0, 0.0);
   TestScene scene(options);
   Rig rig = scene.rig();
-  Vec3& further = rig.cameras[1].body_from_camera.translation;
-  further += 0.02 * (further - rig.cameras[0].body_from_camera.translation);
+  Vec3& secondary = rig.cameras[1].body_from_camera.translation;
+  secondary += 0.02 * (secondary - rig.cameras[0].body_from_camera.translation);
   EstimatorOptions estimator_options = honestOptions(options);
   estimator_options.camera_calibration = CameraCalibrationOptions();
   // Nothing else makes the scale uncertain.

@@ -14,7 +14,7 @@ namespace lodeline {
 struct CameraStates {
   ParameterBlock* camera0 = nullptr;
   ParameterBlock* time_offset = nullptr;
-  std::vector<ParameterBlock*> further;     ///< of camera 1, 2, ...
+  std::vector<ParameterBlock*> secondary;   ///< of camera 1, 2, ...
   std::vector<ParameterBlock*> intrinsics;  ///< of every camera; empty where the lenses are not estimated
 
   explicit operator bool() const { return camera0 != nullptr; }
@@ -33,7 +33,7 @@ CameraStates cameraStates(const Window& window);
 /// Width of the Cauchy loss on where a secondary camera sits, in sigmas of what its file says
 /// (FactorBuilder::placement): half as wide where its file is held, which is then wrong in lengths or not at
 /// all.
-double placementLossWidth(const ParameterBlock& further);
+double placementLossWidth(const ParameterBlock& secondary);
 
 /// Prior sigmas of each coordinate of a secondary camera's rotation (the first of its placement) and of a
 /// lens.

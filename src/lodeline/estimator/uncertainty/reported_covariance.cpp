@@ -50,12 +50,12 @@ std::vector<std::pair<const double*, Eigen::MatrixXd>> removedCalibration(const 
                                                                           const FactorBuilder& factors) {
   auto removed = removedFileInformation(window, options.camera_calibration);
   const CameraStates states = cameraStates(window);
-  for (size_t i = 0; i < states.further.size(); ++i) {
-    ParameterBlock& further = *states.further[i];
-    const std::optional<Factor> placement = factors.placement(further);
+  for (size_t i = 0; i < states.secondary.size(); ++i) {
+    ParameterBlock& secondary = *states.secondary[i];
+    const std::optional<Factor> placement = factors.placement(secondary);
     const double baseline_m = factors.camera0FromCamera(static_cast<int>(i) + 1).translation.norm();
     if (placement && baseline_m > 0.0)
-      removed.emplace_back(further.value.data(), removedExtrinsics(*placement, baseline_m));
+      removed.emplace_back(secondary.value.data(), removedExtrinsics(*placement, baseline_m));
   }
   return removed;
 }

@@ -45,7 +45,7 @@ class CameraViews {
 
   /// Frames count from the oldest of the window.
   const Placement& placement(int frame) const { return placements_[static_cast<size_t>(frame)]; }
-  const Further& further(int camera) const { return further_[static_cast<size_t>(camera) - 1]; }
+  const Further& secondary(int camera) const { return secondary_[static_cast<size_t>(camera) - 1]; }
   const std::vector<int>& hosts() const { return hosts_; }
   /// For those hosts.
   const Relative& relative(int host, int target, int camera) const {
@@ -66,7 +66,7 @@ class CameraViews {
   int cameras_;
   std::vector<int> hosts_;
   std::vector<Placement> placements_;
-  std::vector<Further> further_;
+  std::vector<Further> secondary_;
   std::vector<Relative> relative_;  // by host, target, camera
 };
 

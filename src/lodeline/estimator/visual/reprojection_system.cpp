@@ -210,11 +210,11 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
 
   term.by(Columns::kIntrinsics) *= weight;
   if (observation.camera > 0) {
-    const CameraViews::Further& further = first_.further(observation.camera);
+    const CameraViews::Further& secondary = first_.secondary(observation.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, observation.frame, 0);
-    const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - further.position_C0);
-    const Mat23 by_point_C0 = by_point * further.camera0_from_camera.transpose();
-    term.by(Columns::kSecondary) << timesSkew(by_point_C0, offset_C0) * further.left_jacobian,
+    const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - secondary.position_C0);
+    const Mat23 by_point_C0 = by_point * secondary.camera0_from_camera.transpose();
+    term.by(Columns::kSecondary) << timesSkew(by_point_C0, offset_C0) * secondary.left_jacobian,
         -rho * by_point_C0;
   }
   if (observation.frame == landmark.host) return term;
