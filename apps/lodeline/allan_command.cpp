@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/io/csv/plain_csv.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/io/streams/ordered_stream.h"

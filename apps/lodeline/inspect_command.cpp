@@ -7,6 +7,7 @@
 #include <memory>
 #include <opencv2/core/utility.hpp>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"

@@ -8,8 +8,8 @@
 #include <opencv2/core/utility.hpp>
 #include <thread>
 
-#include "apps/lodeline/report_command.h"
 #include "lodeline/pipeline/run_recording.h"
+#include "lodeline/pipeline/run_report.h"
 #include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
 #include "lodeline/util/error.h"

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/lodeline/compare/compared_run.h"
+#include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
 #include "lodeline/evaluation/figures/comparison_report.h"

@@ -11,10 +11,6 @@
 #include "lodeline/io/synchronizer/measurement_source.h"
 #include "lodeline/util/diagnostics.h"
 
-namespace CLI {
-class App;
-}
-
 namespace lodeline {
 
 /// What the command line says about a recording's sensors.
@@ -23,9 +19,6 @@ struct BagArguments {
   std::vector<std::string> topics;  ///< SENSOR=TOPIC
   bool use_received_times = false;
 };
-
-/// Adds --rig, --topic and --received-times to a command.
-void addBagOptions(BagArguments* arguments, CLI::App* command);
 
 /// Topics by sensor. Throws UsageError where one is not of the form SENSOR=TOPIC.
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lodeline/io/streams/inertial_limits.h"
-#include "lodeline/io/streams/spike_test.h"
+#include "lodeline/io/streams/spike_detector.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline {
@@ -146,11 +146,11 @@ std::string InertialScreen::jumpObjection() {
 }
 
 std::string InertialScreen::repetition(const ImuSample& sample) {
-  const RepeatTest::Verdict verdict = repeats_.judge(sample);
-  const bool is_saturated = verdict == RepeatTest::Verdict::Fresh && saturation_.isSaturated(sample);
+  const RepeatDetector::Verdict verdict = repeats_.judge(sample);
+  const bool is_saturated = verdict == RepeatDetector::Verdict::Fresh && saturation_.isSaturated(sample);
   if (!options_.drops_repeats) return {};
-  if (verdict == RepeatTest::Verdict::Held) return kHeld;
-  if (verdict == RepeatTest::Verdict::Stuck) return kStuck;
+  if (verdict == RepeatDetector::Verdict::Held) return kHeld;
+  if (verdict == RepeatDetector::Verdict::Stuck) return kStuck;
   return is_saturated ? kSaturated : std::string();
 }
 

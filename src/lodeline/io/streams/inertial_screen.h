@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lodeline/io/streams/reading_history.h"
-#include "lodeline/io/streams/repeat_test.h"
-#include "lodeline/io/streams/saturation_test.h"
+#include "lodeline/io/streams/repeat_detector.h"
+#include "lodeline/io/streams/saturation_detector.h"
 #include "lodeline/io/streams/unit_change.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/util/diagnostics.h"
@@ -77,8 +77,8 @@ class InertialScreen {
   size_t spikes_ahead_ = 0;        ///< of these, known to be spikes
   std::optional<ImuSample> head_;
   ReadingHistory history_;
-  RepeatTest repeats_;
-  SaturationTest saturation_;
+  RepeatDetector repeats_;
+  SaturationDetector saturation_;
   Stretch stretch_;
   int64_t readings_ = 0, held_ = 0;
 };

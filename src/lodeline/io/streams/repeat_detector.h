@@ -9,7 +9,7 @@ namespace lodeline {
 /// Tells readings that a driver held, or that a sensor that hangs repeats, from those of a sensor that
 /// resolves coarsely at rest. The coarse one repeats single axes about as often as all of them together; a
 /// fresh reading of the other kind hardly shares an axis with the one before.
-class RepeatTest {
+class RepeatDetector {
  public:
   enum class Verdict {
     Fresh,  ///< or not to be told from it

@@ -11,7 +11,7 @@ namespace lodeline {
 /// larger than twice what it resolves. Or it stayed there thrice, came there each time by a step larger than
 /// it resolves, and went far away in between: peaks of motion differ in height and are round. A reading
 /// beyond such an end shows that it was none.
-class SaturationTest {
+class SaturationDetector {
  public:
   /// Readings in order, each once. True where one of the axes is at such an end.
   bool isSaturated(const ImuSample& sample);

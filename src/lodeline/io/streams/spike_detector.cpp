@@ -1,4 +1,4 @@
-#include "lodeline/io/streams/spike_test.h"
+#include "lodeline/io/streams/spike_detector.h"
 
 #include <algorithm>
 #include <cmath>
