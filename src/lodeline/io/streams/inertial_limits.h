@@ -21,8 +21,7 @@ inline bool isPossible(const ImuSample& sample, double rate_to_SI = 1.0) {
          largest(sample.specific_force_B) <= kForce_m_per_s2;
 }
 
-/// Whether gyroscope or accelerometer reads exactly zero, which noise and gravity exclude for a working
-/// sensor.
+/// Whether all six values are exactly zero. Noise and gravity exclude this for a working sensor.
 inline bool isZero(const ImuSample& sample) {
   return sample.angular_velocity_B.isZero(0.0) && sample.specific_force_B.isZero(0.0);
 }
