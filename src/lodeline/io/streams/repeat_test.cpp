@@ -5,7 +5,7 @@
 namespace lodeline {
 
 void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3& other, Time time) {
-  constexpr double kOf = 0.25;  // the newest share counts
+  constexpr double kOf = 0.25;  // weight of the newest fraction in the running mean
   const auto same = (before.array() == reading.array()).count();
   repeats_ = same == 3;
   if (repeats_) {
