@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kHistory_s = 0.5;
 constexpr double kSilent_s = 1.5;
-constexpr double kLongestMagneticStepDetector_s =
-    0.5;  ///< maximum weight of a reading after a pause, as a time step
+constexpr double kLongestMagneticStepDetector_s = 0.5;  ///< limits the weight after a pause
 
 std::optional<FieldShape> shapeOf(const std::optional<Vec3>& field_W) {
   if (!field_W) return std::nullopt;

@@ -19,8 +19,7 @@ struct AttitudeFilterOptions {
   RestDetectorOptions rest;
   FieldGateOptions gate;
   HeadingFilterOptions heading;
-  double longest_rejection_s =
-      60.0;                ///< after this time, a disturbed field is used with the error that it shows
+  double longest_rejection_s = 60.0;  ///< then a disturbed field is used with its error
   double max_gap_s = 1.0;  ///< after a longer gap in the readings, the attitude is initialized again
   double gap_rate_sigma_rad_per_s = 0.3;
   /// Field at the site, where known, as reference for magnitude and dip. World axes east, north, up, T.
@@ -42,8 +41,7 @@ const char* toString(HeadingStatus status);
 struct AttitudeEstimate {
   Time time;
   Quat world_from_body = Quat::Identity();  ///< world: x magnetic (or true) east, y north, z up
-  double heading_sigma_rad =
-      0.0;  ///< about the vertical; relative to the first attitude without a magnetometer
+  double heading_sigma_rad = 0.0;           ///< without a magnetometer, relative to the first attitude
   Vec3 gyroscope_bias_B = Vec3::Zero();
   bool at_rest = false;
   HeadingStatus status = HeadingStatus::NoMagnetometer;

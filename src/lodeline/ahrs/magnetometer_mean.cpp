@@ -41,8 +41,7 @@ MagnetometerMean carryToFrame(std::span<const FieldSample> samples, std::span<co
   const double share = 1.0 / static_cast<double>(samples.size());
   Quat frame_from_later = Quat::Identity();
   size_t left = samples.size();
-  double shared_noise_s =
-      0.0;  // integral of (fraction of readings that the noise at a moment rotates) squared
+  double shared_noise_s = 0.0;  // integral of (fraction of readings that the noise rotates) squared
   for (size_t i = imu.size(); i-- > 0 && left > 0;) {
     if (i + 1 == imu.size()) {
       while (left > 0 && samples[left - 1].time == imu[i].time) take(samples[--left], frame_from_later);

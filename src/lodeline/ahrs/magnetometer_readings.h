@@ -16,8 +16,7 @@ namespace lodeline {
 /// axes. It drops the others and reports each kind once:
 /// - `magnetometer_invalid`: not a number, infinite, or zero;
 /// - `magnetometer_repeated`: the same three values as before, from a driver that polls faster than the
-/// sensor
-///   measures;
+///   sensor measures;
 /// - `magnetometer_frozen`: only repetitions for a second;
 /// - `magnetometer_saturated`: an axis at the end of its range;
 /// - `magnetometer_converted`, `magnetometer_unusable`: readings are not in tesla but in a unit that

@@ -13,10 +13,9 @@ namespace lodeline {
 ///   reading = matrix * true + warm_up * exp(-t / warm_up_time) + b(t) + white noise, clipped to the range,
 /// where b(t) starts at `turn_on_bias` and adds a random walk and a flicker process (bias instability).
 struct TriadErrors {
-  double noise_density = 0.0;  ///< [u]/sqrt(Hz), two-sided (Kalibr)
-  double random_walk = 0.0;    ///< [u]/s/sqrt(Hz)
-  double bias_instability =
-      0.0;  ///< [u], the coefficient B of IEEE 952: minimum of the Allan deviation 0.664 B
+  double noise_density = 0.0;     ///< [u]/sqrt(Hz), two-sided (Kalibr)
+  double random_walk = 0.0;       ///< [u]/s/sqrt(Hz)
+  double bias_instability = 0.0;  ///< [u], B of IEEE 952; Allan deviation minimum 0.664 B
   Vec3 turn_on_bias = Vec3::Zero();
   Mat3 matrix = Mat3::Identity();  ///< scale factors and misalignment
   Vec3 warm_up = Vec3::Zero();     ///< bias at power-on that decays with `warm_up_time_s`

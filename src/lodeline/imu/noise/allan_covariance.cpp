@@ -90,8 +90,8 @@ void AllanCovariance::fill(int row, int column, const AllanPoint& shorter, const
   std::array<std::array<double, kRandomKinds>, kRandomKinds> sums{};
   for (int64_t step = -steps; step <= steps; ++step) {
     const double lag_s = static_cast<double>(step) * step_s;
-    const double overlap_s = std::min(first_span_s, second_span_s - lag_s) -
-                             std::max(0.0, -lag_s);  // number of moments with a partner
+    const double overlap_s =
+        std::min(first_span_s, second_span_s - lag_s) - std::max(0.0, -lag_s);  // moments with a partner
     if (overlap_s <= 0.0) continue;
     const KindValues c = differenceCovariance(first_s, second_s, lag_s, interval_s);
     for (size_t a = 0; a < kRandomKinds; ++a) {

@@ -47,9 +47,8 @@ class AllanAccumulator {
   AllanCurve curve(double interval_s) const;
 
  private:
-  static constexpr int kFirstFactor =
-      16;  ///< smallest factor of the octaves above the first, in decimated readings
-  static constexpr int kHistory = 64;  ///< power of two, at least 2 * 28 + 1
+  static constexpr int kFirstFactor = 16;  ///< smallest of the higher octaves, in decimated readings
+  static constexpr int kHistory = 64;      ///< power of two, at least 2 * 28 + 1
 
   struct Sum {
     int factor = 0;

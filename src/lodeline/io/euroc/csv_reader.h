@@ -78,8 +78,7 @@ class CsvReader {
   TableReader table_;
   std::size_t time_column_ = 0;
   TimeUnit stamp_unit_ = TimeUnit::Nanoseconds;
-  std::optional<TimeUnit>
-      decimal_unit_;  ///< unit of stamps with decimals; nothing where decimals are not stamps
+  std::optional<TimeUnit> decimal_unit_;  ///< of stamps with decimals; nothing if invalid
   std::vector<NumberColumn> numbers_;
   std::size_t text_column_ = 0;
 };

@@ -43,14 +43,12 @@ class EurocSource : public RecordedSource {
   Diagnostics* diagnostics_;
   std::optional<CsvReader> imu_;
   std::vector<ImageList> cameras_;
-  std::vector<std::optional<GreyRange>>
-      grey_ranges_;  ///< of each camera, measured at the first request of an image
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< per camera, measured at its first image
   std::optional<CsvReader> magnetometer_;
   std::optional<CsvReader> pressure_;
   std::optional<CsvReader> sonar_;
-  bool is_magnetic_unit_doubted_ =
-      false;    ///< set at the first report, because the doubt concerns the whole column
-  CsvRow row_;  ///< reused to avoid allocation
+  bool is_magnetic_unit_doubted_ = false;  ///< already reported for the whole column
+  CsvRow row_;                             ///< reused to avoid allocation
 };
 
 }  // namespace lodeline

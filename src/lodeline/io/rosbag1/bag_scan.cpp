@@ -37,8 +37,7 @@ std::optional<RecordView> recordIn(const RandomAccessFile& file, uint64_t positi
 /// Position of the next record of a chunk at or after `from`.
 std::optional<uint64_t> findChunk(const RandomAccessFile& file, uint64_t from) {
   constexpr size_t kBlock = size_t{4} << 20;
-  constexpr uint64_t kFieldsBefore =
-      64;  // size of the other fields of a chunk's record, and of the length fields
+  constexpr uint64_t kFieldsBefore = 64;  // size of the record's other fields and lengths
   for (uint64_t start = from; start < file.size(); start += kBlock) {
     const wire::Bytes block = file.read(start, kBlock + kChunkMark.size());
     for (auto mark = block.begin();; ++mark) {

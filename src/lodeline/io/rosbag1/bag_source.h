@@ -79,8 +79,7 @@ class BagSource : public RecordedSource {
   bool use_received_times_;
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
-  std::vector<std::optional<GreyRange>>
-      grey_ranges_;  ///< of each camera, measured at the first request of an image
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< per camera, measured at its first image
   Cursor imu_, accelerometer_, magnetometer_, pressure_, sonar_;
   ImuHalves halves_;                ///< state for an IMU in two topics
   std::deque<SonarSample> echoes_;  ///< echoes of the scan that was read last

@@ -34,8 +34,7 @@ class RepeatTest {
 
    private:
     bool has_changed_ = false;
-    double share_ =
-        1.0;  ///< running mean of the fraction of repeated axes, over readings in which not all axes repeat
+    double share_ = 1.0;  ///< mean fraction of repeated axes, where not all repeat
     bool repeats_ = false;
     Time since_;
     Vec3 other_least_ = Vec3::Zero(), other_greatest_ = Vec3::Zero();

@@ -74,9 +74,8 @@ class LiveSource : public RecordedSource {
     Duration offset_to_imu_clock;
     size_t heard = 0;  ///< number of readings since the start
     std::deque<Reading> waiting;
-    std::optional<Time> given;  ///< time of the last reading returned
-    std::optional<Time>
-        settled;  ///< packets up to this time (IMU clock) are complete; later arrivals for them are dropped
+    std::optional<Time> given;    ///< time of the last reading returned
+    std::optional<Time> settled;  ///< end of the completed packets, IMU clock
     Loss overflow, late;
   };
 

@@ -36,8 +36,7 @@ struct PendingImage {
   std::function<LoadedImage()> load;
   /// Returns the image as stored; empty for sources without a recording.
   std::function<StoredImage()> stored = {};
-  Time recorded =
-      {};  ///< the stamp as stored, independent of later changes of `time`; set by the synchronizer
+  Time recorded = {};  ///< the stored stamp, unaffected by changes of `time`; set by the synchronizer
 };
 
 /// Hash that is equal for images stored under the same name.

@@ -54,9 +54,7 @@ class TableReader {
       : TableReader(openFile(file), file.string(), std::move(options), diagnostics) {}
 
   bool hasHeader() const { return !columns_.empty(); }
-  const std::vector<ColumnName>& columns() const {
-    return columns_;
-  }  ///< names in the header; empty without one
+  const std::vector<ColumnName>& columns() const { return columns_; }  ///< of the header
   /// Number of cells of every row; 0 where there is no row.
   std::size_t columnCount() const { return column_count_; }
   /// The first 1000 lines before the first row except the header, as written.

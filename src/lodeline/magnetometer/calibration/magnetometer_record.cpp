@@ -50,8 +50,7 @@ RigFile readCalibration(const EurocLayout& layout, Diagnostics* diagnostics) {
   Diagnostics found;
   RigFile rig = readFolderCalibration(layout, &found);
   for (const Finding& finding : found.ranked()) {
-    if (finding.kind.ends_with("_uncalibrated"))
-      continue;  // reported below with the consequence for a calibration
+    if (finding.kind.ends_with("_uncalibrated")) continue;  // reported below
     diagnostics->report(finding.severity, finding.kind, finding.first_message);
   }
   return rig;

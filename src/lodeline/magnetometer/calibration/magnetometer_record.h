@@ -14,8 +14,7 @@
 namespace lodeline {
 
 struct RecordOptions {
-  std::optional<FieldUnit>
-      unit;  ///< unit of the magnetometer columns; nothing: as stated, or determined from the magnitude
+  std::optional<FieldUnit> unit;  ///< nothing: as stated, or from the magnitude
   /// Part to use, counted from the first magnetometer reading.
   double from_s = 0.0;
   std::optional<double> to_s;

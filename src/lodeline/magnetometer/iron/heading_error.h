@@ -19,8 +19,7 @@ struct CalibrationDifference {
   Vec3 hard_iron = Vec3::Zero();        ///< second minus first, unit of the readings
   Mat3 iron_correction = Mat3::Zero();  ///< second minus first, both scaled to determinant 1
   std::optional<Vec3> rotation_rad;     ///< second = exp(this) first, body axes, where both have a rotation
-  Eigen::Matrix<double, fit_parameter::kSize, 1>
-      sigmas;  ///< one sigma of the differences, from both covariances
+  Eigen::Matrix<double, fit_parameter::kSize, 1> sigmas;  ///< from both covariances
   /// Equivalent heading difference at a dip, as in headingSigma(): RMS over all attitudes, and the maximum. A
   /// rotation that only one calibration has is used for both.
   double heading_rms_rad = 0.0;

@@ -8,7 +8,7 @@
 namespace lodeline {
 
 /// Parameters of the ellipsoid of raw readings, whose corrected readings are on the unit sphere:
-/// A (y - h)| = 1, with A in units of 1 / reading.
+/// |A (y - h)| = 1, with A in units of 1 / reading.
 struct IronParameters {
   Mat3 correction = Mat3::Identity();  ///< A
   Vec3 hard_iron = Vec3::Zero();       ///< h

@@ -61,9 +61,8 @@ class Settings {
   struct Entry {
     std::string key;
     std::string documentation;
-    std::string kind;  ///< expected kind of value for error messages, e.g. "a number"
-    std::function<bool(const Text&)>
-        parse;  ///< stores the value; returns false where the text is not a valid value
+    std::string kind;                        ///< expected kind of value for error messages, e.g. "a number"
+    std::function<bool(const Text&)> parse;  ///< stores the value; false for an invalid one
     std::function<std::string()> format;
   };
   struct Assignment {
