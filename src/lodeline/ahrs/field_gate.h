@@ -39,9 +39,9 @@ enum class FieldVerdict {
 const char* toString(FieldVerdict verdict);
 
 /// Tests whether the measured field is the Earth's by comparing magnitude and dip with a reference. The
-/// reference is the field at the site where known, otherwise the first measured field. It follows the
-/// measurements slowly while they are accepted. After Laidig & Seel ("VQF", Information Fusion 2023, section
-/// 3.7).
+/// reference is the field at the site where known, otherwise the first measured field. A measured reference
+/// follows the field slowly while it is accepted. After Laidig & Seel ("VQF", Information Fusion 2023,
+/// section 3.7).
 class FieldGate {
  public:
   FieldGate(const FieldGateOptions& options, const std::optional<FieldShape>& site);

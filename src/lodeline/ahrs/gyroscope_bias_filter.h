@@ -15,8 +15,8 @@ struct GyroscopeBiasOptions {
   double rest_density_rad_per_s_sqrtHz = 1.6e-3;
   double motion_density_rad_per_s_sqrtHz = 0.0175;
   /// After a start in motion, the inclination corrections are dominated by the error of the initial
-  /// inclination. Their sigma is therefore increased by that error divided by the time since the start, for
-  /// this time.
+  /// inclination. Their sigma is therefore multiplied by sqrt(1 + (settling_s / t)^2), with t the time since
+  /// the start.
   double settling_s = 20.0;
   /// A mean rate at rest is a slow rotation and not a bias where its distance from the bias exceeds this
   /// value plus three sigmas of the bias.

@@ -124,8 +124,8 @@ std::optional<Vec3> RadialTangentialCamera::unproject(const Vec2& pixel) const {
   if (!std::isfinite(distorted_radius)) return std::nullopt;
   if (distorted_radius == 0.0) return Vec3::UnitZ();
 
-  // Inverts the radial part in one dimension, which always converges. The small tangential part then needs a
-  // few Newton steps in two dimensions.
+  // Inverts the radial part in one dimension with a bracketed iteration. The small tangential part then needs
+  // a few Newton steps in two dimensions.
   Vec2 undistorted = distorted * (invertRadial(distorted_radius) / distorted_radius);
   for (int i = 0; i < kMaxIterations; ++i) {
     Mat2 jacobian;

@@ -13,11 +13,11 @@ struct SecondDiver {
   double spot_half_angle_rad = 0.10;
   double sweep_rad = 0.7;      ///< amplitude about straight ahead
   double period_s = 7.0;       ///< of one sweep
-  double visible_share = 0.5;  ///< fraction of the time; otherwise the torch is off
+  double visible_share = 0.5;  ///< fraction of the time; otherwise the diver is away
 };
 
-/// The torch at one moment; nothing while it is off. `forward_W` is the viewing direction of the rig's
-/// cameras. Deterministic in seed and time.
+/// The torch at one moment; nothing while the second diver is away. `forward_W` is the viewing direction of
+/// the rig's cameras. Deterministic in seed and time.
 std::optional<PlacedLamp> placeSecondDiver(const SecondDiver& diver, const Vec3& rig_position_W,
                                            const Vec3& forward_W, double time_s, uint64_t seed);
 

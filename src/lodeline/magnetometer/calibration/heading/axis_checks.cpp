@@ -15,7 +15,8 @@ namespace {
 /// Ratio of the disagreements of readings and opposite readings that indicates a wrong sign.
 constexpr double kMuchBetter = 3.0;
 constexpr double kDistinct = 4.0;
-/// Maximum rotation between gravity and a gyroscope with correct signs; only hand accelerations cause it.
+/// Maximum rotation between the axes of accelerometer and gyroscope. With correct signs, only hand
+/// accelerations cause a difference.
 constexpr double kGreatestGravityTurn_rad = 45.0 * kDegree;
 constexpr double kGreatestMountingError_rad = 20.0 * kDegree;
 /// Minimum dip; nearer to the magnetic equator, the sign of the dip is not significant.
