@@ -29,7 +29,7 @@ std::string valuesOf(const ImuSample& sample) {
                      f.x(), f.y(), f.z());
 }
 
-/// What is wrong with a reading, in words.
+/// Description of the reason for rejecting a reading.
 std::string reasonOf(const std::string& kind) {
   if (kind == kImpossible) return "beyond what any inertial sensor can measure";
   if (kind == kZero) return "zero in every axis, where gravity alone gives 9.8 m/s^2";
@@ -159,7 +159,7 @@ void InertialScreen::leaveOut(const std::string& kind, const ImuSample& sample) 
   ++stretch_.readings;
   stretch_.last = sample.time;
   if (kind == kHeld) {
-    // A single repetition is worth no word; many mean that the sensor measures more slowly than it says.
+    // Single repetitions are not reported; many mean that the sensor measures more slowly than stated.
     constexpr double kWorthSaying = 0.05;
     constexpr int64_t kLeast = 50;
     ++held_;
