@@ -4,13 +4,8 @@
 
 namespace lodeline {
 
-<<<<<<< HEAD:src/lodeline/io/streams/repeat_detector.cpp
 void RepeatDetector::Triad::add(const Vec3& before, const Vec3& reading, const Vec3& other, Time time) {
-  constexpr double kOf = 0.25;  // the newest share counts
-=======
-void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3& other, Time time) {
   constexpr double kOf = 0.25;  // weight of the newest fraction in the running mean
->>>>>>> words_b:src/lodeline/io/streams/repeat_test.cpp
   const auto same = (before.array() == reading.array()).count();
   repeats_ = same == 3;
   if (repeats_) {

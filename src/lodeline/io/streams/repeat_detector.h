@@ -6,17 +6,10 @@
 
 namespace lodeline {
 
-<<<<<<< HEAD:src/lodeline/io/streams/repeat_detector.h
-/// Tells readings that a driver held, or that a sensor that hangs repeats, from those of a sensor that
-/// resolves coarsely at rest. The coarse one repeats single axes about as often as all of them together; a
-/// fresh reading of the other kind hardly shares an axis with the one before.
-class RepeatDetector {
-=======
 /// Detects readings repeated by a driver or by a stuck sensor, as opposed to equal readings of a coarsely
 /// quantized sensor at rest. With coarse quantization, single axes repeat about as often as all axes
 /// together. With a driver that repeats, a new reading almost never shares an axis with the one before.
-class RepeatTest {
->>>>>>> words_b:src/lodeline/io/streams/repeat_test.h
+class RepeatDetector {
  public:
   enum class Verdict {
     Fresh,  ///< new, or not distinguishable from a new reading

@@ -6,21 +6,12 @@
 
 namespace lodeline {
 
-<<<<<<< HEAD:src/lodeline/io/streams/saturation_detector.h
-/// Finds readings at the end of a sensor's range. An axis is taken for saturated at its greatest (or least)
-/// reading once it has stayed there, figure by figure, for ten readings although its changes are otherwise
-/// larger than twice what it resolves. Or it stayed there thrice, came there each time by a step larger than
-/// it resolves, and went far away in between: peaks of motion differ in height and are round. A reading
-/// beyond such an end shows that it was none.
-class SaturationDetector {
-=======
 /// Detects readings at the end of a sensor's range. An axis is saturated at its largest (or smallest) reading
 /// under one of two conditions. First: it stayed there with equal digits for ten readings, although its usual
 /// changes exceed twice its resolution. Second: it stayed there three times, arrived each time with a step
 /// larger than its resolution, and went far away in between. Real motion peaks differ in height and are
 /// round. A reading beyond such an end disproves it.
-class SaturationTest {
->>>>>>> words_b:src/lodeline/io/streams/saturation_test.h
+class SaturationDetector {
  public:
   /// Tests the next reading; call once per reading, in order. True where an axis is at such an end.
   bool isSaturated(const ImuSample& sample);
