@@ -26,16 +26,15 @@ struct RefinementSummary {
   bool converged = false;  ///< the last round converged
   int states = 0;
   int64_t landmarks = 0;
-  int64_t observations = 0;  ///< of these
-  double observation_variance =
-      1.0;                     ///< given to an observation, relative to the stated one (TimeCorrelatedErrors)
-  double design_effect = 1.0;  ///< observations that count as one in the reported covariance
-  double outlier_share = 0.0;  ///< of the observations, removed at the end
-  int iterations = 0;          ///< of all rounds
-  double forward_cost = 0.0;   ///< of the forward run's states
-  double first_round_cost = 0.0;  ///< cost of the same terms after the first round
-  double cost = 0.0;              ///< cost of the remaining terms at the end
-  double moved_rms_m = 0.0;       ///< difference of refined and forward positions, over all frames
+  int64_t observations = 0;           ///< of these
+  double observation_variance = 1.0;  ///< of an observation over the stated one (TimeCorrelatedErrors)
+  double design_effect = 1.0;         ///< observations that count as one in the reported covariance
+  double outlier_share = 0.0;         ///< of the observations, removed at the end
+  int iterations = 0;                 ///< of all rounds
+  double forward_cost = 0.0;          ///< of the forward run's states
+  double first_round_cost = 0.0;      ///< cost of the same terms after the first round
+  double cost = 0.0;                  ///< cost of the remaining terms at the end
+  double moved_rms_m = 0.0;           ///< difference of refined and forward positions, over all frames
   double moved_max_m = 0.0;
   double turned_rms_rad = 0.0;
   double forward_sigma_m = 0.0,
