@@ -32,10 +32,10 @@ constexpr int kMotionSize = 9;
 Rigid3 poseFromBlock(const double* block);
 void poseToBlock(const Rigid3& world_from_body, double* block);
 
-/// world_from_body moved by a perturbation [dp, dtheta] in world axes.
+/// world_from_body after a perturbation [dp, dtheta] in world axes.
 Rigid3 perturbed(const Rigid3& world_from_body, const Eigen::Matrix<double, 6, 1>& perturbation);
 
-/// The perturbation that leads from `from` to `to`.
+/// The perturbation [dp, dtheta] that takes `from` to `to`.
 Eigen::Matrix<double, 6, 1> perturbationBetween(const Rigid3& from, const Rigid3& to);
 
 class PoseManifold final : public ceres::Manifold {

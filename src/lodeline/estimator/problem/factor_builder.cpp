@@ -19,9 +19,9 @@ std::shared_ptr<const ceres::LossFunction> lossOf(const FeatureTrack& track, dou
                                              ceres::TAKE_OWNERSHIP);
 }
 
-/// The target of a reprojection factor, as the pose that two keyframes stand in for.
+/// Replaces the target pose of a reprojection factor by one interpolated between two keyframes.
 void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor) {
-  constexpr size_t kTarget = 1;  // of the blocks of such factors
+  constexpr size_t kTarget = 1;  // index of the target pose in such factors
   const auto& [before_id, after_id, between] = *target.interpolated;
   Frame &before = *window.find(before_id), &after = *window.find(after_id);
   factor->function = std::make_unique<InterpolatedPoseFactor>(std::move(factor->function), kTarget, between,
@@ -30,7 +30,7 @@ void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor)
   factor->blocks.push_back(after.pose.data());
 }
 
-/// That a state is zero, with so much on each of its entries.
+/// Prior of a zero state with the same sigma for each of its entries.
 Factor zeroPrior(ParameterBlock& state, double sigma) {
   const auto size = static_cast<Eigen::Index>(state.value.size());
   Factor factor;
@@ -84,7 +84,7 @@ Factor FactorBuilder::inertial(const Window& window, Frame& before, Frame& frame
 }
 
 std::vector<Factor> FactorBuilder::imuAxes(const Window& window) const {
-  constexpr double kUsualNorm = 3.0;  // of nine sigmas
+  constexpr double kUsualNorm = 3.0;  // norm of nine coordinates, in sigmas
   std::vector<Factor> priors;
   const auto add = [&](ParameterBlock* axes, double sigma) {
     if (!axes) return;

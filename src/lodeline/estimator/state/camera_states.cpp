@@ -10,10 +10,10 @@ namespace {
 
 constexpr const char* kTimeOffset = "camera.dt";
 
-// Small enough to hold a state, large enough to keep the prior well conditioned.
+// Small enough to hold a state, large enough for a well conditioned prior.
 constexpr double kHeld = 1e-7;
 
-// Short enough to need no memory of their own: they are looked up for every landmark.
+// Names short enough to need no heap memory: they are looked up for every landmark.
 std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".T_BC"; }
 
 std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
@@ -34,8 +34,8 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
-/// Of a secondary camera's position only that it is somewhere on the rig: FactorBuilder::placement() has the
-/// rest.
+/// Prior sigmas of a secondary camera. The position is only limited to the size of the rig;
+/// FactorBuilder::placement() contains the rest.
 Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
   constexpr double kSomewhere_m = 0.05;
   return extrinsicsSigmas(options.stereo_rotation_sigma_rad,

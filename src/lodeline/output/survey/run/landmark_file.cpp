@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "landmarks.ply is read as it lies in memory");
 
-/// One vertex as it lies in the file.
+/// One vertex in the layout of the file.
 struct Vertex {
   std::array<float, 3> position;
   int32_t observations;
@@ -31,7 +31,7 @@ static_assert(sizeof(Vertex) == 16);
                   file.string(), what));
 }
 
-/// Reads the header and gives the number of vertices; nothing where the file ends before its header does.
+/// Reads the header and returns the number of vertices; empty where the file ends within its header.
 std::optional<size_t> readHeader(std::ifstream& stream, const std::filesystem::path& file) {
   // Early versions had another name for the number of observations.
   const std::string kCount = "property int ";
