@@ -2,7 +2,7 @@
 
 #include "apps/lodeline/tests/test_room.h"
 
-// `lodeline run` on lists of readings that are empty, cut off, disordered or full of holes.
+// Tests of `lodeline run` on lists of readings that are empty, truncated, out of order or full of gaps.
 
 namespace lodeline::test {
 namespace {
@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 
 class RunReadings : public RoomTest {
  protected:
-  /// One sigma of the last pose's position along x, as states.csv has it.
+  /// Sigma of the last pose's position along x, from states.csv.
   double lastSigma_m() const {
     std::istringstream lines(readText(output_ / "states.csv"));
     std::string header, line, last;
