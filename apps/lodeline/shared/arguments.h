@@ -9,8 +9,8 @@ class App;
 
 namespace lodeline {
 
-/// The words of the command line with each position (`--site`, `--entrance`) as one word LAT,LON,HEIGHT,
-/// whether its three numbers were given with commas, with blanks, or as three words.
+/// The words of the command line with each position (`--site`, `--entrance`) as one word LAT,LON,HEIGHT. Its
+/// three numbers may be separated by commas or blanks, or be three words.
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words);
 
 /// Throws UsageError, with the nearest name as a suggestion, where `words` begin with an unknown command of

@@ -22,8 +22,8 @@ struct RoomRecording {
 };
 
 /// Writes a small stereo recording in the EuRoC ASL layout: a rig moved by hand for 1.5 s in a box-shaped
-/// room with textured walls, 320x240 px at 20 Hz, IMU at 200 Hz from 0.5 s before the first image to the last
-/// one, constant IMU biases and no noise.
+/// room with textured walls. Images have 320x240 px at 20 Hz. The IMU has 200 Hz from 0.5 s before the first
+/// image to the last one, constant biases and no noise.
 RoomRecording writeRoomRecording(const std::filesystem::path& folder);
 
 /// Number and stamp (ns) of the images.
