@@ -135,7 +135,7 @@ TEST_F(RunReadings, InertialGapOfHalfASecondIsReportedAndSurvived) {
   EXPECT_EQ(findings("imu_gap"), 1);
   EXPECT_THAT(result.output, HasSubstr("nothing for 0.500 s after stamp"));
   EXPECT_EQ(poses(), kRoomImages);
-  // Images carry on through the gap; inertial readings made up over it must not be believed.
+  // Images determine the motion in the gap; interpolated inertial readings in it must not be used.
   EXPECT_LT(error_m(), 0.02);
 }
 
