@@ -38,7 +38,7 @@ int fail(const char* kind, const std::exception& error, ExitCode code) {
   return code;
 }
 
-/// Redirects the log of Ceres, which uses glog. Its warnings are about steps from which it recovers;
+/// Limits the log of Ceres (glog) to errors. Its warnings are about steps from which it recovers;
 /// everything relevant to the user is in the run's findings.
 void quietSolverLog(const char* program) {
   FLAGS_logtostderr = true;
