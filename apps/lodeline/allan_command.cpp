@@ -29,7 +29,7 @@ struct AllanArguments {
   double duration_s = 0.0;
 };
 
-/// What of the record is to be looked at, counted from its first reading.
+/// The part of the record to be analysed, counted from its first reading.
 class Part {
  public:
   explicit Part(const AllanArguments& arguments) : arguments_(arguments) {}
@@ -45,7 +45,7 @@ class Part {
   std::optional<Time> first_;
 };
 
-/// The three sensors, those that the recording has.
+/// Analyses of the available ones of the three sensors.
 class Analyses {
  public:
   explicit Analyses(Diagnostics* diagnostics)

@@ -36,7 +36,7 @@ std::optional<Vec3> siteField(const InspectArguments& arguments) {
   return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
 }
 
-/// Also recordings that nothing could be estimated from.
+/// Opens a recording, even if no estimate is possible from it.
 std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
                                                    Diagnostics* diagnostics) {
   if (isTableOfReadings(arguments.data)) {

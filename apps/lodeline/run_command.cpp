@@ -20,14 +20,14 @@ namespace lodeline {
 namespace {
 
 constexpr int kLivePort = 8642;
-constexpr size_t kTerminalWidth = 96;  ///< of the values of the summary
+constexpr size_t kTerminalWidth = 96;  ///< width of the values in the summary
 
 bool isPort(const std::string& text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-/// Turns a run without a result into the error that explains it.
+/// Throws the error that explains a run without a result.
 void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
   if (const std::string reason = summary.distrust(); !reason.empty()) {

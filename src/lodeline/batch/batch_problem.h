@@ -16,9 +16,10 @@
 
 namespace lodeline {
 
-/// Least-squares problem of a whole recording: the terms of the sliding window (estimator/factor_builder.h)
-/// over all states at once, without marginalization and without linearization points. Offsets that walk
-/// (magnetometer, pressure gauge) are chains of states, one per minute.
+/// Least-squares problem of a whole recording: the terms of the sliding window
+/// (estimator/problem/factor_builder.h) over all states at once, without marginalization and without
+/// linearization points. Offsets that walk (magnetometer, pressure gauge) are chains of states, one per
+/// minute.
 class BatchProblem {
  public:
   /// Initial values: states from the forward run, landmarks triangulated with its poses. Observations that
@@ -43,7 +44,7 @@ class BatchProblem {
   /// Computes the Gauss-Newton system H d = -g, landmarks eliminated.
   void linearize(BlockSkylineCholesky* hessian, Eigen::VectorXd* gradient);
   /// Subtracts from the Hessian the information that the estimate uses and the reported covariance leaves out
-  /// (estimator/reported_covariance.h), before the Hessian is inverted for covariances.
+  /// (estimator/uncertainty/reported_covariance.h), before the Hessian is inverted for covariances.
   void subtractRemoved(BlockSkylineCholesky* hessian) const;
   /// Applies a step of the last linearized system to all values, which must not have changed since.
   void step(const Eigen::VectorXd& step);

@@ -18,8 +18,8 @@ namespace lodeline {
 //   u + diag(s_u, s_v) (u - c) + [c_u, c_v] + (k_1 |p|^2 + k_2 |p|^4) diag(f_u, f_v) p
 // with the principal point c and the focal lengths f of the file. This is the first-order effect of different
 // numbers in the file. Powers of the sine of the angle, in place of p, would leave 0.3 px at the border for
-// errors of 0.006 in the coefficients, with opposite signs on opposite sides. The focal length would absorb
-// that error.
+// errors of 0.006 in the coefficients. Their signs would be opposite on opposite sides. The focal length
+// would absorb that error.
 
 constexpr int kIntrinsicsSize = 6;
 

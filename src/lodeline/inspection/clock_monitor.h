@@ -12,12 +12,12 @@
 
 namespace lodeline {
 
-/// Checks during a run whether the clocks of images and IMU agree. The rotation of camera 0 between images,
-/// from the tracked points alone, is compared with the gyroscope's over the last few seconds, as inspect()
-/// does for parts of a recording. A time offset far beyond the usual calibration errors, in two successive
-/// comparisons, is reported as `camera_time_offset`, and each later change of it as `camera_clock_jump`.
-/// There are no comparisons while the rig hardly rotates. The monitor needs less than a hundredth of a
-/// frame's time.
+/// Checks during a run whether the clocks of images and IMU agree. It compares the rotation of camera 0
+/// between images, from the tracked points alone, with the gyroscope's over the last few seconds. inspect()
+/// does the same for parts of a recording. A time offset far beyond the usual calibration errors, in two
+/// successive comparisons, is reported as `camera_time_offset`, and each later change of it as
+/// `camera_clock_jump`. There are no comparisons while the rig hardly rotates. The monitor needs less than a
+/// hundredth of a frame's time.
 class ClockMonitor {
  public:
   explicit ClockMonitor(const Rig& rig);

@@ -42,7 +42,7 @@ bool isBag(const std::filesystem::path& data) {
 bool isTableOfReadings(const std::filesystem::path& data) {
   const RecognizedFile recognized = recognizeFile(data);
   if (recognized.isFolder() || recognized.kind == FileKind::Ros1Bag) return false;
-  if (isBag(data)) return false;  // one that is missing is reported by its reader
+  if (isBag(data)) return false;  // its reader reports a missing one
   if (recognized.kind != FileKind::Table && recognized.kind != FileKind::Text) {
     refuseFile(recognized, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
   }
@@ -65,7 +65,7 @@ void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag
   if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
     const RecognizedFile recognized = recognizeFile(data);
     const bool is_table = recognized.kind == FileKind::Table || recognized.kind == FileKind::Text;
-    if (!is_table) return;  // refused by its kind
+    if (!is_table) return;  // already rejected by its kind
     throw UsageError(
         fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognized.what));
   }

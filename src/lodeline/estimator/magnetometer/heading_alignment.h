@@ -24,7 +24,7 @@ struct HeadingAlignment {
 HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options);
 
 /// Rotation about the vertical, rad in (-pi, pi], from a world in which the Earth's field is `field_W` to one
-/// whose y axis points to `reference`, magnetic or true north.
+/// whose y axis points north. `reference`: magnetic or true north.
 double northFromWorld(const Vec3& field_W, HeadingReference reference, const MagnetometerOptions& options);
 
 /// Variance of the azimuth of the Earth's field in the world, and its covariance with a state.

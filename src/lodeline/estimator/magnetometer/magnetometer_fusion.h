@@ -70,8 +70,9 @@ class MagnetometerFusion {
   /// Stores the joint covariance of the solved window; the next frame's field is gated with it.
   void remember(JointCovariance covariance);
 
-  /// Converts the covariance of the newest frame's state, [dp, dtheta, dv, db_g, db_a] as Estimator reports
-  /// it, to one relative to north, where north was found after the first pose. Call remember() before.
+  /// Converts the covariance of the newest frame's state to one relative to north, where north was found
+  /// after the first pose. `covariance`: of [dp, dtheta, dv, db_g, db_a] as Estimator reports it. Call
+  /// remember() before.
   void relateToNorth(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const;
 
   MagnetometerEstimate estimate(const Window& window) const;

@@ -15,7 +15,7 @@ struct DepthGateOptions {
   double greatest_slope = 1.4;
 };
 
-/// Options of the fusion of depth readings. The model of the gauge is that of factors/depth_factor.h.
+/// Options of the fusion of depth readings. The model of the gauge is that of factors/sensors/depth_factor.h.
 struct DepthOptions {
   bool use = true;
   /// Density of the water over the density that the gauge assumes, and its sigma. Gauges are set to 1000,

@@ -55,9 +55,9 @@ struct WindowOptions {
   /// Landmarks that no recent frame observes are linearized anew after this many frames; 0: in every frame.
   int frozen_frames = 8;
   /// No marginalization before this number of frames, so that no early, inaccurate linearization is kept.
-  /// With one camera the scale converges slowly. The estimator then waits longer, until the scale is known to
-  /// `startup_scale_sigma` (relative). After `startup_max_frames` frames are marginalized in any case, but no
-  /// linearization is kept until the scale is known.
+  /// With one camera the scale converges slowly. The estimator then waits for `startup_frames_mono` frames,
+  /// and until the scale is known to `startup_scale_sigma` (relative). After `startup_max_frames` frames are
+  /// marginalized in any case, but no linearization is kept until the scale is known.
   int startup_frames = 20;
   int startup_frames_mono = 45;
   int startup_max_frames = 60;

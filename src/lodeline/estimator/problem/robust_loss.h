@@ -56,9 +56,9 @@ double differenceOfTracks(const ErrorsByTrack& by_track);
 
 /// Weight of the observations of a track. A point that slides does so in all of its observations: each one
 /// alone looks like a random error, but together they are significant. Every track therefore has its own
-/// variance. The weight of its observations is the inverse square of that variance, because the landmark fits
-/// its residuals and a sliding point is off by more than they show. This is the weight of a redescending loss
-/// (S. Geman, D. E. McClure, "Statistical methods for tomographic image reconstruction", Bull. ISI 52, 1987),
+/// variance. The weight of its observations is the inverse square of that variance: the landmark fits its
+/// residuals, so a sliding point is off by more than they show. This is the weight of a redescending loss (S.
+/// Geman, D. E. McClure, "Statistical methods for tomographic image reconstruction", Bull. ISI 52, 1987),
 /// here of all residuals of a track together. The logarithm of the weight is shrunk by `difference`, so that
 /// tracks of equal accuracy get equal weights (as in C. N. Morris, "Parametric empirical Bayes inference",
 /// JASA 78, 1983). The weight is at most 2, because small residuals do not prove that the intrinsics are

@@ -70,8 +70,8 @@ TEST(RobustLoss, StaysWhereFewErrorsTell) {
   EXPECT_FALSE(frameErrors(std::vector<double>(10, 0.1), SolverOptions()).has_value());
 }
 
-// A third of the tracks is found to a tenth of a pixel like all others, but slides to one side by 0.4 px/s,
-// like the edge of a shadow whose lamp moves with the rig. Returns the final position error, m.
+// All tracks are accurate to a tenth of a pixel, but a third of them also slides to one side by 0.4 px/s. The
+// edge of a shadow does so when its lamp moves with the rig. Returns the final position error, m.
 double errorAmongShadows(const SolverOptions& solver, uint64_t seed) {
   constexpr double kFocalLength_px = 458.0, kSlide_px_per_s = 0.4;
   TestSceneOptions scene_options;

@@ -9,10 +9,10 @@
 namespace lodeline {
 
 /// Cholesky factor of normal equations whose rows are ordered to preserve most of their zeros. Velocity and
-/// biases of a frame are coupled only to those of its neighbours and, once these are eliminated in order of
-/// time, to the poses up to the next frame. Eliminating them first takes a fraction of the time of a dense
-/// factor when many frames have them, as while a window is starting up. The zeros are found in the matrix
-/// itself, so any order gives the correct factor.
+/// biases of a frame are coupled only to those of its neighbours. Once these are eliminated in order of time,
+/// they are also coupled to the poses up to the next frame. Eliminating them first takes a fraction of the
+/// time of a dense factor when many frames have them, as while a window is starting up. The zeros are found
+/// in the matrix itself, so any order gives the correct factor.
 class WindowCholesky {
  public:
   /// `first`: blocks to be eliminated before all others, in the order given; `last`: blocks after all others.

@@ -53,8 +53,9 @@ Consistency measureConsistency(const ConsistencyOptions& options);
 constexpr double kBand999 = 3.2905;
 constexpr double kBand95 = 1.9600;
 
-/// Bounds of the mean of `count` independent NEES samples of a consistent estimator, with the probability
-/// that belongs to `quantile`, by Wilson & Hilferty's approximation of the chi-squared distribution.
+/// Bounds of the mean of `count` independent NEES samples of a consistent estimator. They hold with the
+/// probability that belongs to `quantile`, by Wilson & Hilferty's approximation of the chi-squared
+/// distribution.
 struct NeesBounds {
   double low, high;
 };

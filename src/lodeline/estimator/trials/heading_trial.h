@@ -37,7 +37,7 @@ struct HeadingTrialOptions {
   double frame_rate_hz = 5.0;
   int tracks = 60;
   int cameras = 2;
-  std::string imu_grade = "gx5-25";  ///< of simulation/imu_model.h, with its magnetometer
+  std::string imu_grade = "gx5-25";  ///< of simulation/sensors/imu_model.h, with its magnetometer
   FieldTrouble trouble = FieldTrouble::None;
   double magnetometer_from_s = 0.0;            ///< no reading before, since the first frame
   std::optional<TimeSpan> magnetometer_pause;  ///< nor within

@@ -26,7 +26,7 @@ struct ScaleInformation {
 ///   what the robust loss leaves of it;
 /// - accelerometer: changes of the acceleration compared with the noise of its integral. A constant part
 ///   counts as bias and tilt. The sigma is never below the 0.1 % that files leave open, nor below
-///   uncalibrated_sigma of an IMU that may never have been calibrated (estimator/inertial_states.h);
+///   uncalibrated_sigma of an IMU that may never have been calibrated (estimator/state/inertial_states.h);
 /// - depth: changes of the height compared with the readings' sigma, and the density of the water.
 class ScaleObservability {
  public:

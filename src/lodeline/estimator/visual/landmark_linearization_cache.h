@@ -27,9 +27,9 @@ class LandmarkLinearizationCache {
   /// between them, at their present values (FeatureTrack::is_frozen). Does nothing while the cache is in use.
   void freeze(Window& window, const FactorBuilder& factors);
 
-  /// Empties the cache, before a frame is solved, under one of these conditions: it is old enough, a frame or
-  /// block it depends on was removed or has a new linearization point, or one has moved beyond the range of
-  /// the quadratic cost.
+  /// Empties the cache, before a frame is solved, in three cases: it is old enough, a frame or block it
+  /// depends on was removed or has a new linearization point, or one has moved beyond the range of the
+  /// quadratic cost.
   void invalidateIfStale(Window& window);
 
   /// Approximate terms of ReprojectionSystem for these landmarks at the blocks' present values: first order

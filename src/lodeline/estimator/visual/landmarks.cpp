@@ -28,8 +28,8 @@ Vec2 shiftByIntrinsics(const Observation& observation, const CameraStates& camer
 }
 
 /// Inverse distance along a host's ray from all other observations. It is a closed form and not the full fit
-/// of features/triangulation.h, because every candidate needs it in every frame. With the host's direction d
-/// held, each observation gives
+/// of frontend/stereo/triangulation.h, because every candidate needs it in every frame. With the host's
+/// direction d held, each observation gives
 ///   B^T (R d + rho t) = 0.
 /// This is linear in rho, apart from the shift by the intrinsics. Further passes weight by the depth that the
 /// pass before has found.

@@ -20,8 +20,8 @@ struct GyroscopeAtRest {
 
 /// Detects that a rig is at rest: its inertial readings stay close to their means, and its images do not
 /// change. This is more information than the observations themselves. Points that do not move in the image
-/// could also be infinitely far from a rig that glides, and one camera with a wrong velocity from dead
-/// reckoning interprets them so. No cave is that large.
+/// could also be infinitely far from a rig that glides. One camera with a wrong velocity from dead reckoning
+/// interprets them so. No cave is that large.
 class StationaryDetector {
  public:
   StationaryDetector(const Rig& rig, const RestOptions& options);

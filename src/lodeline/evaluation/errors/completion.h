@@ -20,8 +20,8 @@ Completion completionByImages(const Trajectory& estimate, const std::vector<Time
                               Duration time_offset, Duration tolerance);
 
 /// Share of the reference's time span that the estimate covers. A gap between two poses counts as covered if
-/// it is shorter than a second or three times the estimate's usual interval, so that the spacing of a
-/// keyframe trajectory is not a gap. 0 for a reference of zero duration.
+/// it is shorter than a second or three times the estimate's usual interval. The spacing of a keyframe
+/// trajectory is then not a gap. 0 for a reference of zero duration.
 Completion completionByTime(const Trajectory& estimate, const Trajectory& reference, Duration time_offset);
 
 }  // namespace lodeline

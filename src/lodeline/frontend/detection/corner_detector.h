@@ -21,10 +21,10 @@ struct CornerDetectorOptions {
   double border_px = 12.0;
 };
 
-/// Detects corners where there are no tracks. The image is divided into as many cells as points are wanted,
-/// and the strongest corner of each empty cell is used (smaller eigenvalue of the structure tensor, J. Shi
-/// and C. Tomasi, "Good features to track", CVPR 1994). Corners are evaluated on the half-size image, where
-/// noise is lower and the window is about as large as a patch. Particles (particle_filter.h) are skipped.
+/// Detects corners where there are no tracks. The image is divided into as many cells as points are wanted.
+/// The strongest corner of each empty cell is used (smaller eigenvalue of the structure tensor, J. Shi and C.
+/// Tomasi, "Good features to track", CVPR 1994). Corners are evaluated on the half-size image, where noise is
+/// lower and the window is about as large as a patch. Particles (particle_filter.h) are skipped.
 class CornerDetector {
  public:
   explicit CornerDetector(const CornerDetectorOptions& options) : options_(options) {}

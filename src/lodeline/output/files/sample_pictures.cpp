@@ -61,7 +61,7 @@ void SamplePictures::thin() {
     if (i % 2 == 0) {
       kept.push_back(files_[i]);
     } else {
-      std::error_code ignored;  // a picture too many spoils nothing
+      std::error_code ignored;  // one picture too many does no harm
       std::filesystem::remove(files_[i], ignored);
     }
   }

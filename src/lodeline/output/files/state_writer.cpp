@@ -50,7 +50,7 @@ std::string covarianceHeader() {
   return header + ",cov_v_01";
 }
 
-/// What is not estimated is nan.
+/// Appends the magnetometer's columns; values that are not estimated are nan.
 void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& magnetometer) {
   const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   fmt::format_to(std::back_inserter(line), ",{:.9g},{}", magnetometer.heading_sigma_rad,
@@ -61,7 +61,7 @@ void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& ma
                  magnetometer.north_from_world_rad.value_or(unknown.x()));
 }
 
-/// What is not estimated is nan.
+/// Appends the gauge's columns; values that are not estimated are nan.
 void appendDepth(fmt::memory_buffer& line, const DepthEstimate& depth) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   DepthEstimate::Gauge unknown{kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};

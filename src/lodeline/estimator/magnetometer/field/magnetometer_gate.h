@@ -43,9 +43,9 @@ struct GateDecision {
 /// - a field beyond the limits in norm, dip or heading is rejected;
 /// - it is accepted again when it has stayed well within the limits for a while (hysteresis);
 /// - the weight of accepted readings decreases with the share of the last minute in which the field was
-///   rejected, because a sensor with a wrong calibration agrees now and then;
+///   rejected: a sensor with a wrong calibration agrees now and then;
 /// - if the field is not accepted again within `readmission_s`, it is readmitted with a constant disturbance
-///   to be estimated, so that no wrong decision excludes the sensor for good. The Earth's field stays a
+///   to be estimated. No wrong decision then excludes the sensor permanently. The Earth's field stays a
 ///   state, and the disturbance ends as soon as the readings agree with the Earth's field again;
 /// - the gate sums the times of agreement and of rejection. A good sensor with disturbances agrees for longer
 ///   than it disagrees. Otherwise its calibration is wrong, or a magnet is on board; then nothing is used

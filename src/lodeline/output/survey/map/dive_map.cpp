@@ -20,7 +20,7 @@ std::string dayOf(Time time) { return isoTime(time).value_or("").substr(0, 10); 
 
 std::string dateOf(const RunFolder& run, const DiveMapOptions& options) {
   if (!options.date.empty()) {
-    decimalYear(options.date);  // throws for what is no date
+    decimalYear(options.date);  // throws for an invalid date
     return options.date;
   }
   return run.date.empty() ? dayOf(run.trajectory.poses.front().time) : run.date;

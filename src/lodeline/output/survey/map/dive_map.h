@@ -22,15 +22,14 @@ struct DiveMapOptions {
   std::string date;               ///< YYYY-MM-DD; empty for that of the run or its stamps
 
   std::optional<GeodeticPosition>
-      entrance;                   ///< the water's surface above the first pose; nothing for a local map
+      entrance;                   ///< the water's surface above the first pose; empty for a local map
   double entrance_sigma_m = 3.0;  ///< horizontal, per axis
   double entrance_height_sigma_m = 5.0;
   std::string crs = "auto";
-  std::optional<double> turn_deg;  ///< see findNorth()
-  std::optional<double>
-      start_depth_m;               ///< of the first pose; nothing for what the run's pressure sensor says
-  std::string start_depth_source;  ///< its source, in words
-  double geoid_height_m = 0.0;     ///< height of the vertical datum above the ellipsoid
+  std::optional<double> turn_deg;       ///< see findNorth()
+  std::optional<double> start_depth_m;  ///< of the first pose; empty for that of the run's pressure sensor
+  std::string start_depth_source;       ///< its source, in words
+  double geoid_height_m = 0.0;          ///< height of the vertical datum above the ellipsoid
 
   std::optional<double>
       relative_sigma;  ///< of the end position, relative to the length of the line; empty for that of the run
