@@ -26,7 +26,7 @@ struct Outcome {
   double first_heading_variance_rad2 = 0.0;  ///< reported after 3 s
   /// Difference of the last reported heading variance from rotation errors by the intrinsics, which are
   /// larger where gyroscopes are not known to be calibrated.
-  double variance_by_slope_rad2 = 0.0;
+  double variance_by_intrinsics_rad2 = 0.0;
   /// Change of the rotation error since the middle of the scene, root mean square.
   double drift_rad = 0.0;
 };
@@ -80,7 +80,7 @@ Outcome runWith(const ImuAxes& axes, const ImuAxesOptions& axes_options, uint64_
   for (const bool is_known : {false, true}) {
     Eigen::Matrix<double, 15, 15> added = Eigen::Matrix<double, 15, 15>::Zero();
     lenses.addTo({.is_scale_given = true, .are_gyroscope_axes_known = is_known}, &added);
-    outcome.variance_by_slope_rad2 += is_known ? -added(5, 5) : added(5, 5);
+    outcome.variance_by_intrinsics_rad2 += is_known ? -added(5, 5) : added(5, 5);
   }
   return outcome;
 }
@@ -206,7 +206,7 @@ TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   EXPECT_GT(doubted.covariance(3, 3), std::pow(kUncalibrated, 2));
   EXPECT_GT(doubted.covariance(4, 4), std::pow(kUncalibrated, 2));
   EXPECT_GT(in_doubt.first_heading_variance_rad2, 1.02 * taken_for_calibrated.first_heading_variance_rad2);
-  EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_slope_rad2, 1.02 * believed.covariance(5, 5))
+  EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_intrinsics_rad2, 1.02 * believed.covariance(5, 5))
       << "turns have told by now";
   EXPECT_EQ(doubted.magnetometer.heading_sigma_rad, std::sqrt(doubted.covariance(5, 5)));
 }
