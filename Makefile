@@ -1,6 +1,6 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything fuzz faults dependencies demo docs docs-reference experiments test test-sanitized bench install package format \
-  check-format clean
+.PHONY: build everything fuzz faults dependencies test-dependencies docs-dependencies demo docs docs-reference experiments \
+  test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = src apps studies examples ros fuzz
 
@@ -9,12 +9,18 @@ build: dependencies
 	cmake --preset release
 	cmake --build --preset release --target lodeline_product
 
-everything: dependencies
+everything: test-dependencies
 	cmake --preset release
 	cmake --build --preset release
 
 dependencies:
-	./scripts/install-dependencies.sh
+	./scripts/install-dependencies.sh build
+
+test-dependencies:
+	./scripts/install-dependencies.sh test
+
+docs-dependencies:
+	./scripts/install-dependencies.sh docs
 
 # Simulates a dive, runs the program on it and compares the result with the truth, in pictures. A recording in
 # place of the simulated one: RECORDING=/path/to/folder-with-mav0.
@@ -36,7 +42,7 @@ test: everything check-format
 # rest computes with. The layers from the estimator up take longer to build so than all of these, and the estimator's
 # tests work through whole simulated scenes.
 SANITIZED = util tables streams geometry cameras magnetometer imu ahrs io rosbag1 frontend factors evaluation
-test-sanitized: dependencies
+test-sanitized: test-dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers $(SANITIZED:%=%_test)
 	ctest --test-dir build/sanitized --output-on-failure -j2 -L 'fast|fuzz' \
@@ -47,7 +53,7 @@ faults: build
 	./scripts/faults.sh build/faults --seeds 1 2 3 --repeat 2 --allow-told 5 --markdown build/faults/table.md
 
 # Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
-fuzz: dependencies
+fuzz: test-dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers
 	ctest --test-dir build/sanitized --output-on-failure -j2 -L fuzz
@@ -63,9 +69,9 @@ install: build
 package: build
 	cd build/release && cpack
 
-# The documentation as a site in build/docs, with the reference of the library in build/docs/api. It needs Debian's
-# packages mkdocs-material, libjs-katex and doxygen.
-docs:
+# The documentation as a site in build/docs, with the reference of the library in build/docs/api. Debian's package
+# libjs-katex draws its equations.
+docs: docs-dependencies
 	./scripts/check_links.py
 	./scripts/check_findings.py
 	mkdocs build --strict

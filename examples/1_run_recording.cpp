@@ -13,10 +13,10 @@ int main(int argc, char** argv) try {
     std::fprintf(stderr, "usage: %s FOLDER_WITH_MAV0\n", argv[0]);
     return 2;
   }
-  // Everything that is odd about the recording ends up here.
+  // Collects all problems of the recording.
   lodeline::Diagnostics diagnostics;
 
-  // The source gives each sensor's readings as they were stored; the synchronizer makes one packet an image.
+  // The source returns each sensor's readings as stored; the synchronizer makes one packet per image.
   lodeline::EurocSource source(argv[1], {}, &diagnostics);
   lodeline::Synchronizer synchronizer(&source, {}, &diagnostics);
   lodeline::Odometry odometry(source.rig(), {}, &diagnostics);

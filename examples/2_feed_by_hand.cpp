@@ -1,5 +1,5 @@
-// Feeds the estimator by hand: tracks of points from a front end of one's own, and inertial readings. Here
-// both come from a simulated dive, which also knows the truth:
+// Calls the estimator directly with feature tracks of a user's own front end and inertial readings. Here both
+// come from a simulated dive with known ground truth:
 //   example_2_feed_by_hand
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "simulation/dive/point_dive.h"
 
 int main() try {
-  // A rig is cameras and IMU with their calibrations; yours comes from your own files.
+  // A rig has cameras and an IMU with their calibrations; a real one is read from calibration files.
   lodeline::DiveMotionOptions motion;
   motion.duration_s = 30.0;
   motion.path_length_m = 4.0;
@@ -28,8 +28,8 @@ int main() try {
   double worst_m = 0.0;
   int frames = 0;
   while (const auto frame = sensors.next()) {
-    // One call a frame: what the cameras saw, and what the IMU read since the frame before, both ends on the
-    // frames' times.
+    // One call per frame: the observations of the cameras, and the IMU readings since the previous frame,
+    // with both ends at the frames' times.
     const lodeline::FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
     if (estimate.status == lodeline::Status::Waiting) continue;
     const lodeline::Rigid3& truth = frame->truth.motion.world_from_body;

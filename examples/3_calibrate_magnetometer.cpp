@@ -1,5 +1,5 @@
-// Calibrates a magnetometer from readings that were taken while it was turned about. Here they are made up,
-// with known soft and hard iron:
+// Calibrates a magnetometer from readings of a rotated sensor. Here they are simulated, with known soft and
+// hard iron:
 //   example_3_calibrate_magnetometer
 
 #include <cmath>
@@ -27,7 +27,7 @@ int main() try {
   }
 
   lodeline::IronCalibrationOptions options;
-  options.field_strength_T = kField_T;  // from the World Magnetic Model at your site
+  options.field_strength_T = kField_T;  // from the World Magnetic Model for the site
   const lodeline::IronCalibration calibration = lodeline::calibrateIron(readings, options);
   const lodeline::Vec3 found_uT = 1e6 * calibration.fit.hard_iron;
   const lodeline::Vec3 error_T = calibration.fit.hard_iron - hard_iron_T;

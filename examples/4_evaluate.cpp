@@ -1,6 +1,6 @@
 // Compares an estimated trajectory with a reference, in any layout that `lodeline evaluate` reads:
 //   example_4_evaluate ESTIMATE REFERENCE
-// Without arguments, a made-up estimate with a made-up reference.
+// Without arguments, it compares a simulated estimate with a simulated reference.
 
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// A climbing circle of 5 m, 10 poses a second for a minute, whose heading drifts by so much a second.
+/// A rising circle with a radius of 5 m, 10 poses per second for a minute, with a constant heading drift.
 lodeline::Trajectory circle(double drift_rad_per_s) {
   lodeline::Trajectory trajectory;
   for (int i = 0; i < 600; ++i) {

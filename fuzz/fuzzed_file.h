@@ -14,8 +14,8 @@
 
 namespace lodeline::fuzz {
 
-/// A file in memory that holds the fuzzer's bytes, for readers that take a path. The name ends in `suffix`,
-/// by which some readers tell layouts apart.
+/// A file in memory with the fuzzer's bytes, for readers that take a path. The name ends in `suffix`, from
+/// which some readers determine the layout.
 class FuzzedFile {
  public:
   FuzzedFile(const uint8_t* data, size_t size, const std::string& suffix)
@@ -39,7 +39,7 @@ class FuzzedFile {
   std::filesystem::path folder_, path_;
 };
 
-/// Calls `read`. The errors that a reader documents are good answers; anything else ends the fuzzer.
+/// Calls `read`. Accepts the errors that a reader documents; any other error ends the fuzzer.
 template <typename Read>
 int expectDocumentedErrors(const Read& read) {
   try {

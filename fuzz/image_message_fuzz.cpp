@@ -2,7 +2,7 @@
 #include "lodeline/io/images/image_loader.h"
 #include "lodeline/io/rosbag1/image_messages.h"
 
-// Messages with images; the first byte says of which kind.
+// Image messages; the first byte selects the kind.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lodeline;

@@ -1,8 +1,8 @@
 #include "fuzzed_file.h"
 #include "lodeline/io/images/grey_png.h"
 
-// The decoder of grey PNG images. An image larger than 64 megapixels is nothing that a camera writes; such
-// headers are passed over, since filling it takes the fuzzer's time.
+// The decoder of grey PNG images. Headers of images larger than 64 megapixels are skipped: no camera writes
+// them, and filling such images takes the fuzzer's time.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   constexpr size_t kEndOfSize = 24;

@@ -2,7 +2,7 @@
 #include "lodeline/output/files/run_table.h"
 #include "lodeline/output/survey/run/landmark_file.h"
 
-// Files of a run's folder, which may be cut off or damaged: states.csv and landmarks.ply.
+// Files of a results folder, possibly truncated or damaged: states.csv and landmarks.ply.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lodeline;

@@ -1,28 +1,52 @@
 #!/usr/bin/env bash
-# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04. Does nothing where all of it is present.
+# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04: install-dependencies.sh [build|test|ros|web|docs ...]
+#   build  compiler, libraries and the page's bundler: all that `make build` needs (default)
+#   test   also the tests: their framework, Clang, the formatter, survey and GIS programs, a browser
+#   ros    also the ROS 1 node, and bags written by `lodeline convert`
+#   web    also the tools for work on the page
+#   docs   also the tools of `make docs`
+# Does nothing where all of it is present.
 set -euo pipefail
 
-packages=(
+build=(
   build-essential cmake ninja-build ccache git
-  clang-format-14  # other versions lay code out differently
   libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
-  libgtest-dev libgmock-dev libbenchmark-dev
   libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev
-  libbz2-dev liblz4-dev librosbag-storage-dev libsensor-msgs-dev  # ROS 1 bags
-  libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
-  python3-roslaunch  # roscore, for the node's test
-  python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program, for the tests
-  clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
+  libbz2-dev liblz4-dev  # ROS 1 bags
   gnuplot-nox
   libcpp-httplib-dev
-  survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
 )
-
 # The report page. A node from elsewhere brings its own npm, and Debian's would clash with it.
-command -v npm >/dev/null || packages+=(nodejs npm)
+command -v npm >/dev/null || build+=(nodejs npm)
+ros=(
+  librosbag-storage-dev libsensor-msgs-dev  # writing bags
+  libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
+)
+test=(
+  libgtest-dev libgmock-dev libbenchmark-dev python3
+  clang-format-14  # other versions lay code out differently
+  clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
+  survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
+  "${ros[@]}"
+  python3-roslaunch  # roscore, for the node's test
+  python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program
+)
 # For the page's tests; Ubuntu has no such package.
-grep -q '^ID=debian' /etc/os-release && packages+=(chromium)
+browser=()
+grep -q '^ID=debian' /etc/os-release && browser=(chromium)
+test+=("${browser[@]}")
+web=("${browser[@]}")
+docs=(mkdocs-material doxygen python3)
+
+packages=("${build[@]}")
+for group in "$@"; do
+  case $group in
+    build) ;;
+    test | ros | web | docs) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
+    *) echo "unknown group '$group'; groups are build, test, ros, web and docs" >&2 && exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/io/csv/plain_csv.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
@@ -28,7 +29,7 @@ struct AllanArguments {
   double duration_s = 0.0;
 };
 
-/// What of the record is to be looked at, counted from its first reading.
+/// The part of the record to be analysed, counted from its first reading.
 class Part {
  public:
   explicit Part(const AllanArguments& arguments) : arguments_(arguments) {}
@@ -44,7 +45,7 @@ class Part {
   std::optional<Time> first_;
 };
 
-/// The three sensors, those that the recording has.
+/// Analyses of the available ones of the three sensors.
 class Analyses {
  public:
   explicit Analyses(Diagnostics* diagnostics)

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/io/streams/ordered_stream.h"
@@ -36,7 +37,7 @@ struct AttitudeArguments {
   bool no_magnetometer = false;
 };
 
-/// Opens DATA and gives its magnetometer what the command line says about it.
+/// Opens DATA and applies the options of the command line to its magnetometer.
 template <typename Source>
 std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
                                             const AttitudeArguments& arguments, Diagnostics* diagnostics) {
@@ -85,7 +86,7 @@ StreamExpectation expectation(const std::string& name, double rate_hz, double of
   return expected;
 }
 
-/// Without images, the turning of gravity tells the gyroscope's unit.
+/// Without images, the rotation of gravity shows the gyroscope's unit.
 InertialScreenOptions screenOptions(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   InertialScreenOptions options;
   const SourceFactory open = [&](Diagnostics* unheard) { return openSource(arguments, unheard); };

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/evaluation/figures/plots.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 #include "lodeline/magnetometer/calibration/calibration_plots.h"

@@ -6,6 +6,7 @@
 #include <CLI/Formatter.hpp>
 #include <memory>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/io/rosbag1/convert/convert.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"

@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// `lodeline convert SRC DST`: a ROS 1 bag from an EuRoC folder, and the other way.
+/// `lodeline convert SRC DST`: converts an EuRoC folder to a ROS 1 bag, or a bag to a folder.
 void addConvertCommand(CLI::App& program);
 
 }  // namespace lodeline

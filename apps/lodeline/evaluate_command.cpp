@@ -71,7 +71,8 @@ void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& 
     throw InputError(fmt::format("{}: cannot be written; check the folder and its rights", path.string()));
 }
 
-/// A run of another version, or one that is damaged beside its trajectory, is evaluated all the same.
+/// Consistency of a run's reported sigmas. A run of another version, or with damaged files beside its
+/// trajectory, is evaluated without it.
 ConsistencyCheck claimsOf(const std::filesystem::path& run, const Trajectory& reference,
                           const AssociationOptions& association, Diagnostics* diagnostics) {
   try {

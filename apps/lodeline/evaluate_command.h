@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// `lodeline evaluate ESTIMATE REFERENCE`: how good a trajectory is. Its callback throws InputError and
+/// `lodeline evaluate ESTIMATE REFERENCE`: errors of a trajectory. Its callback throws InputError and
 /// UsageError.
 void addEvaluateCommand(CLI::App& program);
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <opencv2/core/utility.hpp>
 
+#include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
@@ -35,7 +36,7 @@ std::optional<Vec3> siteField(const InspectArguments& arguments) {
   return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
 }
 
-/// Also recordings that nothing could be estimated from.
+/// Opens a recording, even if no estimate is possible from it.
 std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
                                                    Diagnostics* diagnostics) {
   if (isTableOfReadings(arguments.data)) {

@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// `lodeline inspect DATA`: what is wrong with a recording.
+/// `lodeline inspect DATA`: faults of a recording.
 void addInspectCommand(CLI::App& program);
 
 }  // namespace lodeline

@@ -30,7 +30,7 @@
 
 namespace {
 
-// The contract with scripts: what ended the program can be told from its exit code.
+// Exit codes for scripts: each identifies the reason why the program ended.
 enum ExitCode { kGood = 0, kBadInput = 1, kBadUsage = 2, kEstimationFailed = 3, kInterrupted = 130 };
 
 int fail(const char* kind, const std::exception& error, ExitCode code) {
@@ -38,8 +38,8 @@ int fail(const char* kind, const std::exception& error, ExitCode code) {
   return code;
 }
 
-/// Ceres logs through glog. Its warnings tell of steps that it recovers from; what matters to the user is in
-/// the run's findings.
+/// Limits the log of Ceres (glog) to errors. Its warnings are about steps from which it recovers;
+/// everything relevant to the user is in the run's findings.
 void quietSolverLog(const char* program) {
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_ERROR;
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> arguments =
         lodeline::withJoinedPlaces(lodeline::completeLiveOption({argv + 1, argv + argc}));
     lodeline::refuseUnknownWords(program, arguments);
-    std::reverse(arguments.begin(), arguments.end());  // which is how CLI11 takes them
+    std::reverse(arguments.begin(), arguments.end());  // the order that CLI11 expects
     program.parse(std::move(arguments));
     return kGood;
   } catch (const CLI::ParseError& error) {
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   } catch (const lodeline::InputError& error) {
     return fail("bad input", error, kBadInput);
   } catch (const std::filesystem::filesystem_error& error) {
-    // A path that cannot be followed: links in a circle, missing rights, too many open files.
+    // A path that cannot be resolved: circular links, missing permissions, too many open files.
     const auto reason = error.path1().string() + ": " + error.code().message();
     return fail("bad input", lodeline::InputError(reason), kBadInput);
   } catch (const lodeline::UsageError& error) {

@@ -4,8 +4,8 @@
 
 namespace lodeline {
 
-/// `lodeline refine DATA -o OUT`: a run, and then the solution of all its measurements at once. Its callback
-/// throws as that of `lodeline run`.
+/// `lodeline refine DATA -o OUT`: a run, followed by the batch solution of all its measurements. Its callback
+/// throws like that of `lodeline run`.
 void addRefineCommand(CLI::App& program);
 
 }  // namespace lodeline

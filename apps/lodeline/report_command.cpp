@@ -38,28 +38,6 @@ void reportCommand(const Arguments& arguments) {
 
 }  // namespace
 
-std::string writeRunReport(const RunRequest& request) {
-  if (pageTemplate().empty()) {
-    return "report.html left out: this program was built without npm, which bundles the page";
-  }
-  const fs::path folder = request.output;
-  const std::optional<fs::path> truth = referenceOfRecording(request.data);
-  Diagnostics ignored;  // files just written are whole
-  std::optional<ReportReference> reference;
-  if (truth) reference = {*truth, AlignmentType::SE3};
-  std::string page;
-  std::string remark;
-  try {
-    page = reportPage({folder}, reference, &ignored);
-  } catch (const InputError& error) {
-    if (!reference) throw;
-    remark = fmt::format("without the recording's ground truth: {}", error.what());
-    page = reportPage({folder}, std::nullopt, &ignored);
-  }
-  writeOutput(folder / "report.html", page);
-  return remark;
-}
-
 void addReportCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand("report", "Show runs in one page for the browser");
   const auto arguments = std::make_shared<Arguments>();

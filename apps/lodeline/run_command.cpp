@@ -8,25 +8,26 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/lodeline/report_command.h"
+#include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/pipeline/run_recording.h"
+#include "lodeline/pipeline/run_report.h"
 #include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
 
 constexpr int kLivePort = 8642;
-constexpr size_t kTerminalWidth = 96;  ///< of the values of the summary
+constexpr size_t kTerminalWidth = 96;  ///< width of the values in the summary
 
-bool isNumber(const std::string& text) {
+bool isPort(const std::string& text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-/// Turns a run without a result into the error that explains it.
+/// Throws the error that explains a run without a result.
 void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
   if (const std::string reason = summary.distrust(); !reason.empty()) {
@@ -115,7 +116,7 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
 std::vector<std::string> completeLiveOption(std::vector<std::string> arguments) {
   for (size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] != "--live") continue;
-    const bool has_port = i + 1 < arguments.size() && isNumber(arguments[i + 1]);
+    const bool has_port = i + 1 < arguments.size() && isPort(arguments[i + 1]);
     arguments[i] = fmt::format("--live={}", has_port ? arguments[i + 1] : std::to_string(kLivePort));
     if (has_port) arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
   }

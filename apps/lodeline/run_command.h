@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// What `lodeline run` and `lodeline refine` have in common: recording, output folder and settings.
+/// Adds the common options of `lodeline run` and `lodeline refine`: recording, output folder and settings.
 /// `arguments` must outlive the command.
 void addRunOptions(RunRequest* arguments, CLI::App* command);
 
@@ -19,8 +19,8 @@ void executeRun(RunRequest request);
 /// throws InputError, UsageError, EstimationError and Interruption.
 void addRunCommand(CLI::App& program);
 
-/// The command line with `--live` as `--live=PORT`, whether a number follows or not. An option whose value
-/// may be left out would take whatever follows for its value, as the recording in `run --live dive1`.
+/// The command line with `--live` as `--live=PORT`, whether a number follows or not. An option with an
+/// optional value would take the next word as its value, for example the recording in `run --live dive1`.
 std::vector<std::string> completeLiveOption(std::vector<std::string> arguments);
 
 }  // namespace lodeline

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-// Places in the estimate's covariance (see parameters.h).
+// First indices of the parts of the estimate's covariance (see parameters.h).
 constexpr int kRotation = 3;
 constexpr int kVelocity = 6;
 constexpr int kGyroscopeBias = 9;
@@ -44,8 +44,8 @@ void store(const Covariance6& covariance, boost::array<double, 36>* message) {
   std::memcpy(message->data(), covariance.data(), sizeof(double) * 36);
 }
 
-/// Of [v_B, omega_B]. A rotation error dtheta in world axes turns the true velocity by
-/// R_B_W (v_W x dtheta) against the estimated one.
+/// Covariance of [v_B, omega_B]. A rotation error dtheta in world axes rotates the true velocity by R_B_W
+/// (v_W x dtheta) relative to the estimated one.
 Covariance6 twistCovariance(const FrameEstimate& estimate, double gyroscope_sigma) {
   const Mat3 body_from_world = estimate.state.world_from_body.rotation.toRotationMatrix().transpose();
   Eigen::Matrix<double, 6, 15> twist_from_error = Eigen::Matrix<double, 6, 15>::Zero();

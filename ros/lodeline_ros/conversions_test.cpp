@@ -17,7 +17,7 @@ FrameEstimate someEstimate() {
   state.world_from_body.translation = Vec3(1.0, -2.0, 3.0);
   state.velocity_W = Vec3(0.4, 0.1, -0.2);
   state.gyroscope_bias_B = Vec3(0.01, -0.02, 0.005);
-  // Positive definite, each entry different.
+  // Positive definite, with different entries.
   Eigen::Matrix<double, 15, 15> root = 1e-3 * Eigen::Matrix<double, 15, 15>::Identity();
   for (int i = 0; i < 15; ++i) {
     for (int k = 0; k < i; ++k) root(i, k) = 1e-4 * std::sin(3.0 * i + 7.0 * k);
@@ -87,7 +87,7 @@ TEST(Conversions, TwistIsInBodyAxesAndFreeFromBias) {
   EXPECT_NEAR(twist.angular.z, 0.295, 1e-14);
 }
 
-/// [v_B, omega_B] of an estimate that errs by so much.
+/// [v_B, omega_B] of an estimate with the given error.
 Eigen::Matrix<double, 6, 1> twistOf(const FrameEstimate& estimate, const Turning& turning,
                                     const Eigen::Matrix<double, 15, 1>& error) {
   FrameEstimate moved = estimate;

@@ -10,14 +10,14 @@
 
 namespace lodeline {
 
-/// Publishes what became of each frame: ~odometry and, where wanted, /tf at once; at keyframes ~landmarks
-/// (those of the window); ~path of the keyframes once a second of the sensors' time.
+/// Publishes the result of each frame: ~odometry and, optionally, /tf for every frame; ~landmarks of the
+/// window at keyframes; ~path of the keyframes once per second of the sensors' time.
 class EstimatePublisher {
  public:
-  /// `node`: of the private name space.
+  /// `node`: handle of the private namespace.
   EstimatePublisher(ros::NodeHandle node, FrameNames names, bool with_tf);
 
-  /// Nothing for a frame without a pose. `imu` made the packet's readings.
+  /// Publishes nothing for a frame without a pose. `imu`: calibration of the IMU of the packet's readings.
   void publish(const FramePacket& packet, const FrameEstimate& estimate, const Odometry& odometry,
                const ImuCalibration& imu);
 
@@ -27,7 +27,7 @@ class EstimatePublisher {
   FrameNames names_;
   ros::Publisher odometry_, path_, landmarks_, tf_;
   message::Path keyframes_;
-  std::optional<Time> path_time_;  ///< of the path published last
+  std::optional<Time> path_time_;  ///< time of the path published last
 };
 
 }  // namespace lodeline

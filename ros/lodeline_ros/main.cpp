@@ -8,8 +8,8 @@
 #include <opencv2/core/utility.hpp>
 #include <thread>
 
-#include "apps/lodeline/report_command.h"
 #include "lodeline/pipeline/run_recording.h"
+#include "lodeline/pipeline/run_report.h"
 #include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
 #include "lodeline/util/error.h"
@@ -23,7 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Closes the source when the user or ROS's master ends the node, so that whoever waits for readings goes on.
+/// Closes the source when the user or ROS's master ends the node, so that threads that wait for readings
+/// continue.
 class EndWatch {
  public:
   explicit EndWatch(LiveSource* source)
@@ -46,7 +47,7 @@ class EndWatch {
   std::thread thread_;
 };
 
-/// The estimator on a thread that nobody else has to wait for, until the source ends.
+/// Runs the estimator on its own thread until the source ends.
 void estimate(LiveSource* source, RunSession* session, EstimatePublisher* publisher, NodeStatus* status,
               const Diagnostics& diagnostics) {
   const double period_s = 1.0 / source->rig().cameras.front().rate_hz;
@@ -86,7 +87,7 @@ void runNode() {
   NodeParameters parameters = readNodeParameters(private_node);
 
   RunSettings options;
-  options.synchronizer.prefetch = false;  // would hold every frame back until the next one is there
+  options.synchronizer.prefetch = false;  // prefetching would delay every frame until the next one arrives
   Settings settings;
   applyRequest(parameters.run, &settings, &options);
   Diagnostics diagnostics;
@@ -125,7 +126,7 @@ void runNode() {
 }
 
 int fail(const char* kind, const std::exception& error, int code) {
-  // Not by ROS's log, which has ended with the last handle.
+  // ROS's log cannot be used, because it ends with the last handle.
   fmt::print(stderr, "{}: {}\n", kind, error.what());
   return code;
 }

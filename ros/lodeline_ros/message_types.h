@@ -11,8 +11,9 @@
 #include <memory>
 #include <type_traits>
 
-/// ROS's messages for C++20. Headers that ROS generates, and its serialization of vectors, ask the allocator
-/// for `rebind`, which C++20 took away from std::allocator; this one has it. Texts stay std::string.
+/// ROS's message types for C++20. The headers that ROS generates, and its serialization of vectors, need
+/// `rebind` in the allocator, which C++20 removed from std::allocator. The allocator below has it. Strings
+/// stay std::string.
 namespace lodeline::message {
 
 template <typename T>

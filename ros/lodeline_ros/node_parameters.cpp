@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// Reads parameters one after the other and remembers which there are.
+/// Reads parameters one by one and records the requested names.
 class Reader {
  public:
   explicit Reader(const ros::NodeHandle& node) : node_(node) {}
@@ -36,7 +36,7 @@ class Reader {
     return list;
   }
 
-  /// Throws for the first parameter that was not asked for.
+  /// Throws for the first parameter that was not requested.
   void refuseOthers() const {
     const std::string prefix = node_.getNamespace() + "/";
     std::vector<std::string> names;

@@ -13,19 +13,19 @@
 
 namespace lodeline {
 
-/// What the node is told by its private parameters (docs/ros.md lists them).
+/// Private parameters of the node (docs/ros.md lists them).
 struct NodeParameters {
   std::vector<std::filesystem::path> rig_files;
-  std::map<std::string, std::string> topics;  ///< by sensor, over what the rig files say
-  RunRequest run;                             ///< folder of results, settings, magnetometer
+  std::map<std::string, std::string> topics;  ///< by sensor, with priority over the rig files
+  RunRequest run;                             ///< results folder, settings, magnetometer
   FrameNames frames;
   LiveSourceOptions source;
   bool publish_tf = true;
   bool report = true;  ///< write report.html at the end
 };
 
-/// Throws UsageError for a parameter that is missing, unknown (naming the nearest known one) or of the wrong
-/// type. `node`: of the private name space.
+/// Reads the parameters. Throws UsageError for a parameter that is missing, unknown (naming the nearest known
+/// one) or of the wrong type. `node`: handle of the private namespace.
 NodeParameters readNodeParameters(const ros::NodeHandle& node);
 
 }  // namespace lodeline

@@ -10,7 +10,7 @@ namespace {
 using message::DiagnosticStatus;
 
 constexpr double kStale_s = 2.0;
-/// Weight of a new frame in the mean share: a memory of 50 frames.
+/// Weight of a new frame in the mean, which covers about 50 frames.
 constexpr double kNewest = 0.02;
 
 void addValue(const char* key, std::string value, DiagnosticStatus* status) {

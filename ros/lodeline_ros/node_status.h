@@ -12,17 +12,17 @@
 
 namespace lodeline {
 
-/// What the node says of itself in /diagnostics. The estimator's thread tells it, ROS's thread asks it.
+/// Status of the node for /diagnostics. The estimator's thread writes it, ROS's thread reads it.
 class NodeStatus {
  public:
-  /// A frame was estimated, within `work_s` of processing; `period_s` lies between frames, and `backlog`
-  /// images wait.
+  /// Adds an estimated frame. `work_s`: its processing time; `period_s`: time between frames; `backlog`:
+  /// number of waiting images.
   void add(const FrameEstimate& estimate, double work_s, double period_s, size_t backlog);
   void setFindings(std::vector<Finding> findings);
 
-  /// Two statuses, of the estimator and of the magnetometer. `unheard`: sensors that have not been heard
-  /// enough to begin. WARN while there is no full tracking or the magnetometer is rejected, ERROR where
-  /// nothing was estimated for two seconds.
+  /// Statuses of the estimator and of the magnetometer. `unheard`: sensors without enough readings to start.
+  /// WARN while tracking is incomplete or the magnetometer is rejected; ERROR where there was no estimate for
+  /// two seconds.
   message::DiagnosticArray message(ros::Time now, const std::vector<std::string>& unheard) const;
 
  private:
@@ -36,7 +36,7 @@ class NodeStatus {
   Clock::time_point last_time_;
   int frames_ = 0;
   size_t backlog_ = 0;
-  double busy_share_ = 0.0;  ///< of real time, mean over the latest frames
+  double busy_share_ = 0.0;  ///< processing time divided by real time, mean over the latest frames
   std::vector<Finding> findings_;
 };
 

@@ -21,7 +21,7 @@
 #include "lodeline_ros/raw_message.h"
 #include "lodeline_ros/test_process.h"
 
-// The node beside a roscore, hearing the messages of a bag.
+// Runs the node with a roscore and the messages of a bag.
 
 namespace lodeline::test {
 namespace {
@@ -29,7 +29,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr double kDuration_s = 4.0;
-/// The bag is played no further ahead of the poses than this, so that no queue overflows on a slow machine.
+/// Maximum time between the bag and the poses, so that no queue overflows on a slow machine.
 constexpr double kLead_s = 2.0;
 constexpr double kTimeout_s = 40.0;
 
@@ -46,7 +46,7 @@ double firstImageTime_s(const BagFile& bag) {
   return imageTopics(bag).front()->entries.front().received.seconds();
 }
 
-/// Everything that came on a topic.
+/// All messages received on a topic.
 template <typename Message>
 class Heard {
  public:
@@ -87,7 +87,7 @@ struct Shared {
 
 class NodeTest : public ::testing::Test {
  protected:
-  /// One master and one bag for all tests: a process can only have one master.
+  /// One master and one bag for all tests, because a process can have only one master.
   static void SetUpTestSuite() {
     const std::optional<std::filesystem::path> recording = testData(kMh01Recording);
     if (std::system("command -v roscore > /dev/null") != 0) {
@@ -117,7 +117,7 @@ class NodeTest : public ::testing::Test {
     node_.emplace(parameters, path("node.log").string());
   }
 
-  /// Publishes the bag's messages in the order in which they were received, up to the end of the test.
+  /// Publishes the bag's messages in the order of reception, up to the end of the test.
   void play(const std::function<double()>& pose_time_s) {
     ros::NodeHandle node;
     Diagnostics diagnostics;
@@ -197,7 +197,7 @@ TEST_F(NodeTest, PublishesTheTrajectoryThatARunFromTheBagHas) {
     EXPECT_GT(message.pose.covariance[35], 0.0);
     EXPECT_EQ(transforms.messages[i].transforms.at(0).transform.translation.x, position.x);
   }
-  // What it wrote is what the program wrote, to the last digit, as far as both went.
+  // The files of the node equal those of the program to the last digit, as far as both go.
   for (const char* name : {"trajectory.tum", "states.csv"}) {
     const std::vector<std::string> lines = linesOf(readText(path(std::string("run/") + name)), SIZE_MAX);
     EXPECT_EQ(linesOf(readText(path(std::string("node/") + name)), lines.size()), lines) << name;

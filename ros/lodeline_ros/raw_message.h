@@ -9,8 +9,8 @@
 
 namespace lodeline {
 
-/// A message of whatever type, as the bytes that a bag would hold of it, so that live topics and bags are
-/// decoded by the same functions.
+/// A message of any type as the bytes that a bag would store, so that the same functions decode live topics
+/// and bags.
 struct RawMessage {
   wire::Bytes bytes;
 };

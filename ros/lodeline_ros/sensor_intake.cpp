@@ -13,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-// What may wait in ROS until the callbacks' thread gets its turn; that thread never waits itself.
+// Queue lengths in ROS until the callback thread runs; that thread never waits.
 constexpr uint32_t kImageQueue = 100;
 constexpr uint32_t kReadingQueue = 5000;
 

@@ -14,10 +14,10 @@
 
 namespace lodeline::test {
 
-/// A program that runs beside the test and does not outlive it.
+/// A child process that runs in parallel with the test and ends with it.
 class ChildProcess {
  public:
-  /// Found like by the shell. What it prints goes to the file `log`.
+  /// Starts a command found in PATH, with its output in the file `log`.
   ChildProcess(const std::vector<std::string>& command, const std::string& log) : pid_(fork()) {
     if (pid_ < 0) throw std::runtime_error("no further process can be made");
     if (pid_ > 0) return;
@@ -43,10 +43,10 @@ class ChildProcess {
   static constexpr int kRunning = -1;
   static constexpr int kKilled = -2;
 
-  /// As Ctrl-C does.
+  /// Sends SIGINT, as Ctrl-C does.
   void interrupt() const { kill(pid_, SIGINT); }
 
-  /// Exit code; kRunning where it has not ended in time, kKilled where a signal ended it.
+  /// Exit code; kRunning where the process has not ended in time, kKilled where a signal ended it.
   int waitFor(double timeout_s) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
     int state = 0;
@@ -62,7 +62,7 @@ class ChildProcess {
   pid_t pid_;
 };
 
-/// A TCP port of this machine that was free just now.
+/// A TCP port of this machine that was free at the time of the call.
 inline int freePort() {
   const int socket_number = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};

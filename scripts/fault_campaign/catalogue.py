@@ -1,9 +1,9 @@
-"""The catalogue of faults: name -> Fault. A fault spoils a recording and says what the program may do about it.
+"""The catalogue of faults: name -> Fault. A fault modifies a recording and states the permitted reactions of the program.
 
 A fault's function takes (recording, random generator) and returns a dictionary of
   until        the trajectory must be complete up to this image
   fatal        nothing can be estimated
-  jump         (last stamp on the old clock in ns, offset in s): truth is on the clock before it
+  jump         (last stamp on the old clock in ns, offset in s): the truth keeps the old clock
   what         the random draw, for the table
 """
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from typing import Callable
 class Fault:
     apply: Callable
     does_harm: bool  # the run must report a finding
-    is_calibration: bool = False  # whether it harms depends on the draw
+    is_calibration: bool = False  # whether it does harm depends on the draw
 
 
 FAULTS = {}

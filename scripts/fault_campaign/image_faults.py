@@ -10,7 +10,7 @@ def some_cameras(rng):
 
 
 def spoil_some(recording, rng, share, spoil):
-    """spoil(bytes) -> bytes of a random share of the images of some cameras."""
+    """Replaces a random share of the images of some cameras by spoil(bytes) -> bytes."""
     for camera in some_cameras(rng):
         for index in range(recording.frames(camera)):
             if rng.random() < share:
@@ -20,7 +20,7 @@ def spoil_some(recording, rng, share, spoil):
 
 
 def replace_from(recording, first, make):
-    """make() -> bytes of every image of both cameras from index `first` on."""
+    """Replaces every image of both cameras from index `first` on by make() -> bytes."""
     for camera in CAMERAS:
         for index in range(first, recording.frames(camera)):
             recording.replace(recording.image(camera, index), make())
@@ -125,7 +125,7 @@ def images_frozen_from(recording, rng):
 
 @fault()
 def every_image_twice(recording, rng):
-    """A stamp of its own for the repeat, halfway to the next image."""
+    """Repeats each image with a new stamp, halfway to the next image."""
     def repeat(rows):
         stamps = [int(row.split(",")[0]) for row in rows]
         out = []

@@ -1,22 +1,22 @@
-"""Compares a run with the truth and with its own claims; names every breach of contract.
+"""Compares a run with the truth and with its stated uncertainty; names every breach of contract.
 
-  crash, hang   ended by a signal, with an exit code that is none of the program's, or not at all
-  nan           a pose or a sigma that is no number
+  crash, hang   ended by a signal or with an undocumented exit code, or did not end
+  nan           a pose or a sigma is not a number
   lost          fewer poses than images before the fault
   untold        the fault does harm, the exit code is 0, and no finding is above a notice
-  SILENT        more than 5 % of the poses are wrong by over 5 sigma and 0.10 m, and the run said nothing
-  wrong_told    the same, but the run said something
+  SILENT        more than 5 % of the poses are wrong by over 5 sigma and 0.10 m, and the run reported nothing
+  wrong_told    the same errors, but the run reported a finding
 """
 import bisect
 import json
 import math
 
-TRUTH_SIGMA_M = 0.005  # of truth and alignment together
+TRUTH_SIGMA_M = 0.005  # one sigma of truth and alignment together
 POSES_TO_ALIGN = 15
 
 
 def read_truth(path):
-    """(t in s, x, y, z) of a TUM file or of EuRoC's state_groundtruth_estimate0/data.csv"""
+    """Sorted positions (t in s, x, y, z) of a TUM file or of EuRoC's state_groundtruth_estimate0/data.csv"""
     poses = []
     for line in path.read_text().splitlines():
         if line and line[0] != "#":
@@ -26,7 +26,7 @@ def read_truth(path):
 
 
 def read_poses(path):
-    """Poses of trajectory.tum; a line that is none becomes None."""
+    """Poses of trajectory.tum; a line that is not a pose becomes None."""
     poses = []
     for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
         if line.startswith("#"):
@@ -40,7 +40,7 @@ def read_poses(path):
 
 
 def read_sigmas(path):
-    """Stamp in ns -> one sigma of the position in m, of states.csv; nothing where a posed frame has none."""
+    """Map from stamp in ns to one sigma of the position in m, from states.csv; None where a frame with a pose has none."""
     lines = path.read_text(errors="replace").splitlines() if path.exists() else []
     if not lines:
         return {}
@@ -67,7 +67,7 @@ def position_at(truth, t):
 
 
 def aligned_errors(estimate, truth, align_count):
-    """(index, error in m) after the yaw and translation that fit the first poses best."""
+    """Position errors (index, error in m) after alignment of the first poses by yaw and translation."""
     pairs = [(i, pose[1:4], position_at(truth, pose[0])) for i, pose in enumerate(estimate)]
     pairs = [pair for pair in pairs if pair[2]]
     if len(pairs) < 5:

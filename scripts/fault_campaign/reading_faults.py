@@ -1,4 +1,4 @@
-"""Faults of inertial readings: values that no sensor gives, units, saturation, silence."""
+"""Faults of inertial readings: impossible values, wrong units, saturation, gaps."""
 from catalogue import fault, middle
 
 END_NS = 2**63
@@ -74,7 +74,7 @@ def readings_stuck(recording, rng):
 
 @fault()
 def readings_held(recording, rng):
-    """Each reading several times: a sensor slower than its driver."""
+    """Repeats each reading several times, as for a sensor slower than its driver."""
     times, held = rng.choice([2, 4, 8]), []
 
     def hold(values, index):
@@ -124,7 +124,7 @@ def bias_steps(recording, rng):
 
 @fault()
 def sensor_silent(recording, rng):
-    """All zero: gyroscope, accelerometer or both."""
+    """Sets all readings of the gyroscope, the accelerometer or both to zero."""
     factors = rng.choice([(0.0, 1.0), (1.0, 0.0), (0.0, 0.0)])
     recording.edit_readings(0, END_NS, lambda v, _: scaled(v, *factors))
     return {"until": 0, "what": f"x{factors[0]:g} x{factors[1]:g}"}

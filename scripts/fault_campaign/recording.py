@@ -1,4 +1,4 @@
-"""A cut of a recording in the EuRoC ASL layout whose files can be spoilt: rows are text, images are links until replaced."""
+"""A part of a recording in the EuRoC ASL layout with modifiable files: rows are text, images are links until replaced."""
 import os
 import shutil
 import struct
@@ -34,13 +34,13 @@ class Recording:
         return (self.mav / sensor / "data.csv").read_text().splitlines()[1:]
 
     def edit_rows(self, sensor, edit):
-        """edit(list of rows) -> list of rows"""
+        """Replaces the rows of a sensor by edit(list of rows) -> list of rows."""
         path = self.mav / sensor / "data.csv"
         header, *rows = path.read_text().splitlines()
         path.write_text("\n".join([header] + edit(rows)) + "\n")
 
     def edit_readings(self, from_ns, to_ns, edit):
-        """edit(six numbers of the IMU, index) -> six numbers or texts, of the rows with from_ns <= stamp < to_ns"""
+        """Replaces IMU values for from_ns <= stamp < to_ns by edit(six numbers, index) -> six numbers or texts."""
         def all_rows(rows):
             out = []
             for index, row in enumerate(rows):
@@ -72,7 +72,7 @@ class Recording:
 
 
 def cut(data, folder, seconds):
-    """The first `seconds` of images in a new folder, with inertial readings from 2 s before to 0.3 s after them."""
+    """Copies the first `seconds` of images to a new folder, with inertial readings from 2 s before to 0.3 s after them."""
     shutil.rmtree(folder, ignore_errors=True)
     source = Path(data).resolve() / "mav0"
     recording = Recording(folder)

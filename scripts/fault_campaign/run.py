@@ -75,7 +75,7 @@ def attempt(options, data, truth, name, seed, draw):
 
 
 def chosen(options):
-    """Every attempt, the faults in turn, so that the first `most` of them cover as many kinds as can be."""
+    """All attempts, ordered so that the first `most` of them cover the largest number of faults."""
     names = [name for name in FAULTS if re.search(options.only, name)]
     all_of_them = [(data, name, seed, draw) for draw in range(options.repeat) for seed in options.seeds
                    for data in options.data for name in names]
@@ -122,7 +122,7 @@ def main():
     print(text)
     if options.markdown:
         Path(options.markdown).write_text(text)
-    # What is untold and not wrong either (an axis turned round that read nothing) is in the table alone.
+    # Unreported faults without wrong poses (a reversed axis that reads zero) are only in the table.
     breaches = [kind for row in rows for kind in row["breaches"] if kind != "untold"]
     told = breaches.count("wrong_told")
     return 1 if told > options.allow_told or len(breaches) > told else 0

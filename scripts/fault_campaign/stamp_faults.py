@@ -1,11 +1,11 @@
-"""Faults of stamps: clocks that jump, units, order, and files that are not what their names say."""
+"""Faults of stamps: clock jumps, wrong units, wrong order, and files whose content differs from their names."""
 from catalogue import fault, middle
 
 ALL = ("cam0", "cam1", "imu0")
 
 
 def map_stamps(recording, sensors, change):
-    """change(stamp in ns) -> stamp in ns"""
+    """Replaces the stamps of the sensors by change(stamp in ns) -> stamp in ns."""
     for sensor in sensors:
         recording.edit_rows(sensor, lambda rows: [
             ",".join([str(change(int(row.split(",")[0])))] + row.split(",")[1:]) for row in rows])
@@ -78,7 +78,7 @@ def stamps_in_another_unit(recording, rng):
 
 @fault()
 def imu_stamps_in_bursts(recording, rng):
-    """Ten readings stamped on arrival, 0.1 ms apart."""
+    """Groups the readings in bursts of ten, stamped on arrival, 0.1 ms apart."""
     def burst(rows):
         stamps = [int(row.split(",")[0]) for row in rows]
         return [",".join([str(stamps[min(i - i % 10 + 9, len(rows) - 1)] - (9 - i % 10) * 100000)] + row.split(",")[1:])

@@ -1,5 +1,5 @@
-// How much better a batch solution is than the sliding window, on simulated dives of points. Prints the table
-// of docs/refinement.md.
+// Compares the accuracy of a batch solution with the sliding window on simulated dives of points. Prints the
+// table of docs/refinement.md.
 
 #include <fmt/core.h>
 
@@ -18,9 +18,9 @@ using namespace lodeline;
 /// Root mean square errors of one trajectory.
 struct Errors {
   double aligned_m = 0.0;   ///< positions, after SE(3) alignment
-  double anchored_m = 0.0;  ///< with first position and heading as they are
+  double anchored_m = 0.0;  ///< without alignment, from the true first position and heading
   double yaw_rad = 0.0;
-  double end_m = 0.0;  ///< anchored, of the last position, for which the window too has seen everything
+  double end_m = 0.0;  ///< of the last position without alignment, where the window has also used all data
 };
 
 Errors errorsOf(const std::vector<FrameEstimate>& frames, const std::vector<Rigid3>& truth) {

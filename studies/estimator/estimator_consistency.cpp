@@ -1,4 +1,4 @@
-// Monte Carlo of simulated scenes and dives: is the estimator as good as it says? Prints the tables of
+// Monte Carlo test of the estimator's consistency on simulated scenes and dives. Prints the tables of
 // docs/consistency.md.
 
 #include <fmt/core.h>
@@ -85,7 +85,7 @@ void print(const Consistency& consistency, std::span<const Column> columns, doub
   if (consistency.lost > 0) fmt::print("{} seeds without an estimate in time\n", consistency.lost);
 }
 
-/// In batches, each of which adds to the table, so that a long study shows early what it will come to.
+/// Runs in batches, each of which adds to the table, so that a long study shows early results.
 void studyDives(double minutes, int samples, DiveConsistencyOptions options) {
   constexpr int kBatch = 10;
   options.dive.duration_s = 60.0 * minutes;
@@ -125,7 +125,8 @@ int main(int argc, char** argv) {
   bool each = false, as_shipped = false, as_believed = false;
   std::string magnetometer = "off";
   options.estimator = honestOptions(options.scene);
-  // The cameras are what their files say; who doubts them claims errors of lenses which do not happen here.
+  // The cameras equal their calibration files. A camera error model would increase the stated sigma for
+  // errors that do not occur here.
   options.estimator.camera_calibration.enabled = false;
   SolverOptions solver;
   WindowOptions window;

@@ -1,5 +1,5 @@
-// How true heading stays over simulated dives of points, with and without magnetometer. Prints the table of
-// docs/magnetometer.md.
+// Measures the heading error over simulated dives of points, with and without magnetometer. Prints the table
+// of docs/magnetometer.md.
 
 #include <fmt/core.h>
 
@@ -18,7 +18,7 @@ const std::map<std::string, MagnetometerUse> kUses = {{"off", MagnetometerUse::O
                                                       {"absolute", MagnetometerUse::Absolute},
                                                       {"paper", MagnetometerUse::Paper}};
 
-/// One line: root mean squares over the seeds, and the worst of them.
+/// One line of the table: root mean squares over the seeds, and their maximum.
 class Row {
  public:
   void add(const HeadingTrial& trial) {

@@ -5,8 +5,8 @@
 namespace lodeline {
 namespace {
 
-/// 640 x 480 images along a swim at 15 Hz. CPU time is that of all threads: on two idle cores an image takes
-/// half of it.
+/// Renders 640 x 480 images along a swim at 15 Hz. The CPU time is the sum over all threads; on two idle
+/// cores, an image takes half of it.
 void renderAlong(benchmark::State& state, const RenderSettings& settings) {
   const ImageRenderer renderer(RenderFixture::shortCave(), RenderFixture::stereoRig(), settings);
   const WorldFromBodyAt motion = RenderFixture::swim(RenderFixture::shortPassage());

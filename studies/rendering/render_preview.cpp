@@ -1,4 +1,4 @@
-// Writes a handful of rendered pictures along a passage, for looking at them while working on the renderer:
+// Renders a few images along a passage, for visual checks during work on the renderer:
 //   render_preview DIR [florida|yucatan|wreck] [clean|field|open|ideal] [count] [seed]
 #include <fmt/core.h>
 #include <sys/resource.h>
@@ -49,7 +49,7 @@ Rigid3 swimPose(const Centerline& line, double s) {
   return Rigid3(Quat(rotation), station.position_W + sway * left);
 }
 
-/// Round the wreck at seven metres, looking inwards and ahead.
+/// Pose on a circle of seven metres around the wreck, looking inwards and ahead.
 Rigid3 circlePose(double s) {
   const double angle = s / 14.0;
   const Vec3 position(14.0 * std::cos(angle), 7.5 * std::sin(angle), 2.2 + 1.2 * std::sin(2.0 * angle));

@@ -7,9 +7,9 @@
 
 namespace lodeline {
 
-/// Corrects a finished trajectory by the magnetometer of its recording (correctHeadingByAzimuth), to true
-/// north where the request names site and date, else to magnetic north, and writes it to `folder` as
-/// trajectory.tum. Throws InputError where the recording has no calibrated magnetometer or no reading.
+/// Corrects a finished trajectory with the magnetometer of its recording (correctHeadingByAzimuth) and writes
+/// it to `folder` as trajectory.tum. North is true north where the request contains site and date, else
+/// magnetic north. Throws InputError where the recording has no calibrated magnetometer or no reading.
 Trajectory makeAzimuthRun(const RunRequest& request, const Trajectory& odometry,
                           const std::filesystem::path& folder);
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/lodeline/compare/compared_run.h"
+#include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
 #include "lodeline/evaluation/figures/comparison_report.h"
@@ -31,7 +32,7 @@ Examples:
   lodeline compare dive1 dive2 --methods off,absolute --runs 1 --mag-calibration mag.yaml -o compared
   lodeline compare cave1_short --realism field --cameras 1 -o left_camera)";
 
-/// Poses and their times of what the recording calls true.
+/// The ground truth of the recording.
 Trajectory readTruth(const std::filesystem::path& data) {
   Diagnostics diagnostics;
   try {
@@ -42,13 +43,14 @@ Trajectory readTruth(const std::filesystem::path& data) {
   }
 }
 
-/// The path that the truth goes while images are used.
+/// Length of the true path while images are used.
 double pathBetween_m(Trajectory truth, Time begin, Time end) {
   std::erase_if(truth.poses, [&](const StampedPose& pose) { return pose.time < begin || pose.time > end; });
   return pathLength(truth);
 }
 
-/// Recordings of one name in different folders would write to one place.
+/// Unique name for each recording: recordings of equal name in different folders would write to the same
+/// folder.
 std::string distinctName(const std::string& name, const std::vector<ComparedRecording>& others) {
   const auto isTaken = [&](const std::string& wanted) {
     return std::any_of(others.begin(), others.end(),
@@ -59,7 +61,7 @@ std::string distinctName(const std::string& name, const std::vector<ComparedReco
   return distinct;
 }
 
-/// False where the user stopped a run.
+/// Returns false where the user stopped a run.
 bool makeRuns(const ComparisonInput& input, const ComparisonRequest& request, ComparedRecording* recording) {
   const Trajectory truth = readTruth(input.seeds.front().data);
   recording->name = input.name;

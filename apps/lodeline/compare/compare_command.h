@@ -4,8 +4,8 @@
 
 namespace lodeline {
 
-/// `lodeline compare DATA|SCENARIO... -o OUT`: methods against each other on recordings with ground truth.
-/// Its callback throws InputError, UsageError and EstimationError.
+/// `lodeline compare DATA|SCENARIO... -o OUT`: comparison of methods on recordings with ground truth. Its
+/// callback throws InputError, UsageError and EstimationError.
 void addCompareCommand(CLI::App& program);
 
 }  // namespace lodeline

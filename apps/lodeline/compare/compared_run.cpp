@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 const char* const kDoneFile = "made_from.txt";
 
-/// Tells one build of the program from another (FNV-1a over its own file).
+/// Identifies the build of the program (FNV-1a hash of its own file).
 uint64_t programFingerprint() {
   uint64_t hash = 14695981039346656037u;
   for (const char byte : readFileBytes("/proc/self/exe")) {
@@ -28,7 +28,7 @@ uint64_t programFingerprint() {
   return hash;
 }
 
-/// Whatever the result depends on, for telling whether a run was made already.
+/// Text of everything that influences the result, to detect whether a run exists already.
 std::string identity(const RunRequest& request) {
   RunSettings options;
   Settings settings;
@@ -57,16 +57,16 @@ nlohmann::json readSummary(const fs::path& folder) {
   return nlohmann::json::parse(readFileBytes(folder / "run.json"));
 }
 
-/// Whether the folder holds the whole run; someone may have run into it since, and not to the end.
+/// Whether the folder contains the complete run; another, incomplete run may have replaced it.
 bool isDone(const fs::path& folder, const std::string& made_from) {
   if (!fs::exists(folder / kDoneFile) || readFileBytes(folder / kDoneFile) != made_from) return false;
   if (!fs::exists(folder / "run.json")) return false;
-  constexpr bool kThrow = false;  // a file that was cut short is that of no whole run either
+  constexpr bool kThrow = false;  // a truncated file is not that of a complete run
   const auto summary = nlohmann::json::parse(readFileBytes(folder / "run.json"), nullptr, kThrow);
   return summary.is_object() && !summary.value("interrupted", true);
 }
 
-/// False where the user stopped the run.
+/// Returns false where the user stopped the run.
 bool estimate(const RunRequest& request) {
   const fs::path folder = request.output;
   const std::string made_from = identity(request);
@@ -79,8 +79,8 @@ bool estimate(const RunRequest& request) {
   return true;
 }
 
-/// The heading of a run by what its summary says of it. Methods are held against each other and a corrected
-/// azimuth here, so that magnetic north counts as north, with its declination as an error of all of them.
+/// Heading basis of a run from its summary. Methods are compared with each other and with a corrected azimuth
+/// here, so magnetic north counts as north; its declination is an error of all of them.
 HeadingBasis basisOf(const nlohmann::json& summary) {
   const std::string reference = summary.value("/heading/reference"_json_pointer, std::string());
   return reference.find("north") != std::string::npos ? HeadingBasis::North : HeadingBasis::Start;
@@ -95,7 +95,7 @@ void judge(const Trajectory& trajectory, const Trajectory& truth, HeadingBasis b
            const ComparisonInput& input, ComparedRun* run) {
   EvaluationOptions options;
   options.association.method = AssociationMethod::Interpolate;
-  // Truth at a few hertz will do for a swimmer; an image is still told from its neighbours by half a period.
+  // A ground truth at a few hertz suffices for a swimmer; the tolerance is below half an image period.
   options.association.tolerance_s = 0.02;
   options.expected_stamps = input.expected_stamps;
   Diagnostics diagnostics;

@@ -9,14 +9,15 @@
 
 namespace lodeline {
 
-/// The methods that `lodeline compare` knows: "off", "paper" and "absolute" are models of the magnetometer in
-/// the window, "azimuth" is the finished "off" trajectory corrected by correctHeadingByAzimuth().
+/// Whether `name` is a method of `lodeline compare`. "off", "paper" and "absolute" are models of the
+/// magnetometer in the window. "azimuth" is the finished "off" trajectory corrected by
+/// correctHeadingByAzimuth().
 bool isComparedMethod(const std::string& name);
 
-/// Makes one run of a method in its folder, unless it is there already from the same recording, settings,
-/// calibration and program, and judges it against the recording's ground truth. A run that comes to nothing
-/// says why in `failure`. Nothing where the user stopped it. `input_folder`: the results of this recording,
-/// one folder a method and seed.
+/// Makes one run of a method in its folder and evaluates it with the recording's ground truth. An existing
+/// run from the same recording, settings, calibration and program is not repeated. The reason for a failed
+/// run is in `failure`. Empty where the user stopped it. `input_folder`: the results of this recording, one
+/// folder per method and seed.
 std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
                                            const std::string& method,
                                            const std::filesystem::path& input_folder,

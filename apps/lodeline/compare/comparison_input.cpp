@@ -29,7 +29,8 @@ fs::path recordingsFolder(const ComparisonRequest& request) {
   return request.recordings.empty() ? request.output / "recordings" : request.recordings;
 }
 
-/// The dive's rig, whose errors depend on seed and grade alone, turned about by hand before the dive.
+/// Calibrates the dive's rig, whose errors depend only on seed and grade, from rotations by hand before the
+/// dive.
 fs::path calibrateRig(const Scenario& dive, const std::string& name, const ComparisonRequest& request) {
   ScenarioChanges changes;
   changes.seed = request.changes.seed;
@@ -56,11 +57,11 @@ bool isRendered(const Scenario& scenario, const fs::path& folder) {
   try {
     return findAvailableImages(folder, {}).complete;
   } catch (const InputError&) {
-    return false;  // interrupted before its images
+    return false;  // interrupted before the first image
   }
 }
 
-/// False where the user stopped the rendering.
+/// Returns false where the user stopped the rendering.
 bool render(const Scenario& scenario, const fs::path& folder, const ComparisonRequest& request) {
   if (isRendered(scenario, folder)) return true;
   if (request.render) {
@@ -76,7 +77,8 @@ bool render(const Scenario& scenario, const fs::path& folder, const ComparisonRe
   return true;
 }
 
-/// Recordings already there stay as they are: another comparison may be reading them.
+/// Records a noise seed in another folder. Existing recordings are not changed, because another comparison
+/// may be reading them.
 void recordNoiseAside(const Scenario& noisy, const fs::path& original, const fs::path& folder) {
   if (holdsRecording(noisy, folder)) return;
   const fs::path unfinished = folder.string() + "_unfinished";
@@ -129,7 +131,7 @@ void prepareFolder(const fs::path& folder, const ComparisonRequest& request, Com
   }
 }
 
-/// Bags have no list of images to count on and compare by; a folder has.
+/// Converts a bag to a folder, because bags have no list of images for the comparison.
 fs::path convertedBag(const fs::path& bag, const ComparisonRequest& request) {
   const fs::path folder = recordingsFolder(request) / (bag.stem().string() + "_from_bag");
   if (fs::exists(folder) && fs::last_write_time(folder) >= fs::last_write_time(bag)) return folder;
@@ -138,7 +140,7 @@ fs::path convertedBag(const fs::path& bag, const ComparisonRequest& request) {
   options.topics = topicsOf(request.run.bag);
   const fs::path unfinished = folder.string() + "_unfinished";
   fs::remove_all(unfinished);
-  Diagnostics diagnostics;  // what is wrong with the data, the runs find too
+  Diagnostics diagnostics;  // the runs report faults of the data as well
   convertBagToFolder(bag, unfinished, options, &diagnostics);
   fs::remove_all(folder);
   fs::rename(unfinished, folder);
@@ -146,7 +148,7 @@ fs::path convertedBag(const fs::path& bag, const ComparisonRequest& request) {
   return folder;
 }
 
-/// Leaves the end of a recording out that has no images yet, and says what is measured.
+/// Limits a recording to the part with images, and describes that part.
 void limitToImages(ComparisonInput* prepared) {
   RunSettings options;
   Settings settings;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "apps/lodeline/export/export_dives.h"
+#include "apps/lodeline/shared/bag_options.h"
 
 namespace lodeline {
 namespace {

@@ -31,7 +31,8 @@ std::string describeAlignment(const DepthProfile& profile, const DepthAlignment&
       alignment.rms_m, alignment.slope);
 }
 
-/// The profile's start depth is what the user asked for; that of the run's own sensor should be the same.
+/// Reports a difference between the start depths of the profile and of the run's own sensor. The profile's is
+/// used, because the user asked for it.
 void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics* diagnostics) {
   constexpr double kLeast_m = 0.5, kShare = 0.05;
   if (!run.depth_at_origin_m) return;

@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// What `lodeline export` is told of a depth profile.
+/// Arguments of `lodeline export` for a depth profile.
 struct DepthProfileArguments {
   std::string file;  ///< empty for none
   bool correct = false;
@@ -17,9 +17,9 @@ struct DepthProfileArguments {
 };
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments);
 
-/// Aligns the profile with the run and adds what was found to the notes of the map. The start depth of the
-/// map becomes the profile's unless the user stated it or the alignment is doubted; with `correct`, the run's
-/// vertical becomes the profile's. Gives the text of `NAME_depth_profile.csv`, both over time.
+/// Aligns the profile with the run and adds the result to the notes of the map. The start depth of the map
+/// becomes that of the profile unless the user stated it or the alignment is doubtful. With `correct`, the
+/// profile corrects the run's depths. Returns the text of `NAME_depth_profile.csv`, with both over time.
 std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder* run, DiveMapOptions* map,
                               Diagnostics* diagnostics);
 

@@ -20,13 +20,13 @@
 namespace lodeline {
 namespace {
 
-/// What the recording adds to the run.
+/// Additional data from the recording.
 struct RecordingParts {
   std::optional<MapImages> images;
   std::vector<Vec3> walls_W;
 };
 
-/// One dive, ready to be written.
+/// One dive, ready for export.
 struct ExportedDive {
   DiveMap map;
   RecordingParts recording;
@@ -89,7 +89,8 @@ ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFor
   return dive;
 }
 
-/// All dives on the grid of the first one: survey programs cannot join what lies on several.
+/// Maps of all dives on the grid of the first one, because survey programs cannot join dives on different
+/// grids.
 std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
                                     Diagnostics* diagnostics) {
   DiveMapOptions options = mapOptions(arguments);
@@ -139,7 +140,7 @@ void writeDive(const ExportedDive& dive, const std::vector<MapFormat>& formats,
   writeOutput(files->back(), notesText(dive.map));
 }
 
-/// As stated, else "cave"; none of the dives' names.
+/// Project name: as stated, else "cave"; different from the dives' names.
 std::string projectName(const ExportArguments& arguments, const std::vector<DiveMap>& maps) {
   std::string name = surveyName(arguments.map.name.empty() ? "cave" : arguments.map.name);
   const auto isTaken = [&](const DiveMap& map) { return map.name == name; };
@@ -147,7 +148,7 @@ std::string projectName(const ExportArguments& arguments, const std::vector<Dive
   return name;
 }
 
-/// The files that join several dives, for the formats that can.
+/// Writes the files that join several dives, for formats that support it.
 void writeProjects(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
                    const std::vector<ExportedDive>& dives, const std::filesystem::path& folder,
                    std::vector<std::filesystem::path>* files) {

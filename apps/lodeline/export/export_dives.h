@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// What `lodeline export` is told.
+/// Arguments of `lodeline export`.
 struct ExportArguments {
   std::vector<std::string> runs;
   std::vector<std::string> formats;
@@ -24,8 +24,8 @@ struct ExportArguments {
   DiveMapOptions map;
 };
 
-/// Reads the runs, makes their maps and writes them, and prints what was done. Several runs lie on one grid,
-/// and formats for survey programs get a project that joins them.
+/// Reads the runs, writes their maps, and prints a summary. Several runs share one grid, and formats for
+/// survey programs get a project file that joins them.
 void exportRuns(const ExportArguments& arguments);
 
 }  // namespace lodeline

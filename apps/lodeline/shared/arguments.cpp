@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t kNumbersOfPlace = 3;
 
-/// The parts of `text` between commas and blanks.
+/// Parts of `text` between commas and blanks.
 std::vector<std::string> partsOf(const std::string& text) {
   std::vector<std::string> parts;
   for (size_t begin = 0; (begin = text.find_first_not_of(", \t", begin)) != std::string::npos;) {
@@ -38,7 +38,7 @@ bool areNumbers(const std::string& word) {
   return !parts.empty() && std::all_of(parts.begin(), parts.end(), isNumber);
 }
 
-/// Joins numbers to the place that begins in `value`, up to three; `next` moves past the words taken.
+/// Joins up to three numbers to the position that starts with `value`; `next` moves past the words used.
 std::string placeFrom(std::string value, const std::vector<std::string>& words, size_t* next) {
   while (areNumbers(value) && partsOf(value).size() < kNumbersOfPlace && *next < words.size() &&
          areNumbers(words[*next])) {
@@ -75,7 +75,7 @@ std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words)
       joined.push_back(name + "=" + placeFrom(word.substr(equals + 1), words, &i));
     } else if (i < words.size() && areNumbers(words[i])) {
       const size_t value = i++;
-      // With an equals sign a latitude below zero is no option.
+      // With an equals sign a negative latitude does not look like an option.
       joined.push_back(name + "=" + placeFrom(words[value], words, &i));
     } else {
       joined.push_back(word);
@@ -92,7 +92,7 @@ void refuseUnknownWords(const CLI::App& program, const std::vector<std::string>&
                                  didYouMean(words[0], commands), fmt::join(commands, ", ")));
   }
   const CLI::App* command = program.get_subcommand(words[0]);
-  // Commands of commands (`calibrate magnetometer`).
+  // Subcommands of commands (`calibrate magnetometer`).
   for (size_t i = 1; i < words.size() && !command->get_subcommands({}).empty(); ++i) {
     if (words[i].starts_with('-')) continue;
     const std::vector<std::string> inner = commandsOf(*command);

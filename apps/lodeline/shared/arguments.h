@@ -9,12 +9,12 @@ class App;
 
 namespace lodeline {
 
-/// The words of the command line with places (`--site`, `--entrance`) as one word each, whether their three
-/// numbers were given with commas, with blanks, or as three words: LAT,LON,HEIGHT.
+/// The words of the command line with each position (`--site`, `--entrance`) as one word LAT,LON,HEIGHT. Its
+/// three numbers may be separated by commas or blanks, or be three words.
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words);
 
-/// Throws UsageError, suggesting the nearest name, where `words` begin with no command of `program`, or name
-/// an option that the command does not have.
+/// Throws UsageError, with the nearest name as a suggestion, where `words` begin with an unknown command of
+/// `program`, or contain an option that the command does not have.
 void refuseUnknownWords(const CLI::App& program, const std::vector<std::string>& words);
 
 }  // namespace lodeline

@@ -4,8 +4,8 @@
 
 namespace lodeline {
 
-/// The user ended the work before it was done; what was done until then is complete on the disk. The program
-/// ends with exit code 130, as any does that Ctrl-C ends.
+/// Thrown when the user has ended the work early; the results until then are complete on the disk. The
+/// program ends with exit code 130, as usual after Ctrl-C.
 class Interruption : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// One line that is rewritten on a terminal, or one every half minute in a log.
+/// Progress: one line that is rewritten on a terminal, or a line every half minute in a log.
 class RenderProgress {
  public:
   explicit RenderProgress(bool quiet)

@@ -11,7 +11,7 @@ struct SimulationRun {
   bool quiet = false;  ///< no progress on the terminal
 };
 
-/// Simulates a scenario into a folder, or goes on with one that was interrupted, showing progress; Ctrl-C
+/// Simulates a scenario into a folder with a progress display, or continues an interrupted simulation. Ctrl-C
 /// ends it early (RecordingSummary::complete is false then). Throws as recordScenario() does.
 RecordingSummary simulateRecording(const Scenario& scenario, const std::filesystem::path& folder,
                                    const SimulationRun& run);

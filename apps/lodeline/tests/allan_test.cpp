@@ -5,7 +5,7 @@
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
-// `lodeline allan` as a script sees it.
+// Tests of `lodeline allan` as a program.
 
 namespace lodeline {
 namespace {
@@ -32,7 +32,7 @@ TEST_F(AllanTest, FindsTheNoiseOfASimulatedBenchRecord) {
   const auto white = [&](const char* sensor) {
     return json["sensors"][sensor]["all"]["white_noise"]["value"].get<double>();
   };
-  // Of the class gx5-25: 0.005 deg/s/sqrt(Hz), 25 ug/sqrt(Hz), 0.01 uT/sqrt(Hz).
+  // Values of the class gx5-25: 0.005 deg/s/sqrt(Hz), 25 ug/sqrt(Hz), 0.01 uT/sqrt(Hz).
   EXPECT_NEAR(white("gyroscope"), 8.727e-5, 0.05 * 8.727e-5);
   EXPECT_NEAR(white("accelerometer"), 2.452e-4, 0.05 * 2.452e-4);
   EXPECT_NEAR(white("magnetometer"), 1e-8, 0.05 * 1e-8);
@@ -46,7 +46,7 @@ TEST_F(AllanTest, ReadsABagLikeAFolder) {
   const Execution converted = runProgram("convert " + file("bench") + " " + file("bench.bag"));
   if (converted.exit_code == 2) GTEST_SKIP() << converted.output;  // built without librosbag-storage
   ASSERT_EQ(converted.exit_code, 0) << converted.output;
-  std::filesystem::remove(folder_.path() / "bench.rig.yaml");  // nothing of it is needed
+  std::filesystem::remove(folder_.path() / "bench.rig.yaml");  // not needed
   ASSERT_EQ(runProgram("allan " + file("bench") + " --json " + file("folder.json")).exit_code, 0);
   const Execution result = runProgram("allan " + file("bench.bag") + " --json " + file("bag.json"));
   ASSERT_EQ(result.exit_code, 0) << result.output;

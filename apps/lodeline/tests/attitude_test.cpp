@@ -10,7 +10,7 @@
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
-// `lodeline attitude` as a script sees it.
+// Tests of `lodeline attitude` as a program.
 
 namespace lodeline {
 namespace {
@@ -23,10 +23,10 @@ class AttitudeTest : public ::testing::Test {
  protected:
   std::string file(const std::string& name) const { return test::quoted(folder_.path() / name); }
 
-  /// Readings of the field where there are any, T: of a time in s, and what is measured then.
+  /// Magnetometer reading as a function of time in s and of the true field, T; empty for none.
   using Spoil = std::function<std::optional<Vec3>(double, const Vec3&)>;
 
-  /// Ten seconds at 100 Hz, level, x axis pointing to an azimuth of 30 degrees, in the units of its header.
+  /// Writes ten seconds at 100 Hz, level, x axis at an azimuth of 30 degrees, in the units of its header.
   void writeLevel(const std::string& name, const Spoil& spoil) {
     std::string text = "t [s],gx [deg/s],gy [deg/s],gz [deg/s],ax [g],ay [g],az [g]";
     if (spoil) text += fmt::format(",mx [{0}],my [{0}],mz [{0}]", stated_unit_);
@@ -34,7 +34,7 @@ class AttitudeTest : public ::testing::Test {
     for (int i = 0; i < 1000; ++i) {
       text += fmt::format("{:.2f},{},0.1,-0.1,0,0,{}", 0.01 * i, i % 2 == 0 ? 0.01 : -0.01,
                           i % 2 == 0 ? 1.001 : 0.999);
-      // North, of 20 uT, is seen 30 degrees to the left of x.
+      // North, of 20 uT, is 30 degrees to the left of x.
       const Vec3 field_uT(20.0 * std::cos(M_PI / 6.0), 10.0, -40.0 - 1e-3 * (i % 7));
       const std::optional<Vec3> seen_uT = spoil ? spoil(0.01 * i, field_uT) : std::nullopt;
       if (seen_uT) text += fmt::format(",{},{},{}", seen_uT->x(), seen_uT->y(), seen_uT->z());
@@ -47,7 +47,7 @@ class AttitudeTest : public ::testing::Test {
     writeLevel(name, with_field ? Spoil([](double, const Vec3& field_uT) { return field_uT; }) : Spoil());
   }
 
-  /// attitude.json of readings that `spoil` has spoilt.
+  /// attitude.json of readings modified by `spoil`.
   nlohmann::json attitudeOf(const Spoil& spoil) {
     writeLevel("spoilt.csv", spoil);
     const Execution result = runProgram("attitude " + file("spoilt.csv") + " -o " + file("spoilt"));
@@ -83,7 +83,7 @@ TEST_F(AttitudeTest, FindsHeadingFromACsvFile) {
   EXPECT_EQ(json["estimates"], 200);
   EXPECT_THAT(test::readText(folder_.path() / "out" / "attitude.csv"), HasSubstr(",magnetic,"));
 
-  // Declination at Devil's Eye is 6.4 degrees to the west.
+  // The declination at Devil's Eye is 6.4 degrees west.
   const Execution at_site = runProgram("attitude " + file("level.csv") + " -o " + file("true") +
                                        " --site 29.83,-82.60,0 --date 2026-11-21");
   ASSERT_EQ(at_site.exit_code, 0) << at_site.output;
@@ -102,7 +102,7 @@ TEST_F(AttitudeTest, TellsTheUnitFromTheFieldsSize) {
   for (const double per_uT : {1.0, 1e-2, 10.0, 1e3}) {  // uT, G, mG, nT
     bool first = true;
     const auto json = attitudeOf([&](double, const Vec3& field_uT) {
-      // One wild reading before all others decides nothing.
+      // A single wrong first reading must not determine the unit.
       const Vec3 reading = first ? Vec3(5.0, 0.0, 0.0) : Vec3(per_uT * field_uT);
       first = false;
       return reading;
@@ -126,7 +126,7 @@ TEST_F(AttitudeTest, GoesOnWhereTheMagnetometerFails) {
   EXPECT_NEAR(heading_deg(json), 30.0, 0.5);
   EXPECT_NEAR(shareOf(json, "waiting"), 0.35, 0.02);
 
-  // At the end of its range the field is of another size.
+  // At the limit of its range the norm of the field changes.
   json = attitudeOf([](double t, const Vec3& field_uT) {
     return Vec3(t < 5.0 ? field_uT : field_uT.cwiseMin(15.0).cwiseMax(-15.0) + Vec3(0.0, 1e-3 * t, 0.0));
   });
@@ -135,7 +135,7 @@ TEST_F(AttitudeTest, GoesOnWhereTheMagnetometerFails) {
 }
 
 TEST_F(AttitudeTest, TakesASlowMagnetometer) {
-  // Once a second, and repeated in the rows between.
+  // New readings once a second, repeated in the rows between.
   const auto json = attitudeOf([](double t, const Vec3& field_uT) {
     return Vec3(field_uT.x(), field_uT.y(), -40.0 - 1e-3 * std::floor(t + 1e-6));
   });

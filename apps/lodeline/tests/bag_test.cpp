@@ -2,7 +2,7 @@
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/rosbag1/test_bag.h"
 
-// `lodeline run` and `lodeline convert` on ROS 1 bags.
+// Tests of `lodeline run` and `lodeline convert` with ROS 1 bags.
 
 namespace lodeline::test {
 namespace {
@@ -16,7 +16,7 @@ class BagTest : public RoomTest {
     if (!hasRosbag()) GTEST_SKIP() << kRosbagMissing;
   }
 
-  /// As odd as decimals get: 17 digits, exponents, a stamp twice and one out of order.
+  /// Adds sensors with unusual decimals: 17 digits, exponents, a repeated stamp and one out of order.
   void addSmallSensors() const {
     const char* transform = "T_BS: [1,0,0,0.1, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";
     folder_.write("room/mav0/mag0/sensor.yaml",
@@ -48,7 +48,7 @@ class BagTest : public RoomTest {
     return readText(path(output) / "trajectory.tum") + readText(path(output) / "states.csv");
   }
 
-  /// A bag of the room by another program, and what `convert` would write of the calibration.
+  /// A bag of the room in the format of another program, and the calibration file of `convert`.
   std::filesystem::path rosbagOfRoom(const std::string& compression, const std::string& images) const {
     addPgmImages(recording_.data / "mav0");
     const std::filesystem::path bag = path("room_" + compression + images + ".bag");

@@ -11,7 +11,7 @@
 #include "lodeline/io/calibration/yaml_file.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 
-// `lodeline calibrate magnetometer` as a script sees it, on simulated recordings.
+// Tests of `lodeline calibrate magnetometer` as a program, on simulated recordings.
 
 namespace lodeline {
 namespace {
@@ -35,7 +35,7 @@ class CalibrateTest : public ::testing::Test {
 
   MagnetometerFit fitOf(const std::string& name) const { return readCalibrationFile(folder_.path() / name); }
 
-  /// The simulated sensor as it is; soft iron as A with determinant 1.
+  /// True parameters of the simulated sensor; soft iron as A with determinant 1.
   struct Truth {
     Mat3 correction;
     Vec3 hard_iron_T;
@@ -67,7 +67,7 @@ TEST_F(CalibrateTest, ReachesTheBarsOnFiguresOfEightWithHonestSigmas) {
     EXPECT_LT(error.segment<3>(6).norm(), 0.05e-6) << seed;
     EXPECT_LT(error.head<6>().cwiseAbs().maxCoeff(), 1e-3) << seed;
     EXPECT_LT(error.tail<3>().norm(), 0.1 * M_PI / 180.0) << seed;
-    // The common scale is fixed and has no variance: the pseudo-inverse over scaled parameters.
+    // The common scale is fixed and has no variance: pseudo-inverse over scaled parameters.
     const Eigen::Matrix<double, 12, 1> scale = fit.sigmas().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * fit.covariance * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);

@@ -1,6 +1,7 @@
 #include "apps/lodeline/tests/test_room.h"
 
-// `lodeline convert-calibration`, `lodeline rig-template`, `--rig` for folders, and files of a wrong kind.
+// Tests of `lodeline convert-calibration`, `lodeline rig-template`, `--rig` for folders, and files of a wrong
+// kind.
 
 namespace lodeline::test {
 namespace {
@@ -12,7 +13,7 @@ class CalibrationFileTest : public RoomTest {
  protected:
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
 
-  /// Turns the room's sensor.yaml files into one calibration elsewhere.
+  /// Converts the room's sensor.yaml files to one calibration file in another folder.
   std::filesystem::path moveCalibrationAway() const {
     std::string rig;
     for (const char* sensor : {"cam0", "cam1", "imu0"}) {

@@ -3,7 +3,7 @@
 #include "apps/lodeline/tests/test_magnetic_room.h"
 #include "lodeline/evaluation/trajectory/read_trajectory.h"
 
-// `lodeline compare` as a script sees it.
+// Tests of `lodeline compare` as a program.
 
 namespace lodeline::test {
 namespace {
@@ -27,7 +27,7 @@ class Compare : public MagneticRoomTest {
   }
 
   nlohmann::json recording() const { return readJson(output_ / "compare.json")["recordings"][0]; }
-  /// Where the runs on the room are.
+  /// Folder of the runs on the room.
   fs::path runs() const { return output_ / recording_.data.filename(); }
 };
 
@@ -55,8 +55,7 @@ TEST_F(Compare, JudgesMethodsAndMakesNoRunTwice) {
   const Execution again = compareRoom(options);
   EXPECT_EQ(again.output, first.output);
   EXPECT_EQ(fs::last_write_time(states), written);
-  // A run that its user ended is not the whole one, whatever lies beside it, nor is one whose summary was cut
-  // short.
+  // A run that the user ended is incomplete, whatever other files exist; so is one with a truncated summary.
   const fs::path summary = runs() / "off_features_1" / "run.json";
   nlohmann::json ended = readJson(summary);
   ended["interrupted"] = true;
@@ -68,7 +67,7 @@ TEST_F(Compare, JudgesMethodsAndMakesNoRunTwice) {
   EXPECT_FALSE(readJson(summary)["interrupted"].get<bool>());
   const auto rewritten = fs::last_write_time(states);
   EXPECT_NE(rewritten, written);
-  // Another setting makes another run.
+  // Another setting gives another run.
   compareRoom("--methods off --runs 1 --set front_end.max_tracks=90");
   EXPECT_NE(fs::last_write_time(states), rewritten);
 }
@@ -97,7 +96,7 @@ TEST_F(Compare, ScenarioRunsDifferByNoiseAlone) {
   const std::string options =
       "--realism field --seconds 14 --metres 1.2 --width 96 --camera-rate-hz 2 --runs 2 --methods off";
   const Execution result = compare("demo", options);
-  // Images as small as these may or may not give a trajectory; the comparison is made either way.
+  // Images of this size may or may not give a trajectory; the comparison exists in both cases.
   ASSERT_THAT(result.exit_code, ::testing::AnyOf(0, 3)) << result.output;
   EXPECT_THAT(result.output, HasSubstr("simulated, field, seed 1: in full"));
   const fs::path first = output_ / "recordings" / "demo_field" / "mav0";

@@ -7,7 +7,7 @@
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
-// `lodeline export` as a script sees it.
+// Tests of `lodeline export` as a program.
 
 namespace lodeline {
 namespace {
@@ -131,7 +131,7 @@ TEST_F(ExportTest, KeepsTheFilesOfAnotherDive) {
 TEST_F(ExportTest, JoinsSeveralRunsOnOneGrid) {
   std::filesystem::create_directories(folder_.path() / "second");
   std::filesystem::copy(folder_.path() / "run", folder_.path() / "second" / "run");
-  // Two entrances a few metres apart, on both sides of the border of two UTM zones.
+  // Two entrances a few metres apart, on both sides of the boundary of two UTM zones.
   folder_.write("run/config.yaml", "heading: {site: [20.0, -90.00005, 5]}\n");
   folder_.write("second/run/config.yaml", "heading: {site: [20.0, -89.99995, 5]}\n");
   const auto runs =

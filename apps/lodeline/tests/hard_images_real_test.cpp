@@ -1,6 +1,6 @@
-// What spoils images, done to real ones (EuRoC MH_01_easy, first 14 s of images): front end and estimator
-// together must carry on, stay within what they claim to know, and be back within a second.
-// estimator/hard_scenes_test.cpp does the same to tracks of points.
+// Real images (EuRoC MH_01_easy, first 14 s of images) with added image faults. Front end and estimator
+// together must continue, stay within their reported covariance, and recover within a second.
+// estimator/hard_scenes_test.cpp applies the same faults to tracks of points.
 
 #include <gtest/gtest.h>
 
@@ -21,10 +21,10 @@
 namespace lodeline {
 namespace {
 
-constexpr double kBegin_s = 5.0;  // of the trouble, after the first image
+constexpr double kBegin_s = 5.0;  // start of the fault, after the first image
 constexpr double kEnd_s = 10.0;
 
-/// Of a sensor, in grey levels.
+/// Adds sensor noise, in grey levels.
 void addNoise(double sigma, cv::RNG* random, cv::Mat* image) {
   cv::Mat noise(image->size(), CV_16SC1);
   random->fill(noise, cv::RNG::NORMAL, 0.0, sigma);
@@ -67,7 +67,7 @@ class HardImages : public testing::TestWithParam<int> {
     ASSERT_GT(moments_.size(), 280u);
   }
 
-  /// Of the images from kBegin_s to kEnd_s.
+  /// Modification of the images from kBegin_s to kEnd_s.
   static Tamper toImages(const std::function<void(double time_s, cv::Mat& image)>& spoil) {
     return [=](double time_s, FramePacket& packet) {
       if (time_s < kBegin_s || time_s >= kEnd_s) return;
@@ -84,8 +84,9 @@ class HardImages : public testing::TestWithParam<int> {
     return std::nullopt;
   }
 
-  /// Way since the trouble began against the true one, in the body of that moment, and against four times
-  /// what is claimed: for the position then and now, and for the attitude from which the way is counted.
+  /// Compares the motion since the start of the fault with the true one, in the body at that time. Limits:
+  /// `limit_m` and four times the reported sigma, from the positions then and now and from the attitude at
+  /// the start.
   void expectDriftWithin(double limit_m) const {
     const Moment* start = nullptr;
     double worst_m = 0.0;
@@ -126,10 +127,10 @@ class HardImages : public testing::TestWithParam<int> {
 TEST_P(HardImages, BlackForFiveSeconds) {
   run(toImages([](double, cv::Mat& image) { image = cv::Mat::zeros(image.size(), image.type()); }));
   expectTracking(kEnd_s + 1.0, 20.0);
-  expectDriftWithin(0.8);  // dead reckoning: 5 cm/s^2 for so long
+  expectDriftWithin(0.8);  // dead reckoning: 5 cm/s^2 for that time
 }
 
-// Silt: the view fades into grey and out of it again, with the sensor's noise on it.
+// Silt: the view fades to grey and back, with sensor noise.
 TEST_P(HardImages, SiltComesAndGoes) {
   cv::RNG random(7);
   run(toImages([&](double time_s, cv::Mat& image) {
@@ -142,7 +143,7 @@ TEST_P(HardImages, SiltComesAndGoes) {
   expectDriftWithin(0.5);
 }
 
-// Silt too thick to see through, full of particles in the lamp's light, others in every image.
+// Silt too dense to see through, full of particles in the lamp's light, with other particles in every image.
 TEST_P(HardImages, NothingButParticles) {
   cv::RNG random(11);
   run(toImages([&](double, cv::Mat& image) {
@@ -157,7 +158,7 @@ TEST_P(HardImages, NothingButParticles) {
   expectDriftWithin(0.8);
 }
 
-// Silt in a compressed video: what is left to see are the edges of its blocks.
+// Silt in a compressed video: only the edges of its blocks are visible.
 TEST_P(HardImages, NothingButBlocksOfAVideo) {
   cv::RNG random(13);
   run(toImages([&](double, cv::Mat& image) {
@@ -180,7 +181,7 @@ TEST_P(HardImages, FortyOfAHundredFramesMissing) {
   expectDriftWithin(0.1);
 }
 
-// A lamp that goes on and off, and a camera that takes time to follow.
+// A lamp that is switched, and a camera whose exposure follows with a delay.
 TEST_P(HardImages, ExposureJumps) {
   run(toImages([](double time_s, cv::Mat& image) {
     const double since_s = std::fmod(time_s - kBegin_s, 0.75);
@@ -192,7 +193,7 @@ TEST_P(HardImages, ExposureJumps) {
   expectDriftWithin(0.1);
 }
 
-// A hand, as textured as the walls, goes up and down before half of the view.
+// A hand with the texture of the walls moves up and down in front of half of the view.
 TEST_P(HardImages, AHandBeforeTheLens) {
   run(toImages([](double time_s, cv::Mat& image) {
     const int width = image.cols / 2;

@@ -1,7 +1,7 @@
 #include "apps/lodeline/tests/test_room.h"
 #include "lodeline/io/rosbag1/test_bag.h"
 
-// `lodeline inspect` as a script sees it.
+// Tests of `lodeline inspect` as a program.
 
 namespace lodeline::test {
 namespace {

@@ -1,5 +1,5 @@
-// Real images (EuRoC MH_01_easy, first 14 s) as other lenses would have taken them: the whole way from image
-// to trajectory has to be as good by every lens model.
+// Real images (EuRoC MH_01_easy, first 14 s) resampled for other camera models: the trajectory must be
+// equally accurate with every model.
 
 #include <gtest/gtest.h>
 
@@ -19,15 +19,16 @@ namespace {
 
 struct Lens {
   DistortionModel model;
-  /// Long enough for what it sees to be in the images, which reach 37 degrees to the side.
+  /// Long enough for the whole view to be within the original images, which extend to 37 degrees off the
+  /// axis.
   double focal_length_px;
   std::vector<double> distortion;
 };
 
-/// Resamples a camera's images as another lens would have taken them.
+/// Resamples a camera's images to another camera model.
 class IntrinsicsChange {
  public:
-  /// Makes `calibration` that of the new lens.
+  /// Changes `calibration` to that of the new model.
   IntrinsicsChange(const Lens& lens, CameraCalibration* calibration) {
     const auto from = makeCamera(*calibration);
     calibration->distortion_model = lens.model;
@@ -48,7 +49,7 @@ class IntrinsicsChange {
     }
   }
 
-  /// Of the new image that the old one shows.
+  /// Share of the new image that the old one covers.
   double shareSeen() const { return seen_ / static_cast<double>(sources_.total()); }
 
   void apply(cv::Mat* image) const {
@@ -95,7 +96,7 @@ class LensModels : public testing::TestWithParam<int> {
     return trajectory;
   }
 
-  /// As asked of the images as they are (run_real_test.cpp).
+  /// Expects the same accuracy as for the original images (run_real_test.cpp).
   void expectItsFigures(const Lens& lens) const {
     Diagnostics ignored;
     const Trajectory truth =

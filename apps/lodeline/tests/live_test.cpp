@@ -4,10 +4,10 @@
 #include "lodeline/output/live/live_server.h"
 #include "lodeline/output/report/page/page_template.h"
 
-// Defines macros (<resolv.h>) that Eigen stumbles over, so it stands last.
+// Included last, because its macros (<resolv.h>) conflict with Eigen.
 #include <httplib.h>
 
-// `lodeline run --live`
+// Tests of `lodeline run --live`.
 
 namespace lodeline::test {
 namespace {
@@ -19,7 +19,7 @@ class Live : public RoomTest {
   void SetUp() override {
     if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
   }
-  /// A port that was free just now.
+  /// A port that is free at this moment.
   static int freePort() {
     const LiveServer server("127.0.0.1", 0, "");
     const std::string url = server.url();
@@ -37,7 +37,7 @@ TEST_F(Live, ChangesNothingAndTellsABrowserEverything) {
   std::string told;
   std::thread browser([port, &told] {
     httplib::Client client("127.0.0.1", port);
-    // The program takes a moment until it listens.
+    // The program needs a moment until it accepts connections.
     for (int i = 0; i < 2000 && told.empty(); ++i) {
       client.Get("/events", [&told](const char* data, size_t size) {
         told.append(data, size);
@@ -85,7 +85,7 @@ TEST_F(Live, TakesAnyPortForNoughtAndADefaultForNone) {
 TEST_F(Live, DoesNotTakeTheRecordingForAPort) {
   const std::string data = quoted(recording_.data);
   const std::string output = "-q --no-report --overwrite -o " + quoted(output_);
-  // Any order of the arguments; with the default port, which may be in use, only the parsing is looked at.
+  // Any order of the arguments. Only the parsing is tested, because the default port may be in use.
   for (const std::string& command :
        {"run --live 0 " + data + " " + output, "run " + data + " " + output + " --live 0",
         "run --live=0 " + data + " " + output}) {

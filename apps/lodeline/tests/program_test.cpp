@@ -5,7 +5,7 @@
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
-// The program as a script sees it: exit codes, and what it prints.
+// Tests of the program's exit codes and printed output.
 
 namespace lodeline {
 namespace {

@@ -1,6 +1,6 @@
 #include "apps/lodeline/tests/test_room.h"
 
-// `lodeline refine`: what it writes, and that it is no worse than the run that it starts from.
+// Tests of `lodeline refine`: its files, and that it is not less accurate than its run.
 
 namespace lodeline::test {
 namespace {

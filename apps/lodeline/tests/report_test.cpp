@@ -1,7 +1,7 @@
 #include "apps/lodeline/tests/test_room.h"
 #include "lodeline/output/report/page/page_template.h"
 
-// `lodeline report`, and the report that `lodeline run` writes.
+// Tests of `lodeline report`, and of the report that `lodeline run` writes.
 
 namespace lodeline::test {
 namespace {

@@ -1,6 +1,6 @@
 #include "apps/lodeline/tests/test_room.h"
 
-// `lodeline run` where calibration or configuration is absent or wrong.
+// Tests of `lodeline run` with missing or wrong calibration or configuration.
 
 namespace lodeline::test {
 namespace {

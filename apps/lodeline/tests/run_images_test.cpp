@@ -3,7 +3,7 @@
 
 #include "apps/lodeline/tests/test_room.h"
 
-// `lodeline run` on images that are missing, damaged or of the wrong kind.
+// Tests of `lodeline run` with images that are missing, damaged or of the wrong kind.
 
 namespace lodeline::test {
 namespace {
@@ -49,7 +49,7 @@ TEST_F(RunImages, CorruptImageIsNamedAndBridged) {
 }
 
 TEST_F(RunImages, ImageWithoutInertialReadingsIsPassedOver) {
-  // The last 40 readings are 0.2 s: four images lie after what is left.
+  // The last 40 readings are 0.2 s: four images are later than the remaining ones.
   editLines(recording_.csv("imu0"), [](auto& lines) { lines.resize(lines.size() - 40); });
   const Execution result = run();
   expectGoodResult(result, kRoomImages - 4);
@@ -58,7 +58,7 @@ TEST_F(RunImages, ImageWithoutInertialReadingsIsPassedOver) {
 }
 
 TEST_F(RunImages, ImageBeforeTheFirstInertialReadingIsPassedOver) {
-  // 0.5 s before the first image and three images' time.
+  // 0.5 s before the first image plus the time of three images.
   editLines(recording_.csv("imu0"),
             [](auto& lines) { lines.erase(lines.begin() + 1, lines.begin() + 1 + 100 + 25); });
   const Execution result = run();
@@ -123,7 +123,7 @@ TEST_F(RunImages, ImagesWithoutTextureEndInEstimationFailure) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("estimation failed"), HasSubstr("waiting for")));
   EXPECT_EQ(poses(), 0);
   EXPECT_EQ(summary()["completion"], 0.0);
-  // Roll and pitch are known all the same.
+  // Roll and pitch are known without images.
   const std::string states = readText(output_ / "states.csv");
   EXPECT_EQ(std::count(states.begin(), states.end(), '\n'), kRoomImages + 1);
   EXPECT_THAT(states, HasSubstr(",attitude,0,"));

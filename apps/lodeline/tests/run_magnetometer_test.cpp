@@ -4,7 +4,7 @@
 
 #include "apps/lodeline/tests/test_magnetic_room.h"
 
-// `lodeline run` on a recording with a magnetometer.
+// Tests of `lodeline run` on a recording with a magnetometer.
 
 namespace lodeline::test {
 namespace {
@@ -40,9 +40,9 @@ TEST_F(RunMagnetometer, CalibratedTurnsTheTrajectoryToMagneticNorth) {
 TEST_F(RunMagnetometer, SiteAndDateTurnItToTrueNorth) {
   expectGoodResult(runCalibrated("--site 29.83,-82.60,0 --date 2026-11-21"));
   EXPECT_EQ(summary()["heading"]["reference"], "true north");
-  // Magnetic north lies 6.38 degrees west of it there, so the world is turned to the east against it.
+  // Magnetic north is 6.38 degrees west there, so the world is rotated to the east relative to it.
   EXPECT_NEAR(headingError(), 6.38 * kDegree, 2.0 * kDegree);
-  // Elsewhere the field is another, and no heading comes of this one.
+  // At another place the expected field differs, and this one gives no heading.
   expectGoodResult(runCalibrated("--site 0,-60,0 --date 2026-11-21"));
   EXPECT_EQ(summary()["heading"]["reference"], "start heading");
   EXPECT_EQ(findings("heading_not_aligned"), 1);
@@ -84,7 +84,7 @@ TEST_F(RunMagnetometer, OfNoNumbersIsNoMagnetometer) {
   EXPECT_THAT(refused.output, HasSubstr("no magnetometer readings"));
   expectGoodResult(run());
   EXPECT_EQ(summary()["heading"]["reference"], "start heading");
-  // Now and then only, they are left out and the others used.
+  // Single invalid readings are skipped and the others used.
   writeReadings([&](int reading, const Vec3& field_B) { return reading % 3 == 1 ? none : field_B; });
   expectGoodResult(runCalibrated());
   EXPECT_EQ(summary()["heading"]["reference"], "magnetic north");
@@ -105,7 +105,7 @@ TEST_F(RunMagnetometer, ThatFreezesIsUsedUpToThere) {
   EXPECT_LE(framesUsed(), 7);
   EXPECT_GE(framesUsed(), 4);
   EXPECT_GT(summary()["magnetometer"]["frames"]["no data"].get<int>(), 20);
-  // Where it is not wanted its faults are told all the same.
+  // If it is switched off, its faults are still reported.
   expectGoodResult(runCalibrated("--magnetometer off"));
   EXPECT_EQ(findings("magnetometer_frozen"), 1);
 }

@@ -9,7 +9,7 @@
 #include "apps/lodeline/tests/test_room.h"
 #include "lodeline/output/report/page/page_template.h"
 
-// `lodeline run`: where it finds its input, what it writes, how it ends.
+// Tests of `lodeline run`: input search, output, and exit.
 
 namespace lodeline::test {
 namespace {
@@ -102,7 +102,7 @@ TEST_F(RunOutcome, WritesTheWholeFolderAndNothingElse) {
 
 TEST_F(RunOutcome, QuietSaysNothing) { EXPECT_EQ(run("--quiet").output, ""); }
 
-/// Makes the recording go on for half a minute, with the same images to and fro.
+/// Extends the recording by half a minute, with the same images forwards and backwards.
 void prolong(const RoomRecording& recording) {
   for (const char* camera : {"cam0", "cam1"}) {
     std::ofstream list(recording.csv(camera), std::ios::app);

@@ -2,7 +2,7 @@
 
 #include "apps/lodeline/tests/test_room.h"
 
-// `lodeline run` on lists of readings that are empty, cut off, disordered or full of holes.
+// Tests of `lodeline run` on lists of readings that are empty, truncated, out of order or full of gaps.
 
 namespace lodeline::test {
 namespace {
@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 
 class RunReadings : public RoomTest {
  protected:
-  /// One sigma of the last pose's position along x, as states.csv has it.
+  /// Sigma of the last pose's position along x, from states.csv.
   double lastSigma_m() const {
     std::istringstream lines(readText(output_ / "states.csv"));
     std::string header, line, last;
@@ -135,7 +135,7 @@ TEST_F(RunReadings, InertialGapOfHalfASecondIsReportedAndSurvived) {
   EXPECT_EQ(findings("imu_gap"), 1);
   EXPECT_THAT(result.output, HasSubstr("nothing for 0.500 s after stamp"));
   EXPECT_EQ(poses(), kRoomImages);
-  // Images carry on through the gap; inertial readings made up over it must not be believed.
+  // Images determine the motion in the gap; interpolated inertial readings in it must not be used.
   EXPECT_LT(error_m(), 0.02);
 }
 

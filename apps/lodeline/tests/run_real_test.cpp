@@ -14,8 +14,8 @@
 #include "lodeline/util/angles.h"
 #include "lodeline/util/files/test_data.h"
 
-// The program on a real recording (EuRoC MH_01_easy, first 14 s of images) against the figures that it has to
-// reach, and on variants of it that are cut or lengthened.
+// Tests of the program on a real recording (EuRoC MH_01_easy, first 14 s of images) with required accuracies,
+// and on shortened or extended variants of it.
 
 namespace lodeline::test {
 namespace {
@@ -51,7 +51,7 @@ class Mh01Program : public testing::Test {
     truth_ = data_ / "mav0" / "state_groundtruth_estimate0" / "gt_tum.txt";
   }
 
-  /// The recording with lists of its own beside links to everything else.
+  /// The recording with its own lists and links to all other files.
   std::filesystem::path makeVariant(const std::string& name) const {
     const std::filesystem::path variant = folder_.path() / name;
     for (const char* sensor : {"cam0", "cam1", "imu0"}) {
@@ -71,7 +71,7 @@ class Mh01Program : public testing::Test {
     return data / "mav0" / sensor / "data.csv";
   }
 
-  /// Removes what lies before a time after the first left image from the lists of these sensors.
+  /// Removes the entries before a time after the first left image from the lists of these sensors.
   static void cutStart(const std::filesystem::path& variant, double seconds,
                        const std::vector<std::string>& sensors) {
     const int64_t first_ns = readCsv(csv(variant, "cam0")).rows.front().first;
@@ -83,7 +83,7 @@ class Mh01Program : public testing::Test {
     }
   }
 
-  /// Turns camera 1 about its own axes in its file.
+  /// Rotates camera 1 about its own axes in its file.
   static void turnCamera1(const std::filesystem::path& variant, const Vec3& turn) {
     const std::filesystem::path file = variant / "mav0" / "cam1" / "sensor.yaml";
     std::string text = readText(file);
@@ -176,8 +176,9 @@ TEST_F(Mh01Program, TwoRunsGiveTheSameBytes) {
   }
 }
 
-/// The recording played forward and backward in turn: a consistent motion of any length on real images.
-/// Played backward, a gyroscope reads the opposite rate plus its bias; an accelerometer reads the same.
+/// The recording played forwards and backwards alternately: a consistent motion of any length on real images.
+/// In the backward direction, a gyroscope reads the opposite rate plus its bias; an accelerometer reads the
+/// same.
 class ToAndFro {
  public:
   ToAndFro(const CsvTable& clock, int passes)
@@ -208,7 +209,7 @@ class ToAndFro {
 
   static std::string reversedReading(const std::string& rest, bool backward) {
     if (!backward) return rest;
-    // Found by the recording's reference solution.
+    // From the recording's reference solution.
     constexpr double kGyroscopeBias_rad_per_s[3] = {-0.003, 0.021, 0.080};
     std::istringstream fields(rest.substr(1));
     std::string result;
@@ -233,21 +234,21 @@ TEST_F(Mh01Program, MemoryDoesNotGrowWithTime) {
       writeCsv(csv(variant, camera), play.images(readCsv(csv(data_, camera))));
     }
     writeCsv(csv(variant, "imu0"), play.inertial(readCsv(csv(data_, "imu0"))));
-    // Without the page, which holds up to a hundred pictures and has a bound of its own.
+    // Without the page, which contains up to a hundred pictures and has its own limit.
     const std::filesystem::path output = run(variant, fmt::format("run{}", passes), "--no-report");
     const nlohmann::json summary = readJson(output / "run.json");
     EXPECT_GE(summary["frames"], 280 * passes);
-    // The velocity leaps where the recording turns round, which counts as a contradiction.
+    // The velocity is discontinuous where the direction changes, which counts as a contradiction.
     EXPECT_GE(summary["frames_with_pose"], 0.99 * summary["frames"].get<double>());
     EXPECT_LE(summary["frames_inertial"], 0.01 * summary["frames"].get<double>());
     return summary["peak_memory_MB"].get<double>();
   };
-  // A minute, after which the heap has taken its shape: the largest windows of the start leave holes in it,
-  // and from then on it stays as large as it is for as long as one likes.
+  // After a minute the heap has its final size. The largest windows at the start leave gaps in it, and from
+  // then on it stays constant for any duration.
   const double short_MB = peak_MB(4);
   const double long_MB = peak_MB(8);
   EXPECT_LE(long_MB, 400.0);
-  // The allocator's own scatter; a list of all IMU readings or landmarks alone would exceed it.
+  // Variation of the allocator; a list of all IMU readings or landmarks alone would exceed it.
   EXPECT_LE(long_MB, short_MB + 3.0);
 }
 

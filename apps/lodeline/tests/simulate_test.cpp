@@ -5,7 +5,7 @@
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
-// `lodeline simulate` as a script sees it.
+// Tests of `lodeline simulate` as a program.
 
 namespace lodeline {
 namespace {

@@ -11,7 +11,7 @@
 
 namespace lodeline::test {
 
-/// Of the magnetic room, T: y of the truth's world is magnetic north.
+/// Field of the magnetic room, T: y of the true world is magnetic north.
 inline const Vec3 kField_W(0.0, 24e-6, -38e-6);
 
 inline Trajectory readPoses(const std::filesystem::path& file) {
@@ -30,10 +30,10 @@ class MagneticRoomTest : public RoomTest {
     writeField(1.0);
   }
 
-  /// What the sensor gives in place of a field, T; the number of the reading.
+  /// Replaces the true field in body axes, T, by the sensor's output; with the number of the reading.
   using Spoil = std::function<Vec3(int reading, const Vec3& field_B)>;
 
-  /// The field at the true poses, from the first image to the last.
+  /// Writes the field at the true poses, from the first image to the last.
   void writeField(double per_tesla) const {
     writeReadings([per_tesla](int, const Vec3& field_B) { return Vec3(per_tesla * field_B); });
   }
@@ -54,7 +54,7 @@ class MagneticRoomTest : public RoomTest {
       const StampedPose &from = poses[after - 1], &to = poses[after];
       const double share = (time - from.time).seconds() / (to.time - from.time).seconds();
       const Quat rotation = from.world_from_body.rotation.slerp(share, to.world_from_body.rotation);
-      // A little noise, so that no reading is the same as the one before.
+      // A little noise, so that no two readings are equal.
       const Vec3 noise = Vec3::Constant(1e-11 * (1 + reading % 9));
       const Vec3 field = spoil(reading, rotation.conjugate() * kField_W + noise);
       csv << fmt::format("{},{},{},{}\n", (time + late).nanoseconds(), field.x(), field.y(), field.z());
@@ -65,7 +65,7 @@ class MagneticRoomTest : public RoomTest {
     return run("--mag-calibration " + quoted(calibration_) + " " + options);
   }
 
-  /// Yaw by which the last pose is off the truth, rad.
+  /// Yaw error of the last pose, rad.
   double headingError() const {
     const Rigid3 estimate = readPoses(output_ / "trajectory.tum").poses.back().world_from_body;
     const Rigid3 truth = readPoses(recording_.truth).poses.back().world_from_body;

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-/// The program as a script sees it: exit codes, what it prints, what it writes.
+/// Runs the program like a script: exit codes, printed output, written files.
 namespace lodeline::test {
 
 struct Execution {
@@ -12,20 +12,20 @@ struct Execution {
   std::string output;  ///< standard output and error
 };
 
-/// `lodeline`, as it was built.
+/// Path of the built `lodeline`.
 std::filesystem::path programPath();
 
-/// Runs `lodeline` with arguments in the shell's spelling.
+/// Runs `lodeline` with arguments in shell syntax.
 Execution runProgram(const std::string& arguments);
 
-/// A path for the shell.
+/// A path quoted for the shell.
 std::string quoted(const std::filesystem::path& path);
 
 std::string readText(const std::filesystem::path& file);
 nlohmann::json readJson(const std::filesystem::path& file);
 
-/// Figures of `lodeline evaluate ESTIMATE REFERENCE OPTIONS` as its --json gives them, which is written
-/// beside the estimate. Throws std::runtime_error with the program's output where it fails.
+/// Results of `lodeline evaluate ESTIMATE REFERENCE OPTIONS` from its --json file, which is written beside
+/// the estimate. Throws std::runtime_error with the program's output where it fails.
 nlohmann::json evaluateRun(const std::filesystem::path& estimate, const std::filesystem::path& reference,
                            const std::string& options);
 

@@ -47,14 +47,14 @@ Vec3 angularVelocityAt(double t) {
   return so3::log(attitudeAt(t - kStep_s).conjugate() * attitudeAt(t + kStep_s)) / (2.0 * kStep_s);
 }
 
-/// The camera looks along the body's x axis; camera 1 stands to the right of camera 0.
+/// The camera looks along the body's x axis; camera 1 is to the right of camera 0.
 Rigid3 bodyFromCamera(int camera) {
   Mat3 rotation;
   rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return Rigid3(Quat(rotation), Vec3(0.05, 0.5 * kBaseline_m - kBaseline_m * camera, 0.02));
 }
 
-/// Mottled grey at several sizes, 100 px/m, made to be repeated without seams being seen.
+/// Grey texture at several scales, 100 px/m, periodic without visible seams.
 cv::Mat wallTexture() {
   constexpr int kSize_px = 1024;
   cv::RNG random(7);
@@ -85,7 +85,7 @@ float sample(const cv::Mat& texture, double x, double y) {
          fy * ((1 - fx) * lower[column] + fx * lower[next]);
 }
 
-/// Grey of the wall that a ray from inside the room meets first.
+/// Grey value of the wall at the first intersection of a ray from inside the room.
 float wallGrey(const cv::Mat& texture, const Vec3& origin_W, const Vec3& direction_W) {
   double range = INFINITY;
   int wall = 0;

@@ -12,7 +12,7 @@
 
 namespace lodeline::test {
 
-/// Tests that run the program on a room recording which they have spoilt in some way.
+/// Tests that run the program on a room recording after some modification.
 class RoomTest : public testing::Test {
  protected:
   RoomTest() : recording_(writeRoomRecording(folder_.path())), output_(folder_.path() / "out") {}
@@ -24,7 +24,7 @@ class RoomTest : public testing::Test {
 
   nlohmann::json summary() const { return readJson(output_ / "run.json"); }
 
-  /// How often run.json tells of a kind of finding.
+  /// Number of findings of one kind in run.json.
   int findings(const std::string& kind) const {
     const nlohmann::json json = summary();
     int count = 0;
@@ -44,7 +44,8 @@ class RoomTest : public testing::Test {
     return evaluateRun(output_, recording_.truth, "")["absolute"]["position_m"]["rmse"];
   }
 
-  /// A healthy result from (almost) all images: complete, and as exact as the undamaged recording's.
+  /// Expects a good result from (almost) all images: complete, and as accurate as that of the unmodified
+  /// recording.
   void expectGoodResult(const Execution& result, int expected_poses = kRoomImages) const {
     ASSERT_EQ(result.exit_code, 0) << result.output;
     EXPECT_EQ(poses(), expected_poses);

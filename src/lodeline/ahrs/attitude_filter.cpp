@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kHistory_s = 0.5;
 constexpr double kSilent_s = 1.5;
-constexpr double kLongestMagneticStepDetector_s = 0.5;  ///< after silence a reading counts for no more
+constexpr double kLongestMagneticStepDetector_s = 0.5;  ///< limits the weight after a pause
 
 std::optional<FieldShape> shapeOf(const std::optional<Vec3>& field_W) {
   if (!field_W) return std::nullopt;
@@ -129,7 +129,7 @@ void AttitudeFilter::level(const ImuSample& sample, double step_s) {
   const Vec3& force_I = force_I_.update(inertial_from_body_ * sample.specific_force_B, step_s);
   const Vec3 force_W = level_from_inertial_ * force_I;
   Vec3 correction_W = Vec3::Zero();
-  // In free fall nothing says where up is.
+  // In free fall, the specific force does not indicate the vertical.
   if (force_W.norm() > 0.5 * kStandardGravity) {
     const Quat correction = Quat::FromTwoVectors(force_W, Vec3::UnitZ());
     correction_W = so3::log(correction);
@@ -150,7 +150,7 @@ void AttitudeFilter::remember(Time time) {
 
 void AttitudeFilter::add(const MagnetometerSample& sample) {
   if (!readings_) return;
-  // The first readings only tell the unit: a wild one among them, taken alone, would set the heading.
+  // The first readings only determine the unit. A single outlier among them would otherwise set the heading.
   constexpr int kForTheUnit = 2;
   const bool tells_unit = readings_for_unit_ < kForTheUnit;
   if (tells_unit) ++readings_for_unit_;
@@ -185,14 +185,14 @@ void AttitudeFilter::takeField(const FieldSample& sample) {
   const FieldVerdict verdict = gate_.update(field_L, to.turned_rad - last_field_turned_rad_, step_s);
   last_field_time_ = sample.time;
   last_field_turned_rad_ = to.turned_rad;
-  // The angle that turns the field's horizontal part to magnetic north, which lies west of true north by
-  // minus the declination.
+  // Angle that rotates the horizontal part of the field to magnetic north. Magnetic north is west of true
+  // north by minus the declination.
   judge(verdict, std::atan2(field_L.x(), field_L.y()) - declination_rad_, step_s);
 }
 
 void AttitudeFilter::judge(FieldVerdict verdict, double measured_rad, double step_s) {
-  // A disturbance d, as a share of the field, of random direction changes strength and dip by d sqrt(2/3)
-  // together, and the horizontal part sideways by d sqrt(1/3).
+  // A disturbance of relative size d and random direction changes magnitude and dip together by d sqrt(2/3),
+  // and the horizontal part sideways by d sqrt(1/3).
   const double horizontal_share = std::max(0.05, gate_.field().horizontal_T() / gate_.field().norm_T);
   const double field_error_rad =
       std::atan(std::numbers::sqrt2 / 2.0 * gate_.disturbance() / horizontal_share);

@@ -19,60 +19,60 @@ struct AttitudeFilterOptions {
   RestDetectorOptions rest;
   FieldGateOptions gate;
   HeadingFilterOptions heading;
-  double longest_rejection_s = 60.0;  ///< then a disturbed field is used with the error that it shows
-  double max_gap_s = 1.0;             ///< without readings for longer, attitude starts anew
+  double longest_rejection_s = 60.0;  ///< then a disturbed field is used with its error
+  double max_gap_s = 1.0;  ///< after a longer gap in the readings, the attitude is initialized again
   double gap_rate_sigma_rad_per_s = 0.3;
-  /// Field at the site, where known; strength and dip are judged against it. World axes east, north, up, T.
+  /// Field at the site, where known, as reference for magnitude and dip. World axes east, north, up, T.
   std::optional<Vec3> site_field_W;
 };
 
-/// What became of the magnetometer.
+/// Use of the magnetometer for the heading.
 enum class HeadingStatus {
-  NoMagnetometer,  ///< heading counts from the first attitude
-  Waiting,         ///< there is a magnetometer, but no new reading yet, or none for 1.5 s: frozen or silent
-  Magnetic,        ///< held by the field
-  WrongNorm,       ///< disturbed: carried by the gyroscope
+  NoMagnetometer,  ///< heading is relative to the first attitude
+  Waiting,         ///< no magnetometer reading yet, or no new one for 1.5 s (frozen or silent)
+  Magnetic,        ///< heading follows the field
+  WrongNorm,       ///< disturbed: the gyroscope alone propagates the heading
   WrongDip,
   WrongHeading,
-  Readmitted,  ///< disturbed for so long that it is better than nothing; used with little weight
+  Readmitted,  ///< disturbed for so long that the field is used again, with a low weight
 };
 const char* toString(HeadingStatus status);
 
 struct AttitudeEstimate {
   Time time;
   Quat world_from_body = Quat::Identity();  ///< world: x magnetic (or true) east, y north, z up
-  double heading_sigma_rad = 0.0;  ///< about up; relative to the first attitude without a magnetometer
+  double heading_sigma_rad = 0.0;           ///< without a magnetometer, relative to the first attitude
   Vec3 gyroscope_bias_B = Vec3::Zero();
   bool at_rest = false;
   HeadingStatus status = HeadingStatus::NoMagnetometer;
 };
 
-/// Attitude and heading from gyroscope, accelerometer and magnetometer alone.
+/// Estimates attitude and heading from gyroscope, accelerometer and magnetometer alone.
 ///
-/// Follows Laidig & Seel, "VQF: Highly accurate IMU orientation estimation with bias estimation and magnetic
-/// disturbance rejection", Information Fusion 91, 2023, in its structure: the gyroscope's attitude in a frame
-/// I that drifts slowly; the specific force, turned into I, where motion averages out and gravity stays,
-/// low-pass filtered and made to point up; the gyroscope's bias at rest and from the corrections of
-/// inclination in motion; and heading apart from inclination, so that no magnetic disturbance ever tilts
-/// anything. Heading is a Kalman filter of one angle, with the uncertainty of the bias in it, instead of a
-/// filter of fixed gain.
+/// The structure follows Laidig & Seel, "VQF: Highly accurate IMU orientation estimation with bias estimation
+/// and magnetic disturbance rejection", Information Fusion 91, 2023. The gyroscope gives the attitude in a
+/// slowly drifting frame I. The specific force is rotated into I and low-pass filtered there, which averages
+/// motion out and leaves gravity; gravity then corrects the inclination. The gyroscope bias is estimated at
+/// rest, and in motion from the inclination corrections. Heading is separate from inclination, so a magnetic
+/// disturbance cannot tilt the attitude. Unlike VQF, heading uses a Kalman filter of one angle instead of a
+/// fixed gain; the filter includes the uncertainty of the bias.
 class AttitudeFilter {
  public:
-  /// `magnetometer`: its calibration; without one readings of the field are not used. A position's
-  /// declination can be given with options.site_field_W: heading is then that of true north. `diagnostics`
-  /// must outlive the filter.
+  /// `magnetometer`: its calibration; without one, field readings are ignored. options.site_field_W can
+  /// contain the declination at the position; heading then refers to true north. `diagnostics` must outlive
+  /// the filter.
   AttitudeFilter(const AttitudeFilterOptions& options,
                  const std::optional<MagnetometerCalibration>& magnetometer, Diagnostics* diagnostics);
 
-  /// Readings in order of time; those that are not finite or not later than the ones before are reported and
-  /// passed over.
+  /// Adds a reading, in order of time. Non-finite readings and readings not later than the previous one are
+  /// reported and ignored.
   void add(const ImuSample& sample);
 
-  /// Times are on the IMU's clock, with any lag of the sensor taken off; up to 0.5 s before the last IMU
-  /// reading, or after it. What MagnetometerReadings finds unusable is passed over.
+  /// Adds a reading. Its time is on the IMU's clock, corrected for any lag of the sensor, at most 0.5 s
+  /// before the last IMU reading, or after it. Readings that MagnetometerReadings rejects are ignored.
   void add(const MagnetometerSample& sample);
 
-  /// At the last IMU reading; nothing before the first.
+  /// Estimate at the last IMU reading; nothing before the first.
   const std::optional<AttitudeEstimate>& estimate() const { return estimate_; }
 
   const std::optional<FieldShape>& referenceField() const { return gate_.reference(); }
@@ -80,8 +80,8 @@ class AttitudeFilter {
  private:
   struct Moment {
     Time time;
-    Quat level_from_body;  ///< level frame: z up, any heading
-    double turned_rad;     ///< since the start
+    Quat level_from_body;  ///< level frame: z up, arbitrary heading
+    double turned_rad;     ///< rotation angle since the start
   };
 
   bool isUsable(const ImuSample& sample);
@@ -106,8 +106,8 @@ class AttitudeFilter {
   HeadingFilter heading_;
 
   std::optional<ImuSample> last_;
-  Quat inertial_from_body_ = Quat::Identity();   ///< by the gyroscope alone
-  Quat level_from_inertial_ = Quat::Identity();  ///< by the accelerometer
+  Quat inertial_from_body_ = Quat::Identity();   ///< from the gyroscope alone
+  Quat level_from_inertial_ = Quat::Identity();  ///< from the accelerometer
   LowPass<Vec3> force_I_;
   bool at_rest_ = false;
   double turned_rad_ = 0.0;

@@ -13,11 +13,11 @@ namespace lodeline {
 namespace {
 
 constexpr double kRate_hz = 200.0;
-constexpr int kEvery = 4;  ///< IMU readings a magnetometer reading
+constexpr int kEvery = 4;  ///< IMU readings per magnetometer reading
 const Vec3 kNorthField_W(0.0, 24e-6, -38e-6);
 
-/// Heading and inclination error of an attitude, rad (rotation split into one about up and one about a
-/// horizontal axis).
+/// Heading and inclination error of an attitude, rad. The rotation is split into one about the vertical and
+/// one about a horizontal axis.
 double headingError(const Quat& estimate, const Quat& truth) {
   const Quat error = estimate * truth.conjugate();
   return std::remainder(2.0 * std::atan2(error.z(), error.w()), 2.0 * std::numbers::pi);
@@ -27,7 +27,7 @@ double inclinationError(const Quat& estimate, const Quat& truth) {
   return 2.0 * std::acos(std::min(1.0, std::hypot(error.w(), error.z())));
 }
 
-/// At rest for five seconds, then TestMotion slowed down, seen by sensors with noise and a gyroscope bias.
+/// Five seconds at rest, then TestMotion slowed down, measured by sensors with noise and a gyroscope bias.
 class AttitudeFilterTest : public ::testing::Test {
  protected:
   static constexpr double kRest_s = 5.0;
@@ -58,7 +58,8 @@ class AttitudeFilterTest : public ::testing::Test {
     return {x, y, z};
   }
 
-  /// Runs to `end_s`; `each(t)` after every IMU reading, `field_at(t)` gives the field (none: no reading).
+  /// Runs to `end_s`. `each(t)` is called after every IMU reading; `field_at(t)` returns the field (nothing:
+  /// no reading).
   template <typename Field, typename Each>
   void run(AttitudeFilter* filter, double end_s, Field field_at, Each each) {
     for (int i = 0; i <= end_s * kRate_hz; ++i) {
@@ -81,7 +82,7 @@ class AttitudeFilterTest : public ::testing::Test {
 
   Diagnostics diagnostics;
   TestMotion motion;
-  Quat turned = Quat(Eigen::AngleAxisd(2.0, Vec3::UnitZ()));  ///< so that no heading is special
+  Quat turned = Quat(Eigen::AngleAxisd(2.0, Vec3::UnitZ()));  ///< arbitrary heading
   double slowness = 0.4;
   bool always_still = false;
   Vec3 bias_B = Vec3(0.02, -0.015, 0.01);
@@ -119,7 +120,8 @@ TEST_F(AttitudeFilterTest, FollowsAMovingBody) {
     ++count;
   });
   EXPECT_LT(std::sqrt(heading / count), 1.0 * kDegree);
-  // Swaying with 0.4 to 0.5 m/s^2 at 0.7 to 1.2 rad/s, of which the filter leaves 0.2 m/s^2: one degree.
+  // Swaying with 0.4 to 0.5 m/s^2 at 0.7 to 1.2 rad/s. The filter leaves 0.2 m/s^2 of it, which is one
+  // degree.
   EXPECT_LT(std::sqrt(inclination / count), 1.5 * kDegree);
   EXPECT_LT(normalized / count, 1.5);
   EXPECT_LT((filter.estimate()->gyroscope_bias_B - bias_B).norm(), 0.2 * kDegree);
@@ -130,7 +132,8 @@ TEST_F(AttitudeFilterTest, LearnsABiasInMotionAlone) {
   bias_B = Vec3(0.02, -0.02, 0.0);
   AttitudeFilter filter = filterWithMagnetometer();
   run(&filter, 120.0, earthField, [](double) {});
-  // The vertical part stays unknown, and the body turns; within a third of what it was.
+  // The vertical part stays unknown, and the body rotates. The error falls below a third of its initial
+  // value.
   EXPECT_LT((filter.estimate()->gyroscope_bias_B - bias_B).norm(), 0.33 * bias_B.norm());
   EXPECT_LT(inclinationError(filter.estimate()->world_from_body, truth(120.0)), 3.0 * kDegree);
 }
@@ -153,7 +156,7 @@ TEST_F(AttitudeFilterTest, HoldsHeadingThroughADisturbance) {
         tilt = std::max(tilt, inclinationError(e.world_from_body, truth(t)));
         rejected += t > 26.0 && t < 45.0 && e.status != HeadingStatus::Magnetic ? 1 : 0;
       });
-  EXPECT_LT(largest, 3.0 * kDegree);  // the field's heading was wrong by 38 degrees
+  EXPECT_LT(largest, 3.0 * kDegree);  // the heading of the field was wrong by 38 degrees
   EXPECT_LT(tilt, 3.0 * kDegree);
   EXPECT_GT(rejected, 0.98 * 19.0 * kRate_hz);
   EXPECT_EQ(filter.estimate()->status, HeadingStatus::Magnetic);
@@ -180,7 +183,7 @@ TEST_F(AttitudeFilterTest, JudgesTheFieldByTheSiteWhereThatIsKnown) {
   AttitudeFilterOptions options;
   options.site_field_W = Vec3(-3e-6, 24e-6, -38e-6);
   AttitudeFilter filter = filterWithMagnetometer(options);
-  // Disturbed from the very first reading: without the site this would have become the reference.
+  // Disturbed from the first reading. Without the site, the disturbed field would have become the reference.
   run(
       &filter, 30.0, [](double) { return std::optional<Vec3>(Vec3(20e-6, 10e-6, -60e-6)); }, [](double) {});
   EXPECT_EQ(filter.estimate()->status, HeadingStatus::WrongNorm);
@@ -248,7 +251,7 @@ TEST_F(AttitudeFilterTest, IsNotMisledByTheUnitOfAWildFirstReading) {
 }
 
 TEST_F(AttitudeFilterTest, TakesReadingsAtAnyRate) {
-  for (const int every : {200, 1}) {  // 1 and 200 Hz, as fast as the IMU here
+  for (const int every : {200, 1}) {  // 1 and 200 Hz; the IMU has 200 Hz here
     MagnetometerCalibration magnetometer;
     magnetometer.rate_hz = kRate_hz / every;
     AttitudeFilter filter(AttitudeFilterOptions{}, magnetometer, &diagnostics);
@@ -262,7 +265,7 @@ TEST_F(AttitudeFilterTest, TakesReadingsAtAnyRate) {
 }
 
 TEST_F(AttitudeFilterTest, TakesLaggingReadingsAtTheirOwnTime) {
-  // Stamps that were set back to when the field was: readings come in late, for moments before the last one.
+  // Stamps corrected to the time of the field: readings arrive late, for moments before the last one.
   AttitudeFilter filter = filterWithMagnetometer();
   slowness = 1.0;
   double heading = 0.0;

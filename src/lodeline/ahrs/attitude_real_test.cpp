@@ -10,8 +10,8 @@
 #include "lodeline/imu/test_real_recording.h"
 #include "lodeline/util/files/test_data.h"
 
-// Attitude against optical truth: BROAD (Laidig et al., Data 2021), a consumer IMU turned and moved by hand;
-// EuRoC.
+// Attitude compared with optical ground truth: BROAD (Laidig et al., Data 2021), a consumer IMU rotated and
+// moved by hand; EuRoC.
 
 namespace lodeline {
 namespace {
@@ -46,13 +46,14 @@ std::vector<BroadRow> readBroad(const std::filesystem::path& file) {
   return rows;
 }
 
-/// Sums over an attitude's errors; rotation error = one about up, and one about a horizontal axis.
+/// Sums over an attitude's errors. The rotation error is split into one about the vertical and one about a
+/// horizontal axis.
 struct HeadingAndTilt {
   double heading = 0.0, inclination = 0.0, normalized = 0.0;
   int count = 0;
   std::optional<double> start_rad;
 
-  /// `from_start`: heading counts from the first one.
+  /// `from_start`: heading is relative to the first one.
   void add(const AttitudeEstimate& estimate, const Quat& truth, bool from_start) {
     const Quat error = estimate.world_from_body * truth.conjugate();
     const double about_up = 2.0 * std::atan2(error.z(), error.w());
@@ -65,11 +66,11 @@ struct HeadingAndTilt {
   }
   double headingRmse_deg() const { return std::sqrt(heading / count) * 180.0 / std::numbers::pi; }
   double inclinationRmse_deg() const { return std::sqrt(inclination / count) * 180.0 / std::numbers::pi; }
-  /// Mean squared heading error in sigmas.
+  /// Mean squared heading error in units of sigma.
   double normalizedHeading() const { return normalized / count; }
 };
 
-/// Without a magnetometer heading starts from the truth.
+/// Without a magnetometer, the heading is initialized with the truth.
 HeadingAndTilt run(const std::vector<BroadRow>& rows, bool with_magnetometer) {
   Diagnostics diagnostics;
   std::optional<MagnetometerCalibration> magnetometer;
@@ -118,8 +119,8 @@ TEST_F(Broad, AMagnetNearbyDoesNoHarm) {
   EXPECT_NEAR(with.inclinationRmse_deg(), without.inclinationRmse_deg(), 0.1);
 }
 
-// Aggressive flight for 107 s with a gyroscope bias of 4.6 deg/s, no magnetometer: heading against the first
-// truth.
+// Aggressive flight for 107 s with a gyroscope bias of 4.6 deg/s, no magnetometer. Heading is relative to the
+// first truth.
 TEST(Flight, DriftsLittleInHeadingAndTilt) {
   const auto folder = testData("euroc_imu_gt");
   if (!folder) GTEST_SKIP() << missingTestData("euroc_imu_gt");

@@ -10,7 +10,7 @@ namespace {
 constexpr double kStep_s = 0.02;
 const Vec3 kEarth_W(5e-6, 20e-6, -40e-6);
 
-/// The last verdict of so many seconds of a field.
+/// Feeds a field for a number of seconds and returns the last verdict.
 FieldVerdict feed(FieldGate* gate, const Vec3& field_W, double seconds, double turn_rad_per_s = 0.0) {
   FieldVerdict verdict = FieldVerdict::None;
   for (double t = 0.0; t < seconds; t += kStep_s)
@@ -32,7 +32,7 @@ TEST(FieldGate, LearnsAReferenceAndJudgesByIt) {
   EXPECT_NEAR(gate.reference()->norm_T, kEarth_W.norm(), 1e-10);
   EXPECT_EQ(feed(&gate, 1.2 * kEarth_W, 2.0), FieldVerdict::WrongNorm);
   EXPECT_NEAR(gate.disturbance(), 0.2, 0.02);
-  // As strong, less steep.
+  // Equal magnitude, smaller dip.
   const Vec3 flatter = Vec3(5e-6, 30e-6, -30e-6).normalized() * kEarth_W.norm();
   EXPECT_EQ(feed(&gate, flatter, 2.0), FieldVerdict::WrongDip);
   EXPECT_EQ(feed(&gate, kEarth_W, 0.2), FieldVerdict::Settling);
@@ -70,7 +70,7 @@ TEST(HeadingFilter, StartsFromAnythingAndSettles) {
   EXPECT_NEAR(filter.offset_rad(), 3.0, 0.01);
   EXPECT_LT(filter.sigma_rad(), 0.05);
   EXPECT_FALSE(filter.accepts(2.5));
-  // Across the seam of angles.
+  // Across the discontinuity of the angle.
   EXPECT_TRUE(filter.accepts(3.1 - 2.0 * std::numbers::pi));
 }
 

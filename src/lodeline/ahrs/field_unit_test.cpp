@@ -7,8 +7,8 @@
 namespace lodeline {
 namespace {
 
-/// Readings of a sensor that was turned to all sides, of a field of size 1 with hard iron three times as
-/// large and soft iron.
+/// Readings of a sensor rotated to all sides in a field of magnitude 1, with hard iron three times as large
+/// and soft iron.
 std::vector<Vec3> turnedAbout(int count) {
   std::vector<Vec3> readings;
   for (int i = 0; i < count; ++i) {
@@ -28,7 +28,7 @@ TEST(FieldUnit, IsToldByTheFieldsSizeDespiteHardIron) {
       std::vector<Vec3> readings = turnedAbout(300);
       for (Vec3& reading : readings) reading *= field_T / teslaPer(unit);
       EXPECT_EQ(unitBySize(fieldSize(readings)), unit) << toString(unit);
-      // One direction alone, without hard iron.
+      // A single direction without hard iron.
       const std::vector<Vec3> still(20, Vec3(0.0, field_T, 0.0) / teslaPer(unit));
       EXPECT_EQ(unitBySize(fieldSize(still)), unit) << toString(unit);
     }

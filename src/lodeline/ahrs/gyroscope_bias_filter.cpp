@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// So uncertain that the measurement is none.
+/// Standard deviation of a component without measurement.
 constexpr double kNothingMeasured = 1e6;
 
 }  // namespace
@@ -47,8 +47,8 @@ bool GyroscopeBiasFilter::updateAtRest(const Vec3& mean_rate_B, double step_s) {
 
 void GyroscopeBiasFilter::updateInMotion(const Vec3& correction_W, double step_s) {
   predict(step_s);
-  // Without a bias error the accelerometer would correct nothing. What it does correct in a second is the
-  // error of the bias that was in use when the delayed acceleration was measured.
+  // Without a bias error, the accelerometer would not correct the inclination. Its correction per second
+  // equals the error of the bias that was used when the delayed acceleration was measured.
   const Mat3& model = delayed_attitude_.value();
   Vec3 innovation = delayed_bias_W_.value() - correction_W / step_s - model * bias_B_;
   innovation.z() = 0.0;

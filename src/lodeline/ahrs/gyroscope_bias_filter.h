@@ -6,41 +6,44 @@
 namespace lodeline {
 
 struct GyroscopeBiasOptions {
-  double initial_sigma_rad_per_s = 0.035;  ///< of a turn-on bias, 2 deg/s
-  double largest_rad_per_s = 0.17;         ///< 10 deg/s; readings beyond are no bias
-  /// Without any measurement the bias is again as uncertain as `forgotten_sigma` after this time.
+  double initial_sigma_rad_per_s = 0.035;  ///< initial bias after power-on, 2 deg/s
+  double largest_rad_per_s = 0.17;         ///< 10 deg/s; a larger mean is not a bias
+  /// Without measurements, the sigma of the bias grows to `forgotten_sigma_rad_per_s` in this time.
   double forgetting_s = 100.0;
   double forgotten_sigma_rad_per_s = 1.75e-3;
-  /// White noise of the measurements, as a density: bias of one second's worth of them, one sigma.
+  /// White noise density of the bias measurements: one sigma of the bias from one second of them.
   double rest_density_rad_per_s_sqrtHz = 1.6e-3;
   double motion_density_rad_per_s_sqrtHz = 0.0175;
-  /// After a start in motion the corrections of inclination show the error of the first inclination more than
-  /// any bias; their uncertainty is that much larger (over the time since the start) for so long.
+  /// After a start in motion, the inclination corrections are dominated by the error of the initial
+  /// inclination. Their sigma is therefore multiplied by sqrt(1 + (settling_s / t)^2), with t the time since
+  /// the start.
   double settling_s = 20.0;
-  /// A mean rate at rest is a slow turn, and no bias, when it is further than this from the bias, plus three
-  /// sigmas of it.
+  /// A mean rate at rest is a slow rotation and not a bias where its distance from the bias exceeds this
+  /// value plus three sigmas of the bias.
   double slow_turn_rad_per_s = 5e-3;
 };
 
-/// Kalman filter of the gyroscope's bias, in body axes. At rest it measures the bias; in motion it measures
-/// the two horizontal components, by how fast the accelerometer has to correct the inclination (Laidig &
-/// Seel, "VQF", Information Fusion 2023, section 3.6).
+/// Kalman filter of the gyroscope bias in body axes. At rest it measures the bias directly. In motion it
+/// measures the two horizontal components from the rate of the accelerometer's inclination corrections
+/// (Laidig & Seel, "VQF", Information Fusion 2023, section 3.6).
 class GyroscopeBiasFilter {
  public:
-  /// `inclination_time_constant_s`: of the filter that the correction of inclination went through.
+  /// `inclination_time_constant_s`: time constant of the filter that produced the inclination correction.
   GyroscopeBiasFilter(const GyroscopeBiasOptions& options, double inclination_time_constant_s);
 
-  /// At rest, with the mean of the gyroscope's readings. False where that is a slow turn and no bias.
+  /// Update at rest with the mean of the gyroscope's readings. Returns false where that is a slow rotation
+  /// and not a bias.
   bool updateAtRest(const Vec3& mean_rate_B, double step_s);
 
-  /// In motion: `correction_W` is the turn (rad) by which the accelerometer corrected the attitude in this
-  /// step.
+  /// Update in motion: `correction_W` is the rotation vector (rad) by which the accelerometer corrected the
+  /// attitude in this step.
   void updateInMotion(const Vec3& correction_W, double step_s);
 
-  /// Keeps up with the delay of the corrections. Every step, before either update.
+  /// Applies the delay of the inclination corrections to the attitude. Call it every step, before either
+  /// update.
   void follow(const Mat3& world_from_body, double step_s);
 
-  /// Attitude was lost: forgets the delayed attitudes, not the bias.
+  /// Discards the delayed attitudes after a loss of attitude; keeps the bias.
   void restart();
 
   const Vec3& bias_B() const { return bias_B_; }

@@ -31,7 +31,7 @@ TEST(GyroscopeBiasFilter, TakesNoFastTurnForABias) {
 }
 
 TEST(GyroscopeBiasFilter, LearnsHorizontalPartsFromCorrectionsOfInclination) {
-  // Level and not turning, with the accelerometer undoing just what the bias does.
+  // Level and without rotation; the accelerometer exactly undoes the effect of the bias.
   GyroscopeBiasFilter filter({}, 3.0);
   const Vec3 bias(0.01, -0.02, 0.03);
   for (int i = 0; i < 30000; ++i) {

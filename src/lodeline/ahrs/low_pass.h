@@ -5,8 +5,9 @@
 
 namespace lodeline {
 
-/// Two first-order low-pass filters in a row with a total delay of `time_constant_s`; steps in time may vary.
-/// Until that time has passed each stage gives the mean of what it saw, so that the start does not ring on.
+/// Two first-order low-pass filters in series with a total delay of `time_constant_s`; time steps may vary.
+/// Until that time has passed, each stage returns the mean of its inputs, which suppresses the initial
+/// transient.
 template <typename Value>
 class LowPass {
  public:

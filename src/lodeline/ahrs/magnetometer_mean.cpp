@@ -37,11 +37,11 @@ MagnetometerMean carryToFrame(std::span<const FieldSample> samples, std::span<co
     mean.field_B += carried;
     mean.carried += frame_from_sample.toRotationMatrix();
   };
-  // Backwards from the frame, so that nothing has to be kept.
+  // Iterates backwards from the frame, which needs no intermediate storage.
   const double share = 1.0 / static_cast<double>(samples.size());
   Quat frame_from_later = Quat::Identity();
   size_t left = samples.size();
-  double shared_noise_s = 0.0;  // integral of (share of the readings that a moment's noise turns) squared
+  double shared_noise_s = 0.0;  // integral of (fraction of readings that the noise rotates) squared
   for (size_t i = imu.size(); i-- > 0 && left > 0;) {
     if (i + 1 == imu.size()) {
       while (left > 0 && samples[left - 1].time == imu[i].time) take(samples[--left], frame_from_later);

@@ -24,8 +24,8 @@ Quat worldFromBody(Time time) {
   return kMotion.state(time, Vec3::Zero(), Vec3::Zero()).world_from_body.rotation;
 }
 
-// The field at `rate_hz` within [begin, end], at times that are none of the IMU's, with an offset in the
-// body.
+// The field at `rate_hz` within [begin, end], at times different from the IMU's, with an offset in the body
+// frame.
 std::vector<FieldSample> field(double begin_s, double end_s, double rate_hz, const Vec3& offset_B) {
   std::vector<FieldSample> samples;
   for (double t = begin_s; t <= end_s + 1e-9; t += 1.0 / rate_hz) {
@@ -64,7 +64,7 @@ TEST(CarryToFrame, TellsHowAnOffsetShows) {
 }
 
 TEST(CarryToFrame, StatesTheGyroscopesShare) {
-  constexpr double kDensity = 0.01;  // rad/s/sqrt(Hz), much
+  constexpr double kDensity = 0.01;  // rad/s/sqrt(Hz), a large value
   constexpr int kRuns = 400;
   const auto quiet = readings(1.0, 1.2);
   const auto samples = field(1.0, 1.19, 50.0, Vec3::Zero());
@@ -77,7 +77,7 @@ TEST(CarryToFrame, StatesTheGyroscopesShare) {
     auto imu = quiet;
     for (ImuSample& s : imu) s.angular_velocity_B += Vec3(normal(random), normal(random), normal(random));
     const Vec3 error = carryToFrame(samples, imu, kGyroscopeBias, kDensity).field_B - expected;
-    squares += error.squaredNorm() / (2.0 * expected.squaredNorm());  // two axes across the field
+    squares += error.squaredNorm() / (2.0 * expected.squaredNorm());  // two axes normal to the field
   }
   EXPECT_NEAR(std::sqrt(squares / kRuns) / stated, 1.0, 0.1);
 }

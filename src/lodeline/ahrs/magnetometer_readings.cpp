@@ -54,9 +54,9 @@ bool MagnetometerReadings::isNew(const MagnetometerSample& reading) {
 }
 
 bool MagnetometerReadings::isSaturated(const Vec3& field_M) {
-  // An axis that keeps its value to the last digit over many readings while the size of the field seems to
-  // change is at the end of its range. (A coarse sensor that turns about one of its axes keeps that axis'
-  // value too, but not at the expense of the field's size.)
+  // An axis is at the end of its range if it keeps its value exactly over many readings while the field
+  // magnitude seems to change. A coarse sensor that rotates about one of its axes also keeps the value of
+  // that axis, but the field magnitude then stays constant.
   constexpr int kReadings = 10;
   constexpr double kSizeRatio = 1.1;
   const double size_T = calibration_.corrected_B(field_M).norm();

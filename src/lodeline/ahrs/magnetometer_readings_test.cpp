@@ -12,7 +12,7 @@ namespace {
 
 class MagnetometerReadingsTest : public testing::Test {
  protected:
-  // A sensor that turns at 1 rad/s in a field of 45 uT, in the given unit.
+  // A sensor that rotates at 1 rad/s in a field of 45 uT, in the given unit.
   static std::vector<MagnetometerSample> turning(double seconds, double tesla_per_unit = 1.0,
                                                  double rate_hz = 50.0) {
     std::vector<MagnetometerSample> readings;
@@ -96,7 +96,7 @@ TEST_F(MagnetometerReadingsTest, DropsSaturatedReadings) {
   }
   ASSERT_GT(beyond, 100u);
   const auto usable = MagnetometerReadings(calibration_, &diagnostics_).add(readings);
-  // Before the end of the range is known, the first readings there pass.
+  // Until the end of the range is known, the first saturated readings pass.
   EXPECT_GT(diagnostics_.count("magnetometer_saturated"),
             static_cast<int>(0.5 * static_cast<double>(beyond)));
   EXPECT_GE(usable.size(), readings.size() - beyond);
@@ -106,7 +106,7 @@ TEST_F(MagnetometerReadingsTest, TakesACoarseSensorForWhatItIs) {
   constexpr double kResolution_T = 0.6e-6;
   auto readings = turning(20.0, 1.0, 1000.0);
   for (MagnetometerSample& r : readings) {
-    // About an axis of its own, which looks along the larger part of the field.
+    // Rotation about a sensor axis that is parallel to the larger part of the field.
     const Vec3 level = so3::exp(r.time.seconds() * Vec3::UnitZ()) * Vec3(0.0, 24e-6, -38e-6);
     r.field_M = r.time.seconds() < 10.0 ? r.field_M : level;
     r.field_M = (r.field_M / kResolution_T).array().round().matrix() * kResolution_T;

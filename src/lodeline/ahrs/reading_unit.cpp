@@ -35,7 +35,7 @@ double ReadingUnit::size() const {
 
 bool ReadingUnit::fits(FieldUnit unit) const {
   const double tesla = teslaPer(unit);
-  // In too small a unit a reading is nothing, and what is left is the calibration's hard iron.
+  // If the unit is too small, the readings are negligible and only the calibration's hard iron remains.
   const double raw_T = tesla * size();
   if (raw_T < 5e-6 || raw_T > 500e-6) return false;
   const double corrected_T = medianSize(
@@ -47,8 +47,8 @@ FieldUnit ReadingUnit::find() const {
   for (const FieldUnit unit : kLargestFirst) {
     if (fits(unit)) return unit;
   }
-  // A calibration may be wrong, or missing where hard iron is larger than the field: then the size as it is.
-  // No unit but tesla has readings so small.
+  // The calibration may be wrong, or missing where hard iron exceeds the field. The uncorrected magnitude
+  // then decides. Only readings in tesla are this small.
   if (size() > 1e-6 && size() < 1e-3) return FieldUnit::Tesla;
   return unitBySize(size());
 }

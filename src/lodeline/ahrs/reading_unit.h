@@ -8,12 +8,12 @@
 
 namespace lodeline {
 
-/// The unit of a magnetometer's readings, by the size that the field then has: the Earth's has 22 to 67 uT,
-/// and the units lie a decade or more apart. Judged by the first readings together, so that a wild one among
-/// them misleads for two readings at most; further ones change nothing.
+/// Unit of a magnetometer's readings, determined from the field magnitude: the Earth's field has 22 to 67 uT,
+/// and the units differ by a decade or more. The first readings decide together, so that one outlier among
+/// them affects at most two readings. Later readings do not change the unit.
 class ReadingUnit {
  public:
-  /// The calibration's hard iron can be larger than the field; its figures are in tesla.
+  /// The calibration, in tesla, is needed because its hard iron can exceed the field.
   explicit ReadingUnit(const MagnetometerCalibration& calibration) : calibration_(calibration) {}
 
   /// A reading as recorded, finite.
@@ -23,7 +23,7 @@ class ReadingUnit {
   bool settled() const;
   /// Raw before the first reading, and where no unit fits.
   FieldUnit unit() const { return unit_; }
-  /// Median size of the readings seen, as recorded.
+  /// Median magnitude of the readings seen, in the recorded unit.
   double size() const;
 
  private:

@@ -30,7 +30,7 @@ TEST(ReadingUnit, SeesTheFieldBehindItsIron) {
       EXPECT_EQ(unit.unit(), expected) << toString(expected) << " times " << sign;
     }
   }
-  // Not calibrated, yet no other unit has such figures.
+  // Not calibrated, but only tesla has values of this size.
   ReadingUnit unit({});
   unit.add(kField_T + calibration.hard_iron_T);
   EXPECT_EQ(unit.unit(), FieldUnit::Tesla);

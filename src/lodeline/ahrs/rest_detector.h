@@ -6,20 +6,21 @@
 namespace lodeline {
 
 struct RestDetectorOptions {
-  double time_constant_s = 0.5;             ///< of the means that readings are compared with
-  double shortest_s = 1.5;                  ///< readings must stay close to their means for so long
+  double time_constant_s = 0.5;             ///< of the means with which readings are compared
+  double shortest_s = 1.5;                  ///< time for which readings must stay close to their means
   double rate_deviation_rad_per_s = 0.035;  ///< 2 deg/s
   double force_deviation_m_per_s2 = 0.5;
 };
 
-/// Tells when a sensor lies still, from readings that stay close to their own means (Laidig & Seel, "VQF",
-/// Information Fusion 2023, section 3.5). A steady turn looks like a bias here; the bias filter knows better.
+/// Stationary detector: a sensor is at rest while its readings stay close to their own means (Laidig & Seel,
+/// "VQF", Information Fusion 2023, section 3.5). A constant rotation looks like a bias here; the bias filter
+/// distinguishes them.
 class RestDetector {
  public:
   explicit RestDetector(const RestDetectorOptions& options)
       : options_(options), rate_(options.time_constant_s), force_(options.time_constant_s) {}
 
-  /// `step_s`: since the sample before.
+  /// `step_s`: time since the previous sample.
   bool update(const ImuSample& sample, double step_s) {
     const Vec3& rate = rate_.update(sample.angular_velocity_B, step_s);
     const Vec3& force = force_.update(sample.specific_force_B, step_s);

@@ -8,9 +8,9 @@
 namespace lodeline {
 namespace {
 
-/// So many share most of their states, and still one stretch is small beside all of them.
+/// Landmarks per group: few enough to share most of their states, and small compared with the whole problem.
 constexpr size_t kStretch = 16;
-/// Stretches whose systems are held at a time.
+/// Groups whose systems are in memory at one time.
 constexpr size_t kAtOnce = 64;
 
 }  // namespace

@@ -8,24 +8,26 @@
 
 namespace lodeline {
 
-/// The reprojection terms of a whole recording, worked out on all cores in stretches of landmarks whose
-/// tracks began side by side, which share most of their states. Sums are taken in the order of the stretches:
-/// any number of cores gives the same bytes.
+/// The reprojection terms of a whole recording. They are computed on all cores in groups of landmarks whose
+/// tracks began close together in time and share most of their states. Sums are taken in the order of the
+/// groups, so that any number of cores gives the same bytes.
 class BatchLandmarks {
  public:
-  /// Both must outlive this. There are no terms before the first arrange().
+  /// Both must outlive this object. There are no terms before the first arrange().
   BatchLandmarks(Window& window, const FactorBuilder& factors) : window_(window), factors_(factors) {}
 
-  /// Takes the landmarks that the window's tracks have now: to be called after any came or went.
+  /// Updates the groups from the present landmarks of the window's tracks: to be called after landmarks were
+  /// added or removed.
   void arrange();
 
   double cost() const;
 
-  /// Gives every stretch's Gauss-Newton system, landmarks eliminated, to `take`, which is called in order.
+  /// Passes the Gauss-Newton system of every group, landmarks eliminated, to `take`, in order.
   void linearize(const std::function<void(const NormalEquations&)>& take);
 
-  /// Moves the landmarks along with a step of the other blocks, of which `stepOf` picks those of a system. To
-  /// be called after linearize(), before any value has moved. `stepOf` is called from several threads.
+  /// Updates the landmarks for a step of the other blocks; `stepOf` selects the part of the step for a
+  /// system. To be called after linearize(), before any value has changed. `stepOf` is called from several
+  /// threads.
   void step(const std::function<Eigen::VectorXd(const NormalEquations&)>& stepOf) const;
 
  private:

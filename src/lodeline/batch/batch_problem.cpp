@@ -13,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kSensorLoss = 3.0;  // Cauchy, in standard deviations
+constexpr double kSensorLoss = 3.0;  // width of the Cauchy loss, standard deviations
 
 }  // namespace
 
@@ -203,7 +203,7 @@ double BatchProblem::renewLandmarks() {
 }
 
 TimeCorrelatedErrors BatchProblem::timeCorrelatedErrors() {
-  constexpr double kBelieved = 2.0;  // widths of the loss: what is further off it hardly counts
+  constexpr double kBelieved = 2.0;  // in widths of the loss: larger residuals have little weight
   TimeCorrelatedErrors lasting;
   for (auto& [id, track] : window_.tracks()) {
     if (!track.landmark) continue;

@@ -16,15 +16,15 @@
 
 namespace lodeline {
 
-/// The least-squares problem of a whole recording: the terms of the sliding window
-/// (estimator/factor_builder.h) over all states at once, with nothing marginalized and no linearization
-/// points. Offsets that wander, of the magnetometer and of the pressure gauge, are a chain of states, one a
+/// Least-squares problem of a whole recording: the terms of the sliding window
+/// (estimator/problem/factor_builder.h) over all states at once, without marginalization and without
+/// linearization points. Offsets that walk (magnetometer, pressure gauge) are chains of states, one per
 /// minute.
 class BatchProblem {
  public:
-  /// States start where the forward run left them, landmarks where its poses see them. Observations that
-  /// contradict those are left out from the start. `rig` and `options` as of the forward run; everything must
-  /// outlive the problem.
+  /// Initial values: states from the forward run, landmarks triangulated with its poses. Observations that
+  /// contradict these are left out from the start. `rig` and `options` as in the forward run; all arguments
+  /// must outlive the problem.
   BatchProblem(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record);
   BatchProblem(const BatchProblem&) = delete;  // its parts refer to each other
   BatchProblem& operator=(const BatchProblem&) = delete;
@@ -36,42 +36,43 @@ class BatchProblem {
   const Window& window() const { return window_; }
   const FactorBuilder& factors() const { return factors_; }
 
-  /// An empty matrix in the order of the problem's blocks.
+  /// A zero matrix with the blocks of the problem in their order.
   BlockSkylineCholesky emptyMatrix() const { return BlockSkylineCholesky(sizes_, first_); }
 
-  /// At the present values.
+  /// Cost at the present values.
   double cost();
-  /// The Gauss-Newton system H d = -g, landmarks eliminated.
+  /// Computes the Gauss-Newton system H d = -g, landmarks eliminated.
   void linearize(BlockSkylineCholesky* hessian, Eigen::VectorXd* gradient);
-  /// Takes from the Hessian what is known and not claimed (estimator/reported_covariance.h), before it is
-  /// inverted for covariances.
+  /// Subtracts from the Hessian the information that the estimate uses and the reported covariance leaves out
+  /// (estimator/uncertainty/reported_covariance.h), before the Hessian is inverted for covariances.
   void subtractRemoved(BlockSkylineCholesky* hessian) const;
-  /// Moves everything by a step of the system linearized last; no value may have moved since.
+  /// Applies a step of the last linearized system to all values, which must not have changed since.
   void step(const Eigen::VectorXd& step);
-  /// All values, to go back to.
+  /// All values, as a backup for setValues().
   std::vector<double> values();
   void setValues(const std::vector<double>& values);
 
-  /// Brings up to date what is held while the values move a little: preintegrations and the motion at the
-  /// images. Changes the cost.
+  /// Updates quantities that are constant during small changes of the values: preintegrations and the motion
+  /// at the images. Changes the cost.
   void resetLinearizationPoints();
-  /// Places all landmarks anew by the present poses and leaves out the observations that contradict them,
-  /// whatever was left out before. The robust loss becomes as wide as the errors ask. Returns the share of
-  /// the observations that went.
+  /// Triangulates all landmarks again with the present poses and removes the observations that contradict
+  /// them, whatever was removed before. Sets the width of the robust loss from the residuals. Returns the
+  /// share of removed observations.
   double renewLandmarks();
-  /// The errors at the present values, without those that the robust loss hardly counts.
+  /// Statistics of the residuals at the present values, without those to which the robust loss gives little
+  /// weight.
   TimeCorrelatedErrors timeCorrelatedErrors();
-  /// Gives observations so many times their variance, until landmarks are renewed.
+  /// Multiplies the variance of the observations by `variance`, until landmarks are renewed.
   void weighObservations(double variance);
 
-  /// The offset of the magnetometer's corrected readings (T) and the depth at the origin (m) that are in
-  /// force for a state; null where there is no such sensor.
+  /// Offset of the magnetometer's corrected readings (T) and depth at the origin (m) that are valid for a
+  /// state; null where there is no such sensor.
   const double* fieldOffset(size_t state) const { return nodeOf(field_offsets_, state); }
   const double* depthOffset(size_t state) const { return nodeOf(depth_offsets_, state); }
 
-  /// Of a state's [dp, dtheta, dv, db_g, db_a], from the inverse of the system.
+  /// Covariance of a state's [dp, dtheta, dv, db_g, db_a], from the inverse of the system.
   Eigen::Matrix<double, 15, 15> covarianceOf(size_t state, const BlockSkylineCholesky& inverse) const;
-  /// Of the field's azimuth, and with a state; zero where the field is no state.
+  /// Covariance of the field's azimuth, and with a state; zero where the field is not a state.
   AzimuthCovariance azimuth(size_t state, const BlockSkylineCholesky& inverse) const;
 
  private:
@@ -80,10 +81,11 @@ class BatchProblem {
   void addTracks(const EstimatorLog& record);
   void addGlobals(const EstimatorLog& record);
   void addStartPrior(const Rig& rig, const EstimatorLog& record);
-  /// Lenses stay as the run found them (`globals`). Free, they follow what slides in the images along a mode
-  /// that is hardly known: a longer lens whose camera sits further back.
+  /// Holds the intrinsics at the final values of the run (`globals`). If they were free, they would follow
+  /// points that slide in the images along a barely observable mode: a longer focal length with a camera
+  /// further back.
   void holdIntrinsics(const GlobalValues& globals);
-  /// Or does not, as the run did in the end.
+  /// Holds the files or frees them, as the run did in the end.
   void believeInFilesAsBefore(const EstimatorLog& record);
   void addImuAxes(const GlobalValues& globals);
   ParameterBlock* addGlobal(const EstimatorLog& record, const std::string& name, const std::string& as);
@@ -96,11 +98,11 @@ class BatchProblem {
   int rowOf(const double* value) const { return rows_.at(value); }
   void scatter(const NormalEquations& local, BlockSkylineCholesky* hessian, Eigen::VectorXd* gradient) const;
 
-  /// Part of a chain: in force for the states from `first` on.
+  /// Part of a chain: valid for the states from `first` on.
   struct Node {
     size_t first = 0;
     ParameterBlock* state = nullptr;
-    bool continues = false;  ///< the walk from the node before
+    bool continues = false;  ///< whether the walk of the node before continues in it
   };
   using Chain = std::vector<Node>;
   void addChain(const EstimatorLog& record, const char* name, bool restarts, Chain* chain);
@@ -110,7 +112,7 @@ class BatchProblem {
   EstimatorOptions options_;
   std::vector<std::shared_ptr<const Camera>> cameras_;
   FactorBuilder factors_;
-  std::shared_ptr<const ceres::LossFunction> loss_;  ///< on magnetometer and depth
+  std::shared_ptr<const ceres::LossFunction> loss_;  ///< for magnetometer and depth residuals
   Window window_;
   BatchLandmarks visual_;
   Tracks all_tracks_;  ///< with all their observations, without landmarks

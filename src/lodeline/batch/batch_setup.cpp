@@ -1,4 +1,4 @@
-// How a BatchProblem is made from the record of a forward run.
+// Setup of a BatchProblem from the record of a forward run.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,11 +13,11 @@
 namespace lodeline {
 namespace {
 
-constexpr double kNode_s = 60.0;  // for which a wandering offset counts as constant
-// Longer tracks are cut: their states form a clique, and a rig at rest would tie thousands together.
+constexpr double kNode_s = 60.0;  // time for which a walking offset counts as constant
+// Longer tracks are split: the states of a track form a clique, and a rig at rest would connect thousands.
 constexpr size_t kLongestTrack = 40;
 
-/// The end of a random walk against its beginning, as a quadratic term.
+/// Difference of a random walk between begin and end, as a quadratic term.
 Prior walkBetween(ParameterBlock* begin, ParameterBlock* end, double sigma) {
   Prior prior;
   const auto size = static_cast<Eigen::Index>(begin->value.size());
@@ -30,7 +30,7 @@ Prior walkBetween(ParameterBlock* begin, ParameterBlock* end, double sigma) {
   return prior;
 }
 
-/// Takes a block that is tied to no other out of a prior.
+/// Removes a block that is not correlated with others from a prior.
 void remove(const char* name, Prior* prior, std::vector<std::string>* names) {
   Prior rest;
   std::vector<std::string> rest_names;
@@ -82,15 +82,15 @@ void BatchProblem::addTracks(const EstimatorLog& record) {
   std::unordered_map<TrackId, Piece> pieces;
   TrackId next = 0;
   for (size_t k = 0; k < states(); ++k) {
-    for (const FeatureObservation& observation : record.states()[k].observations) {
-      const auto [entry, is_new] = pieces.try_emplace(observation.track, Piece{next, k});
+    for (const FeatureObservation& seen : record.states()[k].observations) {
+      const auto [entry, is_new] = pieces.try_emplace(seen.track, Piece{next, k});
       if (!is_new && k - entry->second.first >= kLongestTrack) entry->second = {next, k};
       if (entry->second.id == next) ++next;
       Observation observation;
       observation.frame = static_cast<FrameId>(k);
-      observation.camera = observation.camera;
-      observation.measurement = DirectionMeasurement::fromBearing(
-          *cameras_[static_cast<size_t>(observation.camera)], observation.bearing_C, observation.sigma_px);
+      observation.camera = seen.camera;
+      observation.measurement = DirectionMeasurement::fromBearing(*cameras_[static_cast<size_t>(seen.camera)],
+                                                                  seen.bearing_C, seen.sigma_px);
       all_tracks_[entry->second.id].observations.push_back(observation);
     }
   }
@@ -141,7 +141,7 @@ void BatchProblem::addChain(const EstimatorLog& record, const char* name, bool r
     const int now = restarts ? record.states()[k].gauge_epoch : 0;
     const bool is_new = chain->empty() || now != epoch;
     if (!is_new && (state(k).time - state(chain->back().first).time).seconds() < kNode_s) continue;
-    // The first keeps the plain name, by which factors look for it.
+    // The first keeps the plain name, which the factors use.
     const std::string as = chain->empty() ? name : std::string(name) + "@" + std::to_string(chain->size());
     ParameterBlock* node = addGlobal(record, name, as);
     if (node == nullptr) return;
@@ -164,7 +164,7 @@ void BatchProblem::addStartPrior(const Rig& rig, const EstimatorLog& record) {
   const GlobalValues& globals = record.globals();
   Prior prior = start.prior;
   std::vector<std::string> names = start.names;
-  // That the start's field was the Earth's turned out to be wrong.
+  // The initial field has been replaced as the Earth's field.
   if (record.frames().back().magnetometer.field_epoch > 0) {
     remove(MagnetometerStates::kField, &prior, &names);
     remove(MagnetometerStates::kOffset, &prior, &names);
@@ -178,7 +178,7 @@ void BatchProblem::addStartPrior(const Rig& rig, const EstimatorLog& record) {
     if (name == "motion") value = first.motion.data();
     if (value == nullptr) {
       ParameterBlock* state = window_.findGlobal(name);
-      // The cameras' placement is in no chain, and has not been added yet.
+      // The cameras' extrinsics are not in a chain and are not yet in the window.
       if (state == nullptr) {
         const Eigen::VectorXd& at = prior.blocks[i].linearization_point;
         state = &window_.add({name, {at.data(), at.data() + at.size()}, std::nullopt, 0.0, false});
@@ -191,7 +191,7 @@ void BatchProblem::addStartPrior(const Rig& rig, const EstimatorLog& record) {
     known.push_back(value);
   }
   priors_.push_back(std::move(prior));
-  // A magnetometer that was heard only later has states that the start knew nothing of.
+  // A magnetometer with its first reading after the start has states that the start's prior does not contain.
   const MagnetometerStates magnetometer(window_);
   const auto isKnown = [&](const ParameterBlock* state) {
     return std::find(known.begin(), known.end(), state->value.data()) != known.end();
@@ -254,14 +254,14 @@ void BatchProblem::orderBlocks() {
       first = std::min(first, oldest);
     }
   }
-  // A node of a chain stands behind the states that it is in force for.
+  // A node of a chain comes after the states for which it is valid.
   const auto appendNodes = [&](const Chain& chain, size_t k) {
     for (size_t i = 0; i < chain.size(); ++i) {
       const size_t last = i + 1 < chain.size() ? chain[i + 1].first - 1 : states() - 1;
       if (last != k) continue;
       const int since = rowOf(state(chain[i].first).pose.data());
       const int before = i > 0 ? rowOf(chain[i - 1].state->value.data()) : since;
-      // The start's prior ties the first one to the first state.
+      // The start's prior correlates the first node with the first state.
       appendBlock(chain[i].state->value.data(), chain[i].state->tangentSize(), std::min(since, before));
     }
   };

@@ -39,8 +39,8 @@ struct LandmarkSystem {
   }
 };
 
-/// Moves a landmark to where the robust loss has it, poses as they are. A place in the middle of all
-/// observations is off by so much where one of them strays that most of the others contradict it.
+/// Moves a landmark to the minimum of its robust cost, with fixed poses. A position in the middle of all
+/// observations is so wrong after one outlier that most of the others contradict it.
 void settle(const LandmarkFactors& terms) {
   constexpr int kMostSteps = 10;
   constexpr double kLeastGain = 1e-3;
@@ -73,7 +73,7 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
   if (host == track->observations.end() || track->observations.size() < 2) return;
   const CameraStates cameras = cameraStates(window);
   const auto viewOf = [&](const Observation& observation) {
-    // Pixels over the angle, both axes together.
+    // Pixels per angle, geometric mean of both axes.
     const double pixels = std::sqrt(std::abs(observation.measurement.sqrt_information.determinant()));
     return BearingView{factors.worldFromCamera(window, *window.find(observation.frame), observation.camera),
                        rayOf(observation, cameras), 1.0 / pixels};
@@ -83,7 +83,7 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
     if (&observation != &*host) views.push_back(viewOf(observation));
   }
   TriangulationOptions wanted;
-  wanted.max_rms_sigmas = 3.0 * options.max_error_sigmas;  // single observations are judged afterwards
+  wanted.max_rms_sigmas = 3.0 * options.max_error_sigmas;  // single observations are checked afterwards
   const Triangulation point = triangulate(views, wanted);
   const double rho = point.inverse_depth_per_m, sigma = point.inverse_depth_sigma_per_m;
   const bool is_known =

@@ -6,20 +6,20 @@
 
 namespace lodeline {
 
-/// Gives a track a landmark where the window's poses see it, hosted by the first frame that sees it with
-/// camera 0; none where its distance is not known well enough (LandmarkOptions).
+/// Triangulates a track's landmark with the window's poses. The host is the first frame that observes it with
+/// camera 0. The track gets no landmark where its distance is not accurate enough (LandmarkOptions).
 void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkOptions& options,
                    FeatureTrack* track);
 
-/// Settles a landmark among its observations, removes those that contradict it by more than
-/// `max_error_sigmas`, and the landmark itself where too little is left of it or it lies behind its host.
-/// Returns the number of observations removed, and adds to `errors` those of all where the landmark was
-/// placed, in the middle of its observations: robust losses as wide as what is left once it has settled take
-/// too much from the images.
+/// Optimizes a landmark with respect to its observations, then removes observations with residuals above
+/// `max_error_sigmas`. Removes the landmark itself where too few observations are left or it lies behind its
+/// host. Returns the number of removed observations. `errors` receives the residuals of all observations at
+/// the triangulated position, in the middle of its observations. Robust losses from the smaller residuals
+/// after the optimization would reduce the weight of images too much.
 int removeContradictions(Window& window, const FactorBuilder& factors, const LandmarkOptions& options,
                          TrackId id, FeatureTrack* track, std::vector<ObservationError>* errors);
 
-/// Whitened reprojection errors of a landmark's observations, in their order.
+/// Whitened reprojection residuals of a landmark's observations, in their order.
 std::vector<Vec2> residualsOf(const LandmarkFactors& landmark);
 
 }  // namespace lodeline

@@ -86,7 +86,7 @@ void BlockSkylineCholesky::invert() {
     invertColumn(column, below[static_cast<size_t>(column)]);
 }
 
-/// With Z = A^-1 and the columns after j done:
+/// Computes one column of Z = A^-1, with the columns after j already computed:
 ///   Z_ij = -(sum over k > j of Z_ik L_kj) L_jj^-1,  Z_jj = L_jj^-T L_jj^-1 - (sum of Z_kj^T L_kj) L_jj^-1.
 void BlockSkylineCholesky::invertColumn(int column, const std::vector<int>& below) {
   const int size = blockSize(column);
@@ -98,7 +98,7 @@ void BlockSkylineCholesky::invertColumn(int column, const std::vector<int>& belo
   for (const int i : below) entries.emplace_back(Eigen::MatrixXd::Zero(blockSize(i), size));
   for (size_t a = 0; a < below.size(); ++a) {
     for (size_t b = 0; b < a; ++b) {
-      // Two rows that reach back to this column have their common block within the skyline.
+      // Two rows that extend to this column have their common block within the skyline.
       const auto between = block(below[a], below[b]);
       entries[a].noalias() -= between * scaled[b];
       entries[b].noalias() -= between.transpose() * scaled[a];

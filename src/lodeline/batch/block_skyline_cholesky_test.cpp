@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// A chain in which each block knows the two before it, and a border that knows all.
+/// A chain in which each block is coupled to the two before it, and a border coupled to all.
 struct Example {
   BlockSkylineCholesky skyline{{2, 3, 1, 4, 2, 3}, {0, 0, 0, 1, 2, 0}};
   Eigen::MatrixXd dense;

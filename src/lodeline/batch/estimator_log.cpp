@@ -6,9 +6,10 @@
 namespace lodeline {
 namespace {
 
-constexpr double kLongestStart_s = 10.0;  // for which frames before the first pose are kept
+constexpr double kLongestStart_s = 10.0;  // span of frames kept before the first pose
 
-/// One measurement in place of `count`, which the run took for as many independent ones.
+/// Reduces the sigmas of one measurement that stands for `count` measurements, which the run took for
+/// independent.
 void weighAs(int count, FieldMeasurement* measurement) {
   const double share = 1.0 / std::sqrt(static_cast<double>(count));
   measurement->noise.sigma_T *= share;
@@ -92,7 +93,7 @@ void EstimatorLog::rememberPrior(const Estimator& estimator) {
 
 bool EstimatorLog::isState(const RecordedState& candidate) const {
   const double since_s = (candidate.state.time - states_.back().state.time).seconds();
-  // Images come at times that are not exactly even.
+  // Times of images are not exactly evenly spaced.
   constexpr double kTolerance_s = 1e-3;
   const double depth_interval_s = 0.4 * state_interval_s_;
   return candidate.is_keyframe || since_s > state_interval_s_ - kTolerance_s ||

@@ -10,57 +10,59 @@
 
 namespace lodeline {
 
-/// A frame that becomes a state of the batch solution, with what was measured there.
+/// A frame that is a state of the batch solution, with its measurements.
 struct RecordedState {
-  size_t frame = 0;  ///< index into EstimatorLog::frames(); of a start with one camera, where it had ended
+  size_t frame = 0;  ///< index into EstimatorLog::frames(); for an initialization with one camera, of the
+                     ///< frame at its end
   NavigationState state;  ///< as estimated in the forward run
   bool is_keyframe = false;
   Vec3 gyroscope_B = Vec3::Zero();  ///< reading at its time, rad/s
   std::vector<FeatureObservation> observations;
-  std::optional<FieldMeasurement> magnetometer;  ///< where the gate took it for the Earth's field
+  std::optional<FieldMeasurement> magnetometer;  ///< where the gate accepted it as the Earth's field
   std::optional<DepthMeasurement> depth;
-  int gauge_epoch = 0;  ///< counts the times that the pressure gauge's offset was taken for a new one
+  int gauge_epoch = 0;  ///< counts restarts of the pressure gauge's offset
 };
 
-/// What a forward run leaves for the batch solution: measurements of the states, all inertial readings, what
-/// was believed at the start, and every estimate. States are the keyframes, the first and the last frame, and
-/// others where these are far apart.
+/// Record of a forward run for the batch solution: measurements of the states, all inertial readings, the
+/// initial prior, and every estimate. States are the keyframes, the first and the last frame, and further
+/// frames where these are far apart.
 class EstimatorLog {
  public:
   static constexpr double kStateInterval_s = 0.5;
 
-  /// Two states are at most about `state_interval_s` apart; 0 makes every frame a state.
+  /// Two states are at most about `state_interval_s` apart; with 0 every frame is a state.
   explicit EstimatorLog(double state_interval_s = kStateInterval_s) : state_interval_s_(state_interval_s) {}
 
-  /// To be called after every Estimator::add() with what went in and what came out.
+  /// To be called after every Estimator::add() with its input and output.
   void add(const FrameTracks& tracks, std::span<const ImuSample> imu, const FrameEstimate& estimate,
            const Estimator& estimator);
   /// To be called after the last frame.
   void finish(const Estimator& estimator);
 
-  /// Of every frame that has a pose.
+  /// Estimates of all frames that have a pose.
   const std::vector<FrameEstimate>& frames() const { return frames_; }
   const std::vector<RecordedState>& states() const { return states_; }
   /// Without gaps from the first state to the last, with a reading at every frame's time.
   std::span<const ImuSample> imuBetween(Time begin, Time end) const;
 
-  /// Noise that the run added to the readings between two moments: the greatest density, all steps together.
+  /// Noise that the run added to the readings between two times: the largest density, and the root sum of
+  /// squares of all bias steps.
   InertialDoubt doubtBetween(Time begin, Time end) const;
 
-  /// The prior that the run started from. Its blocks' values are of no use any more; `name` says what each
-  /// was: "pose" or "motion" of the first state, or a parameter block's name.
+  /// The prior at the start of the run. The pointers in its blocks are invalid; `names` identifies each:
+  /// "pose" or "motion" of the first state, or a parameter block's name.
   struct StartPrior {
     Prior prior;
     std::vector<std::string> names;
   };
   const StartPrior& startPrior() const { return start_prior_; }
-  /// parameter blocks at the end of the run.
+  /// Values of the parameter blocks at the end of the run.
   const std::map<std::string, std::vector<double>>& globals() const { return globals_; }
 
  private:
   void start(const FrameEstimate& estimate, const Estimator& estimator);
   void rememberPrior(const Estimator& estimator);
-  /// What was taken for the Earth's field was another one.
+  /// Removes recorded fields, because the field taken for the Earth's was replaced.
   void forgetFields(int epoch);
   bool isState(const RecordedState& candidate) const;
   void append(RecordedState state);
@@ -71,8 +73,8 @@ class EstimatorLog {
   std::vector<ImuSample> imu_;
   StartPrior start_prior_;
   std::map<std::string, std::vector<double>> globals_;
-  std::vector<RecordedState> waiting_;   ///< frames before the start
-  std::optional<RecordedState> newest_;  ///< the last frame, where it is no state
+  std::vector<RecordedState> waiting_;   ///< frames before the first pose
+  std::optional<RecordedState> newest_;  ///< the last frame, if it is not a state
   int fields_ = 0, depths_ = 0;          ///< measurements used since the last state that had one
   int gauge_epoch_ = 0;
   int field_epoch_ = 0;

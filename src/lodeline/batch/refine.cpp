@@ -23,7 +23,8 @@ struct Round {
   bool converged = false;
 };
 
-/// A step that lowers the cost; nothing where no damping gives one. `damping` is adapted.
+/// Applies a step that reduces the cost and returns the new cost; empty where no damping gives such a step.
+/// `damping` is adapted.
 std::optional<double> lowerCost(BatchProblem& problem, double cost, BlockSkylineCholesky* hessian,
                                 double* damping) {
   constexpr double kLeastDamping = 1e-12, kMostDamping = 1e1;
@@ -46,11 +47,11 @@ std::optional<double> lowerCost(BatchProblem& problem, double cost, BlockSkyline
   return std::nullopt;
 }
 
-/// With `is_last`, until the solution is reached; else until the next round's landmarks and weights can be
-/// told from it.
+/// Iterates until convergence if `is_last`, else until the accuracy suffices for the next round's landmarks
+/// and weights.
 Round solve(BatchProblem& problem, const RefinementOptions& wanted, bool is_last,
             BlockSkylineCholesky* hessian) {
-  constexpr double kRoughGain = 1e-4;  // of the cost
+  constexpr double kRoughGain = 1e-4;  // relative to the cost
   Round round;
   double damping = 1e-7;
   double cost = round.initial_cost = problem.cost();
@@ -120,7 +121,7 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
   summary.states = static_cast<int>(problem.states());
   for (int i = 0; i < wanted.rounds; ++i) {
     if (i > 0) {
-      // Of a solution: the errors of the run's poses last themselves.
+      // Statistics of a solution, because the pose errors of the run are correlated over time as well.
       const TimeCorrelatedErrors lasting = problem.timeCorrelatedErrors();
       summary.design_effect = lasting.designEffect();
       summary.observation_variance = lasting.variance();
@@ -143,7 +144,8 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
   if (!summary.usable()) return result;
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
     Eigen::VectorXd gradient;
-    // What is claimed must also stand for what all tracks have in common, as a lens or a port.
+    // The reported covariance must also include errors that all tracks have in common, such as those of
+    // intrinsics or a port.
     problem.weighObservations(std::max(1.0, summary.design_effect / summary.observation_variance));
     problem.linearize(&hessian, &gradient);
     problem.subtractRemoved(&hessian);

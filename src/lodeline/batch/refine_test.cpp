@@ -79,7 +79,7 @@ TEST_P(RefineTest, LowersTheCostAndTheErrorAndStaysWithinItsSigmas) {
   ASSERT_TRUE(summary.usable()) << summary.refusal;
   EXPECT_TRUE(summary.converged);
   EXPECT_LT(summary.first_round_cost, summary.forward_cost);
-  // Whitened residuals of honest noise: two of each observation, under a loss that makes them count for less.
+  // Whitened residuals of noise as stated: two per observation, under a loss that reduces their weight.
   const double worth = static_cast<double>(summary.observations) / summary.observation_variance;
   EXPECT_NEAR(2.0 * summary.cost / (2.0 * worth), 0.7, 0.2);
   ASSERT_EQ(refinement.frames.size(), run.comparisons.size());
@@ -89,7 +89,8 @@ TEST_P(RefineTest, LowersTheCostAndTheErrorAndStaysWithinItsSigmas) {
     const Eigen::Matrix<double, 6, 1> error =
         perturbationBetween(run.comparisons[i].true_world_from_body, frame.state.world_from_body);
     const double nees = error.dot(frame.covariance.topLeftCorner<6, 6>().ldlt().solve(error));
-    EXPECT_LT(nees, 30.0) << "at " << run.comparisons[i].time_s << " s";  // 0.00004 beyond for an honest one
+    EXPECT_LT(nees, 30.0) << "at " << run.comparisons[i].time_s
+                          << " s";  // exceeded with a probability of 0.00004 by a consistent estimate
   }
 }
 
@@ -100,7 +101,7 @@ TEST_P(RefineTest, FramesBetweenStatesAreAsGoodAsStates) {
   EXPECT_LT(refinement.summary.states, static_cast<int>(refinement.frames.size()));
   EXPECT_LT(run.rootMeanSquare(refinement.frames), 1.1 * run.rootMeanSquare(run.record.frames()));
   for (size_t i = 1; i < refinement.frames.size(); ++i) {
-    // No jumps where a frame is followed by a state.
+    // No jumps from a frame to a following state.
     const NavigationState& before = refinement.frames[i - 1].state;
     const NavigationState& now = refinement.frames[i].state;
     const double dt_s = (now.time - before.time).seconds();
@@ -113,7 +114,7 @@ TEST_P(RefineTest, FramesBetweenStatesAreAsGoodAsStates) {
 
 INSTANTIATE_TEST_SUITE_P(Cameras, RefineTest, testing::Values(1, 2));
 
-/// A dive of points through windows of so many keyframes, and its refinement.
+/// A dive with simulated points through windows with `keyframes` keyframes, and its refinement.
 Refinement refinedDive(int keyframes, double duration_s) {
   HeadingTrialOptions dive = exactDive(duration_s);
   dive.estimator.window.keyframes = keyframes;
@@ -130,7 +131,7 @@ Refinement refinedDive(int keyframes, double duration_s) {
   return refine(rig, options, record);
 }
 
-// Directions that only the whole dive holds together move by many small gains.
+// Directions that only the whole dive determines converge in many steps of small gain.
 TEST(Refine, EndsAtTheSameSolutionWhereverTheRunWas) {
   const Refinement a = refinedDive(12, 240.0), b = refinedDive(4, 240.0);
   ASSERT_TRUE(a.summary.usable() && b.summary.usable());
@@ -175,8 +176,8 @@ TEST(Refine, CarriesOnThroughDarkness) {
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
 }
 
-// One camera that has waited for long knows its scale at once. What it believes of its first frame must be on
-// record before any of the frames that it started with is marginalized.
+// One camera that has waited for long knows its scale at once. The prior on the first frame must be recorded
+// before any of the initial frames is marginalized.
 TEST(Refine, StartsFromWhatWasBelievedBeforeAnyFrameWent) {
   const ForwardRun run(smallScene(1), 0.0, {}, [](EstimatorOptions& options) {
     options.window.startup_frames_mono = 2;
@@ -191,7 +192,7 @@ TEST(Refine, StartsFromWhatWasBelievedBeforeAnyFrameWent) {
   EXPECT_LT(run.rootMeanSquare(refinement.frames), run.rootMeanSquare(run.record.frames()));
 }
 
-// A landmark in the middle of observations of which one strays would lose the others as well.
+// A landmark in the middle of its observations, one of which is an outlier, would lose the others as well.
 TEST(Refine, LosesTheStrayingObservationsAlone) {
   TestSceneOptions options = smallScene(2);
   options.points.outlier_share = 0.05;
@@ -202,7 +203,7 @@ TEST(Refine, LosesTheStrayingObservationsAlone) {
 TEST(Refine, LeavesLensesAsTheRunFoundThem) {
   const ForwardRun run(smallScene(2), 0.5, {}, [](EstimatorOptions& options) {
     options.camera_calibration.enabled = true;
-    options.camera_calibration.trust_confirmed_files = false;  // or these, which are right, would be held
+    options.camera_calibration.trust_confirmed_files = false;  // otherwise these correct files would be held
   });
   BatchProblem problem(run.scene.rig(), run.options, run.record);
   BlockSkylineCholesky hessian = problem.emptyMatrix();
@@ -219,7 +220,7 @@ TEST(Refine, LeavesLensesAsTheRunFoundThem) {
   }
 }
 
-// The window claims as little: InertialStates.ClaimLessOfWhatWasPerhapsNeverCalibrated.
+// The window reports as much: InertialStates.ClaimLessOfWhatWasPerhapsNeverCalibrated.
 TEST(Refine, ClaimsLessOfWhatWasPerhapsNeverCalibrated) {
   ForwardRun run(smallScene(2));
   run.options.imu_axes = {.gyroscope_sigma = 0.001,
@@ -250,7 +251,7 @@ TEST(Refine, GivesTheSameBytesAgain) {
 TEST(Refine, RefusesWhatMostObservationsContradict) {
   const ForwardRun run(smallScene(2));
   RefinementOptions strict;
-  strict.max_outlier_share = -1.0;  // any share is too much
+  strict.max_outlier_share = -1.0;  // any share is too large
   const Refinement refinement = refine(run.scene.rig(), run.options, run.record, strict);
   EXPECT_FALSE(refinement.summary.usable());
   EXPECT_EQ(refinement.frames.back().state.world_from_body.translation,

@@ -79,7 +79,7 @@ class FrameMaker {
     return (1.0 - share) * covariances_[state_] + share * covariances_[state_ + 1];
   }
 
-  /// North that the run found late counts from the first frame on.
+  /// A north that the run found late applies from the first frame on.
   void describeNorth(double share, FrameEstimate* refined) const {
     const MagnetometerEstimate& last = record_.frames().back().magnetometer;
     if (!last.north_found) return;

@@ -5,7 +5,7 @@
 namespace lodeline {
 
 void TimeCorrelatedErrors::add(const std::vector<Vec2>& errors) {
-  constexpr size_t kFewest = 6;  // of fewer, what the landmark takes leaves little to compare
+  constexpr size_t kFewest = 6;  // with fewer, too little is left after the landmark's estimation
   const auto n = static_cast<double>(errors.size());
   observations_ += n;
   squared_lengths_ += n * n;

@@ -6,33 +6,37 @@
 
 namespace lodeline {
 
-/// How long the errors of tracks last. A tracker follows what it saw in the image before, and a lens or a
-/// port that is not quite as its file says is wrong for a point in the same way from image to image: what a
-/// track is off by wanders, and its observations are no independent witnesses. Errors after a solution tell,
-/// by how much neighbours resemble each other.
+/// Statistics of the time correlation of track errors. A tracker follows the patch of the image before, and
+/// errors of the intrinsics or of a port are the same for a point from image to image. The error of a track
+/// therefore wanders, and its observations are not independent. The correlation of neighbouring residuals
+/// after a solution shows by how much.
 class TimeCorrelatedErrors {
  public:
-  /// The reprojection errors of one track in one camera in order of time, in standard deviations as stated.
+  /// Adds the reprojection residuals of one track in one camera in order of time, in stated standard
+  /// deviations.
   void add(const std::vector<Vec2>& errors);
 
-  /// By how much the variance of what a track tells exceeds that of so many independent observations:
-  /// 1 + (n - 1) rho (L. Kish, "Survey Sampling", 1965, section 5.4), with n the number of observations in
-  /// one camera, averaged over observations. rho is 0 where neighbours are no more alike than those of white
-  /// noise, and 1 where they are as alike as those of a random walk; of either the landmark has taken the
-  /// mean and, along its parallax, the trend. That leaves neighbours with a correlation of 1 - 5.8 / n of a
-  /// random walk (to 0.05 for 6 to 40 observations; found with simulated ones) and of -1.6 / n of white
-  /// noise; of two cameras, which share a landmark, with less, and -0.7 / n, at which scenes of points with
-  /// white noise come out at 1, is taken for both. 1 while there is nothing to tell it by.
+  /// Factor by which the variance of a track's information exceeds that of independent observations: 1 + (n -
+  /// 1) rho (L. Kish, "Survey Sampling", 1965, section 5.4). n is the number of observations in one camera,
+  /// averaged over observations. rho is 0 where neighbours correlate no more than white noise, and 1 where
+  /// they correlate like a random walk.
+  ///
+  /// The landmark absorbs the mean of the errors and, along its parallax, their trend. The correlation of
+  /// neighbours is then 1 - 5.8 / n for a random walk (to 0.05 for 6 to 40 observations; found by simulation)
+  /// and -1.6 / n for white noise. For two cameras, which share a landmark, it is smaller in size. -0.7 / n
+  /// is used for both, with which scenes of points with white noise give a factor of 1. The result is 1 while
+  /// there are no data.
   double designEffect() const;
 
-  /// Variance of an observation's error for as long as its errors last, in terms of the stated one:
-  /// designEffect() times the errors' mean square along one axis. At least 1: what is stated stands for more
-  /// than what errors after a solution can show.
+  /// Variance of an observation's error within its correlation time, relative to the stated variance:
+  /// designEffect() times the mean square of the residuals along one axis. At least 1, because the stated
+  /// variance covers more errors than residuals after a solution can show.
   double variance() const;
 
  private:
   double observations_ = 0.0, squared_lengths_ = 0.0, squares_ = 0.0;
-  // Of tracks that are long enough, weighed by their lengths: found, and expected of either kind.
+  // Sums over tracks that are long enough, weighted by length: the measured correlation, and the expected
+  // ones of both kinds.
   double likeness_ = 0.0, of_white_noise_ = 0.0, of_random_walk_ = 0.0;
 };
 

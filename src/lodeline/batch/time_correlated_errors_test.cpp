@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// What a landmark leaves of errors: it takes the mean and, along its parallax (x), the trend.
+/// Removes the part of the errors that the landmark absorbs: the mean and, along its parallax (x), the trend.
 void takeLandmark(std::vector<Vec2>* errors) {
   const auto n = static_cast<double>(errors->size());
   const auto fromMiddle = [&](size_t i) { return static_cast<double>(i) - 0.5 * (n - 1.0); };
@@ -21,8 +21,8 @@ void takeLandmark(std::vector<Vec2>* errors) {
   for (size_t i = 0; i < errors->size(); ++i) (*errors)[i] -= mean + Vec2(slope * fromMiddle(i), 0.0);
 }
 
-/// Of tracks of `length` observations whose errors are white noise and a random walk, in these shares of the
-/// variance at the end of a track.
+/// Statistics of tracks of `length` observations whose errors are white noise and a random walk, in these
+/// shares of the variance at the end of a track.
 TimeCorrelatedErrors errorsOf(int length, double walk_share) {
   constexpr int kTracks = 2000;
   std::mt19937 random(7);
@@ -59,7 +59,8 @@ TEST(TimeCorrelatedErrors, OfBothItLiesBetween) {
   }
 }
 
-// As the solution of images with a tenth of the stated error: that they last is covered.
+// Residuals of a tenth of the stated error, as after a solution of images: their correlation is within the
+// stated variance.
 TEST(TimeCorrelatedErrors, AddToTheVarianceWhatIsNotStated) {
   constexpr int kLength = 20;
   TimeCorrelatedErrors small, large;

@@ -7,22 +7,22 @@
 
 namespace lodeline {
 
-/// Maps points of the camera frame (z forward, x right, y down; m) to pixels and back. Implementations are
-/// immutable and safe to share between threads.
+/// Projects points of the camera frame C (z forward, x right, y down; m) to pixels and back. Implementations
+/// are immutable, so threads can share them.
 class Camera {
  public:
   explicit Camera(const CameraCalibration& calibration) : calibration_(calibration) {}
   virtual ~Camera() = default;
 
-  /// Pixel of a point, with the derivative (px/m) where asked for. Nothing where the model does not hold:
-  /// behind the camera, or beyond the angle at which the distortion stops growing monotonically. The pixel
-  /// may lie outside the image.
+  /// Pixel of a point and, where requested, the 2x3 derivative of the pixel by the point (px/m). Returns
+  /// nothing where the model is invalid: behind the camera, or beyond the angle up to which the distortion
+  /// grows monotonically. The pixel may be outside the image.
   virtual std::optional<Vec2> project(const Vec3& point_C, Mat23* pixel_by_point = nullptr) const = 0;
 
-  /// Unit viewing ray of a pixel, exact to 1e-10 rad within the model's range, nothing outside of it.
+  /// Unit viewing ray of a pixel in C, exact to 1e-10 rad. Returns nothing outside the range of the model.
   virtual std::optional<Vec3> unproject(const Vec2& pixel) const = 0;
 
-  /// Whether a pixel lies in the image, at least `border_px` from its edges.
+  /// Whether a pixel is in the image and at least `border_px` from its edges.
   bool contains(const Vec2& pixel, double border_px = 0.0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px &&
            pixel.x() <= calibration_.width_px - 1 - border_px &&
@@ -35,7 +35,7 @@ class Camera {
   CameraCalibration calibration_;
 };
 
-/// The model that a calibration names. Throws InputError where the parameters make no camera.
+/// Creates the camera model named by a calibration. Throws InputError where the parameters are invalid.
 std::shared_ptr<const Camera> makeCamera(const CameraCalibration& calibration);
 
 }  // namespace lodeline

@@ -122,7 +122,7 @@ TEST_P(EveryCamera, ReturnsFromRayToPixelToRayOrGivesNothing) {
       if (!pixel) continue;
       ++inside;
       const auto back = camera_->unproject(*pixel);
-      // Grazing rays lie within rounding of the end of the range.
+      // Rays near the largest angle are within rounding of the end of the range.
       if (!back) {
         EXPECT_GT(angle_deg, 40.0);
         continue;

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kWidestLensRad = 115.0 * std::numbers::pi / 180.0;
 constexpr double kConvergedStepRad = 1e-13;
-/// Below this tangent of the angle to the axis the series is exact to machine precision and the closed form
-/// divides zero by zero.
+/// Tangent of the angle to the axis below which the series is used. There the series is exact to machine
+/// precision, and the closed form would divide zero by zero.
 constexpr double kNearAxis = 1e-4;
 
 }  // namespace
@@ -60,7 +60,7 @@ std::optional<Vec2> EquidistantCamera::project(const Vec3& point_C, Mat23* pixel
   const double distance2 = rho2 + z * z;
   if (!(distance2 > 0.0) || !(theta <= max_angle_rad_)) return std::nullopt;
 
-  // Image radius = scale * rho; `bend` is the derivative of scale by rho, over rho.
+  // Image radius = scale * rho; `bend` is the derivative of scale by rho, divided by rho.
   double slope = 0.0;
   const double distorted = distort(theta, &slope);
   double scale = 0.0, bend = 0.0;

@@ -6,22 +6,23 @@
 
 namespace lodeline {
 
-/// Fisheye camera, the image radius a polynomial of the angle theta to the optical axis:
+/// Fisheye camera model. The image radius theta_d is a polynomial of the angle theta to the optical axis:
 ///
 ///     theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
 ///
 /// Source: J. Kannala, S. Brandt, "A generic camera model and calibration method for conventional,
-/// wide-angle, and fish-eye lenses", PAMI 2006, as used by OpenCV's fisheye module and Kalibr. Sees beyond 90
-/// degrees where the polynomial still rises, up to the 115 degrees of the widest lenses made.
+/// wide-angle, and fish-eye lenses", PAMI 2006, as used by OpenCV's fisheye module and Kalibr. The model is
+/// valid beyond 90 degrees while the polynomial increases, at most to the 115 degrees of the widest lenses
+/// made.
 class EquidistantCamera final : public Camera {
  public:
-  /// `coefficients`: 4.
+  /// `coefficients`: k1 to k4.
   explicit EquidistantCamera(const CameraCalibration& calibration);
 
   std::optional<Vec2> project(const Vec3& point_C, Mat23* pixel_by_point) const override;
   std::optional<Vec3> unproject(const Vec2& pixel) const override;
 
-  /// Greatest angle to the optical axis at which the model holds.
+  /// Largest angle to the optical axis at which the model is valid, rad.
   double maxAngleRad() const { return max_angle_rad_; }
 
  private:

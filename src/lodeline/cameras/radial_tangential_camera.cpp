@@ -51,10 +51,10 @@ bool RadialTangentialCamera::isRegular(double radius) const {
   const double r2 = radius * radius;
   double slope = 0.0;
   const double factor = radialFactor(r2, &slope);
-  // A negative factor is the far side of a pole of the rational model.
+  // A negative factor means a point beyond a pole of the rational model.
   if (!(factor > 0.0) || !(factor + 2.0 * r2 * slope > 0.0)) return false;
   if (k_[2] == 0.0 && k_[3] == 0.0) return true;
-  // The tangential part depends on the direction only through sine and cosine, so coarse steps suffice.
+  // The tangential part depends on the direction only through its sine and cosine, so coarse steps suffice.
   constexpr int kDirections = 36;
   for (int i = 0; i < kDirections; ++i) {
     const double phi = 2.0 * std::numbers::pi * i / kDirections;
@@ -124,7 +124,8 @@ std::optional<Vec3> RadialTangentialCamera::unproject(const Vec2& pixel) const {
   if (!std::isfinite(distorted_radius)) return std::nullopt;
   if (distorted_radius == 0.0) return Vec3::UnitZ();
 
-  // The radial inverse is found safely in one dimension; the small tangential part needs a few full steps.
+  // Inverts the radial part in one dimension with a bracketed iteration. The small tangential part then needs
+  // a few Newton steps in two dimensions.
   Vec2 undistorted = distorted * (invertRadial(distorted_radius) / distorted_radius);
   for (int i = 0; i < kMaxIterations; ++i) {
     Mat2 jacobian;

@@ -5,7 +5,7 @@ namespace lodeline {
 const std::optional<AttitudeEstimate>& AttitudeTrack::add(const FramePacket& packet) {
   auto field = packet.magnetometer.begin();
   for (const ImuSample& sample : packet.imu) {
-    // A packet begins where the one before ended, with the same reading.
+    // A packet begins with the last reading of the packet before.
     if (last_ && sample.time <= *last_) continue;
     last_ = sample.time;
     filter_.add(sample);

@@ -5,16 +5,16 @@
 
 namespace lodeline {
 
-/// The attitude filter beside an odometry: knows roll, pitch and, with a magnetometer, heading before the
-/// first pose and whenever images are lost. It takes nothing from the odometry and gives it nothing.
+/// Attitude filter beside an odometry. It estimates roll, pitch and, with a magnetometer, heading before the
+/// first pose and whenever images are lost. It is independent of the odometry in both directions.
 class AttitudeTrack {
  public:
   /// `diagnostics` must outlive the track.
   AttitudeTrack(const Rig& rig, const AttitudeFilterOptions& options, Diagnostics* diagnostics)
       : filter_(options, rig.magnetometer, diagnostics) {}
 
-  /// Attitude at the packet's time, in axes east, north, up of the magnetometer's north (true north where the
-  /// options know the site), without a magnetometer with the heading of the first attitude as zero. Nothing
+  /// Attitude at the packet's time. Axes: east, north, up with the magnetometer's north (true north where the
+  /// options contain the site). Without a magnetometer, the heading of the first attitude is zero. Empty
   /// before the first inertial reading.
   const std::optional<AttitudeEstimate>& add(const FramePacket& packet);
 

@@ -37,7 +37,7 @@ TEST(AttitudeTrack, KnowsAttitudeWithoutAnyImage) {
   EXPECT_EQ(last->time, Time::fromSeconds(10.0));
   EXPECT_EQ(last->status, HeadingStatus::Magnetic);
   EXPECT_LT(last->world_from_body.angularDistance(Quat::Identity()), 0.01);
-  // The readings at the borders of packets, which come twice, are no disorder.
+  // The readings at the borders of packets, which come twice, are not an error.
   EXPECT_TRUE(diagnostics.ranked().empty());
 }
 

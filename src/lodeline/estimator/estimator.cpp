@@ -78,7 +78,8 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       rest_(rig_, options_.rest),
       monitor_(std::make_unique<InertialMonitor>(options_, diagnostics)),
       known_(Eigen::Matrix<double, 15, 15>::Identity()),
-      covariance_inflation_(options_) {
+      covariance_inflation_(options_),
+      mode_(options_.window) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
 }
 
@@ -116,13 +117,14 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);
-  ++frames_since_start_;
-  reinitializeAfterVisionLoss(estimate);
+  mode_.addFrame();
+  if (mode_.see(estimate.time, estimate.status != Status::Inertial)) reinitializeAfterVisionLoss();
   // Not at the start: whoever records it needs the prior of the first frame as it was.
   if (carries_on) marginalizeWindow(estimate);
-  if (is_settled_ && !starting_up_) linearization_cache_.freeze(window_, factors_);
+  if (mode_.isSettled() && mode_.isMarginalizing()) linearization_cache_.freeze(window_, factors_);
+  estimate.mode = mode_.mode();
   covariance_inflation_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
-  covariance_inflation_.addTo({scale_is_given_, estimate.depth.unmodelledDensitySigma(),
+  covariance_inflation_.addTo({mode_.scaleIsGiven(), estimate.depth.unmodelledDensitySigma(),
                                estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
                               &estimate.covariance);
   monitor_->addTo(estimate.state.world_from_body.translation, &estimate.covariance);
@@ -152,50 +154,27 @@ void Estimator::checkOrder(Time time, std::span<const ImuSample> imu) const {
   }
 }
 
-void Estimator::reinitializeAfterVisionLoss(const FrameEstimate& estimate) {
-  constexpr double kDarkness_s = 1.0;
-  if (estimate.status == Status::Inertial) {
-    blind_since_ = blind_since_.value_or(estimate.time);
-    return;
-  }
-  const bool was_dark = blind_since_ && (estimate.time - *blind_since_).seconds() > kDarkness_s;
-  blind_since_.reset();
-  if (!was_dark) return;
-  // The linearization points are those of dead reckoning, which images now move by more than the rig does.
+void Estimator::reinitializeAfterVisionLoss() {
+  // The linearization points are those of inertial propagation, which images now correct by more than the rig
+  // moves.
   marginalizer_.resetLinearizationPoints(window_);
-  if (scale_is_given_) return;
-  resetRobustLosses(window_);
-  is_settled_ = false;
-  starting_up_ = lost_scale_ = true;
-  frames_since_start_ = 0;
+  if (!mode_.scaleIsGiven()) resetRobustLosses(window_);
 }
 
 void Estimator::marginalizeWindow(const FrameEstimate& estimate) {
-  const bool was_starting_up = starting_up_, was_settled = is_settled_;
-  is_settled_ = is_settled_ || isSettled(estimate.covariance);
-  frames_since_settled_ = was_settled ? frames_since_settled_ + 1 : 0;
-  if (!was_settled) settled_at_ = estimate.time;
-  // What is marginalized keeps the lens that it has then.
-  if (is_settled_) freeIntrinsics();
-  starting_up_ = starting_up_ &&
-                 (is_settled_ ? lossesAdapt() : frames_since_start_ < options_.window.startup_max_frames);
-  if (starting_up_) return;
-  if (was_starting_up || !was_settled) marginalizer_.resetLinearizationPoints(window_);
+  // The distance from the origin carries no information on a scale that was lost since.
+  mode_.judgeScale(estimate.time, mode_.scaleWasLost()
+                                      ? speedUncertainty(window_.newest(), estimate.covariance)
+                                      : scaleUncertainty(window_.newest(), estimate.covariance));
+  // What is marginalized keeps the intrinsics that it has then.
+  if (mode_.isSettled()) freeIntrinsics();
+  if (!mode_.isMarginalizing()) return;
+  if (mode_.hasChanged()) marginalizer_.resetLinearizationPoints(window_);
   if (estimate.status == Status::Inertial)
     keepLastView(window_, options_.window.recent_frames, options_.min_landmarks_for_vision);
   marginalizer_.marginalizeToSize(
-      window_, isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
-  if (!is_settled_) marginalizer_.resetLinearizationPoints(window_);
-}
-
-bool Estimator::isWorthKeeping(Time now) const {
-  constexpr double kToFindLenses_s = 5.0;
-  return is_settled_ && (!scale_is_given_ || (now - settled_at_).seconds() >= kToFindLenses_s);
-}
-
-bool Estimator::lossesAdapt() const {
-  constexpr int kFramesToAdapt = 3;
-  return !scale_is_given_ && frames_since_settled_ < kFramesToAdapt;
+      window_, mode_.isWorthKeeping(estimate.time) ? options_.window : withoutCut(options_.window));
+  if (!mode_.isSettled()) marginalizer_.resetLinearizationPoints(window_);
 }
 
 void Estimator::freeIntrinsics() {
@@ -205,26 +184,15 @@ void Estimator::freeIntrinsics() {
   marginalizer_.start(std::move(prior));
 }
 
-bool Estimator::isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const {
-  const WindowOptions& window = options_.window;
-  const int least = scale_is_given_ ? window.startup_frames : window.startup_frames_mono;
-  if (frames_since_start_ < least) return false;
-  if (scale_is_given_) return true;
-  // The way from the origin says nothing of a scale that was lost since.
-  const double sigma = lost_scale_ ? speedUncertainty(window_.newest(), covariance)
-                                   : scaleUncertainty(window_.newest(), covariance);
-  return sigma < window.startup_scale_sigma;
-}
-
 ObservationList Estimator::observationsOf(const FrameTracks& tracks) const {
   ObservationList observations;
-  for (const FeatureObservation& observation : tracks.observations) {
+  for (const FeatureObservation& seen : tracks.observations) {
     Observation observation;
     observation.frame = next_frame_id_;
-    observation.camera = observation.camera;
-    observation.measurement = DirectionMeasurement::fromBearing(*cameras_[observation.camera],
-                                                                observation.bearing_C, observation.sigma_px);
-    observations.emplace_back(observation.track, observation);
+    observation.camera = seen.camera;
+    observation.measurement =
+        DirectionMeasurement::fromBearing(*cameras_[seen.camera], seen.bearing_C, seen.sigma_px);
+    observations.emplace_back(seen.track, observation);
   }
   return observations;
 }
@@ -238,8 +206,8 @@ bool Estimator::initialize(const FrameTracks& tracks, const ObservationList& obs
   std::erase_if(imu_before_start_, [&](const ImuSample& s) { return s.time < tracks.time - longest; });
   const auto stereo_matches = std::count_if(observations.begin(), observations.end(),
                                             [](const auto& entry) { return entry.second.camera > 0; });
-  scale_is_given_ = stereo_matches >= options_.initial_state.min_stereo_tracks;
-  if (scale_is_given_) return startAtOnce(tracks.time, observations, estimate);
+  if (stereo_matches >= options_.initial_state.min_stereo_tracks)
+    return startAtOnce(tracks.time, observations, estimate);
   if (startMonocular(tracks.time, observations, imu)) return true;
   estimate->waiting_for = mono_initializer_.waitingFor();
   if (rig_.cameras.size() > 1) {
@@ -263,7 +231,7 @@ bool Estimator::startMonocular(Time time, ObservationList observations, std::spa
   Prior prior = mono_initializer_.takePrior();
   addCalibration(&prior);
   marginalizer_.start(std::move(prior));
-  frames_since_start_ = static_cast<int>(window_.frames().size());
+  mode_.start(false, static_cast<int>(window_.frames().size()));
   return true;
 }
 
@@ -293,6 +261,7 @@ bool Estimator::startAtOnce(Time time, const ObservationList& observations, Fram
   tieTiltToAccelerometerBias(first, options_.gravity_W.norm(), &prior);
   addCalibration(&prior);
   marginalizer_.start(std::move(prior));
+  mode_.start(true, 0);
   return true;
 }
 
@@ -320,7 +289,7 @@ void Estimator::startMagnetometer() {
 }
 
 void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
-  if (!blind_since_ && !isCovariance(covariance.newest())) {
+  if (!mode_.isBlind() && !isCovariance(covariance.newest())) {
     diagnostics_->report(
         Severity::Serious, "covariance_unknown",
         fmt::format(
@@ -355,7 +324,7 @@ void Estimator::optimize(FrameEstimate* estimate) {
   removeOutliers(window_, update.errors_sigmas, options_.landmark, &errors);
   errors.insert(errors.end(), linearization_cache_.errors().begin(), linearization_cache_.errors().end());
   // As long as the scale is unknown, small errors do not mean that the poses are right.
-  if (is_settled_ || scale_is_given_) adaptRobustLosses(window_, errors, options_.solver);
+  if (mode_.isSettled() || mode_.scaleIsGiven()) adaptRobustLosses(window_, errors, options_.solver);
 }
 
 void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {

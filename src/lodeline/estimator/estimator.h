@@ -7,6 +7,7 @@
 
 #include "lodeline/estimator/initialization/mono_initializer.h"
 #include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
+#include "lodeline/estimator/mode/mode_machine.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/pressure/depth_fusion.h"
 #include "lodeline/estimator/problem/factor_builder.h"
@@ -51,6 +52,7 @@ struct FrameEstimate {
   double reprojection_rms_sigmas = 0.0;
   std::optional<double> scene_distance_m;  ///< of the landmarks, in harmonic mean
   int solver_iterations = 0;
+  Mode mode = Mode::Waiting;  ///< the estimator's, after this frame
   /// Nothing where the calibration is taken as the files give it.
   std::optional<CameraCorrections> camera_corrections;
   std::optional<SensorAxes> gyroscope_axes;      ///< the same
@@ -98,23 +100,13 @@ class Estimator {
   void addCalibration(Prior* prior);
   void insertFrame(Time time, const ObservationList& observations, std::span<const ImuSample> imu);
   void optimize(FrameEstimate* estimate);
-  /// After darkness one camera is at a start again: the scale of what it now sees hangs on the speed that
-  /// dead reckoning left, and must not be frozen while that is known badly. Any rig's window is linearized
-  /// anew.
-  void reinitializeAfterVisionLoss(const FrameEstimate& estimate);
-  /// Marginalizes what the window has no room for, once it is not starting up any more. Unless it is settled,
-  /// that freezes no linearization point.
+  /// Relinearizes the window after vision loss. With one camera the robust losses also start wide again.
+  void reinitializeAfterVisionLoss();
+  /// Marginalizes the frames that exceed the window's size, once the start is over. No linearization point is
+  /// frozen before the scale is known.
   void marginalizeWindow(const FrameEstimate& estimate);
-  /// Whether the window may begin to be marginalized for good.
-  bool isSettled(const Eigen::Matrix<double, 15, 15>& covariance) const;
-  /// Lets the lenses, which are held at first, be estimated.
+  /// Lets the intrinsics, which are fixed at first, be estimated.
   void freeIntrinsics();
-  /// Whether what landmarks were seen by is to be kept for good when they outlive the window: not while the
-  /// scale is unknown, nor in the first seconds of two cameras, which tell lenses that are off by images that
-  /// then count as outliers. One camera's start tells its speed and biases, which are worth more.
-  bool isWorthKeeping(Time now) const;
-  /// One camera's start is solved with losses as wide as they come, whose weights are not to be kept.
-  bool lossesAdapt() const;
   /// Turns a window that has just started to north.
   void startMagnetometer();
   void rememberCovariance(JointCovariance covariance, FrameEstimate* estimate);
@@ -144,14 +136,7 @@ class Estimator {
   std::vector<ImuSample> imu_before_start_;
   std::optional<Time> last_time_;
   FrameId next_frame_id_ = 0;
-  int frames_since_start_ = 0;
-  bool starting_up_ = true;  ///< nothing is marginalized
-  bool is_settled_ = false;  ///< the scale is known: linearization points are kept
-  int frames_since_settled_ = 0;
-  Time settled_at_;
-  bool scale_is_given_ = false;      ///< by a stereo start
-  std::optional<Time> blind_since_;  ///< the newest frames see nothing known
-  bool lost_scale_ = false;          ///< at some time since the start
+  ModeMachine mode_;
 };
 
 }  // namespace lodeline

@@ -1,5 +1,5 @@
-// Scenes that make visual odometry fail, as tracks of points: the state must carry on, stay within what it
-// claims to know, and be back within a second. For darkness and standing still see estimator_test.cpp.
+// Scenes in which visual odometry fails, as tracks of points. The state must continue, stay within its
+// reported covariance, and recover within a second. For darkness and rest see estimator_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kTrouble_s = 6.0;  // when it begins, unless a scene says otherwise
+constexpr double kTrouble_s = 6.0;  // start of the difficulty, unless a scene states otherwise
 
 class HardScene : public testing::TestWithParam<int> {
  protected:
@@ -37,8 +37,8 @@ class HardScene : public testing::TestWithParam<int> {
     ASSERT_TRUE(frames_.back().initialized());
   }
 
-  /// Of position and of each angle, four times the claimed sigma. One camera claims too much of its scale for
-  /// some seconds after the start (docs/consistency.md), hence twice that.
+  /// Checks position and each angle against four times the reported sigma. With one camera the scale's sigma
+  /// is too small for some seconds after the start (docs/consistency.md), hence twice that.
   void expectWithinItsSigmas() const {
     const double limit = GetParam() == 1 ? 8.0 : 4.0;
     for (const Comparison& c : frames_) {
@@ -56,7 +56,7 @@ class HardScene : public testing::TestWithParam<int> {
       }
     }
   }
-  /// Largest error of the position, m, beyond that at the time.
+  /// Largest increase of the position error, m, after the given time.
   double largestErrorSince(double from_s) const {
     double largest_m = 0.0;
     const Comparison* first = nullptr;
@@ -83,7 +83,8 @@ TEST_P(HardScene, TwentyTracksAreEnough) {
     std::sort(seen.begin(), seen.end());
     std::erase_if(frame.tracks.observations, [&](const FeatureObservation& o) { return o.track > seen[19]; });
   });
-  // With one camera new points need some way before they count; a moment without eight of them may pass.
+  // With one camera new points become landmarks only after some motion; for a moment there may be fewer than
+  // eight.
   const auto blind = std::count_if(frames_.begin(), frames_.end(), [](const Comparison& c) {
     return c.time_s >= kTrouble_s && c.estimate.status == Status::Inertial;
   });
@@ -120,7 +121,7 @@ TEST_P(HardScene, FortyOfAHundredFramesMissing) {
   EXPECT_LT(largestErrorSince(kTrouble_s), 0.2);
 }
 
-// An exposure jump: nothing is recognized from one image to the next, three times.
+// An exposure jump: no track continues from one image to the next, three times.
 TEST_P(HardScene, AllTracksLostAtOnce) {
   constexpr TrackId kApart = 1'000'000;
   run([](double time_s, SimulatedFrame& frame) {
@@ -133,8 +134,8 @@ TEST_P(HardScene, AllTracksLostAtOnce) {
   EXPECT_LT(largestErrorSince(kTrouble_s), 0.3);
 }
 
-// A quarter of the points, wherever they are, swim along together for three seconds; half of them for one, as
-// with a hand before the lens.
+// A quarter of the points, anywhere in the image, moves along together for three seconds; half of them for
+// one, as with a hand in front of the lens.
 TEST_P(HardScene, SomethingMovesThroughTheView) {
   run([](double time_s, SimulatedFrame& frame) {
     const bool fish = time_s > 6.0 && time_s < 9.0;
@@ -151,8 +152,8 @@ TEST_P(HardScene, SomethingMovesThroughTheView) {
   EXPECT_LT(largestErrorSince(kTrouble_s), 0.15);
 }
 
-// Where dead reckoning went wrong is known as soon as images tell the speed again: it is off by what it went
-// wrong by, and positions follow.
+// The error of dead reckoning becomes known as soon as images determine the velocity again, and the position
+// is corrected by it.
 TEST_P(HardScene, InertialCovariancePropagationIsMadeGoodWhenImagesReturn) {
   constexpr double kLight_s = 26.0;
   options_.duration_s = 30.0;
@@ -167,7 +168,7 @@ TEST_P(HardScene, InertialCovariancePropagationIsMadeGoodWhenImagesReturn) {
   expectWithinItsSigmas();
 }
 
-// Its window has one keyframe, and what images tell of the gyroscope's bias is in later frames.
+// The window has one keyframe, and the image information about the gyroscope bias is in later frames.
 TEST(HardSceneOfTwoCameras, DarknessAfterRestLeavesWhatRestTold) {
   for (const uint64_t seed : {1, 2, 3, 4}) {
     TestSceneOptions options;
@@ -190,9 +191,9 @@ TEST(HardSceneOfTwoCameras, DarknessAfterRestLeavesWhatRestTold) {
   }
 }
 
-/// Silt full of particles, or darkness full of the blocks of a compressed video: no point is the same in two
-/// images, but a tracker finds it again all the same, where the turn of the rig takes it, and in the other
-/// camera's image at some distance.
+/// Silt full of particles, or darkness full of the blocks of a compressed video. No point is the same in two
+/// images. A tracker nevertheless finds a match at the position predicted by the rig's rotation, and in the
+/// other camera's image at some distance.
 class ChanceMatches {
  public:
   explicit ChanceMatches(int cameras) : rig_(testRig(cameras)) {}
@@ -213,7 +214,7 @@ class ChanceMatches {
  private:
   struct Match {
     TrackId track;
-    Vec3 from_camera_W;  ///< m, from camera 0 wherever that goes
+    Vec3 from_camera_W;  ///< m, from camera 0 at its present position
   };
 
   void see(const Match& match, const Quat& world_from_camera, SimulatedFrame* frame) {

@@ -33,9 +33,9 @@ Rigid3 ImageMotion::poseAfter(const Rigid3& world_from_body, double dt_s) const 
           world_from_body.translation + velocity_W * dt_s};
 }
 
-/// The chain from landmark to target camera at one set of blocks, with all that the Jacobians need.
+/// Intermediate values from landmark to target camera at one set of blocks, as the Jacobians need them.
 struct CalibratedReprojectionFactor::Chain {
-  Mat3 host_rotation, target_rotation;  // world from body, at the images' true time
+  Mat3 host_rotation, target_rotation;  // world from body, at the true times of the images
   Mat3 target_from_host;                // body to body
   Mat3 camera0_rotation;                // body from camera 0
   Mat3 camera_from_body;                // of the target camera

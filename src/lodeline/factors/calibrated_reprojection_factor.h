@@ -9,22 +9,23 @@
 
 namespace lodeline {
 
-// Parameter blocks of the camera calibration that the window estimates, all zero where the calibration files
-// are right:
-//   extrinsics of camera 0          [phi, xi] (rad, m), body axes
-//   extrinsics of a secondary camera  [phi, xi] (rad, m), axes of camera 0
-//   time offset                     dt (s), the images' stamps + dt = IMU clock
-// Each secondary camera is placed relative to camera 0, since a stereo calibration knows the cameras' places
-// to each other far better than to the IMU.
+// Parameter blocks of the camera calibration that the window estimates. All are zero where the calibration
+// files are right:
+//   extrinsics of camera 0             [phi, xi] (rad, m), body axes
+//   extrinsics of a secondary camera   [phi, xi] (rad, m), axes of camera 0
+//   time offset                        dt (s), image time stamp + dt = time of the IMU clock
+// The extrinsics of each secondary camera are relative to camera 0: a stereo calibration knows the poses of
+// the cameras relative to each other far better than relative to the IMU.
 
 constexpr int kExtrinsicsSize = 6;  ///< [phi, xi]
 constexpr int kTimeOffsetSize = 1;
 
-/// The pose of a sensor with the correction [phi, xi] of a calibration block: exp(phi) * R, p + xi.
+/// Pose of a sensor after the correction [phi, xi] of a calibration block: rotation exp(phi) * R, translation
+/// p + xi.
 Rigid3 correctedExtrinsics(const Rigid3& nominal, const double* correction);
 
-/// How the body moves at an image; extrapolates its pose by a time offset. The velocity is taken as known:
-/// over the few milliseconds that matter its error is beyond notice.
+/// Velocity of the body at the time of an image; extrapolates the pose of the body by a time offset. The
+/// velocity counts as known: over the few milliseconds that matter, the effect of its error is negligible.
 struct ImageMotion {
   Vec3 velocity_W = Vec3::Zero();          ///< m/s
   Vec3 angular_velocity_B = Vec3::Zero();  ///< rad/s, bias removed
@@ -32,13 +33,14 @@ struct ImageMotion {
   Rigid3 poseAfter(const Rigid3& world_from_body, double dt_s) const;
 };
 
-/// The cameras as their calibration files place them.
+/// Extrinsics of the host's camera 0 and of the target camera as the calibration files state them.
 struct CameraPlacement {
   Rigid3 body_from_camera0;
-  std::optional<Rigid3> camera0_from_target;  ///< nothing where camera 0 is the target
+  std::optional<Rigid3> camera0_from_target;  ///< empty where the target camera is camera 0
 };
 
-/// Where the Jacobian is taken; null: at the current value (factors/parameters.h).
+/// Linearization points of the blocks. Null: the Jacobian is taken at the current value
+/// (factors/parameters.h).
 struct CalibratedLinearizationPoints {
   const double* host = nullptr;
   const double* target = nullptr;
@@ -50,9 +52,9 @@ struct CalibratedLinearizationPoints {
 /// ReprojectionFactor with the camera calibration as variables.
 ///
 /// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3), extrinsics of camera 0
-/// (6), time offset (1) and, where the target camera is a further one, its extrinsics (6). With the poses
-/// R_h, p_h, R_t, p_t carried to the images' true time (R exp(w dt), p + v dt), camera 0 at R_0, p_0 in the
-/// body, the target camera at R_r, p_r in camera 0,
+/// (6), time offset (1) and, where the target camera is a secondary camera, its extrinsics (6). The poses
+/// R_h, p_h and R_t, p_t (world_from_body) are those at the true times of the images (R exp(w dt), p + v dt).
+/// Camera 0 has the pose R_0, p_0 in the body, the target camera the pose R_r, p_r in camera 0. Then
 ///   m   = R_t^T (R_h (R_0 d + rho p_0) + rho (p_h - p_t)) - rho p_0
 ///   q_0 = R_0^T m,   q = R_r^T (q_0 - rho p_r)
 ///   e   = directionResidual(q).
@@ -74,11 +76,11 @@ class CalibratedReprojectionFactor final : public ceres::CostFunction {
   CalibratedLinearizationPoints linearization_points_;
 };
 
-/// The same in the host frame itself, by a camera beside the host camera. Blocks: landmark (3), extrinsics of
-/// that camera (6).
+/// Reprojection error in an image that a secondary camera took in the host frame itself, with the extrinsics
+/// of that camera as a variable. Blocks: landmark (3), extrinsics of that camera (6).
 class CalibratedStereoFactor final : public ceres::SizedCostFunction<2, kLandmarkSize, kExtrinsicsSize> {
  public:
-  /// `linearization_point` of the extrinsics may be null.
+  /// `linearization_point`: of the extrinsics, may be null.
   CalibratedStereoFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
                          const Rigid3& camera0_from_target, const double* linearization_point = nullptr);
 

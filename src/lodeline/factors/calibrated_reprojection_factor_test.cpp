@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// A landmark seen from two moving bodies, with calibration files that are wrong by known corrections.
+/// A landmark observed from two moving bodies, with calibration files that are wrong by known corrections.
 struct Scene : ReprojectionScene {
   Rigid3 body_from_camera0{so3::exp(Vec3(0.1, -1.5, 0.2)), Vec3(-0.02, -0.06, 0.01)};
   Rigid3 camera0_from_camera1{so3::exp(Vec3(0.01, -0.02, 0.005)), Vec3(0.11, 0.002, -0.001)};
@@ -105,7 +105,7 @@ TEST_P(CalibratedReprojection, TakesItsJacobianAtTheLinearizationPoints) {
   EXPECT_GT((jacobian(scene.factor(GetParam()), current) - expected).norm(), 1e-4 * expected.norm());
 }
 
-// A right calibration file and no time offset: the plain factor.
+// With a correct calibration file and no time offset, the factor equals the plain one.
 TEST_P(CalibratedReprojection, AgreesWithTheUncalibratedFactorAtZero) {
   const Scene scene;
   auto parameters = scene.parameters(GetParam());
@@ -133,7 +133,7 @@ TEST(CalibratedStereoFactor, IsZeroAtTruthWithMatchingJacobians) {
   expectJacobiansMatch(factor, {scene.landmark() + 0.01 * Vec3::Ones(), scene.camera1});
 }
 
-// Points behind the target camera must not pull on anything.
+// Points behind the target camera must have zero derivatives.
 TEST(CalibratedReprojectionFactor, OfAPointBehindTheCameraIsConstant) {
   const Scene scene;
   auto parameters = scene.parameters(true);

@@ -35,7 +35,7 @@ struct States {
   Vec3 velocity_k1() const { return motion_k1.segment<3>(kVelocityAt); }
 };
 
-// The error before whitening, and the two world vectors that body k's axes see, which its Jacobian needs.
+// Residual before whitening, and the two world vectors that its Jacobian needs in axes of body k.
 struct InertialError {
   Vec15 e;
   Vec3 displacement_W;     // beyond constant velocity and gravity, m
@@ -56,7 +56,7 @@ struct InertialError {
   }
 };
 
-// Derivatives of the unwhitened error; those by a pose are by its 6 perturbation coordinates.
+// Derivatives of the residual before whitening. Those by a pose are by its 6 perturbation coordinates.
 struct InertialJacobians {
   Eigen::Matrix<double, kSize, 6> pose_k = Eigen::Matrix<double, kSize, 6>::Zero();
   Eigen::Matrix<double, kSize, 9> motion_k = Eigen::Matrix<double, kSize, 9>::Zero();
@@ -95,8 +95,8 @@ struct InertialJacobians {
   }
 
  private:
-  // gamma is corrected by exp(c), so a further change d of c turns it by J_l(c) d in body k, and that stands
-  // on the right of the error's rotation.
+  // gamma is corrected by exp(c). A further change d of c rotates gamma by J_l(c) d in body k, on the right
+  // side of the residual's rotation.
   static Mat3 thetaByCorrection(const States& s, const Preintegration& preintegration, const Vec3& theta) {
     const Vec3 correction = preintegration.biasJacobian().block<3, 3>(kTheta, 0) *
                                 (s.gyroscopeBias_k() - preintegration.gyroscopeBias()) +

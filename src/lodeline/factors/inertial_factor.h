@@ -9,7 +9,8 @@ namespace lodeline {
 
 constexpr int kSensorAxesSize = 9;
 
-/// Where the inertial factor takes its Jacobian. Null: linearize that block at its current value.
+/// Linearization points of the inertial factor. Null: the Jacobian of that block is taken at its current
+/// value.
 struct InertialLinearizationPoints {
   const double* pose_k = nullptr;
   const double* motion_k = nullptr;
@@ -19,15 +20,16 @@ struct InertialLinearizationPoints {
   const double* accelerometer_axes = nullptr;
 };
 
-/// Which sensors' axes are blocks of the inertial factor; the others' are as calibrated.
+/// The sensors whose axes are blocks of the inertial factor. The axes of the others stay as calibrated.
 struct EstimatedAxes {
   bool gyroscope = false;
   bool accelerometer = false;
 };
 
-/// The IMU between two states, 15 residuals on the blocks pose k, motion k, pose k+1, motion k+1 (layout,
-/// axes of the perturbation and linearization points as in factors/parameters.h), then the axes d of the
-/// gyroscope and of the accelerometer (SensorAxes) where these are estimated.
+/// IMU factor between two states: 15 residuals on the blocks pose k, motion k, pose k+1 and motion k+1. Their
+/// layout, the axes of the perturbation and the linearization points are those of factors/parameters.h. The
+/// axes d of the gyroscope and of the accelerometer (SensorAxes) follow as further blocks where they are
+/// estimated.
 ///
 ///   e = [ R_B_W^k (p^{k+1} - p^k - v^k dt - g dt^2 / 2) - alpha(b^k, d)]   m
 ///       [ R_B_W^k (v^{k+1} - v^k - g dt) - beta(b^k, d)                ]   m/s
@@ -35,9 +37,9 @@ struct EstimatedAxes {
 ///       [ b_g^{k+1} - b_g^k                                            ]   rad/s
 ///       [ b_a^{k+1} - b_a^k                                            ]   m/s^2
 ///
-/// all in axes of body k, whitened by the preintegration's covariance; alpha, beta and gamma to first order
-/// at the biases of k and the axes. The paper's section III-C with gravity pointing down. Derivation:
-/// docs/inertial.md.
+/// The residual is in axes of body k and is whitened by the covariance of the preintegration. alpha, beta and
+/// gamma are first-order expansions at the biases of k and the axes. This is section III-C of the paper with
+/// gravity pointing down. Derivation: docs/inertial.md.
 class InertialFactor final : public ceres::CostFunction {
  public:
   /// `preintegration` must outlive the factor and may be repropagated between evaluations, not during one.

@@ -107,7 +107,7 @@ Preintegration preintegrate(double duration_s) {
 TEST(InertialFactor, IsZeroAtTheTruth) {
   const Preintegration p = preintegrate(0.2);
   const Vec15 residual = evaluate(InertialFactor(&p, standardGravity_W()), trueBlocks(p)).residual;
-  // In sigmas; what is left is the integration's own error.
+  // In sigmas; the rest is the error of the integration itself.
   EXPECT_LT(residual.norm(), 0.05);
 }
 
@@ -226,7 +226,7 @@ TEST(InertialFactor, TurningAndMovingTheWorldAboutGravityChangesNothing) {
   }
   const Vec15 residual = evaluate(factor, blocks).residual;
   EXPECT_LT((evaluate(factor, other).residual - residual).norm(), 1e-8 * (1.0 + residual.norm()));
-  // A tilt of the world must be seen.
+  // A tilt of the world must change the residual.
   const Quat tilt = so3::exp(Vec3(0.01, 0.0, 0.0));
   for (const int b : {0, 2}) {
     other[b] = poseVector(Rigid3(tilt, Vec3::Zero()) * poseFromBlock(blocks[b].data()));
@@ -247,7 +247,7 @@ TEST(InertialFactor, TakesJacobiansAtLinearizationPointsAndTheResidualAtTheValue
   EXPECT_EQ(evaluate(anchored, now).jacobians, evaluate(plain, first).jacobians);
   EXPECT_NE(evaluate(anchored, now).jacobians, evaluate(plain, now).jacobians);
 
-  // The axes have theirs like the other blocks.
+  // The axes have linearization points like the other blocks.
   const auto withBoth = [&] { return withAxes(withAxes(first, 0.01, gaussian), 0.01, gaussian); };
   const Blocks first_axes = withBoth(), now_axes = withBoth();
   const InertialFactor anchored_axes(
@@ -262,7 +262,8 @@ TEST(InertialFactor, TakesJacobiansAtLinearizationPointsAndTheResidualAtTheValue
   EXPECT_EQ(evaluate(partly, now).jacobians, evaluate(plain, {first[0], now[1], now[2], now[3]}).jacobians);
 }
 
-// With all Jacobians at one point, a yaw about gravity and a shift of the world stay unobservable.
+// With all Jacobians at one linearization point, a yaw about gravity and a translation of the world stay
+// unobservable.
 TEST(InertialFactor, LinearizationPointsKeepYawAndPositionUnobservable) {
   const Preintegration p = preintegrate(0.3);
   Gaussian gaussian;

@@ -9,7 +9,7 @@ namespace {
 
 class InterpolatedPoseTest : public testing::Test {
  protected:
-  // A turn with a swerve, and the later poses as a solver might have moved them.
+  // A curved path with rotation, and the outer poses after a correction by a solver.
   Rigid3 before_{so3::exp(Vec3(0.1, 0.0, 0.9)), Vec3(1.1, -2.0, 0.5)};
   Rigid3 after_{so3::exp(Vec3(0.4, 0.2, 1.2)), Vec3(1.4, -1.7, 0.7)};
   ReprojectionScene scene_;
@@ -83,7 +83,7 @@ TEST_F(InterpolatedPoseTest, GivesAFactorTheResidualAtThatPose) {
   EXPECT_LT((residual - expected).norm(), 1e-9 * expected.norm());
 }
 
-// Wherever the poses are now, the Jacobian is that of the poses' linearization points.
+// The Jacobian is that at the linearization points, whatever the current poses are.
 TEST_F(InterpolatedPoseTest, TakesItsJacobianAtLinearizationPoints) {
   const Eigen::VectorXd host = poseVector(scene_.world_from_host), landmark = scene_.landmark();
   const Eigen::VectorXd before = poseVector(moved_before_), after = poseVector(moved_after_);

@@ -5,13 +5,13 @@
 namespace lodeline {
 namespace {
 
-/// Where a point should be seen.
+/// Predicted position of a point in the image.
 struct Place {
   Vec2 from_centre_sigmas, in_plane, outwards_sigmas;
   double radius_squared;
 
   Place(const DirectionMeasurement& measurement, const Vec2& residual) {
-    // Behind the camera there is no place that the point should be seen at.
+    // A point behind the camera has no predicted pixel; the observed pixel stands in for it.
     constexpr double kFar_sigmas = 200.0;
     const Vec2 moved = residual.squaredNorm() < kFar_sigmas * kFar_sigmas ? residual : Vec2::Zero();
     from_centre_sigmas = measurement.from_centre_sigmas + moved;
@@ -19,7 +19,7 @@ struct Place {
     outwards_sigmas = measurement.focal_lengths_sigmas.cwiseProduct(in_plane);
     radius_squared = in_plane.squaredNorm();
   }
-  /// Change of the radial polynomial there.
+  /// Change of the radial polynomial at this position, k_1 |p|^2 + k_2 |p|^4.
   double profile(const double* intrinsics) const {
     return intrinsics[4] * radius_squared + intrinsics[5] * radius_squared * radius_squared;
   }
@@ -55,7 +55,8 @@ IntrinsicsEffect intrinsicsEffect(const DirectionMeasurement& measurement, const
 }
 
 Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics) {
-  // What is seen there leaves no residual. The shift hardly depends on the residual, so few passes will do.
+  // Solves residual + shift(residual) = 0 by fixed-point iteration. The shift hardly depends on the residual,
+  // so three passes suffice.
   constexpr int kPasses = 3;
   Vec2 residual = Vec2::Zero();
   for (int pass = 0; pass < kPasses; ++pass) residual = -intrinsicsShift(measurement, residual, intrinsics);

@@ -9,45 +9,49 @@
 
 namespace lodeline {
 
-// Parameter block of a camera's lens, all zero where the calibration file is right:
+// Parameter block of the intrinsics of a camera, all zero where the calibration file is right:
 //   intrinsics  [s_u, s_v, c_u, c_v, k_1, k_2]: relative change of both focal lengths, shift of the principal
 //               point (px), change of the first two radial coefficients.
-// A ray that lies at p in the plane where the lens' model counts its radius (DirectionMeasurement::in_plane),
-// and that the file puts at the pixel u, is seen at
+// Let p be the position of a ray in the plane in which the camera model defines its radius
+// (DirectionMeasurement::in_plane). Let u be the pixel at which the intrinsics of the file project the ray.
+// The corrected intrinsics project it at
 //   u + diag(s_u, s_v) (u - c) + [c_u, c_v] + (k_1 |p|^2 + k_2 |p|^4) diag(f_u, f_v) p
-// with the file's principal point c and focal lengths f: to first order what other numbers in the file would
-// make of it. Powers of the sine would leave 0.3 px at the border for errors of 0.006 in the coefficients, to
-// opposite sides, and the focal length would take them up.
+// with the principal point c and the focal lengths f of the file. This is the first-order effect of different
+// numbers in the file. Powers of the sine of the angle, in place of p, would leave 0.3 px at the border for
+// errors of 0.006 in the coefficients. Their signs would be opposite on opposite sides. The focal length
+// would absorb that error.
 
 constexpr int kIntrinsicsSize = 6;
 
-/// What a lens does to an observation.
+/// Effect of an intrinsics block on the residual of one observation.
 struct IntrinsicsEffect {
-  Vec2 shift;  ///< to add to the residual by the file's lens, sigmas
+  Vec2 shift;  ///< to be added to the residual by the file's intrinsics, sigmas
   Eigen::Matrix<double, 2, kIntrinsicsSize> by_intrinsics;  ///< d(shift)
-  Mat2 by_residual;                                         ///< d(residual + shift) / d(residual by the file)
+  Mat2 by_residual;  ///< d(residual + shift) / d(residual by the file's intrinsics)
 };
 
-/// Where the file's lens leaves `residual` of an observation. The shift is taken where the point should be
-/// seen, not where it was: the noise of an observation is in its residual, and with the noise of its place in
-/// the derivative their product would speak for a longer lens in every observation (by 0.3 % for half a
-/// pixel, twenty sigmas of a dive; camera_states_test.cpp).
+/// Effect of the intrinsics block on an observation whose residual with the file's intrinsics is `residual`.
+/// The shift is evaluated at the pixel where the point is predicted, not at the pixel where it was observed.
+/// The observed pixel contains the noise of the residual. Noise in both the residual and its derivative would
+/// bias every observation towards a longer focal length: by 0.3 % for half a pixel, twenty sigmas of a dive
+/// (camera_states_test.cpp).
 IntrinsicsEffect intrinsicsEffect(const DirectionMeasurement& measurement, const Vec2& residual,
                                   const double* intrinsics);
 
-/// IntrinsicsEffect::shift alone.
+/// Only the shift of intrinsicsEffect().
 Vec2 intrinsicsShift(const DirectionMeasurement& measurement, const Vec2& residual, const double* intrinsics);
 
-/// The ray of an observation that a lens with an intrinsics block put in makes of its pixel, where
-/// DirectionMeasurement::bearing_C is what the file makes of it.
+/// Unit ray of an observation's pixel by the intrinsics of the file corrected by an intrinsics block.
+/// DirectionMeasurement::bearing_C is the ray by the file alone.
 Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics);
 
-/// A calibration file's lens with an intrinsics block put in, in its own model (which becomes
-/// radial-tangential where it had no distortion).
+/// The calibration of a file with an intrinsics block applied, in the camera model of the file. A model
+/// without distortion becomes radial-tangential where the block changes a radial coefficient.
 CameraCalibration correctedIntrinsics(const CameraCalibration& file, const double* intrinsics);
 
-/// Another reprojection factor of two residuals, with the intrinsics of the camera that made the observation
-/// as one block more, the last.
+/// Adds the intrinsics block of the observing camera to another reprojection factor with two residuals. The
+/// block is the last one. Residual r = r_file + shift(r_file, intrinsics), in sigmas, where r_file is the
+/// residual of the other factor (intrinsicsEffect()).
 class IntrinsicsFactor final : public ceres::CostFunction {
  public:
   IntrinsicsFactor(std::unique_ptr<ceres::CostFunction> factor, const DirectionMeasurement& measurement);

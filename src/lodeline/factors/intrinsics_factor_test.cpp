@@ -16,7 +16,8 @@ Intrinsics intrinsics(double focal_u, double focal_v, double centre_u_px, double
 
 const Intrinsics kWrongLens = intrinsics(0.006, -0.004, 2.5, -1.5, 0.008, -0.01);
 
-/// What a camera with `lens` beyond its file sees of the scene's landmark, read with the file.
+/// Measurement of the scene's landmark by a camera with corrected intrinsics `lens`, interpreted with the
+/// intrinsics of the file.
 DirectionMeasurement seenThrough(const CameraCalibration& file, const Intrinsics& lens, const Vec3& point_C,
                                  double sigma_px) {
   const Vec2 pixel = *makeCamera(correctedIntrinsics(file, lens.data()))->project(point_C);
@@ -40,11 +41,12 @@ TEST_P(IntrinsicsOfAModel, LeaveNothingAtTheTrueLens) {
   const double uncorrected = kSigma_px * evaluate(with, {scene_.landmark(), intrinsics(0, 0, 0, 0)}).norm();
   const double corrected = kSigma_px * evaluate(with, {scene_.landmark(), kWrongLens}).norm();
   EXPECT_GT(uncorrected, 1.0);
-  // What is left is of second order, and what the models differ by beyond the fourth power.
+  // The remaining error is of second order, plus the difference of the models beyond the fourth power.
   EXPECT_LT(corrected, 0.06);
 }
 
-// Where the profile changes most. What were left there a longer focal length would have to explain.
+// Near the border the radial profile changes most. A focal length would absorb what the block leaves
+// unexplained there.
 TEST_P(IntrinsicsOfAModel, ExplainAWrongProfileOutToTheBorder) {
   constexpr double kBorder_rad = 0.75;
   const Intrinsics profile = intrinsics(0.0, 0.0, 0.0, 0.0, 0.01, -0.012);
@@ -86,7 +88,8 @@ TEST_P(IntrinsicsOfAModel, CountInSigmas) {
   EXPECT_LT((of_fine.by_residual - of_coarse.by_residual).norm(), 1e-9);
 }
 
-// A centre that is shifted by a pixel is a pixel everywhere, a longer focal length shows at the border only.
+// A shift of the principal point by one pixel moves every point by one pixel. A longer focal length moves
+// points at the border only.
 TEST_P(IntrinsicsOfAModel, OnTheAxisOnlyTheCentreShows) {
   const auto measurement = DirectionMeasurement::fromBearing(*makeCamera(file_), Vec3::UnitZ(), 1.0);
   Eigen::Matrix<double, 2, kIntrinsicsSize> expected;
@@ -96,7 +99,7 @@ TEST_P(IntrinsicsOfAModel, OnTheAxisOnlyTheCentreShows) {
             1e-9);
 }
 
-// An observation that is off by noise says of the lens what an exact one says.
+// A noisy observation and an exact one must have the same derivative with respect to the intrinsics.
 TEST_P(IntrinsicsOfAModel, TakeTheirDerivativeWhereThePointShouldBe) {
   const auto camera = makeCamera(file_);
   const auto seenAt = [&](const Vec2& error_px) {

@@ -12,9 +12,9 @@
 
 namespace lodeline {
 
-/// Test support: holds a cost function's analytic Jacobians against fourth-order central differences through
-/// the pose manifold (blocks of 7) or plain addition (other blocks). The largest deviation of a block,
-/// relative to the block's largest entry, must stay below `tolerance`.
+/// Test support: compares a cost function's analytic Jacobians with fourth-order central differences.
+/// Differences go through the pose manifold for blocks of size 7, through plain addition for the others. The
+/// largest deviation in a block, relative to the block's largest entry, must stay below `tolerance`.
 inline void expectJacobiansMatch(const ceres::CostFunction& function,
                                  const std::vector<Eigen::VectorXd>& parameters, double tolerance = 1e-6) {
   const int rows = function.num_residuals();
@@ -63,7 +63,7 @@ inline void expectJacobiansMatch(const ceres::CostFunction& function,
   }
 }
 
-/// A pose or motion as a vector that owns its memory.
+/// A pose as a parameter block that owns its memory.
 inline Eigen::VectorXd poseVector(const Rigid3& world_from_body) {
   Eigen::VectorXd block(kPoseSize);
   poseToBlock(world_from_body, block.data());

@@ -19,11 +19,11 @@ namespace lodeline {
 // pose block's 7 Jacobian columns and zero into the last; PoseManifold's plus-Jacobian picks those six out
 // again.
 //
-// First estimates: a cost function may be given, per block, a pointer to the block's linearization point. The
-// residual is taken at the current value but the Jacobian at the linearization point, so that blocks which a
-// marginalization prior touches are linearized at one point for all factors (Huang, Mourikis & Roumeliotis,
-// "Observability-based rules for designing consistent EKF SLAM estimators", IJRR 2010). A null pointer means:
-// linearize at the current value.
+// Linearization points (first-estimate Jacobians): a cost function may be given, per block, a pointer to the
+// block's linearization point. The residual is taken at the current value but the Jacobian at the
+// linearization point. Blocks in a marginalization prior are then linearized at one point for all factors
+// (Huang, Mourikis & Roumeliotis, "Observability-based rules for designing consistent EKF SLAM estimators",
+// IJRR 2010). A null pointer means: linearize at the current value.
 
 constexpr int kPoseSize = 7;
 constexpr int kPoseTangentSize = 6;
@@ -32,10 +32,10 @@ constexpr int kMotionSize = 9;
 Rigid3 poseFromBlock(const double* block);
 void poseToBlock(const Rigid3& world_from_body, double* block);
 
-/// world_from_body moved by a perturbation [dp, dtheta] in world axes.
+/// world_from_body after a perturbation [dp, dtheta] in world axes.
 Rigid3 perturbed(const Rigid3& world_from_body, const Eigen::Matrix<double, 6, 1>& perturbation);
 
-/// The perturbation that leads from `from` to `to`.
+/// The perturbation [dp, dtheta] that takes `from` to `to`.
 Eigen::Matrix<double, 6, 1> perturbationBetween(const Rigid3& from, const Rigid3& to);
 
 class PoseManifold final : public ceres::Manifold {

@@ -9,14 +9,13 @@
 
 namespace lodeline {
 
-/// What marginalization leaves behind: a quadratic cost over some parameter blocks around their first
-/// estimates,
-///   cost(x) = 1/2 || J d + e ||^2,   d = x (-) linearization point, stacked over the blocks in order,
-/// with pose blocks differing by perturbationBetween() and others by subtraction. J is square and upper
-/// triangular.
+/// Marginalization prior: a quadratic cost over some parameter blocks around their linearization points,
+///   cost(x) = 1/2 || J d + e ||^2,   d = x (-) linearization point, stacked over the blocks in order.
+/// The difference of pose blocks is perturbationBetween(), that of other blocks is subtraction. J is square
+/// and upper triangular.
 struct Prior {
   struct Block {
-    double* value = nullptr;  ///< where the block lives; owned by the window
+    double* value = nullptr;  ///< current value of the block; owned by the window
     Eigen::VectorXd linearization_point;
 
     bool isPose() const { return linearization_point.size() == kPoseSize; }
@@ -27,10 +26,10 @@ struct Prior {
   std::vector<Block> blocks;
   Eigen::MatrixXd sqrt_information;  ///< J
   Eigen::VectorXd offset;            ///< e
-  Eigen::MatrixXd information;       ///< J^T J where it is at hand, else empty
+  Eigen::MatrixXd information;       ///< J^T J where it is already computed, else empty
 
-  /// Adds a block that is known to `sigmas` (one per tangent coordinate) about its present value,
-  /// independently of the others.
+  /// Adds a block with the given standard deviations (one per tangent coordinate) around its present value,
+  /// independent of the other blocks.
   void append(double* value, int size, const Eigen::VectorXd& sigmas);
 
   bool empty() const { return blocks.empty(); }
@@ -40,8 +39,8 @@ struct Prior {
   Eigen::VectorXd difference(double const* const* values) const;
 };
 
-/// The prior as a term of the cost; its Jacobian is constant, being taken at the linearization points. The
-/// prior must outlive the factor.
+/// The prior as a factor: residual r = J d + e. Its Jacobian J is constant because it belongs to the
+/// linearization points. The prior must outlive the factor.
 class PriorFactor final : public ceres::CostFunction {
  public:
   explicit PriorFactor(const Prior& prior);

@@ -13,7 +13,7 @@ using RowMajor2 = Eigen::Matrix<double, 2, Cols, Eigen::RowMajor>;
 
 LandmarkBase::LandmarkBase(const Vec3& bearing) : bearing_C(bearing), tangent_C(tangentBasis(bearing)) {}
 
-/// The chain from landmark to target camera at one pair of poses, with all that the Jacobians need.
+/// Intermediate values from landmark to target camera at one pair of poses, as the Jacobians need them.
 struct ReprojectionFactor::Chain {
   Mat3 camera_rotation_world;  // R_BC'^T R_t^T
   Mat3 world_rotation_host;    // R_h R_BC

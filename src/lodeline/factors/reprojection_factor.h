@@ -7,9 +7,10 @@
 
 namespace lodeline {
 
-/// A point as seen from its host camera: the direction d = base + tangent * (a, b), not normalized, and the
-/// inverse distance rho (1/m) along `base`, so that the point lies at d / rho. The parameter block is (a, b,
-/// rho). Points behind or infinitely far away (rho = 0) need no special case.
+/// Tangent basis of a landmark's parameters in its host camera. The direction is d = base + tangent * (a, b),
+/// not normalized, and rho (1/m) is the inverse distance along `base`, so the point lies at d / rho. The
+/// parameter block is (a, b, rho). Points behind the camera or infinitely far away (rho = 0) need no special
+/// case.
 struct LandmarkBase {
   Vec3 bearing_C = Vec3::UnitZ();
   Mat32 tangent_C = Mat32::Identity();
@@ -23,7 +24,7 @@ struct LandmarkBase {
 
 constexpr int kLandmarkSize = 3;
 
-/// Reprojection error of a landmark in another frame than its host (paper section III-B, e_r).
+/// Reprojection error of a landmark in a frame other than its host frame (paper section III-B, e_r).
 ///
 /// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3). With body poses R_h, p_h,
 /// R_t, p_t and extrinsics R_BC, p_BC of host and target camera,
@@ -33,8 +34,8 @@ constexpr int kLandmarkSize = 3;
 /// A point that falls behind the target's image plane is a gross outlier: constant error, zero Jacobian.
 class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandmarkSize> {
  public:
-  /// The linearization points may be null (see parameters.h) and must outlive the factor, as must nothing
-  /// else.
+  /// The linearization points may be null (see parameters.h). They must outlive the factor; the other
+  /// arguments need not.
   ReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,
                      const Rigid3& body_from_host_camera, const Rigid3& body_from_target_camera,
                      const double* host_linearization_point, const double* target_linearization_point);
@@ -51,8 +52,9 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandm
   const double* target_linearization_point_;
 };
 
-/// The same error in an image that was taken in the host frame itself, by the host camera or a camera beside
-/// it: it depends on the landmark alone.
+/// Reprojection error in an image of the host frame itself, taken by the host camera or by a secondary
+/// camera. It depends on the landmark alone: with the extrinsics R, p of the host camera in the target
+/// camera, e = directionResidual(R d + rho p).
 class HostReprojectionFactor final : public ceres::SizedCostFunction<2, kLandmarkSize> {
  public:
   HostReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,

@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// A landmark seen from two body poses with different extrinsics.
+/// A landmark observed from two body poses with different extrinsics.
 struct Scene : ReprojectionScene {
   Rigid3 body_from_host_camera{so3::exp(Vec3(0.1, -1.5, 0.2)), Vec3(-0.02, -0.06, 0.01)};
   Rigid3 body_from_target_camera{so3::exp(Vec3(0.12, -1.48, 0.22)), Vec3(-0.02, 0.05, 0.02)};
@@ -79,7 +79,7 @@ TEST(ReprojectionFactor, IsInvariantUnderAnyMotionOfTheWorld) {
 
 TEST(ReprojectionFactor, LinearizationPointsKeepTranslationAndYawUnobservable) {
   Scene scene;
-  // First estimates that differ from the current poses and from each other's error.
+  // Linearization points that differ from the current poses, each by another perturbation.
   const Eigen::VectorXd host_first = poseVector(
       perturbed(scene.world_from_host,
                 (Eigen::Matrix<double, 6, 1>() << 0.02, 0.01, -0.03, 0.01, 0.02, -0.01).finished()));

@@ -13,7 +13,7 @@
 
 namespace lodeline {
 
-/// Test support: a landmark before a camera of the usual kind, and two bodies that see it.
+/// Test support: a landmark in front of a typical camera, observed from two body poses.
 struct ReprojectionScene {
   std::shared_ptr<const Camera> camera = makeCamera(calibration());
   Rigid3 world_from_host{so3::exp(Vec3(0.3, 0.2, 1.0)), Vec3(1.0, -2.0, 0.5)};
@@ -34,7 +34,7 @@ struct ReprojectionScene {
     return calibration;
   }
 
-  /// The direction that the landmark is anchored to: not quite that of the truth.
+  /// The base of the landmark, whose bearing deviates slightly from the true direction.
   LandmarkBase base() const { return LandmarkBase((point_host_C + Vec3(0.02, 0.01, 0.0)).normalized()); }
 
   /// The landmark's true parameters.
@@ -50,7 +50,7 @@ struct ReprojectionScene {
   }
 };
 
-/// The same camera with another lens.
+/// Calibration of the same camera with another distortion model.
 inline CameraCalibration withModel(DistortionModel model) {
   CameraCalibration file = ReprojectionScene::calibration();
   file.distortion_model = model;
@@ -59,7 +59,7 @@ inline CameraCalibration withModel(DistortionModel model) {
   return file;
 }
 
-/// The residual of a factor of two rows.
+/// Residual of a factor with two rows.
 inline Vec2 evaluate(const ceres::CostFunction& factor, const std::vector<Eigen::VectorXd>& parameters) {
   std::vector<const double*> pointers;
   for (const auto& block : parameters) pointers.push_back(block.data());

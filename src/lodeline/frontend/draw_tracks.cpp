@@ -17,7 +17,7 @@ cv::Point fixedPoint(const Eigen::Vector2f& pixel) {
           static_cast<int>(std::lround(pixel.y() * (1 << kShift)))};
 }
 
-/// The colours of all levels at once; OpenCV builds its map anew with every call.
+/// Colours of all levels at once, because OpenCV computes its colour map at every call.
 cv::Mat turboColours() {
   cv::Mat levels(256, 1, CV_8U);
   for (int i = 0; i < 256; ++i) levels.at<uint8_t>(i) = static_cast<uint8_t>(i);

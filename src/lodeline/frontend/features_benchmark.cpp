@@ -20,7 +20,7 @@ struct Frame {
   Quat previous_from_current = Quat::Identity();
 };
 
-/// One iteration is one frame: the sequence is run from its start again and again, tracks kept.
+/// One iteration is one frame: the sequence is repeated, and tracks are kept.
 void trackFrames(benchmark::State& state, const Rig& rig, const std::vector<Frame>& frames) {
   cv::setNumThreads(1);
   FrontEnd front_end(rig, {});

@@ -84,7 +84,7 @@ FrameTracks FrontEnd::process(Time time, const std::vector<cv::Mat>& images,
     statistics_.lost = static_cast<int>(tracks_.size());
     tracks_.clear();
   }
-  // After a gap nothing is where the images before let it be expected.
+  // After a gap the predictions by earlier images are not valid.
   if (interval_s > kGap * previous_interval_s_) {
     for (Track& track : tracks_) track.prediction_error_px.reset();
   }
@@ -115,7 +115,8 @@ ImagePyramid FrontEnd::pyramid(const cv::Mat& image) const {
 }
 
 void FrontEnd::updateQuality(const ImagePyramid& current) {
-  // Leaving the state later than entering it keeps patches of two images comparable.
+  // The threshold for leaving the state differs from that for entering it, so that patches of two images stay
+  // comparable.
   constexpr double kHysteresis = 1.3, kNoiseHysteresis = 0.93;
   statistics_.image = assess(current);
   const bool faint =
@@ -142,7 +143,7 @@ FrontEnd::Followed FrontEnd::follow(std::vector<Track> tracks, const ImagePyrami
 
 void FrontEnd::follow(const ImagePyramid& current, const Mat3& current_from_previous_C,
                       const Mat3& alternative_C) {
-  // Less than that is within the tracker's reach.
+  // Smaller differences are within the reach of the tracker.
   constexpr double kReach_rad = 0.05;
   const size_t before = tracks_.size();
   const bool differ =
@@ -166,7 +167,7 @@ void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings, const 
   const Camera& camera = *cameras_.front();
   std::vector<Vec3> bearings;
   for (const Track& track : tracks_) {
-    // The tracker has seen to it that the pixel lies in the image; a ray may still not exist at the corners.
+    // The tracker guarantees that the pixel is in the image; at the corners there may still be no ray.
     bearings.push_back(camera.unproject(track.warp.position.cast<double>()).value_or(Vec3::Zero()));
   }
   const auto agreeing = [&](const Mat3& rotation) {
@@ -191,7 +192,7 @@ void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings, const 
 }
 
 void FrontEnd::rejectCrowded() {
-  // Two tracks that have run into each other follow the same point; the older knows it better.
+  // Two tracks that are very close track the same point; the older one is more accurate.
   const auto distance = static_cast<float>(0.5 * options_.detector.min_distance_px);
   std::vector<Eigen::Vector2f> kept;
   const size_t removed = std::erase_if(tracks_, [&](const Track& track) {

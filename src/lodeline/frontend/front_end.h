@@ -22,45 +22,47 @@ struct FrontEndOptions {
   StereoMatcherOptions stereo;
   TwoPointRansacOptions consensus;
   StaticImageMaskOptions static_image_mask;
-  /// Images whose texture (ImageQuality::texture_grey) is below this are smoothed more before tracking, for
-  /// noise weighs more in them.
+  /// Images whose texture (ImageQuality::texture_grey) is below this are smoothed more before tracking,
+  /// because noise has more influence on them.
   double faint_texture_grey = 1.5;
-  /// So are images of which more than this is on the finest scale (ImageQuality::sharpness), as mere noise
-  /// has 0.65 of it and clear pictures 0.35 to 0.45.
+  /// The same holds for images with more than this share of detail on the finest scale
+  /// (ImageQuality::sharpness). Mere noise has 0.65, clear images have 0.35 to 0.45.
   double noisy_sharpness = 0.46;
-  /// Tracks are looked for again after images of camera 0 were missing for at most this long.
+  /// Tracks continue after gaps in the images of camera 0 of at most this length.
   double max_gap_s = 1.0;
   /// Standard deviation of an observation.
   double sigma_px = 1.0;
 };
 
-/// What became of the tracks in one frame.
+/// Result of one frame's tracking.
 struct FrontEndStatistics {
   int kept = 0;      ///< followed from the frame before
-  int lost = 0;      ///< not found again, or of poor likeness
-  int rejected = 0;  ///< found, but against the motion of the others or on top of another track
+  int lost = 0;      ///< not found again, or with too low a correlation
+  int rejected = 0;  ///< found, but contradicting the motion of the others, or on top of another track
   int created = 0;
-  int matched = 0;       ///< seen in at least one secondary camera
+  int matched = 0;       ///< observed in at least one secondary camera
   bool missing = false;  ///< camera 0 gave no image
   ImageQuality image;    ///< of camera 0
 
   int tracks() const { return kept + created; }
 };
 
-/// From images to tracked points. Points live in camera 0, are followed from frame to frame with the
-/// gyroscope's rotation as prediction, and are matched into every other camera of the same moment; one camera
-/// is merely the case without others.
+/// Extracts feature tracks from images. Points are tracked in camera 0 from frame to frame, with the rotation
+/// by the gyroscope as prediction. They are matched with the images of every secondary camera of the same
+/// time, if there is one.
 class FrontEnd {
  public:
   /// Throws InputError where a camera's calibration or mask cannot be used, or the rig has no camera.
   FrontEnd(const Rig& rig, const FrontEndOptions& options);
 
+  /// Processes the images of one time and returns the observations.
+  ///
   /// `images`: one 8-bit grey image per camera of the rig; empty where the camera gave none.
-  /// `previous_from_current_B`: rotation of the body between the call before and this one; `alternative_B`:
-  /// another opinion of it, which counts where the images do not agree with the first. Without an image of
-  /// camera 0 nothing is observed, and tracks wait for the next one. What another camera saw at another
-  /// moment, by `motion`, is given as it would have seen it at `time`. Throws InputError where an image has
-  /// another size or type than the calibration says.
+  /// `previous_from_current_B`: rotation of the body between the previous call and this one. `alternative_B`:
+  /// another prediction of it, which is used where the images contradict the first. Without an image of
+  /// camera 0 there are no observations, and tracks wait for the next one. If `motion` contains another time
+  /// for a secondary camera's image, its observations are converted to `time`. Throws InputError where an
+  /// image has another size or type than its calibration.
   FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
                       const Quat& alternative_B, const RigMotion& motion = {});
   FrameTracks process(Time time, const std::vector<cv::Mat>& images, const Quat& previous_from_current_B,
@@ -68,16 +70,16 @@ class FrontEnd {
     return process(time, images, previous_from_current_B, previous_from_current_B, motion);
   }
 
-  /// Gives up all tracks: the images so far were not those of camera 0.
+  /// Discards all tracks, because the images so far were not those of camera 0.
   void forgetTracks();
 
-  /// Of the last frame.
+  /// Statistics of the last frame.
   const FrontEndStatistics& statistics() const { return statistics_; }
   const std::vector<Track>& tracks() const { return tracks_; }
   const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
-  /// By how much later than thought a secondary camera (1, 2, ...) takes its images.
+  /// Time by which a secondary camera (1, 2, ...) takes its images later than assumed.
   StereoDelay& delay(size_t camera) { return matchers_[camera - 1].delay(); }
-  /// What stays at its place in the images of each camera and is not looked at.
+  /// Static structures in the images of each camera, in which no points are used.
   const std::vector<StaticImageMask>& fixedStructures() const { return static_image_masks_; }
 
  private:
@@ -114,8 +116,8 @@ class FrontEnd {
   ImagePyramid previous_;
   bool faint_ = false;  ///< the last image was faint or noisy
   Time previous_time_;
-  double previous_interval_s_ = 0.0;  ///< that led there
-  /// Since the last image of camera 0, by either opinion.
+  double previous_interval_s_ = 0.0;  ///< interval between the last two images
+  /// Rotations since the last image of camera 0, by both predictions.
   Quat previous_from_current_B_ = Quat::Identity(), alternative_B_ = Quat::Identity();
   TrackId next_id_ = 0;
   FrontEndStatistics statistics_;

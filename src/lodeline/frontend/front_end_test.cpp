@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFrames = 14;
 
-/// A sequence with its pictures, rendered once for all tests.
+/// A sequence with its images, rendered once for all tests.
 struct Recording {
   Recording(const TestLight& light, double speed_m_per_s) : sequence(light, speed_m_per_s) {
     for (int i = 0; i < kFrames; ++i) images.push_back(sequence.images(i));
@@ -227,7 +227,7 @@ TEST(FrontEnd, StartsAnewAfterALongSilence) {
 }
 
 TEST(FrontEnd, KeepsItsTracksThroughJumpsOfTheExposure) {
-  // Brighter, and the light parts of this image clip, which moves points that are followed by their rims.
+  // With more light the bright parts of this image saturate, which moves points tracked by their edges.
   for (const double gain : {0.4, 1.3}) {
     FrontEnd front_end(daylight().sequence.rig(), {});
     Recording recording = daylight();
@@ -286,8 +286,8 @@ TEST(DrawTracks, PaintsAllCamerasSideBySide) {
   EXPECT_EQ(drawTracks(front_end, {cv::Mat(), cv::Mat()}).size(), picture.size());
 }
 
-/// How far the rays that camera 1 is said to see at each frame's time are from the truth, median, px, and how
-/// many there are. Its images are those of `later` frames later; `motion_is_known`: to the front end.
+/// Median error, px, of the rays of camera 1 at each frame's time, and their number. Its images are those of
+/// `later` frames later; `motion_is_known`: to the front end.
 std::pair<double, size_t> rightRayError(int later, bool motion_is_known) {
   const TestSequence& sequence = daylight().sequence;
   FrontEnd front_end(sequence.rig(), {});
@@ -328,7 +328,7 @@ TEST(FrontEnd, GivesWhatAnotherCameraSawLaterAsItWouldHaveSeenItAtTheFramesTime)
   EXPECT_GT(unknown_px, 2.0) << "the sequence moves too little to test anything";
 }
 
-// A gyroscope in other units turns by radians what turns by hundredths.
+// A gyroscope in wrong units reports radians where the rotation is hundredths of a radian.
 TEST(FrontEnd, FollowsPointsByTheOtherOpinionWhereImagesContradictTheFirst) {
   const Recording& recording = daylight();
   const Quat wrong = so3::exp(0.5 * Vec3(0.6, -0.6, 0.5).normalized());

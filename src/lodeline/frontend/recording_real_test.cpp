@@ -58,7 +58,7 @@ class Mh01Tracks : public testing::Test {
     trackAll();
   }
 
-  /// The rotation comes from the gyroscope as it is, bias and all, as at the start of every run.
+  /// The predicted rotation uses the gyroscope without bias correction, as at the start of every run.
   void trackAll() {
     EurocSource source(data_, {}, &diagnostics_);
     Synchronizer synchronizer(&source, {}, &diagnostics_);
@@ -126,7 +126,7 @@ TEST_F(Mh01Tracks, AgreeWithTheTruePoses) {
   const Truth truth(data_ / "mav0" / "state_groundtruth_estimate0" / "gt_tum.txt");
   ASSERT_FALSE(truth.empty());
   const double focal_px = rig_.cameras[0].fx_px;
-  // The reference's own error of attitude grows into the last of these.
+  // The last of these includes the attitude error of the reference itself.
   for (const auto& [length, bar_px] : std::map<size_t, double>{{2, 0.12}, {10, 0.4}, {20, 0.7}}) {
     std::vector<double> residuals_px;
     for (const auto& [id, observations] : tracks_) {

@@ -7,10 +7,10 @@
 
 namespace lodeline {
 
-/// How far the tracks of camera 0 have slipped from the truth ten frames after each frame, averaged.
+/// Drift of the tracks of camera 0 relative to the truth over ten frames, averaged over all frames.
 struct TrackAccuracy {
   double tracks = 0.0;    ///< in a frame
-  double survived = 0.0;  ///< of them, ten frames later
+  double survived = 0.0;  ///< share of them ten frames later
   Vec2 bias_px = Vec2::Zero();
   double rms_px = 0.0;  ///< along each axis
 };

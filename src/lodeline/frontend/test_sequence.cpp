@@ -61,7 +61,7 @@ TestSequence::TestSequence(const TestLight& light, double speed_m_per_s)
 }
 
 Rigid3 TestSequence::worldFromBody(int frame) const {
-  // Body = camera 0 looks along z at the wall z = kWallDistance_m, swaying as it swims.
+  // The body, which is camera 0, looks along z at the wall z = kWallDistance_m and sways while it swims.
   const double t = frame / kRateHz, w = 2.0 * std::numbers::pi * 0.5;
   const double sway = speed_m_per_s_ > 0.0 ? 1.0 : 0.0;
   const Vec3 turn(0.03 * std::sin(w * t), 0.04 * std::sin(0.7 * w * t), 0.05 * std::sin(0.9 * w * t));
@@ -119,7 +119,7 @@ std::vector<cv::Mat> TestSequence::images(int frame) const {
         const double pool = std::exp(-0.5 * (dx * dx + dy * dy));
         const double light = light_.ambient_grey + light_.lamp_grey * pool;
         const double grey = light * (point ? albedo(point->x(), point->y()) : 1.0F) + light_.haze_grey * pool;
-        // The sum of four uniform numbers is near enough to a normal one; its deviation is 2 / sqrt(3).
+        // The sum of four uniform numbers is approximately normal; its standard deviation is 2 / sqrt(3).
         const double noise = uniform(random) + uniform(random) + uniform(random) + uniform(random);
         image.at<uint8_t>(y, x) =
             cv::saturate_cast<uint8_t>(grey + light_.noise_grey * 0.5 * std::numbers::sqrt3 * noise);

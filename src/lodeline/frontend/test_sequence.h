@@ -9,9 +9,9 @@
 
 namespace lodeline {
 
-/// How the pictures of a TestSequence are lit and taken. Grey values follow
-/// `(ambient + lamp) * albedo + haze`, where the albedo's mean is 1 and lamp and haze fall off from a point
-/// that stands still in the image, as a lamp on the rig does it.
+/// Light and noise in the images of a TestSequence. Grey values follow `(ambient + lamp) * albedo + haze`,
+/// where the albedo's mean is 1. Lamp and haze decrease with the distance from a point that is fixed in the
+/// image, as with a lamp on the rig.
 struct TestLight {
   double ambient_grey = 120.0;
   double lamp_grey = 0.0;          ///< in the centre of the pool
@@ -27,7 +27,7 @@ struct TestLight {
   static TestLight hazyLamp() { return {5.0, 60.0, 200.0, 90.0, 0.15, 1.5}; }
 };
 
-/// A stereo rig that swims along a rough wall (a textured plane), with exact truth for every pixel.
+/// A stereo rig that swims along a rough wall (a textured plane), with exact ground truth for every pixel.
 class TestSequence {
  public:
   explicit TestSequence(const TestLight& light, double speed_m_per_s = 0.3);
@@ -36,12 +36,12 @@ class TestSequence {
   static constexpr double kRateHz = 15.0;
   static Time time(int frame) { return Time::fromSeconds(100.0 + frame / kRateHz); }
   Rigid3 worldFromBody(int frame) const;
-  /// Between frame - 1 and frame.
+  /// Rotation from frame - 1 to frame.
   Quat previousFromCurrent(int frame) const;
 
   std::vector<cv::Mat> images(int frame) const;
 
-  /// Where the point seen at `pixel` is seen by another camera at another time.
+  /// Pixel at which another camera at another time observes the point observed at `pixel`.
   std::optional<Vec2> truePixel(int frame, int camera, const Vec2& pixel, int other_frame,
                                 int other_camera) const;
 

@@ -4,18 +4,18 @@
 
 namespace lodeline {
 
-/// A rigid transformation. Named target_from_source: `world_from_body` maps body coordinates (m) into the
-/// world.
+/// Rigid transformation target_from_source, x_target = R x_source + t. For example, `world_from_body` maps
+/// body coordinates (m) to world coordinates.
 struct Rigid3 {
-  Quat rotation = Quat::Identity();  ///< target from source, unit
-  Vec3 translation = Vec3::Zero();   ///< origin of the source frame in target coordinates, m
+  Quat rotation = Quat::Identity();  ///< R, target from source, unit quaternion
+  Vec3 translation = Vec3::Zero();   ///< t, origin of the source frame in target coordinates, m
 
   Rigid3() = default;
   Rigid3(const Quat& rotation_in, const Vec3& translation_in)
       : rotation(rotation_in), translation(translation_in) {}
 
-  /// From a 4x4 homogeneous matrix whose rotation part is orthonormal to 1e-3 or better (it is
-  /// re-orthonormalized); throws InputError, naming `what`, otherwise.
+  /// Transformation from a 4x4 homogeneous matrix. The rotation part must be orthonormal to 1e-3 and is
+  /// re-orthonormalized. Throws InputError naming `what` otherwise.
   static Rigid3 fromMatrix(const Eigen::Matrix4d& matrix, const char* what);
   Eigen::Matrix4d matrix() const;
 

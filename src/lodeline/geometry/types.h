@@ -12,7 +12,7 @@ using Mat3 = Eigen::Matrix3d;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Mat23 = Eigen::Matrix<double, 2, 3>;
 using Mat32 = Eigen::Matrix<double, 3, 2>;
-/// Hamilton, unit.
+/// Unit quaternion, Hamilton convention.
 using Quat = Eigen::Quaterniond;
 
 }  // namespace lodeline

@@ -29,7 +29,7 @@ double standardDeviation(const std::vector<Vec3>& values) {
   return std::sqrt(sum / (3.0 * static_cast<double>(values.size() - 1)));
 }
 
-// Specific forces, each turned into the frame of the last reading.
+// Specific forces rotated into the frame of the last reading.
 std::vector<Vec3> turnedToLast(std::span<const ImuSample> samples, const Vec3& gyroscope_bias) {
   std::vector<Vec3> forces{samples.front().specific_force_B};
   Quat first_from_body = Quat::Identity();
@@ -44,9 +44,9 @@ std::vector<Vec3> turnedToLast(std::span<const ImuSample> samples, const Vec3& g
   return forces;
 }
 
-// Variance of the mean force across `up`, per axis, as far as its scatter tells. Differences of neighbours
-// show the white part, which averages out reading by reading; the rest is slow and averages out over its
-// correlation time.
+// Variance of the mean force normal to `up`, per axis, estimated from the scatter. Differences of
+// neighbouring readings give the white part, which averages out reading by reading. The rest is slow and
+// averages out over its correlation time.
 double horizontalVarianceOfMean(const std::vector<Vec3>& forces, const Vec3& up, double duration_s,
                                 double correlation_s) {
   const Mat32 horizontal = tangentBasis(up);
@@ -64,7 +64,7 @@ double horizontalVarianceOfMean(const std::vector<Vec3>& forces, const Vec3& up,
   return white / count + slow / (1.0 + duration_s / correlation_s);
 }
 
-// Given the bias.
+// Standard deviation of the tilt for a known bias.
 double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double duration_s, bool still,
                  const GravityAlignmentOptions& options) {
   const double force = mean_force.norm();
@@ -73,7 +73,7 @@ double tiltSigma(const std::vector<Vec3>& forces, const Vec3& mean_force, double
     variance += horizontalVarianceOfMean(forces, mean_force / force, duration_s, options.correlation_s);
   }
   if (!still) {
-    // The velocities at both ends are taken as independent.
+    // The velocities at both ends are assumed independent.
     variance += std::min(squared(options.acceleration_sigma_m_per_s2),
                          2.0 * squared(options.speed_sigma_m_per_s / duration_s));
   }

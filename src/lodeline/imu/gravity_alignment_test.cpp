@@ -58,7 +58,7 @@ TEST(GravityAlignment, YawOfTheXAxisIsZero) {
 }
 
 TEST(GravityAlignment, YawOfTheZAxisIsZeroWhereXIsSteep) {
-  // As EuRoC's rig hangs: x up, z ahead.
+  // Mounting as in EuRoC's rig: x up, z ahead.
   const Quat attitude = so3::exp(Vec3(0.0, 0.0, 0.7)) * so3::exp(Vec3(0.0, -M_PI / 2, 0.0));
   const Quat estimate = alignWithGravity(atRest(attitude, Vec3::Zero(), 1.0), Vec3::Zero()).world_from_body;
   const Vec3 ahead = estimate * Vec3::UnitZ();
@@ -71,7 +71,7 @@ TEST(GravityAlignment, AtRestTheMeanRateIsTheBias) {
   const GravityAlignment alignment = alignWithGravity(atRest(Quat::Identity(), bias, 2.0), Vec3::Zero());
   EXPECT_TRUE(alignment.still);
   EXPECT_LT((alignment.gyroscope_bias_B - bias).norm(), 5e-4);
-  // Little but what an unknown accelerometer bias does is left.
+  // Nearly all of the remaining error is due to the unknown accelerometer bias.
   EXPECT_LT(alignment.tilt_sigma_rad, 2e-3);
   EXPECT_LT(tiltError(alignment.world_from_body, Quat::Identity()), 1e-3);
 }

@@ -2,8 +2,8 @@
 
 namespace lodeline {
 
-/// Noise that is added to one interval of inertial readings because images contradict them there. White
-/// noise as densities, steps of the biases as one sigma of each axis.
+/// Covariance inflation of one interval of inertial readings that images contradict: white noise densities,
+/// and steps of the biases, one sigma per axis.
 struct InertialDoubt {
   double gyroscope_density_rad_per_s_sqrtHz = 0.0;
   double accelerometer_density_m_per_s2_sqrtHz = 0.0;

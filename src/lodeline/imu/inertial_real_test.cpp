@@ -16,11 +16,11 @@ namespace {
 
 using namespace inertial_error;
 
-// The truth was made with this value; 9.80665 changes no figure below in its third digit.
+// The ground truth was computed with this value. 9.80665 changes no value below in its third digit.
 const Vec3 kGravity_W(0.0, 0.0, -9.81);
 constexpr int kTruthRate = 200;
 
-// Mean normalized errors squared, each divided by its dimension.
+// Mean normalized squared errors, each divided by its dimension.
 struct Consistency {
   int count = 0;
   double all = 0.0, alpha = 0.0, beta = 0.0, theta = 0.0;
@@ -46,13 +46,13 @@ class RealFlight : public testing::Test {
     if (!folder) GTEST_SKIP() << missingTestData("euroc_imu_gt");
     recording_ = readRealRecording(*folder / "V1_03_difficult_imu0.csv.gz",
                                    *folder / "V1_03_difficult_groundtruth.csv.gz");
-    // The recording's sensor.yaml.
+    // Values of the recording's sensor.yaml.
     imu_.rate_hz = 200.0;
     imu_.noise = {1.6968e-4, 1.9393e-5, 2.0e-3, 3.0e-3};
   }
 
-  // Over intervals of `steps` rows of truth, a new one each `stride` rows, with the true biases; readings
-  // inside `hole` (s after the start) are taken out.
+  // Consistency over intervals of `steps` rows of ground truth, one per `stride` rows, with the true biases.
+  // Readings inside `hole` (s after the start) are removed.
   Consistency consistency(int steps, int stride, const PreintegrationOptions& options,
                           double hole_from_s = 0.0, double hole_to_s = 0.0) const {
     Consistency result;
@@ -87,7 +87,7 @@ TEST_F(RealFlight, PreintegrationIsConsistentAtTheDefaultInflation) {
     fmt::print("  {:5.1f} {:6d} {:9.3f} {:6.3f} {:6.3f} {:6.3f}\n", steps / static_cast<double>(kTruthRate),
                found.count, found.all, found.alpha, found.beta, found.theta);
     sum += found.all;
-    // No factor brings every length within 0.7 to 1.5, see docs/inertial.md.
+    // No factor gives 0.7 to 1.5 for every length, see docs/inertial.md.
     EXPECT_GT(found.all, 0.65) << steps;
     EXPECT_LT(found.all, 1.6) << steps;
   }
@@ -98,7 +98,7 @@ TEST_F(RealFlight, PreintegrationIsConsistentAtTheDefaultInflation) {
   EXPECT_LT(mean, 1.5);
 }
 
-// Each length apart, and disjoint intervals: the same verdict without counting a reading twice.
+// Each length separately with disjoint intervals: the same result, and no reading is used twice.
 TEST_F(RealFlight, DisjointIntervalsAgree) {
   double sum = 0.0;
   int count = 0;
@@ -131,7 +131,7 @@ TEST_F(RealFlight, TiltOfAMovingStartIsWithinItsSigma) {
       const GravityAlignment alignment = alignWithGravity(samples, end.gyroscope_bias_B);
       const Vec3 up = alignment.world_from_body.conjugate() * Vec3::UnitZ();
       const Vec3 true_up = end.world_from_body.rotation.conjugate() * Vec3::UnitZ();
-      // As an estimator takes it: the reference itself is not better.
+      // Lower bound of sigma, as in the estimator: the reference itself is not more accurate.
       const double sigma = std::max(alignment.tilt_sigma_rad, 0.01);
       sum += (up.cross(true_up) / sigma).squaredNorm() / 2.0;
     }

@@ -16,12 +16,12 @@ namespace {
 
 using namespace inertial_error;
 
-// One step between two readings; index 0 its start, 1 its end. Axes of body k.
+// One step between two readings; index 0 is its start, 1 its end. Axes of body k.
 struct Step {
   double h;  // s
   Mat3 rotation_0, rotation_1;
   Vec3 force_0, force_1;
-  Mat3 theta_by_bias;  // change of theta over the step by the gyroscope bias
+  Mat3 theta_by_bias;  // derivative by the gyroscope bias of the change of theta over the step
 };
 
 // Derivative of the integration over one step: force_i changes by theta_i x force_i - rotation_i b_a, and
@@ -46,7 +46,7 @@ Vec3 chordSlope(const ImuSample& from, const ImuSample& to) {
   return (to.angular_velocity_B - from.angular_velocity_B) / (to.time - from.time).seconds();
 }
 
-/// Within a step of length `step_s`, on the cubic through its ends.
+/// Rate within a step of length `step_s`, on the cubic through its ends.
 TurningRate interpolated(const TurningRate& from, const TurningRate& to, double step_s, double fraction) {
   const Vec3 mean_slope = (to.rate_rad_per_s - from.rate_rad_per_s) / step_s;
   const Vec3 a = from.slope_rad_per_s2 - mean_slope;
@@ -145,8 +145,8 @@ void Preintegration::integrate() {
 }
 
 TurningRate Preintegration::turningRate(size_t i) const {
-  // The plain chord, at the ends of the interval to one side: slopes of higher order amplify vibration and
-  // uneven stamps more than they gain.
+  // Slope at a reading. At the ends of the interval, it is the one-sided chord: higher orders amplify
+  // vibration and uneven stamps more than they gain.
   const ImuSample& before = samples_[i == 0 ? 0 : i - 1];
   const ImuSample& after = samples_[i + 1 == samples_.size() ? i : i + 1];
   return {samples_[i].angular_velocity_B - gyroscope_bias_, chordSlope(before, after)};
@@ -166,7 +166,7 @@ void Preintegration::advance(size_t i) {
   step.force_0 = step.rotation_0 * (from.specific_force_B - accelerometer_bias_);
   step.force_1 = step.rotation_1 * (to.specific_force_B - accelerometer_bias_);
 
-  // Integrals of a force that runs linearly from force_0 to force_1.
+  // Integrals of a force that varies linearly from force_0 to force_1.
   motion_.alpha += step.h * motion_.beta + step.h * step.h * (step.force_0 / 3.0 + step.force_1 / 6.0);
   motion_.beta += 0.5 * step.h * (step.force_0 + step.force_1);
 
@@ -198,8 +198,8 @@ Preintegration::Mat15 Preintegration::processNoise(
       stepNoise(from, to, gyroscope_bias_, imu_.noise, options_.noise_inflation, options_.motion_noise);
   const double gap_s = std::max(h, to.gap_s);
   if (gap_s > std::max(options_.max_gap_s, 1.5 / imu_.rate_hz)) {
-    // White noise of density sigma * sqrt(h) has, over the gap, a mean with exactly that sigma. Of a gap that
-    // images divide, the parts err alike for as long as a motion lasts.
+    // White noise of density sigma * sqrt(h) has, over the gap, a mean with exactly that sigma. In a gap
+    // divided by images, the parts have equal errors for the duration of a motion.
     constexpr double kMotion_s = 0.2;
     const double alike_s = std::max(h, std::min(gap_s, kMotion_s));
     noise.gyroscope += alike_s * options_.gap_rate_sigma_rad_per_s * options_.gap_rate_sigma_rad_per_s;
@@ -211,7 +211,7 @@ Preintegration::Mat15 Preintegration::processNoise(
       doubt_.accelerometer_density_m_per_s2_sqrtHz * doubt_.accelerometer_density_m_per_s2_sqrtHz;
 
   Mat15 q = Mat15::Zero();
-  // The gyroscope's noise enters where its bias does; its mean over the step has variance density^2 / h.
+  // The gyroscope's noise acts like its bias; its mean over the step has variance density^2 / h.
   q.topLeftCorner<9, 9>() =
       noise.gyroscope / h * motion_by_gyroscope_bias * motion_by_gyroscope_bias.transpose();
   // Exact for white noise on the force, and of full rank even for an interval of one step.

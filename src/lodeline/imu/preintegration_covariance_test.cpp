@@ -21,7 +21,8 @@ PreintegrationOptions uninflated() {
   return options;
 }
 
-// Readings of a true motion with white noise and walking biases as `noise` says, and the error they lead to.
+// Simulates readings of a true motion with white noise and random walks of the biases, and returns the
+// resulting error.
 Vec15 drawError(const ImuCalibration& imu, double duration_s, std::mt19937& random, Preintegration* out) {
   std::normal_distribution<double> normal;
   const auto gaussian = [&](double sigma) {
@@ -54,7 +55,7 @@ class PreintegrationCovariance : public testing::TestWithParam<double> {};
 TEST_P(PreintegrationCovariance, AgreesWithMonteCarlo) {
   constexpr int kRuns = 300;
   ImuCalibration imu;
-  // Walks strong enough to matter within the interval.
+  // Random walks large enough to be significant within the interval.
   imu.noise.gyroscope_random_walk_rad_per_s2_sqrtHz = 5e-4;
   Preintegration preintegration(kMotion.readings(0.0, 0.1, 200.0), Vec3::Zero(), Vec3::Zero(), imu);
   std::mt19937 random(1);
@@ -100,7 +101,7 @@ TEST(PreintegrationNoise, AnIntervalOfOneStepCanBeWhitened) {
   EXPECT_LT((product - Preintegration::Mat15::Identity()).norm(), 1e-9);
 }
 
-// How far readings are apart must not matter to the noise of what they are summed to.
+// The noise of the integrated motion must not depend on the spacing of the readings.
 TEST(PreintegrationNoise, DoesNotDependOnHowAnIntervalIsCut) {
   const auto samples = kMotion.readings(0.0, 0.1, 200.0);
   auto cut = samples;
@@ -124,7 +125,7 @@ TEST(PreintegrationGap, AddsTheUncertaintyOfMotionThatWasOnlyInterpolated) {
   const double velocity_variance = std::pow(0.2 * options.gap_specific_force_sigma_m_per_s2, 2);
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(added[kTheta + axis], rotation_variance, 0.05 * rotation_variance);
-    // The force's own part; the wrongly turned gravity comes on top.
+    // The part of the force itself; gravity rotated by a wrong attitude adds to it.
     EXPECT_GT(added[kBeta + axis], 0.99 * velocity_variance);
     EXPECT_NEAR(added[kGyroscopeBias + axis], 0.0, 1e-15);
   }
@@ -134,7 +135,7 @@ TEST(PreintegrationGap, AddsTheUncertaintyOfMotionThatWasOnlyInterpolated) {
   EXPECT_GT(error.dot(whole.covariance().topLeftCorner<9, 9>().llt().solve(error)) / 9.0, 10.0);
 }
 
-// Images at a high rate divide a gap into steps that are short by themselves.
+// Images at a high rate divide a gap into steps that are individually short.
 TEST(PreintegrationGap, CountsForEveryPartOfIt) {
   const auto samples = kMotion.readings(0.0, 0.01, 200.0);
   auto within_gap = samples;

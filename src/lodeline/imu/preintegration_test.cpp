@@ -32,7 +32,7 @@ TEST(Preintegration, FollowsASmoothMotionForASecond) {
   const auto error = errorAtRate(200.0);
   EXPECT_LT(error.segment<3>(kAlpha).norm(), 1e-4);
   EXPECT_LT(error.segment<3>(kBeta).norm(), 1e-4);
-  // A thousandth of what the quietest gyroscope at hand (1.7e-4 rad/s/sqrt(Hz)) loses to noise in that time.
+  // A thousandth of the noise error of a quiet gyroscope (1.7e-4 rad/s/sqrt(Hz)) in that time.
   EXPECT_LT(error.segment<3>(kTheta).norm(), 2e-7);
 }
 
@@ -45,7 +45,7 @@ TEST(Preintegration, ErrorFallsWithTheSquareOfTheStepAndThatOfRotationWithItsCub
   EXPECT_NEAR(ratio(kTheta), 8.0, 0.4);
 }
 
-/// Axes that are off by up to 2 %.
+/// Axes with errors of up to 2 %.
 SensorAxes wrongAxes() {
   SensorAxes axes;
   axes << 0.012, -0.006, 0.009, 0.004, -0.015, -0.007, 0.003, 0.011, 0.02;
@@ -56,7 +56,7 @@ std::vector<ImuSample> trueReadings() {
   return kMotion.readings(1.0, 1.1, 200.0, kGyroscopeBias, kAccelerometerBias);
 }
 
-/// What a sensor with the wrong axes reads instead.
+/// Readings of a sensor with the wrong axes.
 std::vector<ImuSample> readingsBy(Vec3 ImuSample::*sensor, const Vec3& bias) {
   const Mat3 true_from_reading = Mat3::Identity() + wrongAxes().reshaped(3, 3);
   std::vector<ImuSample> readings = trueReadings();
@@ -65,7 +65,7 @@ std::vector<ImuSample> readingsBy(Vec3 ImuSample::*sensor, const Vec3& bias) {
   return readings;
 }
 
-// What the integration over such a gyroscope's readings makes of them.
+// Integration of the readings of such a gyroscope.
 TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
   const SensorAxes axes = wrongAxes();
   const RelativeMotion truth = integrate(trueReadings(), kGyroscopeBias, kAccelerometerBias).motion();
@@ -77,24 +77,24 @@ TEST(Preintegration, CorrectsForTheAxesOfTheGyroscopeToFirstOrder) {
     return Vec3((motion.alpha - truth.alpha).norm(), (motion.beta - truth.beta).norm(),
                 so3::log(motion.gamma * truth.gamma.conjugate()).norm());
   };
-  EXPECT_GT(off(0.0)[2], 1e-3);  // so that there is something to correct
+  EXPECT_GT(off(0.0)[2], 1e-3);  // the correction is significant
   for (int part = 0; part < 3; ++part) EXPECT_LT(off(1.0)[part], 0.02 * off(0.0)[part]) << part;
 }
 
-// The same of an accelerometer; forces are linear in them.
+// The same for an accelerometer; its effect is linear.
 TEST(Preintegration, CorrectsForTheAxesOfTheAccelerometer) {
   const SensorAxes axes = wrongAxes();
   const RelativeMotion truth = integrate(trueReadings(), kGyroscopeBias, kAccelerometerBias).motion();
   const Preintegration p = integrate(readingsBy(&ImuSample::specific_force_B, kAccelerometerBias),
                                      kGyroscopeBias, kAccelerometerBias);
-  EXPECT_GT((p.motion().beta - truth.beta).norm(), 1e-3);  // so that there is something to correct
+  EXPECT_GT((p.motion().beta - truth.beta).norm(), 1e-3);  // the correction is significant
   const RelativeMotion motion = p.correctedFor(kGyroscopeBias, kAccelerometerBias, {.accelerometer = axes});
   EXPECT_LT((motion.alpha - truth.alpha).norm(), 1e-12);
   EXPECT_LT((motion.beta - truth.beta).norm(), 1e-12);
   EXPECT_EQ(motion.gamma.coeffs(), p.motion().gamma.coeffs());
 }
 
-// Two axes turned out of phase: what the mean rates leave out adds up.
+// Two axes rotate out of phase: the error of integrating mean rates accumulates.
 TEST(Preintegration, FollowsConing) {
   const double tilt = 0.1, frequency = 3.0;  // rad, rad/s
   const auto attitude = [&](double t) {

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// Everything the inertial equations need to know about one moment.
+/// Navigation state at one moment.
 struct NavigationState {
   Time time;
   Rigid3 world_from_body;
@@ -15,9 +15,9 @@ struct NavigationState {
   Vec3 accelerometer_bias_B = Vec3::Zero();  ///< m/s^2
 };
 
-/// The state at the end of the preintegrated interval from the one at its start; the biases stay. The
-/// interval is corrected to first order for the state's biases. Throws std::invalid_argument if `state` is
-/// not of the interval's start.
+/// Predicts the state at the end of the preintegrated interval from the state at its start; the biases stay
+/// constant. The interval is corrected to first order for the state's biases. Throws std::invalid_argument
+/// where the time of `state` is not the start of the interval.
 NavigationState predict(const NavigationState& state, const Preintegration& preintegration,
                         const Vec3& gravity_W);
 

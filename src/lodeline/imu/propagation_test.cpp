@@ -31,7 +31,7 @@ TEST(Propagation, LeadsFromOneTrueStateToTheNext) {
 
 TEST(Propagation, UsesTheStatesOwnBiases) {
   const auto samples = kMotion.readings(0.4, 0.5, 200.0, kGyroscopeBias, kAccelerometerBias);
-  // Integrated with biases of zero: predict must correct for the state's.
+  // Integrated with biases of zero: predict() must correct for the state's biases.
   const Preintegration preintegration(samples, Vec3::Zero(), Vec3::Zero(), ImuCalibration());
   const NavigationState next =
       predict(kMotion.state(samples.front().time, kGyroscopeBias, kAccelerometerBias), preintegration,

@@ -4,23 +4,23 @@
 
 namespace lodeline {
 
-/// The body's rate at one moment, body axes.
+/// Angular velocity of the body at one moment, body axes.
 struct TurningRate {
   Vec3 rate_rad_per_s;
-  Vec3 slope_rad_per_s2;  ///< its change with time
+  Vec3 slope_rad_per_s2;  ///< its time derivative
 };
 
-/// Rotation over a stretch of time in which the rate runs as a cubic with the given ends and slopes:
-/// exp(rotation_vector) = body then from body at its end. First two terms of the Magnus expansion (Blanes et
-/// al., "The Magnus expansion and some of its applications", Physics Reports 2009, section 2), which leave an
-/// error of the fifth order in the stretch. The slopes matter where a rig turns about two axes out of phase
-/// (coning): without them the error of each stretch is of third order and adds up.
+/// Rotation over an interval in which the rate is a cubic in time with the given end values and slopes:
+/// exp(rotation_vector) = body at start from body at end. It uses the first two terms of the Magnus expansion
+/// (Blanes et al., "The Magnus expansion and some of its applications", Physics Reports 2009, section 2),
+/// with an error of fifth order in the interval. The slopes matter where a rig rotates about two axes out of
+/// phase (coning): without them, the error of each interval is of third order and accumulates.
 struct RotationIncrement {
   Vec3 rotation_vector;  ///< rad
-  Mat3 by_bias;          ///< derivative by a bias taken off both rates, s
+  Mat3 by_bias;          ///< derivative by a bias subtracted from both rates, s
   Vec3 mean_rate_rad_per_s;
 
-  /// Linear between the rates, rad/s.
+  /// Rate linear in time between both values, rad/s.
   RotationIncrement(const Vec3& from, const Vec3& to, double stretch_s)
       : RotationIncrement(TurningRate{from, Vec3::Zero()}, TurningRate{to, Vec3::Zero()}, stretch_s) {}
 

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// Throws InputError, naming the time, unless there are at least so many readings, all finite, with strictly
+/// Throws InputError, naming the time, unless there are at least `fewest` readings, all finite, with strictly
 /// increasing times.
 void requireUsable(std::span<const ImuSample> samples, size_t fewest = 2);
 

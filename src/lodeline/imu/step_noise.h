@@ -6,19 +6,19 @@
 
 namespace lodeline {
 
-/// What motion adds to an IMU's noise at rest. All four figures describe a kind of sensor and mounting, not
-/// one recording; docs/inertial.md has the measurements behind them.
+/// Increase of an IMU's noise by motion relative to its noise at rest. The values apply to a kind of sensor
+/// and mounting, not to one recording; docs/inertial.md has the measurements.
 struct MotionNoiseOptions {
-  /// Share of the change from one reading to the next that counts as unknown: motion and vibration which the
+  /// Fraction of the change between consecutive readings that is unknown: motion and vibration that the
   /// sampling does not resolve. One sigma, white from step to step.
   double unresolved_share = 0.095;
-  /// Scale errors and misalignment of the axes, relative: what a factory calibration leaves.
+  /// Relative scale errors and misalignment of the axes after a factory calibration.
   double axis_error = 0.004;
-  /// How long a turn keeps its sense, s: an axis error stays the same error for so long, then counts as a new
-  /// one.
+  /// Typical duration of a rotation in one sense, s. An axis error causes a constant error for this time,
+  /// then an independent one.
   double axis_error_time_s = 0.3;
 
-  /// A sensor that is exactly what its noise densities say, as in simulation.
+  /// No increase, for a simulated sensor that follows its noise densities exactly.
   static MotionNoiseOptions none() { return {0.0, 0.0, 0.3}; }
 };
 
@@ -30,13 +30,14 @@ struct StepNoise {
   double accelerometer_walk = 0.0;  ///< (m/s^3)^2/Hz
 };
 
-/// With readings w_0, w_1 and f_0, f_1 a step h apart, inflated densities s, unresolved share c, axis error m
-/// and its time T, g = 9.80665 m/s^2:
+/// Computes the noise of a step. With readings w_0, w_1 and f_0, f_1 at an interval h, inflated densities s,
+/// unresolved share c, axis error m and its time T, g = 9.80665 m/s^2:
 ///   gyroscope          s_g^2 + h c^2 |w_1 - w_0|^2 + T m^2 |w_1 - b_g|^2
 ///   accelerometer      s_a^2 + h c^2 |f_1 - f_0|^2
 ///   gyroscope walk     s_bg^2
 ///   accelerometer walk s_ba^2 + T (m g)^2 |w_1 - b_g|^2
-/// The last: an axis error turns gravity into a bias that is constant only while the rig keeps its attitude.
+/// The last term: through an axis error, gravity causes a bias that is constant only while the attitude is
+/// constant.
 StepNoise stepNoise(const ImuSample& from, const ImuSample& to, const Vec3& gyroscope_bias_B,
                     const ImuNoise& at_rest, double inflation, const MotionNoiseOptions& options);
 

@@ -23,7 +23,7 @@ TEST(StepNoise, OfASensorAtRestIsItsDensitiesInflated) {
                    3.0 * noise.accelerometer_random_walk_m_per_s3_sqrtHz);
 }
 
-// 0.2 % of 1 rad/s kept up for half a second is 1 mrad, with a random walk of 1 mrad / sqrt(0.5 s).
+// 0.2 % of 1 rad/s for half a second is 1 mrad, which is a random walk of 1 mrad / sqrt(0.5 s).
 TEST(StepNoise, OfATurnComesFromTheAxes) {
   const MotionNoiseOptions options{0.0, 0.002, 0.5};
   const ImuNoise quiet{1e-12, 1e-12, 1e-12, 1e-12};
@@ -36,7 +36,8 @@ TEST(StepNoise, OfATurnComesFromTheAxes) {
   EXPECT_NEAR(noise.gyroscope_walk, 0.0, 1e-20);
 }
 
-// The mean over a step is off by the share of the change: density^2 / h = (share * change)^2.
+// The mean over a step has an error of the given fraction of the change: density^2 / h = (fraction *
+// change)^2.
 TEST(StepNoise, OfVibrationComesFromWhatTheReadingsDoNotResolve) {
   const MotionNoiseOptions options{0.1, 0.0, 0.3};
   const ImuNoise quiet{1e-12, 1e-12, 1e-12, 1e-12};

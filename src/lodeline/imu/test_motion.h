@@ -10,8 +10,8 @@
 
 namespace lodeline {
 
-/// For tests: a smooth motion with all derivatives in closed form, about 1.5 m/s, 4 m/s^2 and 2 rad/s.
-/// R_W_B = exp(a f(t)) exp(b h(t)), so that the body's rate is b h' + exp(b h)^T a f'.
+/// Smooth test motion with all derivatives in closed form, about 1.5 m/s, 4 m/s^2 and 2 rad/s. R_W_B = exp(a
+/// f(t)) exp(b h(t)), so that the body rate is b h' + exp(b h)^T a f'.
 struct TestMotion {
   Vec3 a = Vec3(0.9, -0.5, 0.7);
   Vec3 b = Vec3(-0.6, 0.8, 0.5);

@@ -9,8 +9,8 @@
 
 namespace lodeline {
 
-/// For tests: readings of three axes with known noise (two-sided densities), flicker as Gauss-Markov
-/// processes.
+/// Simulated readings of three axes with known noise (two-sided densities) for tests. Flicker noise is a sum
+/// of Gauss-Markov processes.
 class TestNoise {
  public:
   TestNoise(double white, double instability, double walk, double rate_hz, unsigned seed)

@@ -14,7 +14,7 @@
 namespace lodeline {
 namespace {
 
-// Calls `row` with the stamp and the numbers after it, for every line that is no comment.
+// Calls `row` with the stamp and the numbers after it, for every line that is not a comment.
 void forEachRow(const std::filesystem::path& path,
                 const std::function<void(Time, const std::vector<double>&)>& row) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);

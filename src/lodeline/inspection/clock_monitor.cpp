@@ -11,25 +11,25 @@
 namespace lodeline {
 namespace {
 
-/// Between the images of one turn: long enough for the rotation to stand out from the noise of the points.
+/// Interval between the images of one rotation: long enough for a rotation above the noise of the points.
 constexpr double kTurn_s = 0.12;
-/// A longer interval says too little of when the rig turned.
+/// A rotation over a longer interval is not accurate enough in time.
 constexpr double kLongestTurn_s = 0.3;
 constexpr size_t kMostPoints = 60;
 constexpr int kLeastPoints = 20;
 
-/// What a comparison looks back on, and how often one is made.
+/// Time span of a comparison, and interval between comparisons.
 constexpr double kWindow_s = 4.6;
 constexpr double kBetweenComparisons_s = 1.5;
-/// Readings around the turns, for offsets of either sign.
+/// Margin of readings around the rotations, for offsets of both signs.
 constexpr double kMargin_s = 1.0;
 
-/// Looser agreement says nothing of time.
+/// With a smaller correlation the offset is not reliable.
 constexpr double kLeastCorrelation = 0.93;
-/// Offsets that the estimator takes care of by itself stay below this.
+/// The estimator compensates smaller offsets by itself.
 constexpr double kLeastOffset_s = 0.015;
 constexpr double kSignificant_sigmas = 5.0;
-/// Two comparisons mean the same offset when they are this close.
+/// Two comparisons agree on an offset within this difference.
 constexpr double kSame_s = 0.010;
 
 }  // namespace
@@ -73,7 +73,8 @@ void ClockMonitor::addTurn(const FrameTracks& tracks) {
     previous.push_back(before->second);
     current.push_back(observation.bearing_C);
   }
-  // Every n-th: neighbours in the list are of like age, hence spread over the image.
+  // Every n-th point: neighbours in the list are of similar age, so their positions are distributed over the
+  // image.
   const size_t every = std::max<size_t>(1, previous.size() / kMostPoints);
   std::vector<Vec3> some_previous, some_current;
   for (size_t i = 0; i < previous.size(); i += every) {
@@ -93,8 +94,8 @@ void ClockMonitor::forget(Time now) {
   while (!imu_.empty() && imu_.front().time < oldest_reading) imu_.pop_front();
 }
 
-/// The quick test: with the offset that was found last, the gyroscope explains the turns, and the errors do
-/// not go with its changes.
+/// Fast test: with the last offset, the gyroscope explains the rotations, and the errors do not correlate
+/// with its changes.
 bool ClockMonitor::keepTogether(const GyroscopeIntegral& gyroscope) const {
   constexpr double kStep_s = 5e-3;
   constexpr double kExplained = 0.95;

@@ -15,7 +15,7 @@ Vec3 swayRate(double t_s) {
   return {0.3 * std::sin(1.7 * t_s), 0.25 * std::sin(2.3 * t_s + 1.0), 0.35 * std::sin(1.1 * t_s + 2.0)};
 }
 
-/// A rig that turns on the spot amid points, seen at 20 Hz, with a gyroscope at 200 Hz.
+/// A rig that rotates without translation among points, observed at 20 Hz, with a gyroscope at 200 Hz.
 class ClockMonitorTest : public testing::Test {
  protected:
   ClockMonitorTest() {
@@ -28,7 +28,7 @@ class ClockMonitorTest : public testing::Test {
       points_.push_back(Vec3(anywhere(random_), anywhere(random_), 1.0).normalized());
   }
 
-  /// Feeds so many seconds; the images' stamps are late by what `delay_s` gives for their time.
+  /// Runs for the given seconds; the images' stamps are late by `delay_s` of their time.
   void run(double seconds, const std::function<double(double)>& delay_s, double turning = 1.0) {
     ClockMonitor monitor(rig_);
     std::normal_distribution<double> noise(0.0, 5e-4);
@@ -66,7 +66,7 @@ TEST_F(ClockMonitorTest, SaysNothingOfClocksThatKeepTogether) {
   run(40.0, [](double) { return 0.0; });
   run(40.0, [](double) { return 0.004; });
   run(
-      40.0, [](double) { return 0.2; }, 0.01);  // a rig that hardly turns shows nothing
+      40.0, [](double) { return 0.2; }, 0.01);  // a rig that hardly rotates gives no comparison
   EXPECT_TRUE(diagnostics_.ranked().empty());
 }
 

@@ -8,9 +8,9 @@
 namespace lodeline::findings {
 namespace {
 
-/// Longer than any rig that one diver or small vehicle carries, m.
+/// Longer than any rig of one diver or small vehicle, m.
 constexpr double kLongest_m = 5.0;
-/// Shorter than two lenses can stand apart, m.
+/// Shorter than the distance between two lenses can be, m.
 constexpr double kShortest_m = 5e-3;
 
 void judgeLeverArm(const std::string& sensor, const Rigid3& body_from_sensor, Inspection* inspection) {
@@ -64,7 +64,7 @@ void judgePair(const StereoSurvey& stereo, const std::string& sensor, Inspection
 }
 
 void judgeTurn(const StereoSurvey& stereo, const std::string& sensor, Inspection* inspection) {
-  constexpr double kAgrees = 0.5;  // else more is wrong than that
+  constexpr double kAgrees = 0.5;  // a smaller agreement has further causes
   if (stereo.turn_rad == 0.0 || stereo.agreement < kAgrees) return;
   inspection->findings.push_back(
       {Severity::Warning, 60.0, sensor, "camera_turned",

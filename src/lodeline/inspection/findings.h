@@ -2,7 +2,7 @@
 
 #include "lodeline/inspection/inspection.h"
 
-/// Each adds to Inspection::findings what its sensors show. They judge from the surveys alone.
+/// Each function adds the findings on its sensors to Inspection::findings. They use the surveys alone.
 namespace lodeline::findings {
 
 void judgeStreams(Inspection* inspection);

@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// An IMU alone.
+/// A recording with an IMU alone.
 class Readings : public MeasurementSource {
  public:
   explicit Readings(std::vector<ImuSample> samples) : samples_(std::move(samples)) {}

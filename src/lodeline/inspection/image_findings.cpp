@@ -9,7 +9,7 @@
 namespace lodeline::findings {
 namespace {
 
-/// Shares of the images that were looked at.
+/// Shares of the surveyed images.
 constexpr double kManyImages = 0.25;
 constexpr double kFewCorners = 40.0;
 
@@ -36,7 +36,7 @@ void judgeQuality(const CameraSurvey& camera, Inspection* inspection) {
   const auto count = static_cast<double>(camera.frames.size());
   for (const auto& [word, frames] : words) {
     const double share = frames / count;
-    // Faint texture is what lamps under water give; the front end is made for it.
+    // Faint texture is usual with lamps under water; the front end is made for it.
     if (word == "good" || word == "faint" || share < kManyImages) continue;
     add(camera, Severity::Warning, 35.0 + 10.0 * share, "images_" + word,
         fmt::format("{:.0f} % of the images are {}; {}", 100.0 * share, word, advice(word)), inspection);
@@ -73,7 +73,7 @@ void judgeFiles(const CameraSurvey& camera, Inspection* inspection) {
   }
   if (camera.identical > 0) {
     const double share = static_cast<double>(camera.identical) / camera.compared;
-    // What follows from it looks like a wrong focal length, delay or bias.
+    // Its effects look like a wrong focal length, delay or bias.
     add(camera, share > 0.02 ? Severity::Serious : Severity::Notice, 98.0, "images_repeated",
         fmt::format(
             "{} of {} images are the same, pixel by pixel, as the one before (first: stamp {} ns): the "
@@ -93,7 +93,7 @@ void judgeIntrinsics(const CameraSurvey& camera, Inspection* inspection) {
   }
 }
 
-/// A rig may be built so; no image tells which way is up.
+/// Reports a camera that is upside down. A rig may be built so; no image shows the vertical.
 void judgeUpright(Inspection* inspection) {
   if (inspection->imu.samples.empty() || inspection->cameras.empty()) return;
   const CameraCalibration& calibration = inspection->rig.cameras.front();

@@ -27,8 +27,8 @@ void judgeDead(const char* name, const char* kind, const TriadSurvey& triad, Ins
                             name, axes));
 }
 
-/// `least_range`: no sensor on the market has a smaller one; coarse readings of a rig at rest may well have
-/// the same greatest value many times.
+/// `least_range`: smallest range of any sensor on the market. Coarse readings of a rig at rest may have the
+/// same largest value many times.
 void judgeSaturation(const char* name, const char* kind, const char* unit, double least_range,
                      const TriadSurvey& triad, Inspection* inspection) {
   if (triad.saturated_share < 1e-3 || triad.limit < least_range) return;
@@ -60,7 +60,7 @@ void judgeForceUnit(const ImuSurvey& imu, Inspection* inspection) {
 void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
   if (imu.rest_s < 1.0) return;
   const double error = imu.rest_force_m_per_s2 - kGravity_m_per_s2;
-  // Cheap accelerometers leave the factory with up to 80 mg of bias, which the estimator finds out.
+  // Cheap accelerometers have up to 80 mg of bias when new, which the estimator estimates.
   constexpr double kWorthTelling_m_per_s2 = 0.25, kFaulty_m_per_s2 = 0.9;
   if (imu.force_to_SI == 1.0 && std::abs(error) > kWorthTelling_m_per_s2) {
     addImuFinding(
@@ -78,7 +78,7 @@ void judgeRest(const ImuSurvey& imu, Inspection* inspection) {
   }
 }
 
-/// Handedness and axes of the gyroscope against the accelerometer, which need no camera.
+/// Handedness and axes of the gyroscope compared with the accelerometer, without a camera.
 void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
   if (!imu.turning) return;
   const GravityTurning& turning = *imu.turning;
@@ -97,7 +97,7 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
                         describeSignedAxes(turning.best_axes)));
 }
 
-/// What the screen of a run would leave out or convert.
+/// Readings that a run would skip or convert.
 void judgeScreening(const ImuSurvey& imu, Inspection* inspection) {
   for (const Finding& finding : imu.screening.ranked()) {
     const std::string times = finding.count > 1 ? fmt::format(" ({} times)", finding.count) : std::string();
@@ -105,7 +105,7 @@ void judgeScreening(const ImuSurvey& imu, Inspection* inspection) {
   }
 }
 
-/// The calibration's noise densities against those of the readings.
+/// Comparison of the calibration's noise densities with those of the readings.
 void judgeNoise(Inspection* inspection) {
   std::vector<ImuSample> samples = inspection->imu.samples;
   for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection->rate_to_SI;
@@ -117,7 +117,8 @@ void judgeNoise(Inspection* inspection) {
   }
 }
 
-/// Without a camera to compare with: gravity turns far more slowly than rates in deg/s, read as rad/s, say.
+/// Unit of the rates without a camera: gravity rotates far more slowly than, for example, rates in deg/s read
+/// as rad/s.
 void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
   if (inspection->rate_to_SI != 1.0 || !imu.turning || imu.turning->correlation < 0.4) return;
   const double scale = imu.turning->scale;

@@ -27,7 +27,7 @@ void surveyPlain(const std::string& sensor, const Next& next, const Value& value
   inspection->others.push_back(survey);
 }
 
-/// What the order of the stamps told that the other judges do not find.
+/// Adds errors in the order of the time stamps that the other functions do not find.
 void takeOrderFindings(const Diagnostics& diagnostics, const std::string& sensor, Inspection* inspection) {
   for (const Finding& finding : diagnostics.ranked()) {
     if (!finding.kind.ends_with("_clock_jump") && !finding.kind.ends_with("_bursts")) continue;
@@ -60,7 +60,7 @@ std::vector<StreamSummary> readStreams(MeasurementSource* source, Inspection* in
   return images;
 }
 
-/// The images of the first camera tell what the gyroscope's rates are in.
+/// Determines the unit of the gyroscope's rates from the images of the first camera.
 void settleRateUnit(Inspection* inspection) {
   constexpr double kLikeness = 2.0, kSame = 0.6;
   for (const CameraInspection& camera : inspection->cameras) {
@@ -86,7 +86,7 @@ void compareCameras(Inspection* inspection) {
     const std::vector<CameraTurn>& turns = camera.survey.turns;
     const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
     camera.turning = compareTurns(turns, gyroscope, body_from_camera);
-    constexpr TurnLimits kHalf = {12, 3.0};  // a change of the offset must be plain to count
+    constexpr TurnLimits kHalf = {12, 3.0};  // a change of the offset must be significant
     camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera, kHalf);
     camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera, kHalf);
   }
@@ -118,7 +118,7 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
 
 void takeReaderFindings(const Diagnostics& diagnostics, Inspection* inspection) {
   for (const Finding& finding : diagnostics.ranked()) {
-    if (finding.kind == "magnetometer_unit") continue;  // judged here with the unit's name
+    if (finding.kind == "magnetometer_unit") continue;  // reported here with the name of the unit
     const std::string times = finding.count > 1 ? " (" + std::to_string(finding.count) + " times)" : "";
     inspection->findings.push_back(
         {finding.severity, 48.0, "recording", finding.kind, finding.first_message + times});

@@ -16,60 +16,61 @@
 
 namespace lodeline {
 
-/// Kind of the finding that the images' stamps are off the gyroscope's by a constant time.
+/// Kind of the finding that the images' time stamps have a constant offset to the gyroscope's.
 inline constexpr const char* kCameraTimeOffset = "camera_time_offset";
 
-/// One thing that is wrong with a recording, or worth knowing.
+/// One fault of a recording, or something worth knowing about it.
 struct InspectionFinding {
   Severity severity = Severity::Notice;
-  /// Orders findings of one severity: what spoils more, and what others follow from, is greater.
+  /// Rank of a finding among those of equal severity: larger for more harmful ones, and for causes of others.
   double harm = 0.0;
   std::string sensor;   ///< "imu0", "cam0", …, "recording"
   std::string kind;     ///< stable identifier, e.g. "gyroscope_unit"
-  std::string message;  ///< what was found, and what to do
+  std::string message;  ///< the finding, and a recommendation
 };
 
-/// A stream of which only the stamps are looked at.
+/// Survey of a stream of which only the time stamps are checked.
 struct PlainSurvey {
   std::string sensor;  ///< "pressure0", "sonar0"
   StreamSummary stream;
   double least = 0.0, greatest = 0.0;  ///< of the readings: depth or range, m
 };
 
-/// A camera with what its turns say of the rig.
+/// Survey of a camera, and the comparison of its rotations with the gyroscope.
 struct CameraInspection {
   CameraSurvey survey;
   std::optional<TurnComparison> turning;
-  std::optional<TurnComparison> turning_early, turning_late;  ///< of the first and second half of the turns
+  std::optional<TurnComparison> turning_early, turning_late;  ///< from both halves of the rotations
 };
 
-/// All that was found out about a recording.
+/// Results of the inspection of a recording.
 struct Inspection {
   Rig rig;
   ImuSurvey imu;
-  double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be told; pi/180 where it is in deg/s
-  WhiteNoise shown_noise;   ///< of the IMU, by its readings
+  double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be determined; pi/180 where it is in deg/s
+  WhiteNoise shown_noise;   ///< of the IMU, estimated from its readings
   std::vector<CameraInspection> cameras;
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
   std::vector<PlainSurvey> others;
-  std::optional<Vec3> site_field_W;         ///< east, north, up, T: where and when it was recorded, if told
+  std::optional<Vec3> site_field_W;  ///< east, north, up, T: at the site and date of the recording, if known
   std::vector<InspectionFinding> findings;  ///< most harmful first
 
-  /// "good", "usable" (there are warnings) or "harmful" (something is wrong).
+  /// "good", "usable" (there are warnings) or "harmful" (there are serious findings).
   std::string verdict(const std::string& sensor) const;
 };
 
 struct InspectionOptions {
   CameraSurveyOptions images;
-  double span_s = 4.0;  ///< of the stretches that are looked at closely
+  double span_s = 4.0;  ///< of the spans that are analysed in detail
   std::optional<Vec3> site_field_W;
 };
 
-/// Opens the recording afresh; called more than once, as a source can be read but once.
+/// Opens the recording again; called more than once, because a source can be read only once.
 using SourceFactory = std::function<std::unique_ptr<MeasurementSource>(Diagnostics* diagnostics)>;
 
-/// Reads the whole recording, decodes some of its images, and judges. Throws InputError as the source does.
+/// Reads the whole recording, decodes some of its images, and evaluates them. Throws InputError as the source
+/// does.
 Inspection inspect(const SourceFactory& open, const InspectionOptions& options);
 
 }  // namespace lodeline

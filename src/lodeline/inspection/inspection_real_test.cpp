@@ -11,7 +11,7 @@
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/util/files/test_data.h"
 
-// A sound real recording, and copies of it with one fault each.
+// Tests on a real recording without faults, and on copies of it with one fault each.
 
 namespace lodeline {
 namespace {
@@ -43,7 +43,7 @@ class InspectionTest : public testing::Test {
   std::filesystem::path path(const std::string& sensor) const { return folder_ / "mav0" / sensor; }
   std::filesystem::path csv(const std::string& sensor) const { return path(sensor) / "data.csv"; }
 
-  /// The recording has none: a steady field as the true attitudes show it.
+  /// Writes magnetometer readings, which the recording lacks: a constant field in the true attitudes.
   void writeMagnetometer(const std::filesystem::path& truth) const {
     std::filesystem::create_directories(path("mag0"));
     std::ofstream(path("mag0") / "sensor.yaml")
@@ -76,7 +76,7 @@ class InspectionTest : public testing::Test {
     for (const std::string& line : lines) stream << line << "\n";
   }
 
-  /// Changes the numbers behind the stamp of every row.
+  /// Changes the numbers after the time stamp of every row.
   static void editNumbers(const std::filesystem::path& file,
                           const std::function<void(size_t row, Numbers*)>& change) {
     edit(file, [&](Lines* lines) {
@@ -102,7 +102,7 @@ class InspectionTest : public testing::Test {
     std::filesystem::create_directory_symlink(recorded / "data", path("cam1") / "data");
   }
 
-  /// Turns the camera of the calibration.
+  /// Rotates the camera of the calibration.
   void turnCamera(double angle_deg, const Vec3& axis_C) const {
     changeCamera(0, [&](const Rigid3& pose) {
       const Quat turn(Eigen::AngleAxisd(angle_deg * M_PI / 180.0, axis_C));
@@ -147,7 +147,7 @@ class InspectionTest : public testing::Test {
     return inspectionText(inspection);
   }
 
-  /// The fault is named among the first three lines.
+  /// The fault must be named in the first three lines.
   void expectNamed(const std::string& fault) const {
     const std::string text = inspected();
     size_t end = 0;

@@ -7,10 +7,10 @@
 
 namespace lodeline {
 
-/// What was found, most harmful first, then a paragraph a sensor.
+/// The findings, most harmful first, then a paragraph per sensor.
 std::string inspectionText(const Inspection& inspection);
 
-/// The same and more for programs.
+/// The same and further values in machine-readable form.
 nlohmann::ordered_json inspectionJson(const Inspection& inspection);
 
 }  // namespace lodeline

@@ -57,8 +57,8 @@ void judgeSite(const MagnetometerSurvey& survey, Inspection* inspection) {
   }
 }
 
-/// Says nothing where no exchange of axes makes the field stand still: it is then disturbed, or not
-/// calibrated.
+/// There is no finding where no permutation of axes makes the field constant: the magnetometer is then
+/// disturbed, or not calibrated.
 void judgeTurning(const MagnetometerSurvey& survey, Inspection* inspection) {
   if (!survey.turning || survey.stream.frozen_share > 0.2) return;
   const FieldTurning& turning = *survey.turning;

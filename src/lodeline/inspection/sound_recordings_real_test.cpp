@@ -11,7 +11,7 @@
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/util/files/test_data.h"
 
-// Sound recordings without images, of other makers and other sensors: nothing may be found wrong with them.
+// Recordings without faults and images, from other manufacturers and sensors: there must be no findings.
 
 namespace lodeline {
 namespace {
@@ -20,11 +20,11 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// A gzipped CSV file with one row a reading.
+/// A gzipped CSV file with one row per reading.
 struct SoundRecording {
   const char* name;
   const char* file;    ///< in testDataDir()
-  const char* header;  ///< in place of the file's own; empty to keep that
+  const char* header;  ///< replaces the file's own; empty to keep that
   double rate_hz;      ///< where the file has no time, else 0
 };
 

@@ -12,7 +12,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// An IMU at 200 Hz and a camera at 20 Hz whose images are blank, over so many seconds from 100 s on.
+/// An IMU at 200 Hz and a camera at 20 Hz with blank images, for the given seconds from 100 s on.
 struct Stamps {
   std::vector<Time> imu, images;
   explicit Stamps(double seconds = 10.0) {

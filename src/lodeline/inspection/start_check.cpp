@@ -13,29 +13,30 @@
 namespace lodeline {
 namespace {
 
-/// Images are what the check costs: pairs of every camera, spread over seven seconds, and a few others.
+/// Number of images, which determine the duration of the check: pairs of every camera, distributed over seven
+/// seconds, and a few others.
 constexpr int kImagesOfPairs = 88;
 constexpr int kMostSamples = 6;
 constexpr double kPairInterval_s = 0.15;
-/// Offsets of images to the gyroscope that the run corrects, and differences of them between cameras.
+/// Smallest offset of images to the gyroscope, or between cameras, that the run corrects.
 constexpr double kLeastOffset_s = 0.015;
 
 using Kinds = std::array<std::string_view, 3>;
 constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
-/// Harmful findings that leave something to estimate from, or end a run by themselves.
+/// Harmful findings with which an estimate is still possible, or which end a run by themselves.
 constexpr Kinds kOfOtherEnds = {"stream_empty", "image_size", "no_imu"};
 
 bool isOneOf(const Kinds& kinds, const std::string& kind) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-/// Whether the run converts the readings of which the finding speaks.
+/// Whether the run converts the readings of the finding.
 bool isConverted(const InspectionFinding& finding, const Inspection& inspection) {
   return (finding.kind == "gyroscope_unit" && inspection.rate_to_SI != 1.0) ||
          (finding.kind == "accelerometer_unit" && inspection.imu.force_to_SI != 1.0);
 }
 
-/// A camera's rotation that is so wrong that a run does not find it by itself.
+/// Whether the rotation of a camera is so wrong that a run cannot estimate it.
 bool isFarOff(const InspectionFinding& finding, const Inspection& inspection) {
   constexpr double kFar_rad = 20.0 * kDegree;
   return finding.kind == "extrinsics_rotation" &&
@@ -46,11 +47,11 @@ bool isFarOff(const InspectionFinding& finding, const Inspection& inspection) {
                      });
 }
 
-/// Findings that leave nothing to estimate from: axes that are exchanged, dead sensors.
+/// Findings with which no estimate is possible: permuted axes, sensors without signal.
 bool isHopeless(const InspectionFinding& finding, const Inspection& inspection) {
   constexpr double kHopeless = 85.0;
   if (isConverted(finding, inspection) || isOneOf(kOfOtherEnds, finding.kind)) return false;
-  // The run leaves out the one and puts back the other.
+  // The run skips the former and reverses the latter.
   if (finding.kind == "images_repeated" || finding.kind == "cameras_swapped") return false;
   return finding.harm >= kHopeless || isFarOff(finding, inspection);
 }
@@ -61,7 +62,7 @@ const char* contradiction(const InspectionFinding& finding) {
                                            : "the inertial readings contradict each other";
 }
 
-/// What the run does about it, beside the finding's own advice.
+/// Action of the run, in addition to the finding's own recommendation.
 const char* remedy(const InspectionFinding& finding, const Inspection& inspection) {
   if (isConverted(finding, inspection)) return "; this run converts them";
   if (finding.kind == "cameras_swapped")
@@ -86,16 +87,15 @@ void report(const InspectionFinding& finding, const Inspection& inspection, cons
                                   finding.sensor, finding.kind, hint));
 }
 
-/// Whether both halves of a camera's turns show the same offset to the gyroscope. A clock that jumps between
-/// them gives a mean that is right for neither.
+/// Whether both halves of a camera's rotations have the same offset to the gyroscope. If a clock jumps
+/// between them, the mean is wrong for both.
 bool isSteady(const CameraInspection& camera) {
   constexpr double kSame_s = 0.008;
   return camera.turning_early && camera.turning_late &&
          std::abs(camera.turning_early->time_offset_s - camera.turning_late->time_offset_s) < kSame_s;
 }
 
-/// The offset to the gyroscope that a camera shows, where it is beyond what the estimator takes care of by
-/// itself; otherwise 0.
+/// Offset of a camera to the gyroscope if it exceeds what the estimator compensates by itself; otherwise 0.
 double shownOffset_s(const CameraInspection& camera, const Inspection& inspection) {
   const bool is_found = std::any_of(
       inspection.findings.begin(), inspection.findings.end(), [&](const InspectionFinding& finding) {
@@ -105,7 +105,8 @@ double shownOffset_s(const CameraInspection& camera, const Inspection& inspectio
   return is_large && isSteady(camera) ? camera.turning->time_offset_s : 0.0;
 }
 
-/// A camera whose images lag behind the first one's has its own offset; otherwise both have the same one.
+/// Offsets of all cameras: a camera whose images lag behind those of the first one has its own offset,
+/// otherwise both have the same.
 std::vector<double> imageOffsets_s(const Inspection& inspection) {
   std::vector<double> offsets_s;
   for (const CameraInspection& camera : inspection.cameras) {
@@ -132,12 +133,12 @@ StartCheck checkStart(const SourceFactory& open, const std::string& data, const 
         return std::make_unique<ExcerptSource>(open(unheard), options.begin_s, options.length_s);
       },
       looking);
-  // Without readings at the time of the images there is nothing to compare; the run names both spans.
+  // Without readings at the time of the images no comparison is possible; the run reports both spans.
   if (inspection.imu.stream.readings == 0) return {};
   const std::string hint =
       fmt::format("found in the first {:g} s; `lodeline inspect {}` says more", options.length_s, data);
   for (const InspectionFinding& finding : inspection.findings) {
-    // The run screens its readings itself.
+    // The run screens its readings by itself.
     if (inspection.imu.screening.count(finding.kind) > 0) continue;
     if (finding.severity == Severity::Serious) report(finding, inspection, hint, diagnostics);
   }

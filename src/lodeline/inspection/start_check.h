@@ -9,27 +9,27 @@
 
 namespace lodeline {
 
-/// Kind of the finding that says that no estimate of a run can be trusted, since the sensors contradict each
-/// other.
+/// Kind of the finding that no estimate of a run can be trusted, because the sensors contradict each other.
 inline constexpr const char* kSensorsContradict = "sensors_contradict";
 
 struct StartCheckOptions {
   double begin_s = 0.0;    ///< after the first image
-  double length_s = 20.0;  ///< of the part that is looked at
+  double length_s = 20.0;  ///< of the part that is checked
 };
 
-/// What a run takes from the check.
+/// Results of the check that a run uses.
 struct StartCheck {
-  /// To be added to the stamps of each camera's images, where the first seconds show it beyond doubt; else 0.
+  /// To be added to the time stamps of each camera's images, where the first seconds show a significant
+  /// offset; else 0.
   std::vector<double> image_offset_s;
   double rate_to_SI = 1.0;  ///< takes the gyroscope's readings to rad/s
-  WhiteNoise noise;         ///< that the readings show
+  WhiteNoise noise;         ///< estimated from the readings
 };
 
-/// The quick check before a run: inspects the first seconds of a recording with a few dozen of its images,
-/// and reports to `diagnostics` every serious finding of inspect() under its kind. Where axes, units or
-/// extrinsics are so wrong that no estimate can be right, kSensorsContradict comes with it. Says nothing of a
-/// rig that rests. `data` is the recording's name, for the messages. Readings in another unit, which the run
+/// Fast check before a run: inspects the first seconds of a recording with a few dozen of its images, and
+/// reports every serious finding of inspect() to `diagnostics` under its kind. If axes, units or extrinsics
+/// are so wrong that no estimate can be correct, it also reports kSensorsContradict. A rig at rest gives no
+/// findings. `data`: name of the recording for the messages. Readings in another unit, which the run
 /// converts, are reported as "gyroscope_unit" and "accelerometer_unit".
 StartCheck checkStart(const SourceFactory& open, const std::string& data, const StartCheckOptions& options,
                       Diagnostics* diagnostics);

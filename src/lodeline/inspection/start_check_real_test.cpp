@@ -5,7 +5,7 @@
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/util/files/test_data.h"
 
-// Cameras of a real recording whose stamps are late, alone or together.
+// Tests on a real recording with delayed stamps of one or all cameras.
 
 namespace lodeline {
 namespace {
@@ -14,7 +14,7 @@ using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A recording with the stamps of each camera's images moved.
+/// A recording with shifted time stamps of each camera's images.
 class LateImages : public MeasurementSource {
  public:
   LateImages(std::unique_ptr<MeasurementSource> source, std::vector<double> late_s)

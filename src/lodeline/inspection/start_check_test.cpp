@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A recording of inertial readings at 200 Hz alone, made by a function of time.
+/// A recording of inertial readings alone at 200 Hz, given by a function of time.
 class MadeUpSource : public MeasurementSource {
  public:
   using Reading = std::function<ImuSample(double time_s)>;
@@ -38,7 +38,7 @@ class MadeUpSource : public MeasurementSource {
   int next_ = 0;
 };
 
-/// Rolls and pitches by up to 40 degrees where it stands, with the noise of a common sensor.
+/// Rolls and pitches by up to 40 degrees without translation, with the noise of a common sensor.
 ImuSample tumbling(double time_s, std::mt19937* random) {
   const double roll = 0.7 * std::sin(1.3 * time_s), roll_rate = 0.91 * std::cos(1.3 * time_s);
   const double pitch = 0.6 * std::sin(0.9 * time_s), pitch_rate = 0.54 * std::cos(0.9 * time_s);

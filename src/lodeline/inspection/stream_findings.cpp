@@ -7,7 +7,7 @@
 namespace lodeline::findings {
 namespace {
 
-/// How much of a stream may be amiss before it counts.
+/// Largest share of faults in a stream that is not reported.
 constexpr double kTolerableShare = 1e-3;
 constexpr double kHarmfulImuGap_s = 0.05;
 
@@ -47,7 +47,7 @@ class StreamJudge {
               "dropped; look for a driver or merge that writes readings twice",
               stream_.duplicates, stream_.readings, 100.0 * share(stream_.duplicates)));
     }
-    // Where a clock was set back, the readings are in order.
+    // Where a clock was set back, the order of the readings is correct.
     const int64_t backwards = stream_.backwards - stream_.clock_jumps;
     if (backwards > 0) {
       add(severity(backwards), 62.0 + 10.0 * share(backwards), "stamps_out_of_order",
@@ -60,7 +60,7 @@ class StreamJudge {
   void judgeGaps() const {
     if (stream_.gaps.empty()) return;
     const StreamGap& longest = stream_.gaps.front();
-    // Between two readings there is a period in any case.
+    // The usual interval between two readings is part of every gap.
     const double silent_s =
         stream_.gap_s - static_cast<double>(stream_.gaps.size()) / std::max(1e-9, stream_.rate_hz);
     const double lost = stream_.duration_s > 0.0 ? silent_s / stream_.duration_s : 0.0;
@@ -91,7 +91,7 @@ class StreamJudge {
   Inspection* inspection_;
 };
 
-/// Two sensors whose readings lie at other times altogether say nothing together, however good each is.
+/// Two sensors without readings at common times cannot be used together, however good each is.
 class OverlapJudge {
  public:
   explicit OverlapJudge(Inspection* inspection) : inspection_(inspection) {}
@@ -111,7 +111,7 @@ class OverlapJudge {
   Inspection* inspection_;
 };
 
-/// Not all tools need all sensors; what cannot be done with this recording is said.
+/// Reports missing sensors and what is impossible without them. Not all uses need all sensors.
 void judgeAbsence(Inspection* inspection) {
   if (inspection->imu.stream.readings == 0) {
     inspection->findings.push_back(
@@ -151,7 +151,7 @@ void judgeStreams(Inspection* inspection) {
   if (inspection->magnetometer)
     StreamJudge("mag0", inspection->magnetometer->stream, false, inspection).judge();
   for (const PlainSurvey& other : inspection->others) {
-    // Depth and range may well stay the same for a while.
+    // Depth and range may be constant for a while.
     StreamSummary stream = other.stream;
     stream.longest_frozen_s = 0.0;
     StreamJudge(other.sensor, stream, false, inspection).judge();

@@ -10,12 +10,12 @@
 namespace lodeline::findings {
 namespace {
 
-/// Least correlation at which the turns of camera and gyroscope are taken for the same.
+/// Smallest correlation at which the rotations of camera and gyroscope count as the same motion.
 constexpr double kSame = 0.6;
-/// Least correlation at which their differences are taken for errors of the rig, not of the images.
+/// Smallest correlation at which their differences count as errors of the rig and not of the images.
 constexpr double kJudgeable = 0.93;
 constexpr double kHarmfulOffset_s = 0.008;
-/// Half of the turns show their offset less well than all of them.
+/// The offsets of the halves are less accurate than that of all rotations.
 constexpr double kHarmfulChange_s = 0.015;
 constexpr double kHarmfulMisalignment_rad = 5.0 / kDegreesPerRadian;
 constexpr double kHarmfulFocalError = 0.1;
@@ -59,14 +59,15 @@ class TurningJudge {
     inspection_->findings.push_back({severity, harm, name_, kind, message});
   }
 
-  /// A rig that hangs still is seen to turn a little by what else moves and by noise.
+  /// A rig at rest seems to rotate slightly by noise and by other moving objects.
   bool isTurning() const {
     constexpr double kTurning_rad_per_s = 0.05, kPlainlyTurning_rad_per_s = 0.2;
     return turning_.gyroscope_rate_rad_per_s > kTurning_rad_per_s ||
            turning_.camera_rate_rad_per_s > kPlainlyTurning_rad_per_s;
   }
 
-  /// Relations of axes mean nothing then; the dead axis is named already, or here where noise hides it.
+  /// With a dead axis, relations between axes are meaningless; that axis has a finding already, or gets it
+  /// here where noise hides it.
   bool isGyroscopeDead() {
     for (const bool dead : inspection_->imu.gyroscope.is_dead) {
       if (dead) return true;
@@ -74,7 +75,8 @@ class TurningJudge {
     return false;
   }
 
-  /// A clock that jumped between the two halves of the turns: one offset would be wrong for one of them.
+  /// A clock that jumped between the two halves of the rotations: a single offset would be wrong for one of
+  /// them.
   bool judgeChangingOffset() {
     const std::optional<TurnComparison>& early = camera_.turning_early;
     const std::optional<TurnComparison>& late = camera_.turning_late;
@@ -108,7 +110,7 @@ class TurningJudge {
                     calibration_.time_offset_to_imu_s + offset_s));
   }
 
-  /// True where the axes are so wrong that focal lengths cannot be judged.
+  /// Returns true where the axes are so wrong that focal lengths cannot be evaluated.
   bool judgeAxes() {
     if (turning_.is_mirrored) {
       add(Severity::Serious, 91.0, "axes_mirrored",

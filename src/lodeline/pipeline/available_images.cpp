@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// The stamp of the last listed image that is there, and whether it is the last of the list.
+/// Stamp of the last listed image that exists, and whether it is the last in the list.
 struct LastImage {
   Time stamp;
   bool ends_list = false;

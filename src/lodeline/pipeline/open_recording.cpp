@@ -2,10 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
@@ -22,25 +18,6 @@ BagOptions bagOptions(const BagArguments& arguments) {
 }
 
 }  // namespace
-
-void addBagOptions(BagArguments* arguments, CLI::App* command) {
-  command
-      ->add_option("--rig", arguments->rig_files,
-                   "calibration of the rig: rig.yaml, or files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3, "
-                   "OKVIS, Basalt; "
-                   "without it NAME.rig.yaml beside NAME.bag, or what lies in the folder")
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--topic", arguments->topics,
-          "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
-          "is not named; imu0=/gyro,/accel unites two halves")
-      ->type_name("SENSOR=TOPIC");
-  command->add_flag(
-      "--received-times", arguments->use_received_times,
-      "for a bag whose header stamps are not filled: stamp messages with the times at which they "
-      "were recorded, which are late and uneven");
-}
 
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
   std::map<std::string, std::string> topics;
@@ -65,7 +42,7 @@ bool isBag(const std::filesystem::path& data) {
 bool isTableOfReadings(const std::filesystem::path& data) {
   const RecognizedFile recognized = recognizeFile(data);
   if (recognized.isFolder() || recognized.kind == FileKind::Ros1Bag) return false;
-  if (isBag(data)) return false;  // one that is missing is reported by its reader
+  if (isBag(data)) return false;  // its reader reports a missing one
   if (recognized.kind != FileKind::Table && recognized.kind != FileKind::Text) {
     refuseFile(recognized, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
   }
@@ -88,7 +65,7 @@ void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag
   if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
     const RecognizedFile recognized = recognizeFile(data);
     const bool is_table = recognized.kind == FileKind::Table || recognized.kind == FileKind::Text;
-    if (!is_table) return;  // refused by its kind
+    if (!is_table) return;  // already rejected by its kind
     throw UsageError(
         fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognized.what));
   }

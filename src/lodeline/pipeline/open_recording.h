@@ -11,41 +11,34 @@
 #include "lodeline/io/synchronizer/measurement_source.h"
 #include "lodeline/util/diagnostics.h"
 
-namespace CLI {
-class App;
-}
-
 namespace lodeline {
 
-/// What the command line says about a recording's sensors.
+/// Options of the command line on a recording's sensors.
 struct BagArguments {
   std::vector<std::string> rig_files;
   std::vector<std::string> topics;  ///< SENSOR=TOPIC
   bool use_received_times = false;
 };
 
-/// Adds --rig, --topic and --received-times to a command.
-void addBagOptions(BagArguments* arguments, CLI::App* command);
-
 /// Topics by sensor. Throws UsageError where one is not of the form SENSOR=TOPIC.
 std::map<std::string, std::string> topicsOf(const BagArguments& arguments);
 
-/// Whether a path is a ROS 1 bag, by its content, and by its name where it is not there.
+/// Whether a path is a ROS 1 bag, by its content, or by its name if it does not exist.
 bool isBag(const std::filesystem::path& data);
 
-/// Whether a path is a file with a table of readings; false for bags and folders. Throws InputError, naming
-/// its kind, for a file that is neither.
+/// Whether a path is a file with a table of readings; false for bags and folders. Throws InputError, with its
+/// kind, for any other file.
 bool isTableOfReadings(const std::filesystem::path& data);
 
-/// Throws UsageError for --topic where `data` is no bag, and for --rig where it is neither a bag nor a
+/// Throws UsageError for --topic where `data` is not a bag, and for --rig where it is neither a bag nor a
 /// folder.
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments);
 
-/// Throws UsageError for rig files with a folder, for commands that take its sensors as they are.
+/// Throws UsageError for rig files with a folder, for commands that use the folder's own sensor files.
 void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments);
 
-/// Opens a bag for its readings alone: without images, and sensors of which no rig file tells have the
-/// default calibration. Throws as BagSource does; `diagnostics` must outlive the source.
+/// Opens a bag for its readings alone, without images. Sensors without a rig file have the default
+/// calibration. Throws as BagSource does; `diagnostics` must outlive the source.
 std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
                                            const BagArguments& bag_arguments, Diagnostics* diagnostics);
 

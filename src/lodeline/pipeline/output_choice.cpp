@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without links, dots and a separator at the end.
+/// Path without links, dots and a trailing separator.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   const fs::path known = fs::weakly_canonical(path, error);
@@ -24,7 +24,7 @@ bool isWithin(const fs::path& folder, const fs::path& path) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// The folder whose content is the recording's alone.
+/// The folder that contains only the recording.
 fs::path folderOfSensors(const fs::path& data) {
   return fs::is_directory(data / "mav0") ? resolved(data / "mav0") : resolved(data);
 }

@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// What this process has used of the machine so far.
+/// Processor time and memory of this process so far.
 struct ProcessUsage {
   double processor_s = 0.0;  ///< user and system, all threads
   double peak_memory_MB = 0.0;

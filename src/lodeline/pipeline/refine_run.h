@@ -8,15 +8,15 @@
 
 namespace lodeline {
 
-/// Solves a finished run as a whole and writes trajectory_refined.tum, states_refined.csv and
-/// landmarks_refined.ply beside the run's own files; nothing, but a finding, where the solution is refused.
-/// `result_stamps`: of frames whose results have another stamp than their time. Throws InputError where
+/// Computes the batch solution of a finished run and writes trajectory_refined.tum, states_refined.csv and
+/// landmarks_refined.ply beside the run's own files; only a finding where the solution is rejected.
+/// `result_stamps`: of frames whose results have a stamp other than their time. Throws InputError where
 /// writing fails.
 RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record,
                             const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
                             Diagnostics* diagnostics);
 
-/// What a refined run left in the folder would otherwise stand for the run that overwrites it.
+/// Removes the refined files of an earlier run in the folder, which would not belong to the new run.
 void removeRefinedFiles(const std::filesystem::path& folder);
 
 }  // namespace lodeline

@@ -6,14 +6,14 @@
 
 namespace lodeline {
 
-/// What a run shows on standard error while it works: one line that is rewritten on a terminal, or now and
-/// then a line in a log.
+/// Progress of a run on standard error: one line that is rewritten on a terminal, or occasional lines in a
+/// log.
 class RunProgress {
  public:
   explicit RunProgress(bool quiet);
 
   void show(const RunSummary& summary);
-  /// Clears the line for what is printed next.
+  /// Clears the line before other output.
   void end() const;
 
  private:

@@ -19,7 +19,7 @@
 namespace lodeline {
 namespace {
 
-/// Feeds all packets through the estimator, whether the recording or the user ends it.
+/// Processes all packets with the estimator until the recording or the user ends the run.
 void process(RunSession* session, const Rig& rig, const RunRequest& request) {
   std::optional<LiveView> live;
   if (request.live_port) {
@@ -40,7 +40,7 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
   progress.end();
 }
 
-/// Opens the recording another time, to check its first seconds before the run begins.
+/// Opens the recording a second time, to check its first seconds before the run.
 void checkRecording(const RunRequest& request, RunSettings* options, Diagnostics* diagnostics) {
   StartCheckOptions start;
   start.begin_s = options->synchronizer.skip_s;
@@ -56,13 +56,14 @@ void checkRecording(const RunRequest& request, RunSettings* options, Diagnostics
   options->shown_noise = check.noise;
 }
 
-/// By default glibc gives every thread a heap of its own. Images are decoded by one short-lived thread each,
-/// and what is freed in one heap does not serve another: memory would depend on how threads happen to run.
-/// It also gives large blocks back at once, and every frame's images and matrices would be mapped anew, page
-/// by page: a tenth of the time of a start with one camera, for 4 MB less.
+/// Configures the heap of glibc. By default it gives every thread its own heap. Images are decoded by one
+/// short-lived thread each, and memory freed in one heap is not available in another, so memory would depend
+/// on thread scheduling. By default it also returns large blocks at once, and every frame's images and
+/// matrices would be mapped again, page by page. That takes a tenth of the time of a start with one camera,
+/// and saves 4 MB.
 void arrangeHeap() {
 #ifdef __GLIBC__
-  constexpr int kGreatestMappingBytes = 32 << 20;  // glibc takes no more
+  constexpr int kGreatestMappingBytes = 32 << 20;  // the largest value that glibc accepts
   constexpr int kKeptBytes = 2 * kGreatestMappingBytes;
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, kGreatestMappingBytes);
@@ -90,8 +91,8 @@ void applyRequest(const RunRequest& request, Settings* settings, RunSettings* op
 }
 
 RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
-  // One thread for image operations: the same bytes on every machine, and core-milliseconds that mean
-  // something.
+  // One thread for image operations, so that all machines give the same bytes and processor times per frame
+  // are comparable.
   cv::setNumThreads(1);
   arrangeHeap();
   if (!request.output.empty()) {

@@ -7,12 +7,12 @@
 
 namespace lodeline {
 
-/// Puts what the request says over the defaults. `settings` keeps pointing to `options`. Throws UsageError.
+/// Applies the request to the default settings. `settings` remains bound to `options`. Throws UsageError.
 void applyRequest(const RunRequest& request, Settings* settings, RunSettings* options);
 
-/// Runs the estimator over a recording and writes the folder of results (see README): trajectory, states,
-/// landmarks and settings as it goes, run.json at the end, whether the recording or the user ended it.
-/// Throws InputError and UsageError; a run that finds no pose returns its summary as any other.
+/// Runs the estimator over a recording and writes the output folder (see README): trajectory, states,
+/// landmarks and settings during the run, run.json at the end, whether the recording or the user ended it.
+/// Throws InputError and UsageError; a run without any pose also returns its summary.
 RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -12,8 +12,8 @@
 namespace lodeline {
 namespace {
 
-/// The source with the magnetometer's calibration and plausible noise densities in it, for all who are made
-/// from it.
+/// The source with the magnetometer's calibration and plausible noise densities, which all later users of its
+/// rig need.
 RecordedSource* calibrated(const RunSettings& options, RecordedSource* source, Diagnostics* diagnostics) {
   source->setImuNoise(plausibleNoise(source->rig().imu.noise, options.shown_noise, diagnostics));
   const std::string& file = options.magnetometer_calibration;
@@ -102,8 +102,8 @@ void RunSession::process() {
   summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-/// Takes an offset between the clocks that came up in the run off the images to come, but for what the
-/// estimator has found by itself.
+/// Compensates a clock offset found during the run in later images, except for the part that the estimator
+/// has estimated.
 void RunSession::followClocks(const FrameEstimate& estimate) {
   constexpr double kLeast_s = 0.015;
   const std::optional<double> offset_s = clocks_.add(odometry_.tracks(), processed_.imu, diagnostics_);
@@ -115,8 +115,9 @@ void RunSession::followClocks(const FrameEstimate& estimate) {
   clocks_.move(by_s);
 }
 
-/// Gives an estimate the stamp of its image as recorded, whatever was done about jumps of the clocks; where
-/// that goes back by more than a pause, the clock before goes on. False where the stamp has occurred before.
+/// Sets an estimate's stamp to the recorded stamp of its image, whatever corrections of clock jumps were
+/// made. If the recorded stamp goes back by more than a pause, the clock before continues. Returns false
+/// where the stamp has occurred before.
 bool RunSession::stamp(FrameEstimate* estimate) {
   constexpr double kLongestPause_s = 10.0;
   const Time recorded = processed_.image_stamp + image_offset_;
@@ -134,7 +135,7 @@ RunSummary RunSession::finish() {
   odometry_.finish();
   if (output_) summary_.map_points = output_->finish(odometry_, summary_.last().magnetometer);
   if (output_) summary_.pictures_s = output_->picturesSeconds();
-  output_.reset();  // closes what is read next
+  output_.reset();  // closes files that are read next
   summary_.interrupted = fetched_.has_value();
   if (!summary_.interrupted) summary_.recorded_images = synchronizer_.recordedImages();
   summary_.front_end_s = odometry_.times().front_end_s;

@@ -21,31 +21,31 @@
 
 namespace lodeline {
 
-/// The estimator's way through a source, packet by packet, with the folder of results (see README) that grows
-/// on the way:
+/// Runs the estimator over a source, packet by packet, and writes the output folder (see README) during the
+/// run:
 ///
 ///     while (session.fetch()) session.process();
 ///     session.finish();
 class RunSession {
  public:
-  /// Applies the magnetometer's calibration that `options` name to the source, makes the folder of results
-  /// and writes the settings to it; writes nothing where the request names no folder. `settings` are bound to
+  /// Applies the magnetometer calibration named in `options` to the source, creates the output folder and
+  /// writes the settings to it; writes nothing where the request names no folder. `settings` are bound to
   /// `options`; `source` and `diagnostics` must outlive the session. Throws InputError and UsageError.
   RunSession(const RunRequest& request, const Settings& settings, const RunSettings& options,
              RecordedSource* source, Diagnostics* diagnostics);
 
-  /// Waits for the next packet; false at the source's end.
+  /// Reads the next packet; returns false at the end of the source.
   bool fetch();
-  /// Takes the fetched packet through front end, estimator and files. Throws InputError.
+  /// Processes the fetched packet with front end, estimator and writers. Throws InputError.
   void process();
-  /// Completes the files, the refined ones too where the request asks for them. A packet that was fetched but
-  /// not processed says that the user ended the run.
+  /// Completes the files, including the refined ones if the request asks for them. A packet that was fetched
+  /// but not processed means that the user ended the run.
   RunSummary finish();
 
-  /// Of the packet processed last.
+  /// Packet processed last.
   const FramePacket& packet() const { return processed_; }
   const FrameEstimate& estimate() const { return summary_.last(); }
-  /// That left the window with it.
+  /// Landmarks that left the window with it.
   const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }
   const Odometry& odometry() const { return odometry_; }
@@ -61,17 +61,17 @@ class RunSession {
   Diagnostics* diagnostics_;
   Synchronizer synchronizer_;
   Odometry odometry_;
-  Diagnostics unheard_;  ///< what the filter finds wrong with readings, synchronizer and odometry report too
+  Diagnostics unheard_;  ///< findings of the attitude filter, which synchronizer and odometry report as well
   AttitudeTrack attitude_;
   RunSummary summary_;
   std::optional<RunOutput> output_;
-  std::optional<EstimatorLog> record_;  ///< of a run that is to be refined
+  std::optional<EstimatorLog> record_;  ///< if the run is to be refined
   std::optional<FramePacket> fetched_;
   FramePacket processed_;
   ClockMonitor clocks_;
   Duration image_offset_;  ///< from the clock of the images to that of the results
   std::optional<Time> last_result_stamp_;
-  std::map<Time, Time> result_stamps_;  ///< of frames whose results have another stamp than their time
+  std::map<Time, Time> result_stamps_;  ///< of frames whose results have a stamp other than their time
   std::vector<MapPoint> landmarks_;
   Clock::time_point start_;
   double start_processor_s_ = 0.0;

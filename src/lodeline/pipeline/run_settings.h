@@ -12,7 +12,7 @@
 
 namespace lodeline {
 
-/// Everything that `lodeline run` can be told.
+/// All settings of `lodeline run`.
 struct RunSettings {
   EurocOptions source;
   SynchronizerOptions synchronizer;
@@ -20,13 +20,14 @@ struct RunSettings {
   std::string magnetometer_calibration;  ///< file of `lodeline calibrate magnetometer`; empty for none
   std::vector<double> site;              ///< latitude, longitude (degrees) and height (m); empty for unknown
   std::string date;                      ///< YYYY-MM-DD; empty for unknown
-  WhiteNoise shown_noise;                ///< of the IMU, by its readings; what its file says is held to it
+  WhiteNoise
+      shown_noise;  ///< of the IMU, estimated from its readings; used to check the noise stated in its file
 };
 
 void bindRunSettings(Settings* settings, RunSettings* options);
 
-/// The Earth's field where and when the recording was made, for true north; nothing where neither is told.
-/// Throws UsageError where one is told without the other, or the site is no place.
+/// The Earth's field at the site and date of the recording, for true north; empty where neither is given.
+/// Throws UsageError where only one is given, or the site is not a valid position.
 std::optional<Vec3> siteField_W(const RunSettings& options);
 
 }  // namespace lodeline

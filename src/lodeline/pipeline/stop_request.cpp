@@ -5,7 +5,7 @@
 namespace lodeline {
 namespace {
 
-/// Ctrl-C, a polite kill, and a terminal that was closed.
+/// Ctrl-C, a normal kill, and a closed terminal.
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
 volatile std::sig_atomic_t stop_requested = 0;
@@ -19,7 +19,7 @@ void requestStop(int signal) {
 
 StopRequest::StopRequest() {
   stop_requested = 0;
-  // A signal that the caller has the program ignore (nohup) stays ignored.
+  // A signal that the caller ignores (nohup) stays ignored.
   for (const int signal : kSignals) {
     if (std::signal(signal, requestStop) == SIG_IGN) std::signal(signal, SIG_IGN);
   }

@@ -2,8 +2,9 @@
 
 namespace lodeline {
 
-/// While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks for a stop instead of ending the
-/// program, so that results can be completed; the second one ends it as usual. One at a time.
+/// Signal handler for a clean stop: while one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP requests a
+/// stop instead of ending the program, so that results can be completed. The second one ends it as usual.
+/// Only one may exist at a time.
 class StopRequest {
  public:
   StopRequest();

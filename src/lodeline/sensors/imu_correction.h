@@ -6,19 +6,19 @@
 
 namespace lodeline {
 
-/// Scale, misalignment and bias of an IMU as a calibration found them, and the readings freed from them. The
-/// sensor reads, Kalibr's model with constant biases:
+/// Calibrated scale, misalignment and bias of an IMU, and the correction of its readings. The measurement
+/// model is Kalibr's with constant biases:
 ///
 ///     gyroscope reading     = G^-1 w + S f + b_g        accelerometer reading = F^-1 f + b_a
 ///
 /// with the angular velocity w (rad/s) and the specific force f (m/s^2) in body axes.
 struct ImuCorrection {
   Mat3 accelerometer = Mat3::Identity();  ///< F
-  Mat3 gyroscope = Mat3::Identity();      ///< G, the rotation from the gyroscope's axes to B included
+  Mat3 gyroscope = Mat3::Identity();      ///< G, includes the rotation from the gyroscope's axes to B
   Mat3 g_sensitivity = Mat3::Zero();      ///< S, rad/s per m/s^2
   Vec3 accelerometer_bias = Vec3::Zero();
   Vec3 gyroscope_bias = Vec3::Zero();
-  /// Stamps + this = the clock that the cameras' offsets refer to (Kalibr's time_offset).
+  /// Offset added to IMU stamps to obtain the clock of the cameras' offsets (Kalibr's time_offset).
   double time_offset_s = 0.0;
 
   ImuSample applied(const ImuSample& reading) const {
@@ -30,7 +30,7 @@ struct ImuCorrection {
     return sample;
   }
 
-  /// The largest relative change of a reading of one axis that scale and misalignment make.
+  /// Largest relative change of a single-axis reading caused by scale and misalignment.
   double largestChange() const {
     const double force = (accelerometer - Mat3::Identity()).cwiseAbs().maxCoeff();
     return std::max(force, (gyroscope - Mat3::Identity()).cwiseAbs().maxCoeff());

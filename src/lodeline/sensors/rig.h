@@ -8,9 +8,9 @@
 
 namespace lodeline {
 
-/// Noise of an IMU as continuous densities, Kalibr's convention (two-sided square root of power per hertz; a
-/// discrete sample at rate f has sigma = density * sqrt(f)). Figures stand as the datasheet or Allan analysis
-/// gave them.
+/// Noise of an IMU as continuous densities in Kalibr's convention: two-sided square root of power per hertz.
+/// A discrete sample at rate f has sigma = density * sqrt(f). The values are those of the datasheet or the
+/// Allan analysis, without inflation.
 struct ImuNoise {
   double gyroscope_density_rad_per_s_sqrtHz = 1.7e-4;
   double gyroscope_random_walk_rad_per_s2_sqrtHz = 2.0e-5;
@@ -18,12 +18,12 @@ struct ImuNoise {
   double accelerometer_random_walk_m_per_s3_sqrtHz = 3.0e-3;
 };
 
-/// What is known beforehand of the axes of an IMU: scale errors and misalignment, one sigma, relative and
-/// rad. Makers calibrate the axes of their better sensors, which the gyroscope's white noise tells.
+/// Prior standard deviation of the scale errors (relative) and misalignment (rad) of IMU axes, one sigma.
+/// Manufacturers calibrate the axes of their better sensors; the gyroscope's white noise identifies these.
 namespace imu_axes {
 constexpr double kCalibratedBelow_rad_per_s_sqrtHz = 1.2e-4;
 constexpr double kCalibratedSigma = 0.001;
-constexpr double kUncalibratedSigma = 0.007;  ///< of one that was perhaps never calibrated
+constexpr double kUncalibratedSigma = 0.007;  ///< for a sensor that may never have been calibrated
 
 inline double sigmaFor(const ImuNoise& noise) {
   return noise.gyroscope_density_rad_per_s_sqrtHz < kCalibratedBelow_rad_per_s_sqrtHz ? kCalibratedSigma
@@ -43,42 +43,43 @@ enum class DistortionModel {
   Equidistant,       ///< Kannala-Brandt: k1 k2 k3 k4
 };
 
-/// A camera as a calibration file describes it; `makeCamera` turns it into something that projects.
+/// A camera as described by a calibration file; `makeCamera` creates the projection model from it.
 struct CameraCalibration {
   std::string name;  ///< e.g. "cam0"
   int width_px = 0;
   int height_px = 0;
   double fx_px = 0.0;
   double fy_px = 0.0;
-  double cx_px = 0.0;  ///< pixel centres at integers
+  double cx_px = 0.0;  ///< pixel centres have integer coordinates
   double cy_px = 0.0;
   DistortionModel distortion_model = DistortionModel::None;
   std::vector<double> distortion;
   double rate_hz = 20.0;
   Rigid3 body_from_camera;
-  /// Camera stamps + this = IMU clock (Kalibr's timeshift_cam_imu).
+  /// Offset added to camera stamps to obtain the IMU clock (Kalibr's timeshift_cam_imu).
   double time_offset_to_imu_s = 0.0;
-  std::string mask_file;  ///< 8-bit image, zero where the camera sees its own rig; empty for none
+  std::string mask_file;  ///< 8-bit image, zero where the rig itself covers the view; empty for none
 };
 
 struct MagnetometerCalibration {
   double rate_hz = 100.0;
   double noise_density_T_per_sqrtHz = 1.0e-8;
   Rigid3 body_from_magnetometer;
-  /// Soft and hard iron as `lodeline calibrate magnetometer` finds them (paper section III-E): the field in M
-  /// is A (reading - h). A is symmetric; what it lacks in rotation is in body_from_magnetometer.
+  /// Soft iron A and hard iron h (T) from `lodeline calibrate magnetometer` (paper section III-E): the field
+  /// in M is A (reading - h). A is symmetric; body_from_magnetometer contains the remaining rotation.
   Mat3 iron_correction = Mat3::Identity();
   Vec3 hard_iron_T = Vec3::Zero();
   bool is_calibrated = false;  ///< whether iron_correction and hard_iron_T come from a calibration
-  /// Stamps + this = IMU clock; negative where the magnetometer lags the gyroscope.
+  /// Offset added to magnetometer stamps to obtain the IMU clock; negative where the magnetometer lags the
+  /// gyroscope.
   double time_offset_to_imu_s = 0.0;
-  /// What the calibration knows about itself, where it says so: the field's size that its corrected readings
-  /// have, and one sigma of the hard iron per axis and of the rotation of body_from_magnetometer.
+  /// Optional results of the calibration: the magnitude of the corrected field, and one sigma of the hard
+  /// iron per axis and of the rotation of body_from_magnetometer.
   std::optional<double> field_strength_T = std::nullopt;
   std::optional<double> hard_iron_sigma_T = std::nullopt;
   std::optional<double> rotation_sigma_rad = std::nullopt;
 
-  /// A reading freed from soft and hard iron, T, in body axes.
+  /// A reading corrected for soft and hard iron, in body axes, T.
   Vec3 corrected_B(const Vec3& reading_M) const {
     return body_from_magnetometer.rotation * (iron_correction * (reading_M - hard_iron_T));
   }
@@ -96,7 +97,7 @@ struct SonarCalibration {
   Rigid3 body_from_sonar;
 };
 
-/// Everything that is rigidly mounted together, with extrinsics for every sensor.
+/// All rigidly connected sensors with their extrinsics.
 struct Rig {
   ImuCalibration imu;
   std::vector<CameraCalibration> cameras;

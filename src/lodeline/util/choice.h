@@ -9,15 +9,15 @@ namespace lodeline {
 
 bool equalIgnoringCase(std::string_view a, std::string_view b);
 
-/// The name of `names` that is nearest to `word` in letters; empty where none is near: more than a third of
-/// the letters, and more than one, differ.
+/// The element of `names` with the smallest edit distance to `word`. Returns an empty string where the
+/// distance of every name exceeds both one letter and a third of the letters.
 std::string nearestName(std::string_view word, std::span<const std::string> names);
 
-/// "; did you mean 'NAME'?" with the nearest of `names`; empty where none is near.
+/// "; did you mean 'NAME'?" with nearestName(word, names); empty where there is no near name.
 std::string didYouMean(std::string_view word, std::span<const std::string> names);
 
-/// Index of `word` in `names`, without regard to case. `what` says where the word was given, for messages.
-/// Throws UsageError that lists the names and suggests the nearest.
+/// Index of `word` in `names`, ignoring case. `what` names the place of the word in error messages. Throws
+/// UsageError that lists the names and suggests the nearest one.
 size_t chooseByName(std::string_view what, std::string_view word, std::span<const std::string> names);
 
 }  // namespace lodeline

@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
-/// The text of one line of a comma-separated file.
+/// Functions that parse one line of a comma-separated file.
 namespace lodeline::csv {
 
-/// Without blanks, tabs and carriage returns at both ends.
+/// `text` without blanks, tabs and carriage returns at both ends.
 inline std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
   const size_t first = text.find_first_not_of(kBlanks);
@@ -15,7 +15,7 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// The fields of a line, trimmed.
+/// Splits a line at its commas into trimmed fields.
 inline void split(std::string_view line, std::vector<std::string_view>* fields) {
   fields->clear();
   size_t begin = 0;
@@ -24,11 +24,11 @@ inline void split(std::string_view line, std::vector<std::string_view>* fields) 
     begin = comma + 1;
   }
   fields->push_back(trimmed(line.substr(begin)));
-  // A comma at the end of a row closes its last field; it does not open another.
+  // A comma at the end of a row ends the last field. It does not start another one.
   if (fields->size() > 1 && fields->back().empty()) fields->pop_back();
 }
 
-/// False where `text` is not a number and nothing else.
+/// Parses all of `text` as one number. Returns false where `text` is anything else.
 template <typename Number>
 bool parse(std::string_view text, Number* number) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// How much a finding may spoil the result, most harmful last.
+/// How much a finding can degrade the result, in increasing order.
 enum class Severity { Notice, Warning, Serious };
 
 /// One kind of finding, however often it occurred.
@@ -17,14 +17,15 @@ struct Finding {
   int count = 0;
 };
 
-/// Collects what went wrong without stopping the work, folded by kind so that ten thousand equal warnings
-/// make one line. Layers report into it; the command line ranks and prints it, and run.json keeps it.
+/// Collects findings without stopping the program and groups them by kind, so that ten thousand equal
+/// warnings make one line. Every layer reports into it. The command line ranks and prints the findings, and
+/// run.json stores them.
 class Diagnostics {
  public:
-  /// Adds one occurrence. The first message of a kind is kept; the highest severity wins.
+  /// Adds one occurrence. Keeps the first message of a kind and the highest severity.
   void report(Severity severity, const std::string& kind, const std::string& message);
 
-  /// Most severe first, then most frequent, then by name.
+  /// Findings sorted by severity (most severe first), then by count (most frequent first), then by name.
   std::vector<Finding> ranked() const;
 
   int count(const std::string& kind) const;

@@ -4,8 +4,9 @@
 
 namespace lodeline {
 
-/// `json` as text that every reader of JSON takes: bytes that are not UTF-8 (a path, a damaged line) become
-/// the replacement character instead of an exception. `indent`: of each level; -1 for a single line.
+/// Serializes `json` to text that every JSON reader accepts. Bytes that are not UTF-8 (from a path or a
+/// damaged line) become the replacement character instead of causing an exception. `indent` is the number of
+/// blanks per level; -1 gives a single line.
 template <typename Json>
 std::string jsonText(const Json& json, int indent = 2) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

@@ -7,8 +7,8 @@
 namespace lodeline {
 namespace {
 
-/// Bytes of the UTF-8 sequence that `text` begins with; 0 where it begins with none (RFC 3629, table 3-7 of
-/// the Unicode standard: no surrogates, no overlong forms).
+/// Number of bytes of the UTF-8 sequence at the start of `text`; 0 where there is no valid sequence (RFC
+/// 3629, table 3-7 of the Unicode standard: no surrogates, no overlong forms).
 size_t sequenceLength(std::string_view text) {
   const auto byte = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : 0; };
   const auto follows = [&](size_t i) { return (byte(i) & 0xC0) == 0x80; };

@@ -5,8 +5,9 @@
 
 namespace lodeline {
 
-/// `text` as valid UTF-8 without control characters: each byte that is neither becomes `\\xHH`. Messages
-/// quote damaged files, and JSON, pages and terminals take no bytes as they come. Line ends and tabs stay.
+/// `text` as valid UTF-8 without control characters. Each invalid byte and each control character becomes
+/// `\\xHH`; line ends and tabs stay. Messages quote damaged files, and JSON, HTML pages and terminals do not
+/// accept arbitrary bytes.
 std::string printableText(std::string_view text);
 
 }  // namespace lodeline

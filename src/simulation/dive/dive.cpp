@@ -15,7 +15,7 @@ CenterlineOptions passageOptions(const Scenario& s) {
   options.length_m = 0.5 * s.path_length_m;
   options.descent_m = std::min(0.08 * options.length_m, s.decorated ? 6.0 : 20.0);
   if (s.decorated) {
-    // Dissolved along joints near the water table: level, wide, low.
+    // Dissolved along joints near the water table: horizontal, wide and low passages.
     options.mean_width_m = 5.5;
     options.mean_height_m = 2.6;
     options.undulation_m = 0.5;
@@ -30,7 +30,7 @@ DiveMotionOptions diveOptions(const Scenario& s) {
   options.duration_s = s.duration_s;
   options.path_length_m = s.path_length_m;
   options.starts_at_rest = s.starts_at_rest;
-  // Short excerpts spend less of their time resting and turning.
+  // Short recordings spend less time resting and turning.
   options.start_rest_s = std::min(4.0, 0.06 * s.duration_s);
   options.turn_s = std::min(10.0, 0.2 * s.duration_s);
   return options;
@@ -63,7 +63,7 @@ Motion makeMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place
   return makeMotionAtRest(s.seed, s.duration_s, diver_from_body);
 }
 
-// Points over the faces of the box around a hull.
+// Random points on the faces of the box around a hull.
 LandmarkField hullLandmarks(const WreckLayout& wreck, double points_per_metre, uint64_t seed) {
   Random random(seed, "landmarks");
   const Quat heading(Eigen::AngleAxisd(wreck.azimuth_rad, Vec3::UnitZ()));
@@ -71,7 +71,7 @@ LandmarkField hullLandmarks(const WreckLayout& wreck, double points_per_metre, u
   std::vector<LandmarkPoint> points;
   const int count = static_cast<int>(points_per_metre * 2.0 * (wreck.length_m + wreck.width_m));
   for (int i = 0; i < count; ++i) {
-    // Long sides, ends and deck by their areas.
+    // The sides, ends and deck get points by their areas.
     const double side = half.x() * half.z(), end = half.y() * half.z(), deck = half.x() * half.y();
     const double pick = random.uniform(0.0, 2.0 * side + 2.0 * end + deck);
     Vec3 normal = Vec3::UnitZ();
@@ -108,7 +108,8 @@ Dive makeDive(const Scenario& s) {
             .start = {}};
   dive.field_W = scenarioField(s);
   dive.surface_height_m = s.start_depth_m;
-  // 2026-11-21, 10:00 UTC, whatever the scenario's date: only its year enters, through the magnetic field.
+  // 2026-11-21, 10:00 UTC, for every date of the scenario. Only the year of that date is used, for the
+  // magnetic field.
   dive.start = Time::fromNanoseconds(1'795'255'200'000'000'000);
   if (s.motion == MotionKind::Dive || s.motion == MotionKind::AroundWreck) {
     DisturbanceOptions options;

@@ -11,7 +11,7 @@
 
 namespace lodeline {
 
-/// A scenario with everything drawn that it leaves to its seed: the place, the swim, the rig and its errors.
+/// A scenario with all its random draws: place, motion, rig and its errors.
 struct Dive {
   Scenario scenario;
   DiveErrors errors;
@@ -21,14 +21,15 @@ struct Dive {
   Vec3 field_W = Vec3::Zero();        ///< Earth's, T
   MagneticDisturbances disturbances;
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
-  double surface_height_m = 0.0;  ///< of the water above the world's origin
-  Time start;                     ///< stamp of the motion's second 0, on the IMU's clock
+  double surface_height_m = 0.0;  ///< height of the water surface above the world's origin
+  Time start;                     ///< stamp at second 0 of the motion, on the IMU's clock
 };
 
-/// Deterministic in the scenario. Throws UsageError for lengths and durations that no diver swims.
+/// Draws a dive; deterministic in the scenario. Throws UsageError for lengths and durations that no diver can
+/// swim.
 Dive makeDive(const Scenario& scenario);
 
-/// Points on the dive's walls (cave) or hull (wreck), for point-level simulation; empty without a place.
+/// Points on the walls (cave) or hull (wreck) of the dive, for point-level simulation; empty without a place.
 LandmarkField diveLandmarks(const Dive& dive, double points_per_metre = 400.0);
 
 }  // namespace lodeline

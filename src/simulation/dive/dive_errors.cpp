@@ -13,9 +13,9 @@ Quat drawTurn(double least_rad, double most_rad, Random& random) {
   return so3::exp(angle * random.direction());
 }
 
-// What misleads a calibration (target, water, window) misleads it for both cameras alike, and since it fits
-// them together, the stereo pair's images still agree to a fraction of a pixel: the errors are common, with
-// little of their own for each camera.
+// Errors of the given intrinsics. Their causes (target, water, window) affect both cameras of a calibration
+// equally, and it fits both together, so that the stereo images still agree to a fraction of a pixel. The
+// errors are therefore mostly common, with a small part for each camera.
 void misstateIntrinsics(uint64_t seed, Rig& given) {
   Random common(seed, "calibration/intrinsics");
   const double focal_error = common.sign() * common.uniform(0.0012, 0.0048);
@@ -37,7 +37,7 @@ void misstateExtrinsics(const EffectSet& effects, uint64_t seed, Rig& given) {
     const Quat turn = drawTurn(0.1 * kDegree, 0.5 * kDegree, random);
     const double distance_m = random.uniform(0.005, 0.010);
     const Vec3 shift = distance_m * random.direction();
-    // About the first camera, so that the stereo geometry stays as it is.
+    // Rotation about the first camera, so that the stereo geometry is unchanged.
     const Vec3 pivot = given.cameras.front().body_from_camera.translation;
     for (CameraCalibration& camera : given.cameras) {
       const Rigid3& pose = camera.body_from_camera;
@@ -83,7 +83,7 @@ void drawDepthAndSonar(const Scenario& s, DiveErrors& errors) {
   Random random(s.seed, "pressure/specimen");
   const double offset_m = random.sign() * random.uniform(0.05, 0.30);
   const double lag_s = random.uniform(0.3, 1.0);
-  // A gauge set to salt water in a spring, or to fresh water in the halocline.
+  // A gauge with the density of salt water in a spring, or of fresh water in the halocline.
   const double density_ratio = random.chance(0.5) ? 998.0 / 1025.0 : 1010.0 / 1000.0;
   if (s.effects.has(Effect::PressureNoise)) {
     errors.pressure.noise_m = 0.01;
@@ -127,7 +127,8 @@ DiveErrors drawErrors(const Scenario& s) {
   if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
   misstateExtrinsics(on, s.seed, errors.given);
 
-  // Files state a grade's noise, whichever effects are on: nobody delivers a noise density of zero.
+  // Calibration files state a grade's noise for any effects, because no real file has a noise density of
+  // zero.
   const ImuGrade& grade = imuGrade(s.imu_grade);
   errors.given.imu.noise = statedNoise({grade.gyroscope, grade.accelerometer});
   if (on.has(Effect::MagnetometerExtrinsics)) errors.given.magnetometer->body_from_magnetometer = Rigid3();

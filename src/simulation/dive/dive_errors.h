@@ -12,13 +12,13 @@
 
 namespace lodeline {
 
-/// The rig as it is, the rig as its files describe it, and every error of its sensors.
+/// The true rig, the rig in the calibration files, and all errors of its sensors.
 struct DiveErrors {
-  MountedRig truth;              ///< behind a flat port the cameras are those in air
-  Rig in_water;                  ///< truth as seen from the water: without a port the same, else the best fit
-  Rig given;                     ///< what the calibration files say
+  MountedRig truth;              ///< behind a flat port, the cameras are those in air
+  Rig in_water;                  ///< effective rig in water: the true rig, with a port the best fit to it
+  Rig given;                     ///< content of the calibration files
   std::optional<FlatPort> port;  ///< in front of every camera
-  double port_fit_rms_px = 0.0;  ///< what a radial-tangential model cannot express
+  double port_fit_rms_px = 0.0;  ///< residual that a radial-tangential model cannot represent
 
   ImuErrors imu;
   MagnetometerErrors magnetometer;
@@ -28,9 +28,9 @@ struct DiveErrors {
   double dropped_image_share = 0.0;
 };
 
-/// Draws all errors that the scenario's effects switch on. Each draws from its own stream: switching one
-/// leaves the others as they were. The rig's own errors (IMU, iron) depend on the seed and the grade alone,
-/// so that `figure_eight` and `bench` with a dive's seed calibrate that dive's rig.
+/// Draws all errors that the scenario's effects switch on. Each error has its own random stream, so switching
+/// one does not change the others. The rig's own errors (IMU, iron) depend only on the seed and the grade.
+/// Therefore `figure_eight` and `bench` with a dive's seed calibrate that dive's rig.
 DiveErrors drawErrors(const Scenario& scenario);
 
 }  // namespace lodeline

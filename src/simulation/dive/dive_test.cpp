@@ -175,7 +175,8 @@ TEST(Bench, DoesNotMove) {
 TEST(OpenWater, IsSwumAtOneSpeedAllTheWayRound) {
   const Dive dive = makeDive(scenario("open_water", "clean"));
   EXPECT_NEAR(pathLength(dive.motion, 0.0, 400.0), 100.0, 1.5);
-  // Halts and changes of pace average out over a minute, not so a parameter that crowds at bow and stern.
+  // Halts and changes of speed average out over a minute. Uneven spacing of the path parameter at bow and
+  // stern would not.
   for (double t = 20.0; t < 320.0; t += 10.0)
     EXPECT_NEAR(pathLength(dive.motion, t, t + 60.0), 15.0, 3.5) << t;
 }

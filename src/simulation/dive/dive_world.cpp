@@ -8,7 +8,7 @@ namespace {
 Daylight entranceLight(const Centerline& passage) {
   Daylight daylight;
   daylight.irradiance = 6.0;
-  // Comes in behind the diver, where the passage begins.
+  // The entrance is behind the diver, at the start of the passage.
   daylight.entrance_W = passage.at(passage.beginArcLength()).position_W;
   daylight.decay_m = 3.5;
   return daylight;

@@ -7,13 +7,13 @@
 
 namespace lodeline {
 
-/// The place of a dive as cameras and sonar see it. Nothing where the scenario has none.
+/// The rendered world of a dive for cameras and sonar; nothing where the scenario has none.
 std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive);
 
-/// Light, water, lens and chip as the scenario's effects have them.
+/// Settings of light, water, lens and sensor for the scenario's effects.
 RenderSettings renderSettings(const Dive& dive);
 
-/// Stretches of stirred-up silt: 3 to 8 s every minute or two.
+/// Time intervals of stirred-up silt: 3 to 8 s every minute or two.
 std::vector<SiltEpisode> drawSiltOuts(double duration_s, uint64_t seed);
 
 }  // namespace lodeline

@@ -7,9 +7,9 @@
 
 namespace lodeline {
 
-/// Everything by which a simulated recording differs from the ideal, each to be switched alone.
+/// Deviations of a simulated recording from the ideal; each can be switched separately.
 enum class Effect {
-  // What any recording has, on in `clean` and `field`.
+  // Effects of any recording, on in `clean` and `field`.
   ImuNoise,
   ImuBias,
   MagnetometerNoise,
@@ -20,7 +20,7 @@ enum class Effect {
   MotionBlur,
   MarineSnow,
   Daylight,
-  // What a diver adds, on in `field`.
+  // Effects of a diver's recording, on in `field`.
   CameraIntrinsics,
   CameraImuExtrinsics,
   StereoExtrinsics,
@@ -41,7 +41,7 @@ enum class Effect {
   LampCurrent,
   MagnetometerLag,
   DepthErrors,
-  // Only when asked for.
+  // Effects that are on only by request.
   RollingShutter,
   ClockDrift,
 };
@@ -60,12 +60,12 @@ class EffectSet {
   static EffectSet clean();
   static EffectSet field();
   static EffectSet none() { return {}; }
-  /// `clean` or `field`; throws UsageError for another word.
+  /// Effects of `clean` or `field`; throws UsageError for any other word.
   static EffectSet named(std::string_view realism);
 
   bool has(Effect effect) const { return on_[static_cast<size_t>(effect)]; }
   void set(Effect effect, bool on) { on_[static_cast<size_t>(effect)] = on; }
-  /// "name=on" or "name=off". Throws UsageError naming the effects there are.
+  /// Parses "name=on" or "name=off". Throws UsageError naming the existing effects.
   void set(const std::string& assignment);
 
  private:

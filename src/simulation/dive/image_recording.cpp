@@ -17,7 +17,7 @@
 namespace lodeline {
 namespace {
 
-// Images begin this long after the IMU, so that the first one has readings before it.
+// Delay of the first image after the first IMU reading, so that it has readings before it.
 constexpr double kFirstImage_s = 0.1;
 
 std::string fileName(const ScheduledImage& image) { return fmt::format("{}.png", image.stamp.nanoseconds()); }
@@ -82,7 +82,7 @@ ImageProgress recordImages(const ImageRenderer& renderer, const Dive& dive,
   }
   progress.done = images.size() - missing.size();
 
-  // Before the dive the rig hangs where it will start.
+  // Before the dive, the rig has its initial pose.
   const WorldFromBodyAt motion = [&dive](double time_s) {
     return dive.motion.at(std::max(time_s, 0.0)).world_from_body;
   };

@@ -9,14 +9,14 @@
 
 namespace lodeline {
 
-/// One image to be made.
+/// One image to render.
 struct ScheduledImage {
   int camera = 0;
-  double middle_s = 0.0;  ///< of the exposure, after the motion's start, true
-  Time stamp;             ///< as the recording will say it
+  double middle_s = 0.0;  ///< true middle of the exposure, relative to the motion's start
+  Time stamp;             ///< stamp in the recording
 };
 
-/// All images of a dive in order of time, then camera, those that were dropped left out.
+/// All images of a dive sorted by time, then by camera, without dropped ones.
 std::vector<ScheduledImage> scheduleImages(const Dive& dive);
 
 /// Writes mav0/camN/data.csv for all cameras.
@@ -24,20 +24,20 @@ void recordImageLists(const Dive& dive, const std::vector<ScheduledImage>& image
                       const std::filesystem::path& folder);
 
 struct ImageProgress {
-  size_t done = 0;      ///< images in the folder
-  size_t rendered = 0;  ///< of which made by this run
+  size_t done = 0;      ///< number of images in the folder
+  size_t rendered = 0;  ///< number of them rendered by this run
   size_t total = 0;
 };
 
 struct ImageRecordingOptions {
-  int threads = 0;                                     ///< 0: as many as the machine has
-  std::function<bool()> stop;                          ///< asked after each image
-  std::function<void(const ImageProgress&)> progress;  ///< told after each image, one call at a time
+  int threads = 0;                                     ///< 0: number of processors
+  std::function<bool()> stop;                          ///< called after each image
+  std::function<void(const ImageProgress&)> progress;  ///< called after each image, one call at a time
 };
 
-/// Renders into mav0/camN/data/STAMP.png, in parallel. Images that are there already stay as they are; each
-/// appears under its name only when complete, so an interrupted recording can be taken up again. Throws
-/// InputError where an image cannot be written.
+/// Renders mav0/camN/data/STAMP.png in parallel. Existing images are kept. Each image gets its name only when
+/// complete, so an interrupted recording can be continued. Throws InputError where an image cannot be
+/// written.
 ImageProgress recordImages(const ImageRenderer& renderer, const Dive& dive,
                            const std::vector<ScheduledImage>& images, const std::filesystem::path& folder,
                            const ImageRecordingOptions& options);

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// A world of points, a swim through it and the rig, ready for a PointSimulation; it must outlive that.
+/// A world of points, a motion through it and the rig, as input of a PointSimulation; it must outlive that.
 struct PointDive {
   MountedRig mounted;
   Centerline passage;
@@ -18,8 +18,8 @@ struct PointDive {
   }
 };
 
-/// The passage is made as long as the swim needs; both take `motion.seed`. The rig's IMU calibration states
-/// the noise of `imu`, so that an estimator that believes the rig believes the truth.
+/// Makes a dive with a passage of the length that the motion needs; both use `motion.seed`. The rig's IMU
+/// calibration states the true noise of `imu`.
 PointDive makePointDive(const DiveMotionOptions& motion, const MountedRig& mounted, const ImuErrors& imu);
 
 }  // namespace lodeline

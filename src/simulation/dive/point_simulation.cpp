@@ -71,7 +71,7 @@ void PointSimulation::takeImu(SimulatedFrame& frame) {
   const auto keep = [&](const Reading& reading) {
     if (frame.imu.empty() || reading.sample.time > frame.imu.back().time) frame.imu.push_back(reading.sample);
   };
-  // A reading drawn beyond the last border opens this interval.
+  // A reading drawn after the last border is the first one of this interval.
   if (after_ && after_->sample.time <= border) {
     keep(*after_);
     before_ = after_;
@@ -114,7 +114,7 @@ std::optional<Vec2> PointSimulation::seen(int camera, const Rigid3& world_from_b
   const Vec3 ray_W = point.position_W - world_from_camera.translation;
   const double range_m = ray_W.norm();
   if (range_m < options_.nearest_m || range_m > options_.farthest_m) return std::nullopt;
-  // Seen too flat, a surface cannot be tracked; from behind it is rock.
+  // A surface at grazing incidence cannot be tracked; from behind, it is not visible.
   if (ray_W.dot(point.normal_W) > -0.1 * range_m) return std::nullopt;
   const Vec3 point_C = world_from_camera.rotation.conjugate() * ray_W;
   const auto pixel = true_cameras_[camera]->project(point_C);
@@ -127,7 +127,7 @@ void PointSimulation::renewTracks(double time_s, const Rigid3& world_from_body) 
     return time_s - track.born_s > options_.longest_track_s ||
            !seen(0, world_from_body, landmarks_.points()[track.point]);
   });
-  // A front end detects anew when tracks have grown thin.
+  // Like a front end, detects new features when 10 % of the tracks are missing.
   if (static_cast<int>(tracks_.size()) * 10 >= options_.tracks * 9) return;
   std::set<int> taken;
   for (const Track& track : tracks_) taken.insert(track.point);
@@ -144,7 +144,7 @@ void PointSimulation::renewTracks(double time_s, const Rigid3& world_from_body) 
 }
 
 void PointSimulation::observe(const Rigid3& world_from_body, FrameTracks& tracks) {
-  // Tracks are in the order of their identities: new ones are appended.
+  // Tracks are in the order of their identities, because new ones are appended.
   for (const Track& track : tracks_) {
     const LandmarkPoint& point = landmarks_.points()[track.point];
     for (int camera = 0; camera < static_cast<int>(true_cameras_.size()); ++camera) {

@@ -13,44 +13,44 @@
 
 namespace lodeline {
 
-/// A stretch of time, s from the start of the motion.
+/// A time interval, s from the start of the motion.
 struct TimeSpan {
   double begin_s = 0.0;
   double duration_s = 0.0;
   bool contains(double t) const { return t >= begin_s && t < begin_s + duration_s; }
 };
 
-/// A magnetometer on board; its rate is that of the rig's calibration.
+/// A magnetometer on the rig; its rate is that of the rig's calibration.
 struct PointMagnetometer {
-  Vec3 field_W = Vec3(0.0, 24e-6, -38e-6);  ///< of the Earth, T
+  Vec3 field_W = Vec3(0.0, 24e-6, -38e-6);  ///< the Earth's field, T
   MagneticDisturbances disturbances;
   MagnetometerErrors errors;
 };
 
 struct PointSimulationOptions {
   uint64_t seed = 1;
-  Time start = Time::fromNanoseconds(1'800'000'000'000'000'000);  ///< stamp of the motion's second 0
+  Time start = Time::fromNanoseconds(1'800'000'000'000'000'000);  ///< stamp at second 0 of the motion
   double frame_rate_hz = 20.0;
-  /// Inertial readings are given from the motion's start on, images from here on.
+  /// Time of the first image; inertial readings start with the motion.
   double first_frame_s = 1.0;
   double end_s = 1e9;  ///< clipped to the motion's duration
 
-  int tracks = 150;             ///< aimed at in each frame
-  double pixel_sigma_px = 0.5;  ///< true noise; also stated as the observations' sigma
-  double outlier_share = 0.0;   ///< of observations, displaced by 5 to 50 px
+  int tracks = 150;             ///< target number per frame
+  double pixel_sigma_px = 0.5;  ///< true noise, and stated sigma of the observations
+  double outlier_share = 0.0;   ///< fraction of observations, displaced by 5 to 50 px
   double longest_track_s = 10.0;
   double nearest_m = 0.3;
   double farthest_m = 8.0;
-  double stereo_share = 1.0;  ///< of observations that the second camera sees too
+  double stereo_share = 1.0;  ///< fraction of observations that are also visible in the second camera
   double dropped_frame_share = 0.0;
-  std::vector<TimeSpan> blackouts;  ///< frames come, with nothing to track in them
+  std::vector<TimeSpan> blackouts;  ///< intervals with frames but without features
 
   ImuErrors imu;
-  std::optional<PointMagnetometer> magnetometer;  ///< takes a rig with one
+  std::optional<PointMagnetometer> magnetometer;  ///< requires a rig with a magnetometer
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
 };
 
-/// The exact state at a frame, as the estimator parametrizes it.
+/// True state at a frame in the parametrization of the estimator.
 struct TrueState {
   Time time;
   MotionState motion;
@@ -58,34 +58,34 @@ struct TrueState {
   Vec3 accelerometer_bias_B = Vec3::Zero();
 };
 
-/// What the estimator is given for one moment, and the truth of it.
+/// Estimator input for one frame, with the true state.
 struct SimulatedFrame {
   FrameTracks tracks;
-  /// From the frame before to this one, both ends on the frames' times; the first from the motion's start. A
-  /// border between two readings is interpolated, as a synchronizer would.
+  /// Readings from the previous frame to this one, both ends at the frames' times; for the first frame, from
+  /// the motion's start. As in a synchronizer, ends between two readings are interpolated.
   std::vector<ImuSample> imu;
-  /// After the frame before and up to this one; the first from the motion's start.
+  /// Readings after the previous frame up to this one; for the first frame, from the motion's start.
   std::vector<MagnetometerSample> magnetometer;
   TrueState truth;
 };
 
-/// A dive without pictures: points on the walls seen through the true rig with pixel noise, and inertial
-/// readings. Tracks live until they leave the view or grow too old, and get a new identity when seen again.
-/// Streams, so that memory does not grow with the length of the dive.
+/// Simulates a dive without images: points on the walls, projected through the true rig with pixel noise, and
+/// inertial readings. A track ends when it leaves the view or reaches its maximum age; a point seen again
+/// gets a new identity. The simulation is a stream, so memory use does not depend on the length of the dive.
 class PointSimulation {
  public:
-  /// `rig`: truth and calibration at once. All cameras must have the same rate. Throws InputError where a
-  /// camera cannot be made.
+  /// `rig` is both the true and the calibrated rig. All cameras must have the same rate. Throws InputError
+  /// where a camera cannot be created.
   PointSimulation(const Motion& motion, const LandmarkField& landmarks, const Rig& rig,
                   const PointSimulationOptions& options);
-  /// Seen through `true_rig`, bearings computed with `given_rig`.
+  /// Projects with `true_rig` and computes bearings with `given_rig`.
   PointSimulation(const Motion& motion, const LandmarkField& landmarks, const Rig& true_rig,
                   const Rig& given_rig, const PointSimulationOptions& options);
 
   /// The next frame, or nothing at the end.
   std::optional<SimulatedFrame> next();
 
-  /// The surface point behind a track that was given out.
+  /// The true surface point of a track.
   Vec3 landmark(TrackId track) const { return landmarks_.points()[point_of_track_.at(track)].position_W; }
 
  private:
@@ -118,7 +118,7 @@ class PointSimulation {
   int next_frame_ = 0;
   int64_t next_imu_ = 0;
   int64_t next_magnetometer_ = 0;
-  std::optional<Reading> before_, after_;  // readings around the last border
+  std::optional<Reading> before_, after_;  // readings on both sides of the last border
   std::optional<ImuSample> border_;
   std::vector<Track> tracks_;
   std::vector<int> point_of_track_;

@@ -20,7 +20,7 @@ std::string contents(const std::filesystem::path& path) {
   return text.str();
 }
 
-// Whether the folder holds an earlier, perhaps unfinished, recording of the same scenario.
+// Whether the folder has an earlier, possibly unfinished, recording of the same scenario.
 bool claim(const std::filesystem::path& folder, const std::string& identity) {
   const std::filesystem::path file = folder / "truth" / "scenario.yaml";
   std::error_code ignored;
@@ -42,7 +42,7 @@ bool claim(const std::filesystem::path& folder, const std::string& identity) {
   return false;
 }
 
-// A link that stays right when both folders are moved together.
+// A relative link, which stays valid when both folders are moved together.
 void linkTo(const std::filesystem::path& target, const std::filesystem::path& link) {
   std::error_code error;
   if (std::filesystem::exists(link, error)) return;
@@ -64,7 +64,7 @@ RecordingSummary recordScenario(const Scenario& scenario, const std::filesystem:
   const auto tell = [&](const char* what) {
     if (stage) stage(what);
   };
-  // Before the folder is touched: a scenario that cannot be swum leaves nothing behind.
+  // Created before the folder is written, so that an impossible scenario leaves no files.
   const Dive dive = makeDive(scenario);
   RecordingSummary summary;
   summary.resumed = claim(folder, describe(scenario));

@@ -15,21 +15,21 @@ struct RecordingSummary {
   bool complete = true;
 };
 
-/// Simulates a scenario into a folder: mav0 in the EuRoC layout, truth/ beside it. A folder that holds an
-/// unfinished recording of the same scenario is completed; one that holds anything else is refused with
-/// InputError. `stage` is told in words what is being done.
+/// Simulates a scenario into a folder: mav0 in the EuRoC layout, and truth/. A folder with an unfinished
+/// recording of the same scenario is completed. Throws InputError where the folder has any other content.
+/// `stage` receives a description of each step.
 RecordingSummary recordScenario(const Scenario& scenario, const std::filesystem::path& folder,
                                 const ImageRecordingOptions& options,
                                 const std::function<void(const char*)>& stage = {});
 
-/// The recording of `scenario` in `original` once more, with another noise of its sensors
-/// (Scenario::noise_seed) in `folder`: readings of IMU, magnetometer and pressure sensor and the truth's
-/// biases are written, images and sonar are links to the original's. Throws InputError where `original` holds
-/// another recording, or `folder` anything else.
+/// Writes the recording of `scenario` in `original` to `folder` with other sensor noise
+/// (Scenario::noise_seed). It writes the readings of IMU, magnetometer and pressure sensor and the true
+/// biases; images and sonar are links to the original. Throws InputError where `original` has another
+/// recording, or `folder` is not empty.
 void recordOtherNoise(const Scenario& scenario, const std::filesystem::path& original,
                       const std::filesystem::path& folder);
 
-/// Whether the folder holds a recording of this scenario, perhaps unfinished.
+/// Whether the folder has a recording of this scenario, complete or not.
 bool holdsRecording(const Scenario& scenario, const std::filesystem::path& folder);
 
 }  // namespace lodeline

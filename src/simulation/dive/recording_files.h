@@ -7,8 +7,8 @@
 
 namespace lodeline {
 
-/// Writes a `sensor.yaml` in EuRoC's keys for every sensor of the rig into mav0/cam0, mav0/imu0 and so on.
-/// Numbers read back to the same bits.
+/// Writes a `sensor.yaml` with EuRoC's keys for every sensor of the rig into mav0/cam0, mav0/imu0 and so on.
+/// The numbers keep all their bits when read back.
 void writeCalibration(const Rig& rig, const std::filesystem::path& mav0);
 
 }  // namespace lodeline

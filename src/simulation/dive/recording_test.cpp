@@ -30,7 +30,7 @@ class RecordingTest : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// A dive of seconds with images the size of stamps.
+  /// A dive of a few seconds with tiny images.
   static Scenario tiny(const char* realism, bool images = true, const char* name = "demo") {
     ScenarioChanges changes;
     changes.realism = realism;
@@ -64,7 +64,7 @@ class RecordingTest : public testing::Test {
 };
 
 void RecordingTest::expectNoTruthOutside(const Dive& dive) const {
-  // Numbers as they would appear, were they copied.
+  // True values as text, to search for copies of them.
   std::vector<std::string> secrets;
   const auto hide = [&](double value) { secrets.push_back(fmt::format("{}", value)); };
   for (const Rig* rig : {&dive.errors.in_water, &dive.errors.truth.rig}) {
@@ -98,14 +98,14 @@ void RecordingTest::expectNoTruthOutside(const Dive& dive) const {
       EXPECT_EQ(text.find(secret), std::string::npos) << name << ": " << secret;
   }
   EXPECT_GT(open_files, 40);
-  // And the truth is there, in its place.
+  // The truth folder has them.
   const std::string errors = contents(folder_ / "truth" / "errors.yaml");
   EXPECT_NE(errors.find(fmt::format("{}", dive.errors.camera_clock.delay_s)), std::string::npos);
   EXPECT_TRUE(fs::exists(folder_ / "truth" / "landmarks.ply"));
   EXPECT_TRUE(fs::exists(folder_ / "truth" / "calibration" / "cam0" / "sensor.yaml"));
 }
 
-// One recording for both: building a cave takes seconds.
+// One recording for both tests, because building a cave takes seconds.
 TEST_F(RecordingTest, IsReadByTheProgramAsWrittenAndShowsNoTruthElsewhere) {
   const Scenario scenario = tiny("field");
   const RecordingSummary summary = recordScenario(scenario, folder_, {});
@@ -199,7 +199,7 @@ TEST_F(RecordingTest, OtherNoiseChangesReadingsAndNeitherMotionNorRig) {
   for (const char* name : {"mav0/imu0/sensor.yaml", "mav0/mag0/sensor.yaml"}) {
     EXPECT_EQ(first.at(name), second.at(name)) << name;
   }
-  // Pose and velocity are the same to the last digit, biases are not.
+  // Pose and velocity are equal to the last digit; biases are not.
   std::istringstream truth(first.at("mav0/state_groundtruth_estimate0/data.csv"));
   std::istringstream other_truth(second.at("mav0/state_groundtruth_estimate0/data.csv"));
   const auto stateOf = [](const std::string& line) {

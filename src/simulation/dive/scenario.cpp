@@ -103,7 +103,7 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   changeExtent(c, s);
   if (c.seed) s.seed = *c.seed;
   if (c.imu_grade) s.imu_grade = imuGrade(*c.imu_grade).name;
-  // A picture keeps the rig's shape unless both sides are given.
+  // Images keep the aspect ratio of the rig unless both sizes are given.
   if (c.width_px) {
     s.rig.width_px = static_cast<int>(positive(*c.width_px, "--width"));
     s.rig.height_px = *c.width_px * 3 / 4;

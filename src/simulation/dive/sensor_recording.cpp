@@ -23,7 +23,7 @@ std::string truthRow(Time time, const MotionState& state, const ImuModel& imu) {
       g.z(), a.x(), a.y(), a.z());
 }
 
-// Inertial readings and, beside them, the true states with the biases in these very readings.
+// Records inertial readings, and the true states with the biases of these readings.
 void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
   RecordingFile readings(mav0 / "imu0" / "data.csv");
   readings.write(kImuColumns);
@@ -64,7 +64,7 @@ void recordMagnetometer(const Dive& dive, const std::filesystem::path& mav0) {
                           noiseSeed(dive.scenario));
   RecordingFile file(mav0 / "mag0" / "data.csv");
   file.write(kMagnetometerColumns);
-  // Half a period after the IMU's first reading: the two sensors do not share a trigger.
+  // Half a period after the IMU's first reading, because the two sensors have no common trigger.
   for (int64_t i = 0;; ++i) {
     const double t = (static_cast<double>(i) + 0.5) / rate_hz;
     if (t > dive.motion.duration_s()) break;

@@ -7,11 +7,10 @@
 
 namespace lodeline {
 
-/// Writes everything but images, camera lists and truth/: the given calibration and the readings of imu0,
+/// Writes everything except images, camera lists and truth/: the given calibration and the readings of imu0,
 /// mag0, pressure0 and sonar0 into folder/mav0, and the true states into mav0/state_groundtruth_estimate0
-/// (EuRoC's columns, body in W, IMU clock, 100 Hz; 1 Hz at rest). `range` may be empty: then there is no
-/// sonar. Cameras are left out where the scenario has no images. Throws InputError where a file cannot be
-/// written.
+/// (EuRoC's columns, body in W, IMU clock, 100 Hz; 1 Hz at rest). An empty `range` means no sonar. Cameras
+/// are left out where the scenario has no images. Throws InputError where a file cannot be written.
 void recordSensors(const Dive& dive, const RangeFunction& range, const std::filesystem::path& folder);
 
 }  // namespace lodeline

@@ -26,7 +26,7 @@ std::string triadText(const char* name, const TriadErrors& e) {
       numbers(e.warm_up), e.warm_up_time_s, e.range);
 }
 
-// How far the calibration files are off, as angles and lengths.
+// Errors of the calibration files as angles and lengths.
 std::string calibrationText(const DiveErrors& e) {
   std::string text = "calibration_files:\n";
   for (size_t i = 0; i < e.given.cameras.size(); ++i) {

@@ -9,10 +9,10 @@
 
 namespace lodeline {
 
-/// Writes folder/truth: what nobody gets to know in the field.
-///   calibration/    sensor.yaml of every sensor as it is (behind a flat port: the best fit in water)
+/// Writes folder/truth, the data that is unknown in the field:
+///   calibration/    sensor.yaml of every true sensor (behind a flat port: the best fit in water)
 ///   errors.yaml     every error of the sensors, of the calibration files and of the water
-///   image_times.csv true middle of each exposure beside its stamp
+///   image_times.csv true middle of each exposure with its stamp
 ///   landmarks.ply   surface points around the path, W (where `range` is given)
 void recordTruth(const Dive& dive, const RenderSettings& settings, const std::vector<ScheduledImage>& images,
                  const RangeFunction& range, const std::filesystem::path& folder);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPathKnot_s = 0.5;
 
-// Where the diver swims within the cross-section: a wandering share of the room, on the way back another one
-// close to the first.
+// Position of the diver within the cross-section: a slowly varying fraction of the free space. The way back
+// has a different one close to the first.
 class Line {
  public:
   explicit Line(uint64_t seed)
@@ -101,7 +101,8 @@ Motion makeDiveMotion(const Centerline& centerline, const DiveMotionOptions& o,
                       const Rigid3& diver_from_body) {
   const double nominal_m = o.path_length_m * (o.round_trip ? 0.5 : 1.0);
   const Motion first = makeOnce(centerline, o, nominal_m, diver_from_body);
-  // Swaying and the wandering line make the path longer than the passage; the second draft goes less far in.
+  // Swaying and the varying line make the path longer than the passage, so the second draft covers a shorter
+  // passage.
   const double ratio = o.path_length_m / pathLength(first, 0.0, o.duration_s);
   return makeOnce(centerline, o, nominal_m * ratio, diver_from_body);
 }

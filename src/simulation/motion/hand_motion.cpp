@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kEnvelopeKnot_s = 0.25;
 
-// Independent normal control points: noise up to about 0.3 / spacing Hz. A quintic spline keeps 0.65 of their
-// standard deviation.
+// Noise up to about 0.3 / spacing Hz from independent normal control points. A quintic spline keeps 0.65 of
+// their standard deviation.
 MotionChannel::Enveloped noise(const HandMotionOptions& o, const char* stream, double spacing_s,
                                double sigma) {
   Random random(o.seed, stream);
@@ -28,7 +28,7 @@ Spline strength(const HandMotionOptions& o, const TimeFunction& share, double am
                       [&](double t) { return o.liveliness * amplitude * share(t); });
 }
 
-// The phase of something periodic whose frequency wanders by a tenth.
+// Phase of a periodic motion whose frequency varies by a tenth.
 Spline phase(const HandMotionOptions& o, const char* stream, double lowest_hz, double highest_hz) {
   Random random(o.seed, stream);
   const double frequency_hz = random.uniform(lowest_hz, highest_hz);

@@ -9,23 +9,23 @@ namespace lodeline {
 
 using TimeFunction = std::function<double(double)>;
 
-/// What makes a diver's rig move beyond its path.
+/// Options of the rig's motion relative to the diver's path.
 struct HandMotionOptions {
   uint64_t seed = 1;
   double duration_s = 0.0;
   double liveliness = 1.0;
-  TimeFunction activity;  ///< 0 still, 1 held in the hands
-  TimeFunction kick;      ///< strength of finning, 0 to 1
-  bool sweeps = true;     ///< pointing the rig aside every ten to thirty seconds
+  TimeFunction activity;  ///< 0 at rest, 1 held in the hands
+  TimeFunction kick;      ///< strength of fin kicks, 0 to 1
+  bool sweeps = true;     ///< turns of the rig to one side every ten to thirty seconds
 };
 
-/// Adds fin kicks, breathing, swaying, sweeps and tremor to the channels. Figures: kick cycle 0.45 to 0.65 Hz
-/// with 6 mm of surge at its double (two kicks a cycle), breath 0.16 to 0.22 Hz with 2.5 cm of rise, swaying
-/// 2 to 4 degrees over seconds, sweeps of 10 to 30 degrees, tremor of 0.1 degrees and 0.4 mm below 3 Hz (a
-/// housing of several kilograms in water damps what is faster).
+/// Adds fin kicks, breathing, swaying, sweeps and tremor to the channels. Values: kick cycle 0.45 to 0.65 Hz
+/// with 6 mm of surge at its double (two kicks per cycle), breathing at 0.16 to 0.22 Hz with 2.5 cm of rise,
+/// swaying of 2 to 4 degrees over seconds, sweeps of 10 to 30 degrees, tremor of 0.1 degrees and 0.4 mm below
+/// 3 Hz (a housing of several kilograms in water damps higher frequencies).
 void addHandMotion(const HandMotionOptions& options, MotionChannels& channels);
 
-/// A spline over the whole range on which a motion of `duration_s` is defined.
+/// A spline over the whole range in which a motion of `duration_s` is defined.
 Spline motionSpline(double duration_s, double spacing_s, const TimeFunction& control);
 
 }  // namespace lodeline

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-// Time that stands still until `rest_s` and has picked up full pace 3 s later.
+// Motion time: constant until `rest_s`, at normal rate 3 s later.
 double wakingTime(double t, double rest_s) {
   constexpr double kPickUp_s = 3.0;
   const double u = (t - rest_s) / kPickUp_s;
@@ -32,7 +32,7 @@ MotionChannel constant(double duration_s, double value) {
   return channel;
 }
 
-// A ring about the hull, 3 m off, that rises and sinks; swum round and round, by the length of the way.
+// A closed ring around the hull at a distance of 3 m with varying height, as a function of arc length.
 class WreckRing {
  public:
   WreckRing(const WreckLayout& wreck, uint64_t seed, double longest_m)
@@ -42,7 +42,7 @@ class WreckRing {
     }
   }
 
-  /// Beyond both ends at the speed of the last piece.
+  /// Position on the ring; beyond both ends, extrapolation with the speed of the last segment.
   Vec3 position(double along_m) const {
     const auto above = std::upper_bound(length_m_.begin() + 1, length_m_.end() - 1, along_m);
     const double begin_m = *(above - 1);
@@ -66,13 +66,13 @@ class WreckRing {
 
   WreckLayout wreck_;
   Waves rise_;
-  std::vector<double> length_m_ = {0.0};  ///< of the way to each piece
+  std::vector<double> length_m_ = {0.0};  ///< arc length at each segment
 };
 
 }  // namespace
 
 Motion makeFigureEightMotion(uint64_t seed, double duration_s, const Rigid3& diver_from_body) {
-  constexpr double kRest_s = 4.0 + 1.5;  // the splines smear the start over 1.5 s
+  constexpr double kRest_s = 4.0 + 1.5;  // the splines smooth the start over 1.5 s
   const auto spline = [&](const auto& of) {
     MotionChannel channel;
     channel.splines.push_back(
@@ -125,7 +125,7 @@ Motion makeWreckMotion(const WreckLayout& wreck, uint64_t seed, double duration_
       channel.splines.push_back(motionSpline(duration_s, 0.5, [&](double t) { return position(t)[axis]; }));
       return channel;
     };
-    // Aims at the keel line abreast of the diver, at half height.
+    // Aims at the keel line beside the diver, at half height.
     const auto aim = [&](double t) -> Vec3 {
       const Vec3 from = position(t);
       const Vec3 bow(std::cos(wreck.azimuth_rad), std::sin(wreck.azimuth_rad), 0.0);

@@ -13,13 +13,13 @@ namespace lodeline {
 namespace {
 
 constexpr double kStep_s = 0.05;
-// Sampled beyond both ends of the dive, for the splines' outer control points.
+// Margin of the samples beyond both ends of the dive, for the outer control points of the splines.
 constexpr double kBorder_s = 10.0;
 constexpr double kEndRest_s = 1.5;
-// Until all that is smoothed in time (speed, activity, the splines of the path) has come to rest.
+// Time until all smoothed functions (speed, activity, the splines of the path) are at rest.
 constexpr double kSettle_s = 2.75;
 
-// Moving average over +-`half_width_s`, twice: a continuous rate of change.
+// Moving average over +-`half_width_s`, applied twice, which gives a continuous rate of change.
 std::vector<double> smoothed(std::vector<double> values, double half_width_s) {
   const int half = static_cast<int>(std::lround(half_width_s / kStep_s));
   const int count = static_cast<int>(values.size());

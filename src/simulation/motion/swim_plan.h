@@ -5,7 +5,7 @@
 
 namespace lodeline {
 
-/// A stretch in which the rig lies perfectly still, e.g. put down on a ledge.
+/// A time interval in which the rig is completely at rest, e.g. on a ledge.
 struct StillPhase {
   double begin_s = 0.0;
   double duration_s = 0.0;
@@ -14,28 +14,28 @@ struct StillPhase {
 struct SwimPlanOptions {
   uint64_t seed = 1;
   double duration_s = 600.0;
-  double penetration_m = 75.0;  ///< farthest arc length along the centreline
-  bool round_trip = true;       ///< back to the start, or end at the far end
-  bool starts_at_rest = true;   ///< still for `start_rest_s`, else at cruising speed from the first instant
+  double penetration_m = 75.0;  ///< maximum arc length along the centreline
+  bool round_trip = true;       ///< back to the start; otherwise end at the far end
+  bool starts_at_rest = true;   ///< at rest for `start_rest_s`; otherwise at cruising speed from the start
   double start_rest_s = 4.0;
-  double turn_s = 10.0;           ///< hovering and turning round at the far end
+  double turn_s = 10.0;           ///< hovering and turning at the far end
   double stops_per_minute = 0.6;  ///< short halts of 4 to 10 s
   std::vector<StillPhase> still_phases;
 };
 
-/// When the diver swims, halts, turns and rests: progress along the centreline as functions of time, sampled
-/// at 20 Hz. Everything else of a dive's motion hangs on these.
+/// Schedule of swimming, halts, turn and rests: progress along the centreline as functions of time, sampled
+/// at 20 Hz. All other parts of a dive's motion depend on it.
 class SwimPlan {
  public:
-  /// Throws UsageError where length and duration ask for a mean swimming speed outside 0.05 to 0.6 m/s.
+  /// Throws UsageError where length and duration require a mean swimming speed outside 0.05 to 0.6 m/s.
   explicit SwimPlan(const SwimPlanOptions& options);
 
   double arcLength(double time_s) const { return sampled(arc_length_m_, time_s); }
   /// 0 before the turn, 1 after it.
   double turn(double time_s) const { return sampled(turn_, time_s); }
-  /// 0 where the rig lies still, 1 where it is held.
+  /// 0 while the rig is at rest, 1 while it is held.
   double activity(double time_s) const { return sampled(activity_, time_s); }
-  /// 0 hovering, 1 finning at full strength.
+  /// 0 while hovering, 1 at full kick strength.
   double kick(double time_s) const { return sampled(kick_, time_s); }
 
   double meanSwimSpeed() const { return mean_speed_; }

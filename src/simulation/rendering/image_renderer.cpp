@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kPacketWidth = 4, kPacketHeight = 4;
 
-/// A camera in the world, single precision.
+/// Pose of a camera in the world, single precision.
 struct CameraPose {
   explicit CameraPose(const Rigid3& world_from_camera)
       : rotation(world_from_camera.rotation.toRotationMatrix().cast<float>()),
@@ -69,7 +69,7 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
   const int packet_rows = (height + kPacketHeight - 1) / kPacketHeight;
   tbb::parallel_for(0, packet_rows, [&](int packet_row) {
     const int y0 = packet_row * kPacketHeight;
-    // Rolling shutter: each row of packets has its own moment.
+    // Rolling shutter: each row of packets has its own time.
     const double row_s = middle_s + readout_s * ((y0 + 0.5 * kPacketHeight) / height - 0.5);
     const CameraPose pose = readout_s > 0.0 ? poseAt(row_s) : middle;
     for (int x0 = 0; x0 < width; x0 += kPacketWidth) {

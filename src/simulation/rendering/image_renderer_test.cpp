@@ -31,12 +31,13 @@ double median(std::vector<double> values) {
 
 std::vector<cv::Point2f> cornersOf(const cv::Mat& image, int most) {
   std::vector<cv::Point2f> corners;
-  // The quality is relative to the best corner, which is often a bright flake of snow.
+  // The quality is relative to the best corner, often a bright flake of snow.
   cv::goodFeaturesToTrack(image, corners, most, 0.004, 8);
   return corners;
 }
 
-/// Lucas-Kanade there and back; points that do not return within half a pixel are dropped from `from`.
+/// Lucas-Kanade tracking forward and backward. Points that do not return within half a pixel are removed from
+/// `from`.
 std::vector<cv::Point2f> track(const cv::Mat& first, const cv::Mat& second, std::vector<cv::Point2f>& from) {
   const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 0.005);
   std::vector<cv::Point2f> to, back;
@@ -74,8 +75,8 @@ TEST(ImageRenderer, SameBytesWhateverTheThreadsAndTheOrder) {
       sameBytes(first, ImageRenderer(RenderFixture::shortCave(), rig, settings).render(1, swim(), kTime_s)));
 }
 
-/// Corners of one noise-free image, their points traced, projected into a later image and compared with what
-/// optical flow finds there.
+/// Traces the points of corners of one noise-free image, projects them into a later image and compares them
+/// with the optical flow there.
 TEST(ImageRenderer, LandmarksAppearWhereTheyProject) {
   const Rig rig = RenderFixture::stereoRig();
   const ImageRenderer renderer(RenderFixture::shortCave(), rig, RenderSettings::ideal());
@@ -149,7 +150,7 @@ TEST(ImageRenderer, ExposureFollowsTheSceneButNotSiltsContrast) {
   settings.snow.flakes_per_m3 = 0.0;
   settings.water.silt = {{kTime_s - 2.0, 6.0, 3.0}};
   const ImageRenderer renderer(RenderFixture::shortCave(), RenderFixture::stereoRig(0.5), settings);
-  // The dive stands still; silt comes over it.
+  // The pose is constant while silt appears.
   const Rigid3 pose = swim()(kTime_s);
   const WorldFromBodyAt still = [&](double) { return pose; };
   const cv::Mat clear = renderer.render(0, still, kTime_s - 3.0), silty = renderer.render(0, still, kTime_s);
@@ -173,8 +174,8 @@ TEST(ImageRenderer, RollingShutterShearsWhatItPans) {
   std::vector<cv::Point2f> from = cornersOf(global, 300);
   const std::vector<cv::Point2f> to = track(global, rolling, from);
   ASSERT_GT(from.size(), 60u);
-  // The lower rows are exposed later: at 1 rad/s and 210 px focal length they lag by 6.3 px times their
-  // share.
+  // The lower rows are exposed later. At 1 rad/s and a focal length of 210 px, the shift is 6.3 px times
+  // their relative row.
   double covariance = 0.0, variance = 0.0;
   for (size_t i = 0; i < from.size(); ++i) {
     const double row = from[i].y / rig.cameras[0].height_px - 0.5;

@@ -23,10 +23,10 @@ TriadErrors triad(double noise_density, double random_walk, double bias_instabil
   return errors;
 }
 
-// Noise, instability, turn-on bias, scale and misalignment of the class as makers state them. Random walks
-// are not stated; they are chosen to overtake the instability's floor after about a quarter of an hour, as
-// Allan plots of such parts show. Warm-up figures: a drift over the first ten minutes of about one turn-on
-// bias.
+// Noise, instability, turn-on bias, scale and misalignment of the class as stated by manufacturers. They do
+// not state random walks. These are chosen to exceed the minimum due to the instability after about a quarter
+// of an hour, as in Allan plots of such parts. Warm-up: a drift over the first ten minutes of about one
+// turn-on bias.
 const std::array<ImuGrade, 3>& grades() {
   static const std::array<ImuGrade, 3> table = {{
       {"gx5-25", 200.0, triad(0.005 * kDegree, 2e-6, 8.0 * kDegreePerHour, 300.0 * kDegree),
@@ -42,7 +42,7 @@ const std::array<ImuGrade, 3>& grades() {
   return table;
 }
 
-// Rows of one axis' scale error (diagonal) and the two small angles by which the axis points aside.
+// Rows: scale error of one axis (diagonal) and the two small angles of its misalignment.
 Mat3 drawMatrix(double scale_error, double misalignment_rad, Random& random) {
   Mat3 matrix = Mat3::Identity();
   for (int row = 0; row < 3; ++row) {

@@ -9,7 +9,7 @@ namespace lodeline {
 
 DriftingBias::DriftingBias(const TriadErrors& errors, Random random)
     : errors_(errors), random_(std::move(random)), walk_(errors.turn_on_bias) {
-  // Spacing the time constants by a ratio r, equal variances s^2 = ln(r) B^2 / pi approach the two-sided
+  // For time constants spaced by a ratio r, equal variances s^2 = ln(r) B^2 / pi approximate the two-sided
   // spectrum B^2 / (2 pi f) of IEEE 952.
   const double sigma = errors.bias_instability * std::sqrt(0.5 * std::numbers::ln10 / std::numbers::pi);
   value_ = walk_;

@@ -9,16 +9,16 @@
 
 namespace lodeline {
 
-/// Everything by which a three-axis inertial sensor lies, in the unit of its reading [u] (rad/s or m/s^2):
+/// Errors of a three-axis inertial sensor in the unit of its reading [u] (rad/s or m/s^2):
 ///   reading = matrix * true + warm_up * exp(-t / warm_up_time) + b(t) + white noise, clipped to the range,
 /// where b(t) starts at `turn_on_bias` and adds a random walk and a flicker process (bias instability).
 struct TriadErrors {
   double noise_density = 0.0;     ///< [u]/sqrt(Hz), two-sided (Kalibr)
   double random_walk = 0.0;       ///< [u]/s/sqrt(Hz)
-  double bias_instability = 0.0;  ///< [u], the coefficient B of IEEE 952: Allan deviation floor 0.664 B
+  double bias_instability = 0.0;  ///< [u], B of IEEE 952; Allan deviation minimum 0.664 B
   Vec3 turn_on_bias = Vec3::Zero();
   Mat3 matrix = Mat3::Identity();  ///< scale factors and misalignment
-  Vec3 warm_up = Vec3::Zero();     ///< bias at power-on that fades with `warm_up_time_s`
+  Vec3 warm_up = Vec3::Zero();     ///< bias at power-on that decays with `warm_up_time_s`
   double warm_up_time_s = 400.0;
   double range = 1e9;  ///< readings are clipped to +-range
 };
@@ -28,19 +28,18 @@ struct ImuErrors {
   TriadErrors accelerometer;
 };
 
-/// Datasheet figures of a class of IMU: noise, and one-sigma figures from which a specimen's systematic
-/// errors are drawn.
+/// Datasheet values of a class of IMU: noise, and standard deviations of the systematic errors of a specimen.
 struct ImuGrade {
   std::string_view name;
   double rate_hz;
-  TriadErrors gyroscope, accelerometer;  ///< noise figures and range; the rest neutral
+  TriadErrors gyroscope, accelerometer;  ///< noise values and range; the other members are neutral
   double gyroscope_turn_on_rad_per_s, accelerometer_turn_on_m_per_s2;
   double scale_error, misalignment_rad;
   double gyroscope_warm_up_rad_per_s, accelerometer_warm_up_m_per_s2;
 };
 
-/// `gx5-25` (Microstrain 3DM-GX5-25), `gv7` (3DM-GV7) and `consumer` (MPU-9250 class). Throws UsageError for
-/// another name.
+/// Grades `gx5-25` (Microstrain 3DM-GX5-25), `gv7` (3DM-GV7) and `consumer` (MPU-9250 class). Throws
+/// UsageError for any other name.
 const ImuGrade& imuGrade(std::string_view name);
 std::vector<std::string_view> imuGradeNames();
 
@@ -50,18 +49,18 @@ struct SpecimenOptions {
   bool scale_and_misalignment = false;
   bool warm_up = false;
 };
-/// One specimen of a grade. The draws do not depend on which of them are asked for.
+/// Draws one specimen of a grade. Each draw is independent of the selection of the others.
 ImuErrors drawImuErrors(const ImuGrade& grade, const SpecimenOptions& options, uint64_t seed);
 
-/// The noise figures a calibration file states for such a sensor. The random walk is enlarged to reach the
-/// bias instability's Allan deviation at 100 s, as a model without a flicker term needs.
+/// Noise values in a calibration file for such a sensor. The random walk is increased to the Allan deviation
+/// of the bias instability at 100 s, as a model without a flicker term needs.
 ImuNoise statedNoise(const ImuErrors& errors);
 
 /// The drifting bias of three axes.
 class DriftingBias {
  public:
   DriftingBias(const TriadErrors& errors, Random random);
-  /// Steps on by `step_s` > 0.
+  /// Advances by `step_s` > 0.
   void advance(double step_s);
   const Vec3& value() const { return value_; }
 
@@ -77,14 +76,14 @@ class DriftingBias {
   Vec3 value_;
 };
 
-/// Turns perfect readings into those of a real IMU. Readings must come in order of time.
+/// Converts perfect readings to those of a real IMU. Readings must be in order of time.
 class ImuModel {
  public:
   ImuModel(const ImuErrors& errors, double rate_hz, uint64_t seed);
 
   ImuSample measure(const ImuSample& perfect);
 
-  /// What was added to (matrix * truth) besides white noise in the last reading, warm-up included.
+  /// Bias in the last reading: the part added to (matrix * truth) besides white noise, including warm-up.
   const Vec3& gyroscopeBias() const { return gyroscope_bias_; }
   const Vec3& accelerometerBias() const { return accelerometer_bias_; }
 

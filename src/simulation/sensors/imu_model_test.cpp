@@ -69,8 +69,8 @@ TEST(ImuModel, RandomWalkGrowsWithTheSquareRootOfTime) {
 TEST(ImuModel, BiasInstabilityIsTheFloorOfTheAllanDeviation) {
   TriadErrors errors;
   errors.bias_instability = 1e-3;
-  // Three decades inside the modelled range of time constants, within the 10 % that the sum of processes and
-  // the sample leave.
+  // Three decades inside the modelled range of time constants, within the 10 % error of the sum of processes
+  // and the sample.
   const auto readings = gyroscopeAtRest(errors, 5, 400000, 5.0);
   for (const int size : {50, 200, 1000})
     EXPECT_NEAR(allanDeviation(readings, size), 0.664e-3, 0.664e-4) << size;

@@ -8,20 +8,20 @@
 
 namespace lodeline {
 
-/// A point on a surface that a front end could track.
+/// A surface point that a front end could track.
 struct LandmarkPoint {
   Vec3 position_W = Vec3::Zero();
-  Vec3 normal_W = Vec3::UnitZ();  ///< into the open water
+  Vec3 normal_W = Vec3::UnitZ();  ///< towards the open water
 };
 
-/// Surface points with a search by place.
+/// Surface points with a spatial search.
 class LandmarkField {
  public:
   explicit LandmarkField(std::vector<LandmarkPoint> points);
 
   const std::vector<LandmarkPoint>& points() const { return points_; }
 
-  /// Indices of all points within `radius_m`, ascending.
+  /// Indices of all points within `radius_m`, in ascending order.
   std::vector<int> near(const Vec3& center_W, double radius_m) const;
 
  private:
@@ -32,8 +32,8 @@ class LandmarkField {
   std::vector<std::pair<int, int>> by_column_;  // (slab along x, point), sorted
 };
 
-/// Points scattered over the walls, floor and ceiling of a passage: an ellipse around each station, roughened
-/// by a tenth of its radius.
+/// Points on the walls, floor and ceiling of a passage: an ellipse around each station, roughened by a tenth
+/// of its radius.
 LandmarkField passageLandmarks(const Centerline& centerline, double points_per_metre, uint64_t seed);
 
 }  // namespace lodeline

@@ -19,8 +19,8 @@ double strength(const PassingIron& iron, double time_s) {
   return coming * (1.0 - going);
 }
 
-// Scales a moment until the worst deflection over [begin, end] is the wanted one. Bisection: deflection grows
-// with the moment as long as it stays far from 90 degrees.
+// Scales a moment by bisection until the maximum heading error over [begin, end] is the wanted one. The
+// heading error increases with the moment while it is far from 90 degrees.
 template <typename FieldAt>
 double momentScale(const Motion& motion, const Vec3& field_W, double begin_s, double end_s, double wanted_rad,
                    const FieldAt& fieldAt) {
@@ -106,10 +106,10 @@ MagneticDisturbances drawDisturbances(const Motion& motion, const Vec3& field_W,
       disturbances.passing.push_back(iron);
     } else {
       LyingDipole dipole;
-      // On the floor beside where the diver is in the middle of the event.
+      // On the floor beside the position of the diver in the middle of the event.
       dipole.position_W = motion.at(t + 0.5 * duration_s).world_from_body.translation +
                           Vec3(0.8 * aside.x(), 0.8 * aside.y(), -0.9);
-      // The way back leads past it again: the whole dive counts.
+      // The way back passes it again, so the maximum is over the whole dive.
       dipole.moment_W =
           direction *
           momentScale(motion, field_W, 0.0, motion.duration_s(), wanted, [&](const Rigid3& pose, double) {

@@ -8,11 +8,11 @@
 
 namespace lodeline {
 
-/// The magnetometer as it really is. Its reading at time t, in the magnetometer frame M:
+/// Errors of a real magnetometer. Its reading at time t in the magnetometer frame M is
 ///   reading(t) = S R_M_B R_B_W(t') m_W(t') + h + c t' + w(t) + white noise,  t' = t - lag,
-/// where m_W holds the Earth's field and the disturbances, clipped to +-range and rounded to the resolution;
-/// now and then the row before is repeated instead. S is the soft iron (A = S^-1 corrects it), h the hard
-/// iron, w a random walk of it.
+/// where m_W is the Earth's field plus the disturbances. The reading is clipped to +-range and rounded to the
+/// resolution; some readings repeat the previous row. S is the soft iron (A = S^-1 corrects it), h the hard
+/// iron, and w its random walk.
 struct MagnetometerErrors {
   Mat3 soft_iron = Mat3::Identity();
   Vec3 hard_iron_T = Vec3::Zero();
@@ -26,7 +26,7 @@ struct MagnetometerErrors {
   double resolution_T = 0.0;  ///< 0: continuous
 };
 
-/// Undoes soft and hard iron: the field in frame M.
+/// The field in frame M, corrected for soft and hard iron.
 inline Vec3 corrected(const Vec3& reading_M, const MagnetometerErrors& errors) {
   return errors.soft_iron.inverse() * (reading_M - errors.hard_iron_T);
 }
@@ -37,7 +37,7 @@ class MagnetometerModel {
   MagnetometerModel(const Motion& motion, const Vec3& field_W, MagneticDisturbances disturbances,
                     const MagnetometerErrors& errors, double rate_hz, uint64_t seed);
 
-  /// The reading at `time_s`, to be asked for in order of time.
+  /// The reading at `time_s`; call it in order of time.
   Vec3 measure(double time_s);
 
  private:
@@ -54,14 +54,14 @@ class MagnetometerModel {
 
 struct MagnetometerSpecimenOptions {
   bool noise = true;
-  bool iron = true;              ///< soft and hard iron of the housing, 1 degree of misalignment to the IMU
-  bool creep = false;            ///< 0.1 to 0.3 uT over `duration_s`
+  bool iron = true;    ///< soft and hard iron of the housing, 1 degree of misalignment relative to the IMU
+  bool creep = false;  ///< 0.1 to 0.3 uT over `duration_s`
   bool lag_and_repeats = false;  ///< 14 to 16 ms, 29 % repeated (BROAD)
   double duration_s = 600.0;
 };
-/// Errors of one specimen in one housing; the draws do not depend on which are asked for. Noise and range are
-/// those of an IMU grade's magnetometer: 0.01 uT/sqrt(Hz) and +-800 uT for the Microstrain parts, 0.1
-/// uT/sqrt(Hz) and 0.15 uT of resolution for consumer parts.
+/// Draws the errors of one specimen in one housing; each draw is independent of the selection of the others.
+/// Noise and range are those of an IMU grade's magnetometer: 0.01 uT/sqrt(Hz) and +-800 uT for the
+/// Microstrain parts, 0.1 uT/sqrt(Hz) and 0.15 uT of resolution for consumer parts.
 MagnetometerErrors drawMagnetometerErrors(std::string_view imu_grade,
                                           const MagnetometerSpecimenOptions& options, uint64_t seed);
 

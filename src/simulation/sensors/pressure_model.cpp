@@ -23,7 +23,7 @@ double PressureModel::measure(double time_s) {
     lagged_m_ = trueDepth(time_s);
     started_ = true;
   } else {
-    // Steps well below both the lag and the breath's period.
+    // Steps well below both the lag and the breathing period.
     const int steps = std::max(1, static_cast<int>(std::ceil((time_s - last_s_) / 0.05)));
     const double step_s = (time_s - last_s_) / steps;
     const double keep = std::exp(-step_s / errors_.lag_s);

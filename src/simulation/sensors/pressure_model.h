@@ -7,24 +7,25 @@
 
 namespace lodeline {
 
-/// A depth gauge as it really is: pressure of true water read with an assumed density, behind a membrane that
-/// answers with a first-order lag.
+/// Errors of a real depth gauge: the pressure of the real water is converted with an assumed density, after a
+/// first-order lag of the membrane.
 ///   reading = round(density_ratio * lagged depth + offset + noise)
 struct PressureErrors {
   double noise_m = 0.0;
   double resolution_m = 0.0;  ///< 0: continuous
   double offset_m = 0.0;
   double lag_s = 0.0;          ///< time constant
-  double density_ratio = 1.0;  ///< true over assumed density
+  double density_ratio = 1.0;  ///< true density divided by assumed density
 };
 
 class PressureModel {
  public:
-  /// `surface_height_m`: of the water's surface above the world's origin. `motion` must outlive the model.
+  /// `surface_height_m`: height of the water surface above the world's origin. `motion` must outlive the
+  /// model.
   PressureModel(const Motion& motion, const Rigid3& body_from_pressure, double surface_height_m,
                 const PressureErrors& errors, uint64_t seed);
 
-  /// Depth reading at `time_s`, m, positive down; to be asked for in order of time.
+  /// Depth reading at `time_s`, m, positive down; call it in order of time.
   double measure(double time_s);
 
  private:

@@ -8,15 +8,15 @@
 
 namespace lodeline {
 
-/// How a sensor's stamps differ from the IMU's time.
+/// Errors of a sensor's stamps relative to the IMU's time.
 struct ClockErrors {
-  double delay_s = 0.0;     ///< stamps are late by this
-  double drift_ppm = 0.0;   ///< the sensor's clock runs fast by this
+  double delay_s = 0.0;     ///< delay of the stamps
+  double drift_ppm = 0.0;   ///< rate error of the sensor's clock, positive if fast
   double jitter_s = 0.0;    ///< standard deviation of each stamp
-  double drop_share = 0.0;  ///< readings that never arrive
+  double drop_share = 0.0;  ///< fraction of lost readings
 };
 
-/// Stamps a sensor's readings; stamps strictly increase whatever the jitter.
+/// Stamps a sensor's readings; stamps strictly increase for any jitter.
 class SensorClock {
  public:
   SensorClock(const ClockErrors& errors, Time start, uint64_t seed, std::string_view sensor)
@@ -27,7 +27,7 @@ class SensorClock {
 
   /// The stamp of a reading taken at `time_s` after the start.
   Time stamp(double time_s);
-  /// Whether the next reading is lost; to be asked once a reading.
+  /// Whether the next reading is lost; call it once per reading.
   bool dropped() { return drops_.chance(errors_.drop_share); }
 
  private:

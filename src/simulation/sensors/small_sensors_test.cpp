@@ -84,7 +84,7 @@ TEST_F(SmallSensorsTest, SonarMeasuresTheDistanceAlongItsBeam) {
     EXPECT_NEAR(hit.z(), -2.0, 1e-9);
   }
   EXPECT_GT(echoes, 200);
-  EXPECT_LT(echoes, 400);  // looking up it hears nothing
+  EXPECT_LT(echoes, 400);  // no echoes while looking up
 }
 
 TEST_F(SmallSensorsTest, SonarLosesAndFalsifiesEchoesByTheirShares) {

@@ -16,7 +16,7 @@ SonarModel::SonarModel(const Motion& motion, const Rigid3& body_from_sonar, Rang
       random_(seed, "sonar") {}
 
 std::optional<SonarSample> SonarModel::measure(double time_s) {
-  // Drawn before anything is decided, so that one echo's fate leaves the next one's noise alone.
+  // Drawn before any decision, so that the loss of one echo does not change the noise of the next one.
   const double noise_m = errors_.noise_m * random_.normal();
   const bool lost = random_.chance(errors_.dropout_share);
   const bool spurious = random_.chance(errors_.spurious_share);

@@ -13,12 +13,12 @@ namespace lodeline {
 /// none.
 using RangeFunction = std::function<std::optional<double>(const Vec3& origin_W, const Vec3& direction_W)>;
 
-/// A pencil-beam sonar whose head turns steadily about its z axis; at angle 0 the beam points along x.
+/// A pencil-beam sonar whose head rotates at a constant rate about its z axis; at angle 0 the beam points
+/// along x.
 struct SonarErrors {
   double noise_m = 0.0;
-  double dropout_share = 0.0;  ///< echoes lost by chance
-  double spurious_share =
-      0.0;  ///< echoes that stop anywhere before the wall: silt, bubbles, the diver's fins
+  double dropout_share = 0.0;   ///< fraction of randomly lost echoes
+  double spurious_share = 0.0;  ///< fraction of echoes before the wall: silt, bubbles, the diver's fins
   double nearest_m = 0.2;
   double farthest_m = 6.0;
   double resolution_m = 0.0;  ///< 0: continuous
@@ -31,7 +31,7 @@ class SonarModel {
   SonarModel(const Motion& motion, const Rigid3& body_from_sonar, RangeFunction range,
              const SonarErrors& errors, uint64_t seed);
 
-  /// The echo at `time_s` (its time left to the caller), or nothing: too far, too near, or lost.
+  /// The echo at `time_s` (the caller sets its time); nothing where it is too far, too near, or lost.
   std::optional<SonarSample> measure(double time_s);
 
  private:

@@ -17,7 +17,7 @@ Quat diverFromCamera() {
   return Quat(rotation);
 }
 
-// The sonar turns its beam in its x-y plane: across the view, x to the left.
+// The sonar rotates its beam in its x-y plane: across the view, x to the left.
 Quat diverFromSonar() {
   Mat3 rotation;
   rotation << 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;

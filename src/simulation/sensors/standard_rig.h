@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// A rig with the way it is held: the diver frame D is x forward, y left, z up.
+/// A rig with its mounting in the diver frame D (x forward, y left, z up).
 struct MountedRig {
   Rig rig;
   Rigid3 diver_from_body;
@@ -21,10 +21,11 @@ struct StandardRigOptions {
   double sonar_rate_hz = 20.0;
 };
 
-/// The hand-held rig of the simulator: cameras side by side with 14 cm of baseline looking ahead, 70 degrees
-/// wide (as behind glass in water) with barrel distortion; the IMU between them upside down and turned; the
-/// magnetometer inside the IMU; a pressure port behind; a sonar head below that scans across the view.
-/// Extrinsics are a little off the drawing, as in any rig. IMU noise is left at its default.
+/// The hand-held rig of the simulator. Its cameras are side by side with a baseline of 14 cm, look ahead, are
+/// 70 degrees wide (as behind glass in water) and have barrel distortion. The IMU is between them, upside
+/// down and rotated; the magnetometer is inside the IMU. A pressure port is behind, and a sonar head below
+/// scans across the view. As in any rig, the extrinsics differ a little from the drawing. The IMU noise has
+/// its default.
 MountedRig standardRig(const StandardRigOptions& options);
 
 }  // namespace lodeline

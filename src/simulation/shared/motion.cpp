@@ -16,12 +16,12 @@ VectorJet vectorJet(const Jet& x, const Jet& y, const Jet& z) {
           Vec3(x.acceleration, y.acceleration, z.acceleration)};
 }
 
-/// An attitude with its angular velocity and acceleration, all in the frame it turns against.
+/// An attitude with its angular velocity and acceleration, all in the reference frame.
 struct AttitudeJet {
   Quat rotation;
   Vec3 angular_velocity, angular_acceleration;
 
-  /// A vector given in the turning frame, seen from the frame it turns against.
+  /// Transforms a vector from the rotating frame to the reference frame.
   VectorJet operator*(const VectorJet& v) const {
     const Vec3 value = rotation * v.value;
     const Vec3 rate = rotation * v.rate;
@@ -30,7 +30,7 @@ struct AttitudeJet {
                 angular_acceleration.cross(value) + angular_velocity.cross(angular_velocity.cross(value))};
   }
 
-  /// Turns further about a unit axis of the turning frame.
+  /// Adds a rotation about a unit axis of the rotating frame.
   AttitudeJet turned(const Vec3& axis, const Jet& angle) const {
     const Vec3 axis_outside = rotation * axis;
     return {(rotation * Quat(Eigen::AngleAxisd(angle.value, axis))).normalized(),

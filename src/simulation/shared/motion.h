@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// The exact state of the rig at one instant.
+/// True state of the rig at one instant.
 struct MotionState {
   Rigid3 world_from_body;
   Vec3 velocity_W = Vec3::Zero();              ///< of the body origin, m/s
@@ -17,8 +17,8 @@ struct MotionState {
   Vec3 angular_acceleration_B = Vec3::Zero();  ///< rad/s^2
 };
 
-/// One coordinate of the motion as a function of time: splines, splines under an envelope, and amplitude- and
-/// phase-modulated sines.
+/// One coordinate of the motion as a function of time: a sum of splines, splines under an envelope, and
+/// amplitude- and phase-modulated sines.
 struct MotionChannel {
   struct Enveloped {
     Spline envelope;
@@ -37,10 +37,10 @@ struct MotionChannel {
   Jet at(double time_s) const;
 };
 
-/// The coordinates from which a motion is composed. The diver frame D is x forward, y left, z up.
+/// The coordinates that compose a motion. The diver frame D is x forward, y left, z up.
 struct MotionChannels {
   MotionChannel east, north, up;       ///< slow path of the origin of D in W, m
-  MotionChannel forward, left, above;  ///< swaying about that path along the axes of the yawed frame, m
+  MotionChannel forward, left, above;  ///< swaying relative to that path along the axes of the yawed frame, m
   MotionChannel yaw;                   ///< counter-clockwise from east, rad
   MotionChannel pitch;                 ///< nose down positive, rad
   MotionChannel roll;                  ///< right side down positive, rad
@@ -59,7 +59,7 @@ class Motion {
   MotionState at(double time_s) const;
   double duration_s() const { return duration_s_; }
 
-  /// What was added to the channels' coordinates to bring the body's start to the world's origin.
+  /// Shift of the channels' coordinates that moves the start of the body to the world's origin.
   const Vec3& worldShift() const { return shift_W_; }
 
  private:
@@ -69,7 +69,7 @@ class Motion {
   Vec3 shift_W_ = Vec3::Zero();
 };
 
-/// What a perfect IMU in the body frame reads; `gravity_W` points down (0, 0, -9.8).
+/// Reading of a perfect IMU in the body frame; `gravity_W` points down (0, 0, -9.8).
 ImuSample perfectImuSample(const MotionState& state, Time time, const Vec3& gravity_W);
 
 /// Length of the body's path between two instants, m, from the speed at 20 Hz.

@@ -36,7 +36,7 @@ double Random::normal() {
 }
 
 Vec3 Random::normal3() {
-  // Named one by one: the order in which function arguments are evaluated is unspecified.
+  // Separate variables, because the order of evaluation of function arguments is unspecified.
   const double x = normal();
   const double y = normal();
   const double z = normal();

@@ -8,11 +8,11 @@
 
 namespace lodeline {
 
-/// Random numbers that are the same on every machine: std::mt19937_64 is fixed by the standard, the
-/// distributions are spelled out here because the standard's own are not.
+/// Random numbers that are equal on every machine. The standard defines std::mt19937_64, but not the
+/// algorithms of its distributions, which are therefore implemented here.
 ///
-/// Every sensor and effect draws from its own stream of one scenario seed, so that switching one of them off
-/// leaves the draws of all others untouched.
+/// Every sensor and effect draws from its own stream of one scenario seed, so switching one off does not
+/// change the draws of the others.
 class Random {
  public:
   Random(uint64_t seed, std::string_view stream);

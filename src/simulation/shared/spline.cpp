@@ -9,8 +9,7 @@ namespace {
 
 constexpr int kDegree = 5;
 
-// Basis functions of one degree that are not zero at the fraction u of a knot span, from those of the degree
-// below it.
+// Non-zero basis functions of one degree at the fraction u of a knot span, from those of the degree below.
 void raiseDegree(int degree, double u, std::array<double, kDegree + 1>& basis) {
   double saved = 0.0;
   for (int r = 0; r < degree; ++r) {
@@ -46,7 +45,7 @@ Jet modulatedSine(const Jet& a, const Jet& phase) {
 Spline::Spline(double begin_s, double end_s, double spacing_s, const std::function<double(double)>& control)
     : begin_s_(begin_s), spacing_s_(spacing_s) {
   const int spans = static_cast<int>(std::ceil((end_s - begin_s) / spacing_s)) + 1;
-  // At the start of span i the weights lie symmetrically about control point i + 2.
+  // At the start of span i, the weights are symmetric about control point i + 2.
   for (int k = 0; k < spans + kDegree; ++k) {
     control_.push_back(control(begin_s + (k - 0.5 * (kDegree - 1)) * spacing_s));
   }

@@ -5,7 +5,7 @@
 
 namespace lodeline {
 
-/// A scalar function of time at one instant with its first two derivatives (per s, per s^2).
+/// Value of a scalar function of time at one instant with its first two derivatives (per s, per s^2).
 struct Jet {
   double value = 0.0;
   double rate = 0.0;
@@ -17,15 +17,15 @@ struct Jet {
 /// a(t) * b(t).
 Jet product(const Jet& a, const Jet& b);
 
-/// a(t) * sin(phase(t)), with the chain rule carried through.
+/// a(t) * sin(phase(t)), with derivatives by the chain rule.
 Jet modulatedSine(const Jet& amplitude, const Jet& phase);
 
 /// A uniform B-spline of degree 5: four times continuously differentiable, its derivatives exact. Piegl &
 /// Tiller, "The NURBS Book", 2nd ed., algorithms A2.2 and A3.1.
 class Spline {
  public:
-  /// Control points c(t_k) at t_k = `begin_s` + k * `spacing_s`, as many as it takes for `at` to be defined
-  /// on [begin_s, end_s]. The spline follows c smoothed over 0.7 knot spacings (one standard deviation).
+  /// Control points c(t_k) at t_k = `begin_s` + k * `spacing_s`, as many as `at` needs on [begin_s, end_s].
+  /// The spline is c smoothed with a standard deviation of 0.7 knot spacings.
   Spline(double begin_s, double end_s, double spacing_s, const std::function<double(double)>& control);
 
   Jet at(double time_s) const;

@@ -33,7 +33,7 @@ TEST(Spline, IsContinuousUpToTheFourthDerivative) {
   constexpr double kSpacing = 0.5;
   const Spline spline(0.0, 10.0, kSpacing, wiggle);
   // The fourth derivative is linear between knots, so second differences of the acceleration give it exactly
-  // where the stencil stays within a span; both sides extrapolated to the knot must meet.
+  // where the stencil is within a span. The values extrapolated from both sides to the knot must be equal.
   constexpr double kStep = 0.02;
   const auto fourth = [&](double t) {
     return (spline.at(t + kStep).acceleration - 2.0 * spline.at(t).acceleration +

@@ -6,11 +6,11 @@
 
 namespace lodeline {
 
-/// A smooth random function with unit RMS and zero mean: six sine waves of different lengths and random
-/// phases, the longer the stronger.
+/// A smooth random function with unit RMS and zero mean: six sine waves of different wavelengths and random
+/// phases. Longer waves have larger amplitudes.
 class Waves {
  public:
-  /// Wavelengths lie between `shortest` and `longest`, in the unit of the argument.
+  /// Wavelengths are between `shortest` and `longest`, in the unit of the argument.
   Waves(uint64_t seed, std::string_view stream, double shortest, double longest);
 
   double operator()(double x) const;

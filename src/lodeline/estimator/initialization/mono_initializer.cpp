@@ -16,7 +16,8 @@
 namespace lodeline {
 namespace {
 
-/// Mean square of the whitened inertial errors of a window: about one or less where it is right.
+/// Mean square of the whitened inertial residuals of a window: about one or less where the solution is
+/// correct.
 double inertialDisagreement(Window& window, const FactorBuilder& factors) {
   double square_sum = 0.0;
   std::vector<double> residual;
@@ -82,7 +83,7 @@ void MonoInitializer::insert(Time time, const ObservationList& observations, Fra
 
 void MonoInitializer::dropOldestFrame() {
   window_.remove(window_.frames().front()->id);
-  // The interval that led to what is now the oldest frame.
+  // The interval before the frame that is now the oldest.
   if (!window_.empty()) intervals_.erase(window_.frames().front()->id);
 }
 
@@ -112,7 +113,7 @@ bool MonoInitializer::solveVisualStructure() {
 Vec3 MonoInitializer::gyroscopeBias(const std::vector<Quat>& rotations) {
   constexpr double kContradiction_rad_per_s = 0.01;
   const Vec3 aligned = alignGyroscopeBias(rotations, intervals());
-  // A rig may have rested on something that turned, with nothing else in view.
+  // The rig may have rested on a turning base with nothing else in view.
   if (gyroscope_ && (gyroscope_->bias_B - aligned).norm() > kContradiction_rad_per_s) gyroscope_.reset();
   if (!gyroscope_) return aligned;
   for (Preintegration* interval : intervals())

@@ -16,31 +16,32 @@ namespace lodeline {
 /// Observations of one frame with their tracks.
 using ObservationList = std::vector<std::pair<TrackId, Observation>>;
 
-/// Finds the first states of a rig whose images overlap only over time: visual structure from the frame that
-/// has moved far enough against an earlier one, then gyroscope bias, gravity, scale and velocities from the
-/// inertial readings, then everything together. Frames are collected until that succeeds.
+/// Finds the first states of a rig whose images overlap only over time. It estimates the visual structure
+/// once the newest frame has moved far enough from an earlier one. Then it estimates gyroscope bias, gravity,
+/// scale and velocities from the inertial readings, and finally all variables together. Frames are collected
+/// until that succeeds.
 class MonoInitializer {
  public:
   MonoInitializer(const Rig& rig, const EstimatorOptions& options, const FactorBuilder& factors)
       : rig_(rig), options_(options), factors_(factors) {}
 
-  /// What StationaryDetector has found, as of a frame.
+  /// Result of StationaryDetector at a frame.
   struct Rest {
-    bool now = false;  ///< its velocity is to be counted as none
+    bool now = false;  ///< the frame gets a zero-velocity update
     std::optional<GyroscopeAtRest> gyroscope;
   };
 
-  /// Adds a frame: its observations and the inertial readings since the frame before (as Estimator::add).
-  /// True when the window is complete: states of all its frames in a world with gravity down, zero yaw and
-  /// origin at the first frame, landmarks in metres.
+  /// Adds a frame: its observations and the inertial readings since the frame before (as in Estimator::add).
+  /// Returns true when the window is complete: states of all its frames in a world with gravity down, zero
+  /// yaw and origin at the first frame, landmarks in metres.
   bool add(Time time, const ObservationList& observations, std::span<const ImuSample> imu, FrameId id,
            const Rest& rest);
 
-  /// What is missing, in words; set whenever add() returned false.
+  /// The missing condition, in words; set whenever add() returned false.
   const std::string& waitingFor() const { return waiting_for_; }
 
   Window takeWindow() { return std::move(window_); }
-  /// The prior on the first frame that the window was solved with.
+  /// The prior on the first frame with which the window was solved.
   Prior takePrior() { return std::move(prior_); }
 
  private:
@@ -48,8 +49,8 @@ class MonoInitializer {
   void dropOldestFrame();
   std::vector<Preintegration*> intervals() const;
   bool solveVisualStructure();
-  /// What goes with these rotations of all frames, or more precisely what rests say where that does not
-  /// contradict it; the intervals are integrated at it.
+  /// Gyroscope bias that fits these rotations of all frames. The more accurate bias from rests replaces it
+  /// where both agree. The intervals are integrated with the result.
   Vec3 gyroscopeBias(const std::vector<Quat>& rotations);
   bool alignWithInertial();
   bool refine();
@@ -60,11 +61,11 @@ class MonoInitializer {
   Window window_;
   Prior prior_;
   std::vector<ImuSample> pending_imu_;  ///< since the newest frame of the window
-  bool pending_rest_ = false;           ///< of a frame that was left out
+  bool pending_rest_ = false;           ///< zero-velocity update of a frame that was skipped
   std::optional<GyroscopeAtRest> gyroscope_;
-  /// Inertial readings that led to a frame; kept apart from the window while its structure is purely visual.
+  /// Inertial readings before each frame; kept apart from the window while its structure is purely visual.
   std::map<FrameId, std::unique_ptr<Preintegration>> intervals_;
-  std::optional<Time> refused_;  ///< when a start was found, and found not to be good enough
+  std::optional<Time> refused_;  ///< time of the last start that was rejected as too inaccurate
   std::string waiting_for_;
 };
 

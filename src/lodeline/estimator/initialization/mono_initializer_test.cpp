@@ -24,7 +24,7 @@ TestSceneOptions monoScene(double duration_s) {
   return options;
 }
 
-// Ends with the frame that completes the start, or with the scene.
+// Runs until the frame that completes the initialization, or the end of the scene.
 std::vector<Comparison> untilStarted(const TestSceneOptions& options) {
   TestScene scene(options);
   ComparedEstimator estimator(scene, honestOptions(options));
@@ -41,12 +41,12 @@ void expectSoundStart(const TestSceneOptions& options, double max_rotation_error
   const std::vector<Comparison> comparisons = untilStarted(options);
   EXPECT_THAT(comparisons.front().estimate.waiting_for, StartsWith("frames 1 of 6"));
   ASSERT_TRUE(comparisons.back().initialized()) << comparisons.back().estimate.waiting_for;
-  // The start promises the scale to a tenth; three times that is as good as never exceeded.
+  // The initialization guarantees a scale sigma of a tenth; an error of three sigmas is practically excluded.
   const Comparison& start = comparisons.back();
   const double way_m = start.true_world_from_body.translation.norm();
   EXPECT_GT(way_m, 0.1);
   EXPECT_NEAR(start.estimate.state.world_from_body.translation.norm() / way_m, 1.0, 0.3);
-  // Against gravity and the frame of the start: 0.1 m/s^2 of unknown accelerometer bias are 0.01 rad.
+  // Relative to gravity and the first frame: an unknown accelerometer bias of 0.1 m/s^2 is 0.01 rad.
   EXPECT_LT(start.rotationError(), max_rotation_error_rad);
   EXPECT_LT(start.positionError(), 4.0 * std::sqrt(start.estimate.covariance.topLeftCorner<3, 3>().trace()));
 }
@@ -60,7 +60,7 @@ TEST(MonoInitializer, StartsAMovingCameraAndSaysWhatItWaitsFor) {
   }
 }
 
-// Bare walls in milky water.
+// Walls with little texture in milky water.
 TEST(MonoInitializer, StartsWithFewTracks) {
   for (const uint64_t seed : {1, 2, 3}) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
@@ -71,8 +71,8 @@ TEST(MonoInitializer, StartsWithFewTracks) {
   }
 }
 
-// A consumer IMU carried by a calm swimmer: its bias outweighs the accelerations by far. Looked for from no
-// bias, seed 1 ends in a false minimum, the speed off by a third.
+// A consumer IMU carried by a calm swimmer: its bias is much larger than the accelerations. Starting from a
+// zero bias, seed 1 ends in a false minimum with a velocity error of a third.
 TEST(MonoInitializer, StartsWithAnAccelerometerThatIsFarOff) {
   for (const uint64_t seed : {1, 2, 3, 4}) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
@@ -116,8 +116,8 @@ TEST(MonoInitializer, DoesNotGuessTheScaleOfASteadyGlide) {
   }
 }
 
-/// Ten seconds after a rig that rested has set off: mean square of the position's error, and mean NEES of the
-/// pose. What it rested on turned at `turning_rad_per_s`, with all that was in view.
+/// Ten seconds after a resting rig has started to move: mean square of the position error, and mean NEES of
+/// the pose. The base on which it rested turned at `turning_rad_per_s`, with everything in view.
 struct AfterRest {
   double squared_error_m2 = 0.0, nees = 0.0;
 };
@@ -147,7 +147,7 @@ AfterRest afterRest(int seeds, bool is_watched, double turning_rad_per_s = 0.0) 
   return mean;
 }
 
-// Watched or not: what images of the rest say of the gyroscope outlives the window of the start.
+// Image information on the gyroscope at rest must outlive the window of the start.
 TEST(MonoInitializer, StartsWellWhereTheRigHasRested) {
   constexpr int kSeeds = 6;
   for (const bool is_watched : {true, false}) {
@@ -158,7 +158,7 @@ TEST(MonoInitializer, StartsWellWhereTheRigHasRested) {
 }
 
 TEST(MonoInitializer, IsNotMisledByARestOnWhatTurns) {
-  // Some twice what a start without any rest makes of it.
+  // About twice the error of an initialization without any rest.
   EXPECT_LT(std::sqrt(afterRest(3, true, 0.05).squared_error_m2), 0.35);
 }
 

@@ -27,7 +27,7 @@ double parallaxAfterBestRotation(const std::vector<BearingPair>& pairs) {
 
 std::optional<Rigid3> estimateRelativePose(const std::vector<BearingPair>& pairs, double max_error_rad,
                                            int min_inliers) {
-  // The library works in the image plane at unit depth, so rays beyond about 80 degrees are left out.
+  // The library works in the image plane at unit depth, so rays beyond about 80 degrees are skipped.
   constexpr double kMinDepth = 0.17;
   std::vector<cv::Point2d> points_a;
   std::vector<cv::Point2d> points_b;

@@ -47,7 +47,7 @@ void expectPose(const std::optional<Rigid3>& found, const Rigid3& truth, double 
 
 TEST(RelativePose, IsExactWithoutNoise) {
   const Pairs pairs;
-  // The library's five-point solver is good to about 1e-6 where several samples agree equally well.
+  // The library's five-point solver is accurate to about 1e-6 where several samples agree equally well.
   expectPose(estimateRelativePose(pairs.make(100), kPixel_rad, 50), pairs.b_from_a, 1e-5, 1e-4);
 }
 
@@ -55,13 +55,13 @@ TEST(RelativePose, SurvivesNoiseAndAThirdOfOutliers) {
   Pairs pairs;
   pairs.noise_rad = 0.5 * kPixel_rad;
   pairs.outlier_share = 0.33;
-  // From the best five pairs: baseline over distance is 0.08, so half a pixel is 0.8 degrees of the
-  // direction a pair; several times that for a minimal sample.
+  // From the best five pairs: baseline over distance is 0.08, so half a pixel is 0.8 degrees in the direction
+  // from one pair; several times that for a minimal sample.
   expectPose(estimateRelativePose(pairs.make(200), kPixel_rad, 80), pairs.b_from_a, 0.02, 0.25);
 }
 
-// Two views of a plane have two explanations (Longuet-Higgins, "The reconstruction of a plane surface from
-// two perspective projections", 1986). Which of them comes out is chance; more views must decide.
+// Two views of a plane have two solutions (Longuet-Higgins, "The reconstruction of a plane surface from two
+// perspective projections", 1986). The result may be either; more views must decide.
 TEST(RelativePose, ExplainsTheViewsOfAPlane) {
   Pairs pairs;
   pairs.planar = true;
@@ -105,8 +105,8 @@ TEST(Parallax, OfATurnAloneIsTheNoise) {
 }
 
 TEST(Parallax, OfAStepIsWhatNoRotationExplains) {
-  // Points at one distance shift by the same angle, which a rotation takes out; depth between 2 and 6 m
-  // leaves the spread of 0.3 m / z about its mean, some 20 mrad.
+  // Points at one distance shift by the same angle, which the rotation compensates. Depths between 2 and 6 m
+  // leave the spread of 0.3 m / z about its mean, about 20 mrad.
   Pairs pairs;
   const double parallax = parallaxAfterBestRotation(pairs.make(400));
   EXPECT_GT(parallax, 0.01);

@@ -45,7 +45,7 @@ TEST(StartPrior, NeverBelievesTheTiltTooMuch) {
   EXPECT_NEAR(sigmasOf(startPrior(frame, options, 1e-9))[3], options.tilt_sigma_min_rad, 1e-12);
 }
 
-// A rig at rest whose accelerometer has a bias, levelled by what that reads.
+// A rig at rest whose accelerometer has a bias and whose tilt comes from its readings.
 TEST(StartPrior, TiltAndAccelerometerBiasAnswerForEachOther) {
   const Quat true_attitude = so3::exp(Vec3(0.4, -1.1, 2.0));
   const Vec3 bias_B(0.1, 0.28, -0.15);
@@ -64,7 +64,7 @@ TEST(StartPrior, TiltAndAccelerometerBiasAnswerForEachOther) {
   EXPECT_NEAR(std::sqrt(covariance(4, 4)), std::hypot(0.01, by_bias), 1e-9);
   EXPECT_NEAR(std::sqrt(covariance(14, 14)), options.accelerometer_bias_sigma_m_per_s2, 1e-9);
 
-  // At the truth nothing is left of the tilt, but what is of second order.
+  // At the truth the tilt residual is of second order.
   const Quat yaw = so3::exp(headingBetween(true_attitude, state.world_from_body.rotation) * Vec3::UnitZ());
   state.world_from_body.rotation = yaw * true_attitude;
   const auto tilt = [&](const Vec3& bias) {
@@ -76,7 +76,7 @@ TEST(StartPrior, TiltAndAccelerometerBiasAnswerForEachOther) {
   EXPECT_LT(tilt(bias_B), 0.1);
   EXPECT_GT(tilt(Vec3::Zero()), 1.5) << "this bias tilts nothing";
 
-  // In a world that has been turned the same holds.
+  // The same holds in a rotated world.
   Window window;
   auto added = std::make_unique<Frame>();
   state.world_from_body.rotation = levelWithZeroYaw(force_B.normalized());

@@ -8,8 +8,8 @@
 namespace lodeline {
 namespace {
 
-// Weights of the linear system: what visual positions (m) and preintegrated velocities (m/s, turned as vision
-// says) are about worth over a tenth of a second.
+// Weights of the linear system: approximate accuracy of visual positions (m) and of preintegrated velocities
+// (m/s, rotated by visual attitudes) over a tenth of a second.
 constexpr double kPositionSigma = 0.005;
 constexpr double kVelocitySigma = 0.01;
 

@@ -8,26 +8,25 @@
 
 namespace lodeline {
 
-/// Gyroscope bias that makes the preintegrated rotations agree with those of visual structure, by least
-/// squares over all intervals; interval i leads from `rotations[i]` to `rotations[i + 1]` (any frame from
-/// body). The preintegrations are integrated again at the result, rad/s.
+/// Gyroscope bias (rad/s) with which the preintegrated rotations agree with those of the visual structure, by
+/// least squares over all intervals. Interval i leads from `rotations[i]` to `rotations[i + 1]` (any frame
+/// from body). The preintegrations are integrated again with the result.
 Vec3 alignGyroscopeBias(const std::vector<Quat>& rotations, const std::vector<Preintegration*>& intervals);
 
 struct VisualInertialAlignment {
   double scale = 1.0;              ///< metres per unit of the visual structure
   Vec3 gravity_V = Vec3::Zero();   ///< m/s^2, in the visual structure's axes, of the given magnitude
-  std::vector<Vec3> velocities_V;  ///< m/s, one a frame
+  std::vector<Vec3> velocities_V;  ///< m/s, one per frame
   Vec3 accelerometer_bias_B = Vec3::Zero();  ///< m/s^2
-  /// Of the gravity that the linear system finds when its magnitude is left free, m/s^2: a plausibility
-  /// check.
+  /// Magnitude of gravity from the linear system without the constraint on it, m/s^2: a plausibility check.
   double free_gravity_magnitude = 0.0;
 };
 
-/// Scale, gravity and velocities from visual structure with arbitrary scale (camera positions and body
-/// rotations in its axes V) and preintegrated motion, beside the accelerometer's bias as far as its prior
-/// (none, to `bias_sigma_m_per_s2`) lets it. Linear least squares first, then with the magnitude of gravity
-/// enforced (Qin, Li & Shen, "VINS-Mono", TRO 2018, section V-B, who neglect the bias). Nothing where the
-/// system is singular (motion without acceleration says nothing of scale) or the scale comes out negative.
+/// Estimates scale, gravity and velocities from a visual structure of arbitrary scale (camera positions and
+/// body rotations in its axes V) and preintegrated motion. It also estimates the accelerometer bias with a
+/// zero-mean prior of `bias_sigma_m_per_s2`. Linear least squares come first, then the magnitude of gravity
+/// is enforced (Qin, Li & Shen, "VINS-Mono", TRO 2018, section V-B, who neglect the bias). Empty where the
+/// system is singular (motion without acceleration does not determine the scale) or the scale is negative.
 std::optional<VisualInertialAlignment> alignVisualInertial(const std::vector<Quat>& visual_from_body,
                                                            const std::vector<Vec3>& camera_positions_V,
                                                            const Vec3& camera_position_B,

@@ -15,7 +15,7 @@ const Vec3 kCamera_B(0.05, 0.02, -0.03);
 const Quat kVisualFromWorld = so3::exp(Vec3(0.4, -1.2, 0.7));
 constexpr double kMetresPerUnit = 0.37;
 
-// Perfect visual structure of arbitrary scale and attitude beside real intervals.
+// Exact visual structure of arbitrary scale and attitude with simulated intervals.
 struct Case {
   std::vector<Quat> rotations;
   std::vector<Vec3> camera_positions;
@@ -58,7 +58,7 @@ Case lively(const Vec3& accelerometer_bias, const Vec3& assumed_gyroscope_bias) 
 TEST(GyroscopeBiasAlignment, FindsTheBias) {
   const Case c = lively(Vec3::Zero(), Vec3::Zero());
   const Vec3 bias = alignGyroscopeBias(c.rotations, c.intervals);
-  // What is left is the integration's error at 400 Hz.
+  // The rest is the integration error at 400 Hz.
   EXPECT_LT((bias - kGyroscopeBias).norm(), 1e-5);
   for (const Preintegration* interval : c.intervals) EXPECT_EQ(interval->gyroscopeBias(), bias);
 }
@@ -89,7 +89,7 @@ TEST(VisualInertialAlignment, FindsTheAccelerometersBiasFromAnyPresumedOne) {
   }
 }
 
-// Over less than two seconds gravity and the bias are hardly told apart.
+// Over less than two seconds, gravity and the bias are hardly distinguishable.
 TEST(VisualInertialAlignment, LeavesTheBiasToItsPriorWhereMotionSaysLittleOfIt) {
   const Case c = lively(Vec3(0.36, -0.30, 0.36), kGyroscopeBias);
   const auto alignment = c.align(1e-3);

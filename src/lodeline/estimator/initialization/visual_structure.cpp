@@ -32,7 +32,7 @@ PointMap triangulatePair(const Window& window, const Frame& a, const Frame& b, c
   return points;
 }
 
-/// Camera pose that sees the points where the frame saw them (RANSAC), starting from a guess.
+/// Camera pose from the points that the frame observes (resection, RANSAC), starting from a guess.
 std::optional<Rigid3> resect(const Window& window, const Frame& frame, const PointMap& points,
                              const Rigid3& camera_from_visual_guess, double max_error_rad, int min_points) {
   std::vector<cv::Point3d> objects;
@@ -63,8 +63,8 @@ std::optional<Rigid3> resect(const Window& window, const Frame& frame, const Poi
   return Rigid3(so3::exp(rotation), position);
 }
 
-/// Gyroscope rotations from the oldest body frame to every frame, with the bias that makes the last one agree
-/// with `newest_from_visual_structure`.
+/// Gyroscope rotations from the oldest body frame to every frame, with the bias for which the last one equals
+/// `oldest_from_newest`.
 std::vector<Quat> gyroscopeRotations(const std::vector<Preintegration*>& intervals,
                                      const Quat& oldest_from_newest) {
   std::vector<Quat> rotations;
@@ -129,7 +129,7 @@ bool estimateStructure(Window& window, const std::vector<Preintegration*>& inter
   }
 
   LandmarkOptions landmark_options;
-  landmark_options.min_distance_m = 0.1;  // baselines here, not metres
+  landmark_options.min_distance_m = 0.1;  // in units of the baseline here, not in metres
   landmark_options.max_inverse_distance_sigma_per_m = 0.05;
   Prior gauge;
   gauge.blocks.push_back({oldest.pose.data(), Eigen::Map<Eigen::VectorXd>(oldest.pose.data(), kPoseSize)});

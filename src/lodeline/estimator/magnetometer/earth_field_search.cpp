@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kLongestInterval_s = 1.0;  // what a pause of the readings counts for
+constexpr double kLongestInterval_s = 1.0;  // longest interval that counts when readings pause
 
 }  // namespace
 

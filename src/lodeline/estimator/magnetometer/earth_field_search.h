@@ -7,14 +7,15 @@
 
 namespace lodeline {
 
-/// Finds out when another field than the one in force has the better claim to be the Earth's. A dive may
-/// begin beside a boat or between tanks: that field is the first to be measured, and the gate rejects the
-/// Earth's as soon as the diver swims away. The Earth's field keeps size and direction in the world wherever
-/// the rig goes, so the field that holds for longest is the Earth's:
-/// - a field replaces the one in force when it has held for `kLeast_s` and for longer than that one agreed;
-/// - `kPlausible_s` are enough where the one in force cannot be the Earth's at the site (alignHeading());
-/// - a field that has agreed for `kConfirmed_s` is not replaced any more, nor one after `kMostReplacements`:
-///   by then the calibration is what is wrong.
+/// Decides when another field than the present one is more likely the Earth's. A dive may begin beside a boat
+/// or between tanks. The disturbed field there is then measured first, and the gate rejects the Earth's field
+/// as soon as the diver swims away. The Earth's field keeps size and direction in the world wherever the rig
+/// goes, so the field that persists longest is the Earth's:
+/// - a field replaces the present one when it has persisted for `kLeast_s` and for longer than the present
+///   one agreed;
+/// - `kPlausible_s` suffice where the present one cannot be the Earth's at the site (alignHeading());
+/// - a field that has agreed for `kConfirmed_s` is not replaced any more, nor is any field after
+///   `kMostReplacements`: then the calibration is likely wrong.
 /// Only time with readings counts.
 class EarthFieldSearch {
  public:
@@ -27,19 +28,19 @@ class EarthFieldSearch {
   struct Reading {
     Time time;
     Vec3 field_W = Vec3::Zero();  ///< measured, T
-    bool agrees = false;          ///< with the field in force
+    bool agrees = false;          ///< with the present field
     bool is_plausible = false;    ///< as the Earth's field at the site
     bool is_field_in_force_plausible = false;
   };
-  /// Gives the field (T, world axes) that takes the place of the one in force, where there is one.
+  /// Gives the field (T, world axes) that replaces the present one, where there is one.
   std::optional<Vec3> add(const Reading& reading);
 
  private:
   void follow(const Reading& reading, double since_s);
 
   std::optional<Time> last_time_;
-  double agreed_s_ = 0.0;            ///< for which the field in force agreed
-  std::optional<Vec3> candidate_W_;  ///< mean of the readings that have held
+  double agreed_s_ = 0.0;            ///< time for which the present field agreed
+  std::optional<Vec3> candidate_W_;  ///< mean of the readings that have persisted
   int readings_ = 0;                 ///< of that mean
   double held_s_ = 0.0;
   int replacements_ = 0;

@@ -8,7 +8,7 @@ namespace {
 const Vec3 kEarth_W(0.0, 24e-6, -38e-6);
 const Vec3 kBoat_W(14e-6, 20e-6, -38e-6);
 
-// Feeds a field for some seconds at 5 Hz; gives the time at which one was taken for the Earth's.
+// Feeds a field for some seconds at 5 Hz; gives the time of a replacement of the Earth's field.
 class Search {
  public:
   std::optional<double> feed(const Vec3& field_W, double duration_s, bool is_plausible = true) {

@@ -11,14 +11,14 @@
 namespace lodeline {
 namespace {
 
-constexpr double kLeastField_T = 15e-6;  // the Earth's has 22 to 67 uT; hard iron may take some away
+constexpr double kLeastField_T = 15e-6;  // the Earth's field has 22 to 67 uT; hard iron may reduce it
 constexpr double kMostField_T = 90e-6;
 
 double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
 double dipOf(const Vec3& field_W) { return FieldShape::of(field_W).dip_rad; }
 double azimuthOf(const Vec3& field_W) { return std::atan2(field_W.y(), field_W.x()); }
 
-/// Why no heading can be had from the field; empty where it can.
+/// Reason why the field gives no heading; empty where it does.
 std::string refusalOf(const Vec3& field_W, const MagnetometerOptions& options) {
   const double norm_T = field_W.norm();
   if (!(norm_T > kLeastField_T && norm_T < kMostField_T))
@@ -87,14 +87,15 @@ void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prio
     state.velocity_W = turned_from_world.rotation * state.velocity_W;
     frame->setState(state);
   }
-  // Position, roll and pitch, and velocity have one sigma for all horizontal directions: only the values
-  // turn.
+  // Position, roll and pitch, and velocity have the same sigma in all horizontal directions. Only their
+  // values rotate.
   double* pose = prior->blocks[0].linearization_point.data();
   poseToBlock(turned_from_world * poseFromBlock(pose), pose);
   prior->blocks[1].linearization_point.head<3>() =
       turned_from_world.rotation * Vec3(prior->blocks[1].linearization_point.head<3>());
   prior->sqrt_information(5, 5) = 1.0 / yaw_sigma_rad;
-  // What ties roll and pitch, in world axes, to the motion (tieTiltToAccelerometerBias) turns with them.
+  // The correlation of roll and pitch (world axes) with the motion block (tieTiltToAccelerometerBias) rotates
+  // as well.
   constexpr int kTilt = 3;
   auto ties = prior->sqrt_information.block<2, kMotionSize>(kTilt, kPoseTangentSize);
   ties = (Eigen::Rotation2Dd(yaw_rad).toRotationMatrix() * ties).eval();

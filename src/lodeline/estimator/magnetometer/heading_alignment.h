@@ -8,43 +8,44 @@
 
 namespace lodeline {
 
-/// Which way a window that has just started looks, from the field it measured.
+/// Heading of a window that has just started, from its measured field.
 struct HeadingAlignment {
-  /// Start where the field says nothing of north; `refusal` then says why, in words.
+  /// Start where the field does not give a direction of north; `refusal` is then the reason in words.
   HeadingReference reference = HeadingReference::Start;
   std::string refusal;
-  double yaw_rad = 0.0;         ///< by which the world is to be turned about its vertical
-  Vec3 field_W = Vec3::Zero();  ///< T, in the turned world
+  double yaw_rad = 0.0;         ///< rotation of the world about its vertical
+  Vec3 field_W = Vec3::Zero();  ///< T, in the rotated world
 };
 
-/// `level_field_W`: mean of the start's fields, T, in a world whose vertical is right and whose yaw is not.
-/// East is field x up, north up x east; true north further by the declination of the field at the site.
-/// Refused where size or dip are not the Earth's, or not those of the site, and where the field is all but
-/// vertical.
+/// Computes the yaw that turns a level world to north. `level_field_W`: mean of the fields at the start, T,
+/// in a world with a correct vertical and an arbitrary yaw. East is field x up, north is up x east; true
+/// north differs from this by the declination of the field at the site. The alignment is refused where size
+/// or dip do not match the Earth's field or that of the site, and where the field is nearly vertical.
 HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options);
 
-/// Turn about the vertical, rad in (-pi, pi], that takes a world in which the Earth's field is `field_W` to
-/// one whose y axis points to `reference`, magnetic or true north.
+/// Rotation about the vertical, rad in (-pi, pi], from a world in which the Earth's field is `field_W` to one
+/// whose y axis points north. `reference`: magnetic or true north.
 double northFromWorld(const Vec3& field_W, HeadingReference reference, const MagnetometerOptions& options);
 
-/// How well the azimuth of the Earth's field in the world is known, about the vertical.
+/// Variance of the azimuth of the Earth's field in the world, and its covariance with a state.
 struct AzimuthCovariance {
   double variance_rad2 = 0.0;
-  /// With a state's [dp, dtheta, dv, db_g, db_a].
+  /// Covariance with a state's [dp, dtheta, dv, db_g, db_a].
   Eigen::Matrix<double, 15, 1> with_state = Eigen::Matrix<double, 15, 1>::Zero();
 };
 
-/// `field`, `state_field`: covariances of the field's state (T^2), and of a state's errors with it.
+/// `field`: covariance of the field's state (T^2); `state_field`: cross-covariance of a state's errors with
+/// it.
 AzimuthCovariance azimuthCovariance(const Vec3& field_W, const Mat3& field,
                                     const Eigen::Matrix<double, 15, 3>& state_field);
 
-/// Makes a state's covariance, which is relative to the first pose's heading, relative to north: an azimuth
-/// error d of the field turns the world about its origin, e' = e - u d with u = [z x p, z, z x v, 0, 0].
+/// Converts a state's covariance from relative to the first pose's heading to relative to north. An azimuth
+/// error d of the field rotates the world about its origin: e' = e - u d with u = [z x p, z, z x v, 0, 0].
 void relateToNorth(const NavigationState& state, const AzimuthCovariance& azimuth,
                    Eigen::Matrix<double, 15, 15>* covariance);
 
-/// Turns the world under a window of which nothing has been marginalized yet, and under the prior on its
-/// first frame (startPrior), whose heading is then known to `yaw_sigma_rad` only.
+/// Rotates the world of a window without marginalized states, together with the prior on its first frame
+/// (startPrior). The sigma of that frame's heading becomes `yaw_sigma_rad`.
 void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior);
 
 }  // namespace lodeline

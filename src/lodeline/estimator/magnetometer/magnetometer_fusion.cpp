@@ -14,12 +14,12 @@
 namespace lodeline {
 namespace {
 
-// A rig that has just been switched on does not know its gyroscope's bias: the less time it is carried over
-// the better, as long as there are readings.
+// Maximum length of a mean. A rig that has just been switched on does not know its gyroscope bias, so
+// readings should be carried for a short time only, if there are enough.
 constexpr double kShortMean_s = 0.25;
 constexpr double kLongMean_s = 1.0;
 constexpr int kEnoughReadings = 3;
-constexpr double kLongestWait_s = 5.0;  // of means for their window
+constexpr double kLongestWait_s = 5.0;  // of means until their window starts
 
 MagnetometerUse useOf(const std::optional<MagnetometerCalibration>& magnetometer, MagnetometerUse wanted) {
   if (!magnetometer || wanted == MagnetometerUse::Off) return MagnetometerUse::Off;
@@ -27,7 +27,7 @@ MagnetometerUse useOf(const std::optional<MagnetometerCalibration>& magnetometer
   return magnetometer->is_calibrated ? MagnetometerUse::Absolute : MagnetometerUse::Off;
 }
 
-/// The part of the readings that a mean is made of: within the IMU's readings and not too old.
+/// The readings that enter a mean: within the IMU's readings and not too old.
 std::span<const FieldSample> recent(std::span<const FieldSample> samples, std::span<const ImuSample> imu) {
   const auto since = [&](Time begin) {
     return samples.subspan(static_cast<size_t>(std::count_if(
@@ -40,7 +40,7 @@ std::span<const FieldSample> recent(std::span<const FieldSample> samples, std::s
   return since(std::max(imu.front().time, end - Duration::fromSeconds(kLongMean_s)));
 }
 
-/// Upper triangular root of the information of a field whose azimuth is all but known.
+/// Upper triangular root of the information of a field with a practically known azimuth.
 Mat3 fieldPrior(const Vec3& field_W, double sigma_T, double azimuth_sigma_rad) {
   const double horizontal_T = field_W.head<2>().norm();
   const Vec3 across = Vec3::UnitZ().cross(field_W) / horizontal_T;
@@ -84,7 +84,8 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
 
 void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
                               const Vec3& gyroscope_bias_B) {
-  // Of what is not used the faults are told all the same: attitude beside the odometry may use it.
+  // Faults are reported even when the magnetometer is not used, because the attitude filter beside the
+  // odometry may use it.
   const std::vector<FieldSample> fields = readings_.add(readings);
   if (use_ == MagnetometerUse::Off || imu.empty()) return;
   const std::span<const FieldSample> samples = recent(fields, imu);
@@ -153,9 +154,9 @@ TimeCorrelatedError MagnetometerFusion::tiltError() const {
 
 double MagnetometerFusion::tiltSigma(Time now) {
   const double shared = timeCorrelatedShare(now, last_seen_, tiltError().correlation_s);
-  // An error of the tilt lasts too, but what has been learned of it since is new: of all that the frames so
-  // far have said, the part that took the tilt as wrongly as then shall fade. The weighted mean of errors of
-  // an estimate whose information grows has twice the variance of its last one, hence the half.
+  // An error of the tilt is correlated over time as well, but information gained since the last frame is
+  // independent. The tilt error of the frames so far must lose weight. The weighted mean of the errors of an
+  // estimate with growing information has twice the variance of the last error, hence the factor 0.5.
   const double information = 1.0 / tilt_variance_rad2_;
   const bool is_first = least_tilt_variance_rad2_ == 0.0;
   const double known = is_first ? information : 1.0 / least_tilt_variance_rad2_;
@@ -254,11 +255,11 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
   if (decision.end_disturbance || (decision.begin_disturbance && disturbed_))
     endDisturbance(window, marginalizer);
   if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
-  // Also a field that is not believed at all is watched, lest it never be believed again.
+  // A rejected sensor (Inconsistent) is also evaluated; otherwise it could never be accepted again.
   if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
     learnErrors(mean, earth, window);
   if (!decision.use) {
-    // A field that was rejected a moment ago is no fresh witness: what disturbed it fades.
+    // A field that was rejected a moment ago is not independent information: its disturbance fades slowly.
     last_seen_ = mean.time;
     return;
   }

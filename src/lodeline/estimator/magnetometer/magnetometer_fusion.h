@@ -20,54 +20,59 @@
 
 namespace lodeline {
 
-/// What the magnetometer gave a frame, and what is known of its field.
+/// Status of the magnetometer in a frame, and the estimate of its field.
 struct MagnetometerEstimate {
   MagnetometerStatus status = MagnetometerStatus::Off;
   HeadingReference heading_reference = HeadingReference::Start;
-  /// Turn about the vertical, rad, that takes the estimator's world to one whose y axis points to that
-  /// reference, as known now. 0 where the world was turned before the first pose; nothing while north is
-  /// unknown. The estimator's world itself is never turned after its first pose.
+  /// Rotation about the vertical, rad, from the estimator's world to a world whose y axis points to that
+  /// reference, by the present estimate. 0 where the world was rotated before the first pose; empty while
+  /// north is unknown. The estimator's world itself never rotates after its first pose.
   std::optional<double> north_from_world_rad;
-  double north_from_world_sigma_rad = 0.0;  ///< of that turn, relative to the first pose's heading
-  std::optional<Time> north_found;          ///< where that was only after the first pose
-  int field_epoch = 0;                      ///< counts the times that another field was taken for the Earth's
-  /// Of the heading against that reference, rad: as the frame's covariance says, and the declination's.
+  double north_from_world_sigma_rad = 0.0;  ///< of that rotation, relative to the heading of the first pose
+  std::optional<Time> north_found;          ///< time at which north was found, if after the first pose
+  int field_epoch = 0;  ///< counts replacements of the field that is taken for the Earth's
+  /// Sigmas of the heading relative to that reference, rad: from the frame's covariance, and of the
+  /// declination.
   double heading_sigma_rad = 0.0;
   double declination_sigma_rad = 0.0;
-  /// Part of it that the window's covariance has not: of the axes of a magnetometer that was never
-  /// calibrated, or of those of an IMU that perhaps never was, against which a calibration turned it.
+  /// Sigma of the heading that the window's covariance does not contain: from the axes of an uncalibrated
+  /// magnetometer, or of an IMU that may never have been calibrated and against which the magnetometer was
+  /// calibrated.
   double axes_sigma_rad = 0.0;
-  /// Estimated field of the Earth and offset of the corrected readings, T; nothing unless fused absolutely.
+  /// Estimated field of the Earth and offset of the corrected readings, T; empty unless the use is Absolute.
   std::optional<Vec3> field_W;
   std::optional<Vec3> offset_B;
-  std::optional<double> correlated_noise_sigma_T;  ///< lasting error of the field per axis, as learned
+  std::optional<double>
+      correlated_noise_sigma_T;  ///< time-correlated error of the field per axis, as estimated
 };
 
-/// Brings the magnetometer into a window: sorts its readings, turns the world to north at the start, keeps
-/// the parameter blocks, asks the gate, and hands each frame its mean field (Frame::magnetometer), of which
-/// FactorBuilder makes a factor. Without a magnetometer, or switched off, it leaves everything as it is.
+/// Adds the magnetometer to a window. It assigns readings to frames, rotates the world to north at the start,
+/// and maintains the parameter blocks. It applies the gate and gives each frame its mean field
+/// (Frame::magnetometer), from which FactorBuilder makes a factor. Without a magnetometer, or with the use
+/// Off, it changes nothing.
 class MagnetometerFusion {
  public:
-  /// `options` and `diagnostics` must outlive it. Says so where a magnetometer is on board but not used.
+  /// `options` and `diagnostics` must outlive it. Reports a magnetometer on board that is not used.
   MagnetometerFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
-  /// Takes the readings that belong to the frame at the end of `imu`; `imu` as in Estimator::add.
+  /// Adds the readings that belong to the frame at the end of `imu`; `imu` as in Estimator::add.
   void take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
             const Vec3& gyroscope_bias_B);
 
-  /// The window has just started, with `prior` on its first frame: turns both to north where the field
-  /// allows, adds the parameter blocks to both and gives the frames their fields. `tilt_sigma_rad`: of the
-  /// roll and pitch that the window knows.
+  /// Called when the window has just started, with `prior` on its first frame. Rotates both to north where
+  /// the field allows it, adds the parameter blocks to both and assigns the fields to the frames.
+  /// `tilt_sigma_rad`: sigma of the window's roll and pitch.
   void start(double tilt_sigma_rad, Window* window, Prior* prior);
 
-  /// The newest frame has just been added.
+  /// Adds the field to the newest frame, which has just been added to the window.
   void addToNewest(Window& window, Marginalizer& marginalizer);
 
-  /// Joint covariance after the window was solved; the next frame's field is judged by it.
+  /// Stores the joint covariance of the solved window; the next frame's field is gated with it.
   void remember(JointCovariance covariance);
 
-  /// Makes the covariance of the newest frame's state, [dp, dtheta, dv, db_g, db_a] as Estimator claims it,
-  /// relative to north where that was found after the first pose; call remember() before.
+  /// Converts the covariance of the newest frame's state to one relative to north, where north was found
+  /// after the first pose. `covariance`: of [dp, dtheta, dv, db_g, db_a] as Estimator reports it. Call
+  /// remember() before.
   void relateToNorth(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const;
 
   MagnetometerEstimate estimate(const Window& window) const;
@@ -75,37 +80,39 @@ class MagnetometerFusion {
  private:
   bool absolute() const { return use_ == MagnetometerUse::Absolute; }
 
-  /// Of axes that no state stands for, relative and rad.
+  /// Sigma of the axes errors that no state represents, relative and rad.
   double axesSigma() const;
   double offsetSigma() const;
   double floorSigma(const Vec3& field_B) const;
   void align(Window* window, Prior* prior);
-  /// Where the first reading comes only after the start.
+  /// Adds the states where the first reading arrives only after the start.
   void startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
-  /// Looks for north in the field as it is known at `time`, if it has not been found yet.
+  /// Determines north from the field estimate at `time`, unless it is known already.
   void findNorth(const Vec3& field_W, Time time);
-  /// The newest frame has no field.
+  /// Handles a newest frame without a field.
   void missField(const Window& window);
   void reportNorthMissing(Time time, const std::string& reason);
-  /// Takes another field for the Earth's where that has the better claim; true where it did.
+  /// Replaces the field taken for the Earth's if another one is more plausible (EarthFieldSearch). Returns
+  /// true where it did.
   bool takeBetterField(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
   void takeField(const Vec3& field_W, const MagnetometerMean& mean, Window& window,
                  Marginalizer& marginalizer);
   AzimuthCovariance azimuth(const Window& window) const;
-  /// The field that north is found by, T.
+  /// The field from which north is determined, T.
   Vec3 northField(const Window& window) const;
   void describeNorth(const Window& window, MagnetometerEstimate* estimate) const;
   void addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const;
   FieldMeasurement measurementOf(const MagnetometerMean& mean, double variance_scale, bool disturbed);
-  /// The mean without what currents on board have added since the start.
+  /// The mean minus the steps of currents on board since the start.
   MagnetometerMean withoutSteps(const MagnetometerMean& mean, Window& window);
   void judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
-  /// Of a mean's white noise, T^2 per axis.
+  /// White noise of a mean, T^2 per axis.
   double whiteVariance(const MagnetometerMean& mean) const;
-  /// Of roll and pitch, rad^2 per axis, as the window knows them. The gyroscope adds errors all the time;
-  /// none lasts for longer than it takes these to make up the whole.
+  /// Error of the window's roll and pitch, rad^2 per axis. Its correlation time is limited to the time in
+  /// which gyroscope noise accumulates to the same variance.
   TimeCorrelatedError tiltError() const;
-  /// What a frame at `now` that is used shall be told of the tilt it takes as given, rad per axis.
+  /// Sigma of roll and pitch in the factor of a frame at `now`, rad per axis. The factor does not estimate
+  /// roll and pitch, so this sigma has to account for their time-correlated error.
   double tiltSigma(Time now);
   void learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window);
   void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
@@ -124,19 +131,19 @@ class MagnetometerFusion {
   MagneticNoiseEstimator errors_;
   StudentTWeight deviation_;
   MagneticStepDetector step_;
-  std::map<Time, MagnetometerMean> means_;  ///< of frames that wait for their window
+  std::map<Time, MagnetometerMean> means_;  ///< of frames that are not yet in a window
   HeadingReference heading_reference_ = HeadingReference::Start;
   EarthFieldSearch search_;
-  Time started_;                          ///< first pose
-  std::optional<Time> north_found_;       ///< after that
-  Vec3 relative_field_W_ = Vec3::Zero();  ///< that north was found by without a state of the field
+  Time started_;                          ///< time of the first pose
+  std::optional<Time> north_found_;       ///< if later than that
+  Vec3 relative_field_W_ = Vec3::Zero();  ///< from which north was found without a state of the field
   int field_epoch_ = 0;
   bool north_missing_reported_ = false;
   JointCovariance covariance_;
   double tilt_variance_rad2_ = 0.0;
-  double least_tilt_variance_rad2_ = 0.0;  ///< of those with which a field was used; 0: none was
+  double least_tilt_variance_rad2_ = 0.0;  ///< smallest variance with which a field was used; 0: none was
   bool disturbed_ = false;                 ///< the disturbance is among the window's states
-  std::optional<Time> last_seen_;          ///< frame with a field, used or not
+  std::optional<Time> last_seen_;          ///< last frame with a field, used or not
   bool rejecting_ = false;
   MagnetometerStatus status_before_ = MagnetometerStatus::Off;  ///< of the last decision
 };

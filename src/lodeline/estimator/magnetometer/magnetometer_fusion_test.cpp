@@ -38,8 +38,8 @@ FieldMeasurement measurementOf(const SimulatedFrame& frame) {
   return measurement;
 }
 
-// Runs a window with a magnetometer and without any prior, and returns what its marginalizations claim to
-// know of a turn of everything about gravity, 1/rad^2.
+// Runs a window with a magnetometer and without any prior. Returns the information of its marginalization
+// prior on a rotation of everything about gravity, 1/rad^2.
 double yawInformationAfter(int frames, bool relative, bool keep_linearization_points) {
   TestWindow test(2);
   Marginalizer marginalizer(test.factors);
@@ -114,7 +114,7 @@ TEST(MagnetometerFusion, FindsNorthAndKeepsIt) {
     EXPECT_EQ(trial.reference, HeadingReference::Magnetic);
     EXPECT_GT(trial.share(MagnetometerStatus::Used), 0.95);
     EXPECT_LT(trial.largest(5.0), 0.8 * kDegree) << cameras;
-    // The offset alone is worth a degree before the rig has turned.
+    // The offset alone causes a degree before the rig has turned.
     EXPECT_LT(trial.claimed(5.0), 1.2 * kDegree);
     EXPECT_GT(trial.claimed(5.0), 0.1 * kDegree);
   }
@@ -132,7 +132,7 @@ TEST(MagnetometerFusion, StaysOutOfAHeadingThatItCannotImprove) {
   const HeadingTrial disturbed = runHeadingTrial(options);
   EXPECT_LT(disturbed.largest(10.0), 0.8 * kDegree);
   EXPECT_LT(disturbed.share(MagnetometerStatus::Used), 0.8) << "nothing was rejected";
-  // A wrong calibration is told from disturbances, here with less patience than there is time for in a dive.
+  // A wrong calibration is distinguished from disturbances, here with a shorter margin than in a dive.
   options.trouble = FieldTrouble::Misalignment;
   options.estimator.magnetometer.gate.rejection_margin_s = 30.0;
   const HeadingTrial misaligned = runHeadingTrial(options);
@@ -149,7 +149,7 @@ TEST(MagnetometerFusion, LearnsAnOffsetThatCalibrationLeft) {
 
 TEST(MagnetometerFusion, IsNotTurnedByALampThatIsSwitched) {
   HeadingTrialOptions options = trialOptions(240.0);
-  options.seed = 2;  // its lamp is first switched after half a minute
+  options.seed = 2;  // the lamp is first switched after half a minute
   const HeadingTrial quiet = runHeadingTrial(options);
   options.trouble = FieldTrouble::Lamp;
   const HeadingTrial corrected = runHeadingTrial(options);
@@ -164,7 +164,8 @@ TEST(MagnetometerFusion, DoubtsAMagnetThatItPasses) {
   HeadingTrialOptions options = trialOptions(480.0);
   options.seed = 2;
   options.trouble = FieldTrouble::Dipole;
-  // With lens files that images confirm the two are 1.27 apart on this dive: what is compared is the field.
+  // With intrinsics files that images confirm the two differ by 1.27 on this dive; the comparison is about
+  // the field.
   options.estimator.camera_calibration.trust_confirmed_files = false;
   const HeadingTrial doubted = runHeadingTrial(options);
   options.estimator.magnetometer.student_dof = 1e6;
@@ -202,7 +203,7 @@ TEST(MagnetometerFusion, OffChangesNotABit) {
   EXPECT_EQ(last[0].state.world_from_body.rotation.coeffs(), last[1].state.world_from_body.rotation.coeffs());
 }
 
-// An estimator whose magnetometer readings go through `spoil`.
+// An estimator whose magnetometer readings pass through `spoil`.
 class SpoiltMagnetometer : public testing::Test {
  protected:
   template <typename Spoil>
@@ -220,7 +221,7 @@ class SpoiltMagnetometer : public testing::Test {
     FrameEstimate estimate;
     int64_t reading = 0;
     while (const auto frame = scene.next()) {
-      // Between frames the rig turns evenly, near enough; what lies further back is not given.
+      // The rig turns at a nearly constant rate between frames; earlier readings are left out.
       std::vector<MagnetometerSample> readings;
       const Quat& rotation = frame->truth.motion.world_from_body.rotation;
       for (;; ++reading) {
@@ -231,7 +232,7 @@ class SpoiltMagnetometer : public testing::Test {
         if (before_s > 0.15) continue;
         const Quat turned = rotation * so3::exp(-before_s * frame->truth.motion.angular_velocity_B);
         MagnetometerSample sample{time, turned.conjugate() * kField_W};
-        sample.field_M.x() += 1e-12 * static_cast<double>(reading % 7);  // noise, so that no two are the same
+        sample.field_M.x() += 1e-12 * static_cast<double>(reading % 7);  // so that no two readings are equal
         spoil(reading, &sample);
         readings.push_back(sample);
       }
@@ -322,7 +323,7 @@ TEST_F(SpoiltMagnetometer, ThatComesLateIsUsedFromThenOn) {
   EXPECT_EQ(diagnostics_.count("north_found"), 1);
 }
 
-// A calibration's lag that takes the readings before the first image away.
+// The lag in a calibration removes the readings before the first image.
 TEST_F(SpoiltMagnetometer, ThatMissesTheFirstFrameAloneIsAsGoodAsInTime) {
   const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
     if (i < 2) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -368,7 +369,7 @@ TEST_F(SpoiltMagnetometer, WithoutCalibrationIsUsedOnlyWhenAskedTo) {
   EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 2);
 }
 
-// A calibration turns it against the gyroscope, whose axes are not the housing's.
+// Such a magnetometer is calibrated against the gyroscope, whose axes differ from those of the housing.
 TEST_F(SpoiltMagnetometer, OnAnImuThatWasPerhapsNeverCalibratedClaimsLess) {
   const FrameEstimate believed = run(leave);
   EXPECT_EQ(believed.magnetometer.axes_sigma_rad, 0.0);

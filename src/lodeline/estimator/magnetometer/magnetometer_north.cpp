@@ -1,4 +1,5 @@
-// How MagnetometerFusion finds north: at the start, later, and anew.
+// Functions of MagnetometerFusion that determine north: at the start, later, and after a replacement of the
+// field.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -12,14 +13,14 @@
 namespace lodeline {
 namespace {
 
-constexpr double kToFindNorth_s = 1.0;  // without a word
+constexpr double kToFindNorth_s = 1.0;  // time without north before the first report
 
 double azimuthBetween(const Vec3& from_W, const Vec3& to_W) {
   return std::remainder(std::atan2(to_W.y(), to_W.x()) - std::atan2(from_W.y(), from_W.x()),
                         2.0 * std::numbers::pi);
 }
 
-/// A field that points up where nobody said that the dive is in the south.
+/// Reports a field that points up where no site in the southern hemisphere was stated.
 void reportFieldUpwards(const Vec3& field_W, const MagnetometerOptions& options, Diagnostics* diagnostics) {
   constexpr double kTellingDip_rad = 10.0 * kDegree;
   const double dip_rad = FieldShape::of(field_W).dip_rad;
@@ -99,7 +100,7 @@ void MagnetometerFusion::missField(const Window& window) {
 bool MagnetometerFusion::takeBetterField(const MagnetometerMean& mean, Window& window,
                                          Marginalizer& marginalizer) {
   const MagnetometerOptions& wanted = options_.magnetometer;
-  // What no calibration corrects is off by a field that turns with the rig, and fits nothing.
+  // An uncalibrated magnetometer has an error field that rotates with the rig and fits no constant field.
   if (!calibration_.is_calibrated || wanted.heading_reference == HeadingReference::Start) return false;
   const MagnetometerStates states(window);
   const auto isPlausible = [&](const Vec3& field_W) { return alignHeading(field_W, wanted).refusal.empty(); };

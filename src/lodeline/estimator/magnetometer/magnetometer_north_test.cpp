@@ -10,7 +10,7 @@
 #include "lodeline/util/angles.h"
 #include "simulation/shared/random.h"
 
-// North that is found later than at the first pose, or anew.
+// Tests of a north that is found after the first pose, or replaced.
 
 namespace lodeline {
 namespace {
@@ -26,7 +26,7 @@ HeadingTrialOptions trialOptions(double duration_s) {
   return options;
 }
 
-// Degrees by which the headings of a finished run are off north, over the last half of the dive.
+// Heading error of a finished run relative to north, degrees, over the last half of the dive.
 double lastHalf_deg(const HeadingTrial& trial, const HeadingTrialOptions& options) {
   EXPECT_NE(trial.reference, HeadingReference::Start);
   return trial.finishedRms(0.5 * options.duration_s) / kDegree;
@@ -39,7 +39,7 @@ TEST(MagnetometerNorth, FindsNorthHoweverLateItIsHeard) {
     if (cameras == 1) options.frame_rate_hz = 10.0;
     if (cameras == 1) options.tracks = 80;
     const HeadingTrial in_time = runHeadingTrial(options);
-    // With one camera the start takes some seconds, so that 1 s is in time.
+    // With one camera the initialization takes some seconds, so readings from 1 s on are in time.
     for (const double from_s : cameras == 1 ? std::vector{10.0, 60.0} : std::vector{0.2, 1.0, 10.0, 60.0}) {
       options.magnetometer_from_s = from_s;
       const HeadingTrial late = runHeadingTrial(options);
@@ -51,7 +51,7 @@ TEST(MagnetometerNorth, FindsNorthHoweverLateItIsHeard) {
       }
       EXPECT_LT(largest_rad, 0.3 * kDegree) << cameras << " " << from_s;
       EXPECT_LT(lastHalf_deg(late, options), 0.5) << cameras << " " << from_s;
-      // From the first pose on, what the gyroscope drifted by before included.
+      // From the first pose on, including the gyroscope's drift before north was found.
       EXPECT_LT(late.finishedRms(0.0), 1.0 * kDegree) << cameras << " " << from_s;
       EXPECT_LT(late.rms(from_s + 20.0), 2.0 * late.claimed(from_s + 20.0)) << cameras << " " << from_s;
       EXPECT_LT(late.claimed(from_s + 20.0), 1.0 * kDegree) << cameras << " " << from_s;
@@ -86,8 +86,8 @@ TEST(MagnetometerNorth, IsNotFixedToTheFieldOfABoatThatItStartsBeside) {
   }
 }
 
-// Error of the heading over its claimed sigma at the end of a scene that begins with 8 s of rest, seen by an
-// accelerometer whose bias nobody knows.
+// Heading error in reported sigmas at the end of a scene that begins with 8 s of rest, with an unknown
+// accelerometer bias.
 double headingErrorAfterRest_sigmas(uint64_t seed, int* used) {
   TestSceneOptions scene_options;
   scene_options.duration_s = 16.0;
@@ -120,8 +120,8 @@ double headingErrorAfterRest_sigmas(uint64_t seed, int* used) {
   return sigmas;
 }
 
-// An accelerometer off by 0.2 m/s^2 tilts a start at rest by more than a degree, and the north that is found
-// then by two.
+// An accelerometer bias of 0.2 m/s^2 tilts an initialization at rest by more than a degree, and the north
+// found then by two.
 TEST(MagnetometerNorth, RightsANorthThatWasTakenAslant) {
   constexpr int kScenes = 12;
   double squares = 0.0;

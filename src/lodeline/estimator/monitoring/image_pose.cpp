@@ -13,12 +13,12 @@
 namespace lodeline {
 namespace {
 
-/// Landmarks that are looked at, at most: more would not make a contradiction any clearer.
+/// Maximum number of landmarks that are used: more would not make a contradiction clearer.
 constexpr int kMostLandmarks = 60;
 constexpr int kFewestLandmarks = 12;
-/// Errors of the landmarks of one image have much in common; as many of them count as independent.
+/// Number of landmarks of one image that count as independent, because their errors are correlated.
 constexpr double kIndependentLandmarks = 10.0;
-/// Widest robust scale at which landmarks count as being of one opinion, sigmas.
+/// Largest robust scale of the residuals with which the landmarks still agree on a pose, sigmas.
 constexpr double kWidestScale = 8.0;
 
 struct Seen {
@@ -56,7 +56,7 @@ class Resection {
 
   int count() const { return static_cast<int>(seen_.size()); }
 
-  /// Sum of the errors, each cut off, so that starts far from one another can be ranked.
+  /// Sum of the squared residuals, each limited, to rank start poses that are far apart.
   double truncatedCost(const Rigid3& world_from_body) {
     constexpr double kCut_sigmas = 20.0;
     double cost = 0.0;
@@ -64,7 +64,8 @@ class Resection {
     return cost;
   }
 
-  /// Robust scale of the errors at a pose: what their median is of a normal distribution in two dimensions.
+  /// Robust scale of the residuals at a pose: the sigma of the two-dimensional normal distribution with their
+  /// median norm.
   double scaleAt(const Rigid3& world_from_body) {
     constexpr double kMedianOfRayleigh = 1.1774;
     std::vector<double> sorted = errorsAt(world_from_body);
@@ -79,7 +80,7 @@ class Resection {
         std::count_if(errors.begin(), errors.end(), [&](double error) { return error < within_sigmas; }));
   }
 
-  /// One Gauss-Newton step with Cauchy weights of the width given. Returns the step.
+  /// Gauss-Newton step with Cauchy weights of the given width. Returns the step.
   Eigen::Matrix<double, 6, 1> step(double width_sigmas, const Rigid3& world_from_body, Mat6* hessian) {
     Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
     hessian->setZero();
@@ -97,7 +98,7 @@ class Resection {
       hessian->noalias() += weight * jacobian.transpose() * jacobian;
       gradient.noalias() += weight * jacobian.transpose() * residual;
     }
-    // Far points leave the position free: held to a metre, which no step between images reaches.
+    // Far points do not determine the position. It is held to a metre, which no step between images reaches.
     hessian->diagonal().array() += 1.0;
     return -hessian->ldlt().solve(gradient);
   }
@@ -127,7 +128,7 @@ class Resection {
 
   CameraStates states_;
   const Frame& frame_;
-  Rigid3 body_from_camera_;  ///< at the images' true time
+  Rigid3 body_from_camera_;  ///< at the true time of the images
   std::vector<Seen> seen_;
   std::vector<double> errors_;
 };

@@ -9,19 +9,19 @@
 
 namespace lodeline {
 
-/// The newest frame's pose by its image alone.
+/// Pose of the newest frame from its image alone.
 struct ImagePose {
   Rigid3 world_from_body;
-  /// Of [dp, dtheta] in world axes, against the landmarks of the window.
+  /// Covariance of [dp, dtheta] in world axes, relative to the landmarks of the window.
   Mat6 covariance = Mat6::Zero();
-  int landmarks = 0;  ///< seen by camera 0
-  int agreeing = 0;   ///< of which lie where this pose has them
+  int landmarks = 0;  ///< observed by camera 0
+  int agreeing = 0;   ///< of these, number that agree with this pose
 };
 
-/// Resection of the newest frame against the window's landmarks, which are held: the pose that minimizes a
-/// robust sum of camera 0's reprojection errors, from the best of some starts. No inertial reading takes part
-/// but for the few milliseconds of the cameras' time offset. Nothing where landmarks are too few or too
-/// scattered: most of them must agree with one pose.
+/// Resection of the newest frame with respect to the window's landmarks, which are held. The result minimizes
+/// a robust sum of camera 0's reprojection residuals, from the best of some start values. Inertial readings
+/// are used only for the few milliseconds of the cameras' time offset. Empty where landmarks are too few or
+/// too scattered: most of them must agree with one pose.
 std::optional<ImagePose> poseByImages(const Window& window, const FactorBuilder& factors,
                                       std::span<const Rigid3> starts);
 

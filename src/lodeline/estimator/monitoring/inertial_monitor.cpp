@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// What a rig that is carried, swims or flies does not exceed.
+/// Limits that a rig which is carried, swims or flies does not exceed.
 constexpr double kGreatestAcceleration_m_per_s2 = 15.0;
 constexpr double kGreatestAngularAcceleration_rad_per_s2 = 15.0;
 
@@ -60,7 +60,7 @@ void InertialMonitor::check(Window& window, const FactorBuilder& factors,
   watch(gyroscope_, images_suspected ? 0.0 : innovation->rotation_nis, "gyroscope");
   watch(accelerometer_, images_suspected ? 0.0 : innovation->position_nis, "accelerometer");
   if (images_suspected) {
-    // Neither what the images say nor that readings follow on them is known.
+    // Neither the pose by this image nor its effect on later readings is known.
     is_before_placed_ = false;
     diagnostics_->report(
         Severity::Warning, "image_out_of_place",
@@ -96,11 +96,11 @@ void InertialMonitor::widen(const MotionInnovation& innovation, Window& window) 
   const Rigid3 before_from_newest = before.worldFromBody().inverse() * innovation.world_from_body;
   NavigationState state = newest.state();
   state.world_from_body = innovation.world_from_body;
-  // White noise of density s makes a rotation of variance s^2 dt and a way of variance s^2 dt^3 / 3.
+  // White noise of density s causes a rotation variance of s^2 dt and a translation variance of s^2 dt^3 / 3.
   InertialDoubt doubt;
   if (turn_contradicts || gyroscope_.isAlarmed()) {
     doubt.gyroscope_density_rad_per_s_sqrtHz = innovation.rotation_W.norm() / std::sqrt(dt_s);
-    // The reading at either end belongs to the interval.
+    // The readings at both ends belong to the interval.
     before.gyroscope_B = newest.gyroscope_B =
         so3::log(before_from_newest.rotation) / dt_s + state.gyroscope_bias_B;
   }
@@ -115,7 +115,8 @@ void InertialMonitor::widen(const MotionInnovation& innovation, Window& window) 
     doubt.accelerometer_bias_step_m_per_s2 = initial_.accelerometer_bias_sigma_m_per_s2;
   newest.from_previous->setDoubt(doubt);
   newest.setState(state);
-  // Images may be wrong by as much as the lesser of what readings and inertia say against them.
+  // The error of the images may be as large as the smaller of their differences from readings and from
+  // inertia.
   if (turn_contradicts || way_contradicts) {
     doubtMotion(shorter(innovation.position_W, innovation.position_from_steady_W),
                 shorter(innovation.rotation_W, innovation.rotation_from_steady_W),
@@ -135,7 +136,8 @@ void InertialMonitor::doubtMotion(const Vec3& position_error_W, const Vec3& rota
 
 void InertialMonitor::addTo(const Vec3& position_W, Eigen::Matrix<double, 15, 15>* covariance) const {
   if (turned_ == 0.0 && position_doubt_.isZero(0.0)) return;
-  // Sum over the doubts of variance * arm arm^T; a turn moves what is across the arm.
+  // Sum over the contradictions of variance * arm arm^T; a rotation moves the position perpendicular to the
+  // arm.
   const Mat3 arms = turned_at_squared_ + turned_ * position_W * position_W.transpose() -
                     turned_at_W_ * position_W.transpose() - position_W * turned_at_W_.transpose();
   covariance->block<3, 3>(0, 0) += position_doubt_ + arms.trace() * Mat3::Identity() - arms;

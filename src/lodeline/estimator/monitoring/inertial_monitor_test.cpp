@@ -16,7 +16,7 @@ Time at(double time_s) { return Time::fromSeconds(100.0 + time_s); }
 
 TEST(InnovationWatch, TakesChanceForChance) {
   InnovationWatch watch;
-  // Mean squares of three normal numbers, as large as one in a thousand is.
+  // Mean squares of three normal numbers, as large as one in a thousand.
   for (int i = 0; i < 1000; ++i) {
     watch.add(at(0.05 * i), i % 4 == 0 ? 5.4 : 1.0);
     ASSERT_FALSE(watch.isAlarmed()) << i;
@@ -58,7 +58,7 @@ class InertialMonitorTest : public testing::Test {
     return options;
   }
 
-  /// Counts frames by status and checks what is claimed of the position.
+  /// Counts frames by status and checks the reported position covariance.
   void run(const TestSceneOptions& options, const Tamper& tamper) {
     TestScene scene(options);
     EstimatorOptions estimator_options = honestOptions(options);
@@ -83,7 +83,7 @@ class InertialMonitorTest : public testing::Test {
     findings_ = estimator.diagnostics();
   }
 
-  /// Tampers with the readings between two moments.
+  /// Modifies the readings between two times.
   static Tamper readings(double begin_s, double end_s, const std::function<void(ImuSample&)>& change) {
     return [=](double time_s, SimulatedFrame& frame) {
       for (ImuSample& sample : frame.imu) {

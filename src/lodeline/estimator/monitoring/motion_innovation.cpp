@@ -11,13 +11,14 @@
 namespace lodeline {
 namespace {
 
-/// Of the way and of the turn since the frame before, one sigma: distances of landmarks, axes of sensors and
-/// placements of cameras that are still being estimated leave as much.
+/// Relative error of the translation and of the rotation since the frame before, one sigma. It covers
+/// distances of landmarks, axes of sensors and extrinsics that are still being estimated.
 constexpr double kWayError = 0.05;
 constexpr double kTurnError = 0.02;
 
-/// How the body moved into the frame before the newest, by the estimates of that frame and of the one before
-/// it: the last readings of that interval may be wrong already. At rest where there is no such frame.
+/// Constant motion of the body into the frame before the newest, from the estimates of that frame and of its
+/// predecessor. The last readings of that interval are not used, because they may already be wrong. At rest
+/// where there is no such frame.
 ImageMotion steadyMotion(const Window& window) {
   const auto& frames = window.frames();
   if (frames.size() < 3) return {};
@@ -32,7 +33,7 @@ double normalized(const Vec3& innovation, const Mat3& covariance) {
   return innovation.dot(covariance.ldlt().solve(innovation)) / 3.0;
 }
 
-/// Covariance of the predicted [dp, dtheta] against the frame before, world axes.
+/// Covariance of the predicted [dp, dtheta] relative to the frame before, world axes.
 Mat6 predictionCovariance(const Frame& before, const Preintegration& interval,
                           const Eigen::Matrix<double, 15, 15>& known, bool is_before_placed) {
   using namespace inertial_error;
@@ -41,7 +42,8 @@ Mat6 predictionCovariance(const Frame& before, const Preintegration& interval,
   Eigen::Matrix<double, 6, 9> by_motion = Eigen::Matrix<double, 6, 9>::Zero();
   by_motion.block<3, 3>(0, kAlpha) = world_from_before;
   by_motion.block<3, 3>(3, kTheta) = world_from_before;
-  // A turn of the frame before turns its velocity along: against that frame the velocity stays.
+  // A rotation of the frame before also rotates its velocity: relative to that frame the velocity stays
+  // constant.
   Eigen::Matrix<double, 6, 15> by_state = Eigen::Matrix<double, 6, 15>::Zero();
   if (is_before_placed) {
     by_state.block<3, 3>(0, 3) = dt_s * so3::skew(before.velocity_W());
@@ -64,7 +66,7 @@ std::optional<MotionInnovation> motionInnovation(Window& window, const FactorBui
   const Preintegration& interval = *newest.from_previous;
   const double dt_s = interval.dt_s();
   const Rigid3 predicted = newest.worldFromBody();
-  // The rate of a reading that is wrong must not move the camera within the images' delay.
+  // The rate of a wrong reading must not move the camera within the time offset of the images.
   const ImageMotion steady = steadyMotion(window);
   newest.image_motion = steady;
   const std::array<Rigid3, 3> starts = {predicted, steady.poseAfter(previous.worldFromBody(), dt_s),
@@ -83,7 +85,7 @@ std::optional<MotionInnovation> motionInnovation(Window& window, const FactorBui
   innovation.rotation_from_steady_W = from_steady.tail<3>();
 
   const auto step = perturbationBetween(previous.worldFromBody(), seen->world_from_body);
-  // The frame before was placed by an image as well, about as well.
+  // The frame before has a pose by an image of about the same accuracy.
   Mat6 covariance =
       predictionCovariance(previous, interval, before, is_before_placed) + 2.0 * seen->covariance;
   covariance.diagonal().head<3>().array() += kWayError * kWayError * step.head<3>().squaredNorm();

@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-constexpr int kFewTracks = 30;  // of camera 0, below which nothing can be judged
+constexpr int kFewTracks = 30;  // of camera 0; fewer allow no decision
 constexpr double kFewMatched = 0.2, kMuchFewerMatched = 0.4;
 constexpr double kFirstWait_s = 0.1, kLongestWait_s = 8.0;
 

@@ -13,42 +13,42 @@
 
 namespace lodeline {
 
-/// Watches whether the images of the secondary cameras belong to those of the first one. Where few points are
-/// matched in a secondary camera, or many fewer than before, a pair of images is looked at closely
-/// (compareStereo): left and right may be exchanged, from the start or from some moment on, which is undone;
-/// or the images fit no arrangement of the pair, and the camera is left out until they fit again.
+/// Checks whether the images of the secondary cameras match those of camera 0. Where few points are matched
+/// in a secondary camera, or many fewer than before, a pair of images is compared in detail (compareStereo).
+/// If left and right are exchanged, from the start or from some time on, the monitor reverses the exchange.
+/// If the images fit no arrangement of the pair, the camera is left out until they fit again.
 class StereoMonitor {
  public:
-  /// `diagnostics` must outlive the watch.
+  /// `diagnostics` must outlive the monitor.
   StereoMonitor(const Rig& rig, Diagnostics* diagnostics);
 
-  /// The packet's images as the cameras of the rig took them: put back where cameras are exchanged, empty
+  /// The packet's images in the order of the rig's cameras: reordered where cameras are exchanged, empty
   /// where one is left out.
   std::vector<cv::Mat> arrange(const FramePacket& packet);
 
-  /// Judges what the front end made of the arranged images. True where they turn out to be exchanged: the
-  /// frame's tracks mix both cameras and must not be used.
+  /// Evaluates the tracks of the arranged images. Returns true if the images turn out to be exchanged: the
+  /// frame's tracks then mix both cameras and must not be used.
   bool judge(const FramePacket& packet, const std::vector<cv::Mat>& images, const FrameTracks& tracks);
 
-  /// Says how long the first camera was alone; at the end.
+  /// Reports at the end for how long camera 0 was the only usable camera.
   void finish();
 
  private:
-  /// A stretch in which a secondary camera gave nothing.
+  /// A time span without matches in a secondary camera.
   struct Span {
     Time begin, end;
     double length_s() const { return (end - begin).seconds(); }
   };
   struct Partner {
     std::string name;
-    double usual_share = 0.0;  ///< of the tracks that are matched, in the mean
-    int frames = 0;            ///< that it was taken over
+    double usual_share = 0.0;  ///< running mean of the share of matched tracks
+    int frames = 0;            ///< number of frames in that mean
     bool is_left_out = false;
-    int contradictions = 0;  ///< looks in a row
+    int contradictions = 0;  ///< in successive comparisons
     std::optional<Time> last_look;
-    double wait_s = 0.0;  ///< before the next look
+    double wait_s = 0.0;  ///< until the next comparison
     std::vector<PointPair> points;
-    Span alone;  ///< at present; empty where it is not
+    Span alone;  ///< present span; empty where there are matches
     bool is_alone = false;
     Span longest;
     int spans = 0;

@@ -2,42 +2,42 @@
 
 namespace lodeline {
 
-/// When a depth reading is believed.
+/// Limits of the gate on depth readings.
 struct DepthGateOptions {
-  /// A jump beyond both limits is rejected.
+  /// A jump is rejected if it exceeds both limits.
   double max_sigmas = 4.0;
   double max_jump_m = 0.15;
-  /// After so long a rejection, steady readings count from a new offset.
+  /// After a rejection of this length, steady readings are used with a new offset.
   double readmission_s = 10.0;
-  /// Readings that follow less or more than these multiples of the estimated rise and fall are in another
-  /// unit, or do not come from the water at all.
+  /// Readings whose change is outside these multiples of the estimated rise and fall are in another unit, or
+  /// do not measure the water pressure at all.
   double least_slope = 0.6;
   double greatest_slope = 1.4;
 };
 
-/// How depth readings are fused. The gauge's model is that of factors/depth_factor.h.
+/// Options of the fusion of depth readings. The model of the gauge is that of factors/sensors/depth_factor.h.
 struct DepthOptions {
   bool use = true;
-  /// Density of the water over that which the gauge assumes, and how far that may be off: gauges are set to
-  /// 1000, 1020 or 1030 kg/m^3, water has 997 to 1030.
+  /// Density of the water over the density that the gauge assumes, and its sigma. Gauges are set to 1000,
+  /// 1020 or 1030 kg/m^3; water has 997 to 1030.
   double density_ratio = 1.0;
   double density_ratio_sigma = 0.02;
-  /// Whether waters and gauges as they mostly are (water_density_prior.h) say more than that, to who was not
-  /// told.
+  /// Whether the distribution of typical waters and gauges (water_density_prior.h) informs the ratio where
+  /// the user did not state it.
   bool water_density_prior = true;
-  /// Images learn the density from the direction in which they see the rig move. A lens that is not as its
-  /// file says puts that off by one or two tenths of a degree for minutes, which no covariance knows: in a
-  /// passage that descends by one metre in seven it is worth so much. Heights are claimed no better than
-  /// that.
+  /// Lower limit of the density ratio's reported sigma. Images determine the density from the direction in
+  /// which they see the rig move. Errors of the intrinsics bias that direction by one or two tenths of a
+  /// degree for minutes, and no covariance contains this error. In a passage that descends by one metre in
+  /// seven it corresponds to this sigma.
   double least_density_sigma = 0.007;
   double lag_s = 0.3;
   double lag_sigma_s = 0.4;
-  /// Of the depth read at the start, before the first reading.
+  /// Sigma of the depth at the world's origin before the first reading.
   double offset_sigma_m = 1000.0;
-  double offset_walk_m_per_sqrt_s = 2e-4;  ///< the air's pressure and the water's level change
+  double offset_walk_m_per_sqrt_s = 2e-4;  ///< the air pressure and the water level change
   double noise_inflation = 1.0;            ///< factor on depth_noise_std of the sensor's file
-  /// Errors that last: resolution, the flow's own pressure, what the lag's model leaves. One sigma, and how
-  /// long they stay the same.
+  /// Time-correlated errors: resolution, pressure of the flow, residual error of the lag's model. One sigma,
+  /// and the correlation time.
   double floor_m = 0.01;
   double correlated_noise_time_s = 5.0;
   DepthGateOptions gate;

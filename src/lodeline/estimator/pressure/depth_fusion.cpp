@@ -12,10 +12,10 @@
 namespace lodeline {
 namespace {
 
-constexpr double kReliableSpeed_m_per_s = 0.03;  // sigma of a vertical speed that can judge a gauge
+constexpr double kReliableSpeed_m_per_s = 0.03;  // largest sigma of a vertical speed to check a gauge with
 
-// Speeds between frames are interpolated. Where images are missing for longer, that says little of the
-// motion.
+// Longest time for which a reading is carried. Speeds are interpolated between frames; over a longer gap they
+// do not describe the motion.
 constexpr double kLongestCarry_s = 1.0;
 
 CarriedDepth meanOf(const std::vector<CarriedDepth>& depths) {
@@ -98,7 +98,7 @@ void DepthFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
     const CarriedDepth depth = carry(reading, newest.time, states ? states.lag_s() : options_.lag_s);
     if (!states) begin(depth, window, marginalizer);
     const DepthDecision decision = judge(reading, depth, window, marginalizer);
-    // Of several readings the oddest gives the frame its status.
+    // Among several readings, one that was not Used determines the status of the frame.
     if (status_ == DepthStatus::NoData || decision.status != DepthStatus::Used) status_ = decision.status;
     if (decision.status == DepthStatus::Restarted) used.clear();
     if (!decision.use) continue;
@@ -139,14 +139,14 @@ DepthFusion::Innovation DepthFusion::innovate(const CarriedDepth& depth, const W
   Innovation innovation;
   factor.Evaluate(values, &innovation.value_m, jacobians);
 
-  // What was known a frame ago, and how the unknown part of the speed has spread since.
+  // Covariances of the frame before, propagated with the uncertainty of the speed since then.
   const double elapsed_s = innovation.elapsed_s = (newest.time - before.time).seconds();
   std::vector<std::pair<const double*, Eigen::RowVectorXd>> derivatives = {
       {before.pose.data(), by_pose.head<kPoseTangentSize>()}};
   Eigen::RowVectorXd by_motion = Eigen::RowVectorXd::Zero(kMotionSize);
   const Eigen::RowVector3d up_B = before.worldFromBody().rotation.toRotationMatrix().row(2);
   by_motion[2] = by_pose[2] * elapsed_s;
-  by_motion.tail<3>() = -0.5 * elapsed_s * elapsed_s * by_pose[2] * up_B;  // by the accelerometer's bias
+  by_motion.tail<3>() = -0.5 * elapsed_s * elapsed_s * by_pose[2] * up_B;  // by the accelerometer bias
   derivatives.emplace_back(before.motion.data(), by_motion);
   for (int i = 0; i < 3; ++i)
     derivatives.emplace_back(values[1 + i], Eigen::RowVectorXd(single(by_state[i])));
@@ -181,8 +181,8 @@ void DepthFusion::remember(const JointCovariance& covariance, Window& window) {
   states.scale->priors.clear();
   likelihood_ = likelihoodBetween(honest, *known_ratio_);
   if (!likelihood_) return;
-  // The window takes what it has seen for better than it is; what it is told has to gain as much to weigh the
-  // same.
+  // The window's sigma of the ratio is smaller than the true one. The likelihood's sigma is reduced by the
+  // same factor, so that both keep their relative weight.
   states.scale->priors = {{likelihood_->value, likelihood_->sigma * seen->sigma / honest.sigma}};
 }
 
@@ -200,7 +200,7 @@ void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer&
   const double ratio = options_.density_ratio;
   const auto add = [&](const char* name, double value, double sigma, double walk_per_sqrt_s) {
     ParameterBlock& state = window.add({name, {value}, std::nullopt, walk_per_sqrt_s, true});
-    // Small enough to hold a state, large enough to keep the prior well conditioned.
+    // Small enough to hold a state, large enough for a well conditioned prior.
     marginalizer.addKnowledge(state, single(std::max(sigma, 1e-7)));
   };
   add(DepthStates::kOffset, depth.depth_m + ratio * height_m, options_.offset_sigma_m,

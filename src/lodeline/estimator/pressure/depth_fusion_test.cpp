@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kNever = 1e9;
 
-/// A gauge that reads twice a second, 30 ms before a frame.
+/// A gauge with two readings per second, each 30 ms before a frame.
 struct Gauge {
   double noise_m = 0.015;
   double density_ratio = 1.0;
   double lag_s = 0.0;
-  /// Does to a reading what goes wrong.
+  /// Modifies a reading by a fault.
   std::function<double(double time_s, double depth_m)> fault = [](double, double depth_m) { return depth_m; };
 };
 
@@ -49,7 +49,7 @@ TestSceneOptions sceneOptions(double duration_s) {
   return options;
 }
 
-/// `no_images`: frames of that time are missing, with all but the inertial readings and the gauge's.
+/// `no_images`: time span without frames, in which inertial readings and those of the gauge continue.
 Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, EstimatorOptions estimator,
           const TimeSpan& no_images = {}) {
   constexpr double kEarly_s = 0.03;
@@ -109,7 +109,8 @@ TEST(DepthFusion, HoldsTheHeightInTheDark) {
   EXPECT_TRUE(with.findings.empty());
 }
 
-// Forty readings then come with one frame, and the speeds at both ends say nothing of the way between.
+// Forty readings then belong to one frame, and the speeds at both ends do not describe the motion between
+// them.
 TEST(DepthFusion, CarriesOnWhereImagesAreMissing) {
   const TestSceneOptions options = sceneOptions(40.0);
   const Dive gap = dive(options, Gauge(), honestOptions(options), {10.0, 20.0});
@@ -125,7 +126,7 @@ TEST(DepthFusion, FindsLagAndDensity) {
   Gauge gauge;
   gauge.density_ratio = 0.975;
   gauge.lag_s = 0.7;
-  // The density shows only against a ruler that is better than it: cameras whose calibration is right.
+  // The density is observable only with a more accurate scale: cameras with a correct calibration.
   EstimatorOptions estimator = honestOptions(options);
   estimator.camera_calibration.enabled = false;
   const Dive found = dive(options, gauge, estimator);
@@ -162,7 +163,7 @@ TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
   EXPECT_NEAR(told, 1e-6 * height_m * height_m, 1e-8) << "a density that was told";
 }
 
-/// A descent of 8 m.
+/// Last estimate of a descent of 8 m.
 FrameEstimate endOfDescent(double density_ratio, const std::function<void(EstimatorOptions*)>& change) {
   TestSceneOptions options = sceneOptions(40.0);
   options.points.frame_rate_hz = 5.0;
@@ -192,8 +193,8 @@ TEST(DepthFusion, KnowsFreshWaterAndSalt) {
   }
 }
 
-// Images claim the ratio to less than half a per cent here, and are not worth more than 0.7: with a
-// calibration that they have not confirmed, so the right one of this scene is not to be.
+// Images give the ratio with a sigma below half a per cent here, but 0.7 % is the lower limit. This holds for
+// a calibration that images have not confirmed, so the correct one of this scene must not be.
 TEST(DepthFusion, WeighsWaterDensityPriorAgainstWhatCrookedCamerasAreWorth) {
   const auto descend = [](bool water_density_prior) {
     return *endOfDescent(1.0, [water_density_prior](EstimatorOptions* options) {
@@ -236,7 +237,7 @@ TEST(DepthFusion, CarriesTheScaleOfOneCameraThatSinks) {
   EXPECT_LT(with.largestHeightError(10.0, kNever), 0.1);
 }
 
-// Whatever a gauge says, odometry must not be much worse than without it.
+// With any fault of a gauge, odometry must not be much worse than without the gauge.
 class FaultyGauge : public testing::Test {
  protected:
   FaultyGauge() : options_(sceneOptions(32.0)) {

@@ -7,14 +7,14 @@
 
 namespace lodeline {
 
-/// What became of the pressure sensor in one frame.
+/// Status of the pressure sensor in one frame.
 enum class DepthStatus {
-  Off,     ///< not asked for, or not on board
+  Off,     ///< not requested, or not on board
   NoData,  ///< no reading since the frame before
   Used,
   Jump,       ///< rejected: a spike, or the first readings after a step
   Restarted,  ///< used, from now on with another offset
-  Frozen,     ///< rejected: the same reading again and again while the rig rises or sinks
+  Frozen,     ///< rejected: constant readings while the rig rises or sinks
   Slope,      ///< rejected: readings do not follow the rig's rise and fall, as in another unit
 };
 const char* toString(DepthStatus status);
@@ -22,20 +22,20 @@ const char* toString(DepthStatus status);
 struct DepthDecision {
   DepthStatus status = DepthStatus::NoData;
   bool use = false;
-  /// Factor on the variance of a reading that is used though it disagrees.
+  /// Factor on the variance of a reading that is used although it disagrees.
   double variance_scale = 1.0;
 };
 
-/// Decides reading by reading whether a depth gauge is believed. Gauges fail by jumps (spikes, water hammer,
-/// a driver's glitch, a new zero), odometry by creeping: so a reading that differs from what is expected is
-/// rejected only if the one used before did not, and else used with a weight that falls with the difference,
-/// so that it pulls no harder the further it is off. Readings rejected for `readmission_s` that have become
-/// steady are taken for a gauge with another offset.
+/// Decides for each reading whether a depth gauge is used. Gauges fail by jumps (spikes, water hammer, a
+/// driver's fault, a new zero), while odometry drifts slowly. A reading with a large innovation is therefore
+/// rejected only if the reading used before had a small one. Otherwise it is used with a weight that
+/// decreases with the innovation, so that its influence does not grow with its error. Readings that were
+/// rejected for `readmission_s` and have become steady are used with another offset.
 class DepthGate {
  public:
   explicit DepthGate(const DepthGateOptions& options) : options_(options) {}
 
-  /// `innovation_m`: reading less what is expected; `sigma_m`: of that difference.
+  /// `innovation_m`: reading minus expectation; `sigma_m`: sigma of that difference.
   DepthDecision decide(Time time, double innovation_m, double sigma_m);
 
  private:

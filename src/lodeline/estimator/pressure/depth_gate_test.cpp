@@ -55,7 +55,7 @@ TEST_F(DepthGateTest, TakesALastingStepForANewOffset) {
   for (; decision.status == DepthStatus::Jump; decision = next(2.0 + 0.01 * (rejected % 2))) ++rejected;
   EXPECT_EQ(decision.status, DepthStatus::Restarted);
   EXPECT_NEAR(rejected * kPeriod_s, DepthGateOptions().readmission_s, 1.0);
-  EXPECT_EQ(next(0.01).status, DepthStatus::Used);  // against the new offset
+  EXPECT_EQ(next(0.01).status, DepthStatus::Used);  // relative to the new offset
 }
 
 TEST_F(DepthGateTest, DoesNotRestartOnReadingsThatJumpAbout) {

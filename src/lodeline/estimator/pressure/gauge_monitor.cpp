@@ -43,8 +43,8 @@ void GaugeMonitor::learnScatter(const std::optional<double>& innovation_m) {
 
 double GaugeMonitor::readingSigma() const {
   if (differences_m_.size() < kScatterReadings) return stated_sigma_m_;
-  // Of differences between successive readings, so that what lasts does not count; by their median, so that
-  // spikes do not.
+  // The scatter comes from differences of successive innovations, so that constant errors do not count. It
+  // uses their median, so that spikes do not count.
   constexpr double kMedianOfNormal = 0.6745;
   std::vector<double> sorted(differences_m_.begin(), differences_m_.end());
   std::nth_element(sorted.begin(), sorted.begin() + kScatterReadings / 2, sorted.end());

@@ -9,9 +9,9 @@
 namespace lodeline {
 namespace {
 
-// Readings to 3 cm give slopes to a fifth, and medians of seven to a tenth.
+// Readings accurate to 3 cm give slopes to a fifth; the median of seven gives a tenth.
 constexpr double kStretch_m = 0.2;
-constexpr double kLongest_s = 10.0;  // for a stretch; the estimate drifts
+constexpr double kLongest_s = 10.0;  // for one section, because the estimate drifts
 constexpr size_t kEnough = 7;
 constexpr size_t kKept = 15;
 

@@ -8,17 +8,17 @@
 
 namespace lodeline {
 
-/// How much a gauge's readings change for each metre that the rig sinks by its own estimate: 1 for depths in
-/// metres. Tells another unit, a wrong sign or a blocked port. The median of some recent stretches of rise or
-/// fall, so that neither offset, drift nor spikes matter.
+/// Slope of a gauge: change of its readings for each metre that the rig sinks by its own estimate, 1 for
+/// depths in metres. It reveals another unit, a wrong sign or a blocked port. The slope is the median over
+/// some recent sections of rise or fall, so that offset, drift and spikes do not matter.
 class GaugeScaleCheck {
  public:
-  /// One reading, in order of time; `rise_m`: of the port since the last call, upwards.
+  /// Adds one reading, in order of time; `rise_m`: of the port since the last call, upwards.
   void add(Time time, double depth, double rise_m);
-  /// The estimate is of no use until the next call of add().
+  /// Marks the estimated rise as unusable until the next call of add().
   void interrupt() { mark_.reset(); }
 
-  /// Nothing as long as the rig has hardly risen or sunk.
+  /// Empty as long as the rig has hardly risen or sunk.
   std::optional<double> slope() const;
 
  private:
@@ -31,7 +31,7 @@ class GaugeScaleCheck {
   std::deque<double> slopes_;
 };
 
-/// What a slope means, in words.
+/// Explanation of a slope, in words.
 std::string explainSlope(double slope);
 
 }  // namespace lodeline

@@ -6,7 +6,8 @@
 namespace lodeline {
 namespace {
 
-// Five time constants of the slowest gauge that makes sense (2 s), and the time between its readings.
+// Time span kept: five time constants of the slowest reasonable gauge (2 s), plus the time between its
+// readings.
 constexpr double kKept_s = 15.0;
 
 }  // namespace
@@ -47,7 +48,7 @@ double VerticalMotion::riseSince(Time from, Time to, double lag_s) const {
   if (speeds_.empty()) return 0.0;
   const double since_m = risen(from, to);
   if (lag_s <= 0.0) return since_m + lag_s * speedAt(from);
-  // The distance by which the sensor is behind obeys w' = v - w / lag.
+  // The sensor's delay w in metres obeys w' = v - w / lag.
   double behind_m = 0.0;
   Time begin = speeds_.front().time;
   double begin_speed = speeds_.front().speed_m_per_s;

@@ -6,19 +6,19 @@
 
 namespace lodeline {
 
-/// The recent vertical speed of a point of the rig, piecewise linear, from which follows how far it has
-/// risen. Speeds rather than heights, because an estimated height may jump where an estimated speed does not.
+/// Recent vertical speed of a point of the rig, piecewise linear; its integral is the rise of the point. It
+/// stores speeds rather than heights, because an estimated height may jump where an estimated speed does not.
 class VerticalMotion {
  public:
-  /// `speed_m_per_s`: upwards. In order of time; a time at or before the last one replaces it.
+  /// `speed_m_per_s`: upwards. Entries come in order of time; a time at or before the last one replaces it.
   void add(Time time, double speed_m_per_s);
   bool empty() const { return speeds_.empty(); }
 
-  /// How much higher the point is at `to` than a sensor shows it at `from`, m, if the sensor follows with a
-  /// first-order lag; a lag of 0 or less counts as a shift in time. Where no speed is known, that of the
-  /// nearest moment holds between `from` and `to`, and the point stood still before the first moment.
+  /// Height of the point at `to` minus the height that a sensor shows at `from`, m. The sensor follows with a
+  /// first-order lag; a lag of 0 or less counts as a time shift. Outside the known speeds, the nearest one
+  /// holds between `from` and `to`. Before the first time, the point is at rest.
   double riseSince(Time from, Time to, double lag_s) const;
-  /// How much higher the point is at `to` than at `from` by what such a sensor shows.
+  /// Height of the point at `to` minus its height at `from`, both as such a sensor shows them.
   double shownRise(Time from, Time to, double lag_s) const {
     return riseSince(from, to, lag_s) - riseSince(to, to, lag_s);
   }

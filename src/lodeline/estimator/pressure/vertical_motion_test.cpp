@@ -20,7 +20,8 @@ VerticalMotion breathing() {
   return motion;
 }
 
-/// What a gauge with a lag shows in the end, from the response of a first-order filter to a sine and a ramp.
+/// Height that a gauge with a lag shows in the steady state, from the response of a first-order filter to a
+/// sine and a ramp.
 double laggingHeightOf(double t, double lag_s) {
   const double gain = 1.0 / std::sqrt(1.0 + std::pow(kOmega * lag_s, 2));
   return 0.05 * gain * std::sin(kOmega * t - std::atan(kOmega * lag_s)) - 0.1 * (t - lag_s);

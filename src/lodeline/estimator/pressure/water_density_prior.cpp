@@ -19,16 +19,16 @@ constexpr double kRangeOfTheRest = 0.08;
 
 double informationOf(const ScalarPrior& ratio) { return 1.0 / (ratio.sigma * ratio.sigma); }
 
-/// Of two normal distributions that both hold.
+/// Product of two normal distributions.
 ScalarPrior product(const ScalarPrior& a, const ScalarPrior& b) {
   const double information = informationOf(a) + informationOf(b);
   return {(a.value * informationOf(a) + b.value * informationOf(b)) / information,
           1.0 / std::sqrt(information)};
 }
 
-/// The normal distribution that times `part` gives `whole`, where there is one.
+/// The normal distribution whose product with `part` is `whole`, where it exists.
 std::optional<ScalarPrior> quotient(const ScalarPrior& whole, const ScalarPrior& part) {
-  constexpr double kLeast = 1e-3;  // of the whole's information: less is rounding
+  constexpr double kLeast = 1e-3;  // of the information of `whole`: less is rounding
   const double information = informationOf(whole) - informationOf(part);
   if (!(information > kLeast * informationOf(whole))) return std::nullopt;
   return ScalarPrior{(whole.value * informationOf(whole) - part.value * informationOf(part)) / information,
@@ -38,7 +38,7 @@ std::optional<ScalarPrior> quotient(const ScalarPrior& whole, const ScalarPrior&
 }  // namespace
 
 ScalarPrior amongWaterDensities(const ScalarPrior& seen) {
-  // Moments about what was seen: it may be known to many digits.
+  // Moments relative to the measured value, which may be known to many digits.
   double sum = kShareOfTheRest / kRangeOfTheRest;
   double first = 0.0;
   double second = sum * seen.sigma * seen.sigma;

@@ -12,7 +12,7 @@ namespace lodeline {
 
 namespace {
 
-/// Relative sigma of a vector's length.
+/// Relative sigma of a vector's norm.
 double lengthUncertainty(const Vec3& vector, const Mat3& covariance) {
   const double length = vector.norm();
   if (length < 1e-9) return std::numeric_limits<double>::infinity();
@@ -35,7 +35,7 @@ Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<co
                              const std::vector<const double*>& eliminated_first) {
   WindowCholesky cholesky(system, eliminated_first, blocks);
   if (cholesky.factorize(0.0)) return cholesky.covarianceOfLast();
-  // Rounding of the largest informations has swallowed smaller ones, so nothing bounds what they leave open.
+  // Rounding of the largest informations has absorbed smaller ones, so that some directions are unbounded.
   Eigen::Index size = 0;
   for (const double* value : blocks) size += system.find(value)->tangentSize();
   return kUnknownVariance * Eigen::MatrixXd::Identity(size, size);
@@ -84,8 +84,8 @@ JointCovariance JointCovariance::without(const double* block, const Eigen::Matri
   const int count = static_cast<int>((told.eigenvalues().array() > least).count());
   if (count == 0) return without;
   // (P^-1 - V V^T)^-1 = P + P V (I - V^T P V)^-1 V^T P by Woodbury's identity. The eigenvalues of V^T P V are
-  // the shares that the information taken away has of all that is known: what is used of a robust or a moving
-  // prior, or rounding, may make them 1 or more, and the rest would be negative.
+  // the shares of the removed information in the total information. A robust or changing prior, or rounding,
+  // may make them 1 or more, which would give negative variances.
   constexpr double kGreatestShare = 1.0 - 1e-6;
   const Eigen::MatrixXd directions =
       told.eigenvectors().rightCols(count) * told.eigenvalues().tail(count).cwiseSqrt().asDiagonal();

@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Stands for "not known": a sigma of a million metres, radians and so on.
+/// Variance that stands for "unknown": a sigma of a million metres, radians and so on.
 constexpr double kUnknownVariance = 1e12;
 
 /// Whether all variances are positive, finite and known.
@@ -18,14 +18,14 @@ bool isCovariance(const Eigen::MatrixXd& matrix);
 /// Covariance of one frame's [dp, dtheta, dv, db_g, db_a] in a linearized window.
 Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const Frame& frame);
 
-/// Joint covariance of some of the blocks that a system holds, stacked in the order given; kUnknownVariance
-/// where rounding has left the system without a positive definite Hessian. Other blocks in the order in which
-/// they are best eliminated (see WindowCholesky), as far as one is known.
+/// Joint covariance of some of a system's blocks, stacked in the order given; kUnknownVariance where rounding
+/// has left the system without a positive definite Hessian. `eliminated_first`: other blocks in their best
+/// order of elimination (see WindowCholesky), where one is known.
 Eigen::MatrixXd covarianceOf(const NormalEquations& system, const std::vector<const double*>& blocks,
                              const std::vector<const double*>& eliminated_first = {});
 
-/// Pose and motion of the newest frame, and those parameter blocks that the system knows and whose
-/// correlation is wanted (ParameterBlock::is_correlation_wanted).
+/// Pose and motion of the newest frame, and the parameter blocks of the system whose correlation is wanted
+/// (ParameterBlock::is_correlation_wanted).
 std::vector<const double*> correlatedBlocks(const NormalEquations& system, const Window& window);
 
 /// Joint covariance of the correlatedBlocks() of a window.
@@ -33,18 +33,18 @@ class JointCovariance {
  public:
   JointCovariance() = default;
   JointCovariance(const NormalEquations& system, const Window& window);
-  /// Where it is known already: `matrix` is of the correlatedBlocks(), stacked.
+  /// From a known covariance `matrix` of the correlatedBlocks(), stacked.
   JointCovariance(const NormalEquations& system, const std::vector<const double*>& blocks,
                   Eigen::MatrixXd matrix);
 
   bool empty() const { return offsets_.empty(); }
   bool knows(const double* block) const { return offsets_.count(block) > 0; }
-  /// Of two blocks' tangent coordinates; both must be known.
+  /// Covariance of two blocks' tangent coordinates; both must be known.
   Eigen::MatrixXd between(const double* rows, const double* columns) const;
-  /// Of the newest frame's [dp, dtheta, dv, db_g, db_a].
+  /// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a].
   Eigen::Matrix<double, 15, 15> newest() const { return matrix_.topLeftCorner<15, 15>(); }
-  /// All of it had the system not been told `information` of a known block (symmetric; negative parts of it
-  /// do not count). Of a direction in which nothing else is known a millionth of the information stays.
+  /// Covariance without `information` on a known block (symmetric; its negative parts do not count). In a
+  /// direction without other information, a millionth of the information remains.
   JointCovariance without(const double* block, const Eigen::MatrixXd& information) const;
 
  private:
@@ -52,13 +52,13 @@ class JointCovariance {
   std::map<const double*, std::pair<int, int>> offsets_;  ///< first row and size
 };
 
-/// Relative standard deviation of the scale as the newest frame shows it: of its distance from the origin or
-/// of its speed along their directions, whichever is known better. `covariance` as from newestCovariance().
+/// Relative standard deviation of the scale from the newest frame: that of its distance from the origin or of
+/// its speed, along their directions, whichever is smaller. `covariance` as from newestCovariance().
 double scaleUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
-/// The same of its speed alone.
+/// Relative standard deviation of the newest frame's speed alone.
 double speedUncertainty(const Frame& newest, const Eigen::Matrix<double, 15, 15>& covariance);
 
-/// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given everything in the window.
+/// Covariance of the newest frame's [dp, dtheta, dv, db_g, db_a], given all terms of the window.
 Eigen::Matrix<double, 15, 15> newestCovariance(Window& window, const Prior& prior,
                                                const FactorBuilder& factors);
 /// The same with the parameter blocks.

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// Two blocks of three coordinates and what is known of them together.
+/// Two blocks of three coordinates with a joint covariance.
 class CovarianceTest : public testing::Test {
  protected:
   NormalEquations system(const Eigen::MatrixXd& hessian) {
@@ -31,8 +31,8 @@ TEST_F(CovarianceTest, IsTheInverseOfTheHessian) {
 }
 
 TEST_F(CovarianceTest, ASystemThatRoundingLeftIndefiniteIsUnknownAndNotExact) {
-  // The blocks' difference is known 10^20 times better than the blocks, so doubles hold nothing of the
-  // latter; rounding has left a little less.
+  // The information on the blocks' difference is 10^20 times that on the blocks, so doubles contain nothing
+  // of the latter; rounding makes it slightly smaller.
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(6, 6);
   hessian.topLeftCorner<3, 3>().diagonal().setConstant(1e20);
   hessian.bottomRightCorner<3, 3>().diagonal().setConstant(1e20 * (1.0 - 1e-15));
@@ -70,14 +70,14 @@ TEST_F(CovarianceTest, MoreInformationThanThereIsLeavesALargeVarianceAndNoNegati
   const NormalEquations known = system(wellKnown());
   const Eigen::MatrixXd before = covarianceOf(known, {first_, second_});
   const JointCovariance joint(known, {first_, second_}, before);
-  // Twice what is known of the first coordinate on its own.
+  // Twice the information on the first coordinate alone.
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3, 3);
   information(0, 0) = 2.0 / before(0, 0);
   const JointCovariance without = joint.without(first_, information);
   EXPECT_GT(without.between(first_, first_)(0, 0), 1e5 * before(0, 0));
   EXPECT_NEAR(without.between(first_, first_)(1, 1), before(1, 1), 1e-9);
   for (const double* block : {first_, second_}) EXPECT_TRUE(isCovariance(without.between(block, block)));
-  // What is correlated with it has become uncertain as well.
+  // A correlated coordinate becomes uncertain as well.
   EXPECT_GT(without.between(second_, second_)(0, 0), 10.0 * before(3, 3));
 }
 

@@ -19,9 +19,9 @@ std::shared_ptr<const ceres::LossFunction> lossOf(const FeatureTrack& track, dou
                                              ceres::TAKE_OWNERSHIP);
 }
 
-/// The target of a reprojection factor, as the pose that two keyframes stand in for.
+/// Replaces the target pose of a reprojection factor by one interpolated between two keyframes.
 void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor) {
-  constexpr size_t kTarget = 1;  // of the blocks of such factors
+  constexpr size_t kTarget = 1;  // index of the target pose in such factors
   const auto& [before_id, after_id, between] = *target.interpolated;
   Frame &before = *window.find(before_id), &after = *window.find(after_id);
   factor->function = std::make_unique<InterpolatedPoseFactor>(std::move(factor->function), kTarget, between,
@@ -30,7 +30,7 @@ void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor)
   factor->blocks.push_back(after.pose.data());
 }
 
-/// That a state is zero, with so much on each of its entries.
+/// Prior of a zero state with the same sigma for each of its entries.
 Factor zeroPrior(ParameterBlock& state, double sigma) {
   const auto size = static_cast<Eigen::Index>(state.value.size());
   Factor factor;
@@ -84,7 +84,7 @@ Factor FactorBuilder::inertial(const Window& window, Frame& before, Frame& frame
 }
 
 std::vector<Factor> FactorBuilder::imuAxes(const Window& window) const {
-  constexpr double kUsualNorm = 3.0;  // of nine sigmas
+  constexpr double kUsualNorm = 3.0;  // norm of nine coordinates, in sigmas
   std::vector<Factor> priors;
   const auto add = [&](ParameterBlock* axes, double sigma) {
     if (!axes) return;
@@ -150,14 +150,14 @@ std::optional<Factor> FactorBuilder::priorOf(ParameterBlock& state) const {
   return factor;
 }
 
-std::optional<Factor> FactorBuilder::placement(ParameterBlock& further) const {
+std::optional<Factor> FactorBuilder::placement(ParameterBlock& secondary) const {
   if (placement_sigma_m_ <= 0.0) return std::nullopt;
   ceres::Matrix whitening = ceres::Matrix::Zero(3, kExtrinsicsSize);
   whitening.rightCols<3>().diagonal().setConstant(1.0 / placement_sigma_m_);
   Factor factor;
   factor.function = std::make_unique<ceres::NormalPrior>(whitening, ceres::Vector::Zero(kExtrinsicsSize));
-  factor.loss = std::make_shared<ceres::CauchyLoss>(placementLossWidth(further));
-  factor.blocks = {further.value.data()};
+  factor.loss = std::make_shared<ceres::CauchyLoss>(placementLossWidth(secondary));
+  factor.blocks = {secondary.value.data()};
   return factor;
 }
 
@@ -185,7 +185,7 @@ Rigid3 FactorBuilder::worldFromCamera(const Window& window, const Frame& frame, 
       correctedExtrinsics(body_from_camera_[0], states.camera0->value.data());
   if (camera == 0) return world_from_camera0;
   return world_from_camera0 *
-         correctedExtrinsics(camera0_from_camera_[camera], states.further[camera - 1]->value.data());
+         correctedExtrinsics(camera0_from_camera_[camera], states.secondary[camera - 1]->value.data());
 }
 
 LandmarkFactors FactorBuilder::landmark(Window& window, FeatureTrack& track) const {
@@ -205,27 +205,27 @@ LandmarkFactors FactorBuilder::calibratedLandmark(Window& window, FeatureTrack& 
     Frame& target = *window.find(observation.frame);
     factor.loss = lossOf(track, robustScale(target));
     const bool in_host = observation.frame == landmark.host;
-    ParameterBlock* further = observation.camera > 0 ? states.further[observation.camera - 1] : nullptr;
-    if (in_host && !further) {
+    ParameterBlock* secondary = observation.camera > 0 ? states.secondary[observation.camera - 1] : nullptr;
+    if (in_host && !secondary) {
       factor.function =
           std::make_unique<HostReprojectionFactor>(observation.measurement, landmark.base, Rigid3());
       factor.blocks = {result.landmark};
     } else if (in_host) {
       factor.function = std::make_unique<CalibratedStereoFactor>(observation.measurement, landmark.base,
                                                                  camera0_from_camera_[observation.camera],
-                                                                 further->linearizationPoint());
-      factor.blocks = {result.landmark, further->value.data()};
+                                                                 secondary->linearizationPoint());
+      factor.blocks = {result.landmark, secondary->value.data()};
     } else {
       CameraPlacement placement{body_from_camera_[0], std::nullopt};
-      if (further) placement.camera0_from_target = camera0_from_camera_[observation.camera];
+      if (secondary) placement.camera0_from_target = camera0_from_camera_[observation.camera];
       const CalibratedLinearizationPoints first{
           host.firstPose(), target.firstPose(), states.camera0->linearizationPoint(),
-          states.time_offset->linearizationPoint(), further ? further->linearizationPoint() : nullptr};
+          states.time_offset->linearizationPoint(), secondary ? secondary->linearizationPoint() : nullptr};
       factor.function = std::make_unique<CalibratedReprojectionFactor>(
           observation.measurement, landmark.base, placement, host.image_motion, target.image_motion, first);
       factor.blocks = {host.pose.data(), target.pose.data(), result.landmark, states.camera0->value.data(),
                        states.time_offset->value.data()};
-      if (further) factor.blocks.push_back(further->value.data());
+      if (secondary) factor.blocks.push_back(secondary->value.data());
       if (target.interpolated) hangOnNeighbours(window, target, &factor);
     }
     if (states.intrinsics.empty()) continue;

@@ -12,13 +12,15 @@ using Mat63 = Eigen::Matrix<double, 6, 3>;
 
 // Eigenvalues of a landmark's scaled 3x3 system below this share of the largest count as unobserved.
 constexpr double kRankTolerance = 1e-10;
-// So does a coordinate with less information than this: an inverse distance that is known to 1000 per metre
-// is not known, and scaling would blow its rounding errors up to a direction that takes information away.
+// A coordinate with less information than this also counts as unobserved. An inverse distance known to 1000
+// per metre contains no information. The scaling would amplify its rounding errors to a direction with
+// negative information.
 constexpr double kLeastInformation = 1e-6;
-// Determinant of the scaled system above which all three coordinates are known without a look at eigenvalues.
+// Determinant of the scaled system above which all three coordinates are known and eigenvalues need not be
+// computed.
 constexpr double kClearDeterminant = 1e-6;
 
-/// Scales residual and Jacobians by the square root of the loss's slope (iteratively reweighted least
+/// Factor on residual and Jacobians: the square root of the loss's derivative (iteratively reweighted least
 /// squares).
 double robustScale(const ceres::LossFunction* loss, double squared_norm) {
   if (!loss) return 1.0;
@@ -32,8 +34,8 @@ double robustScale(const ceres::LossFunction* loss, double squared_norm) {
 Mat3 landmarkInverseRoot(const Mat3& hessian) {
   const Vec3 scale = hessian.diagonal().cwiseMax(kLeastInformation).cwiseSqrt().cwiseInverse();
   const Mat3 scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  // The eigenvalues of `scaled` are at most 3, so its determinant bounds the smallest: far from any doubt
-  // about the rank.
+  // The eigenvalues of `scaled` are at most 3, so its determinant is a lower bound of the smallest: far above
+  // it, the rank is certain.
   const Eigen::LLT<Mat3> root(scaled);
   const Vec3 diagonal = root.matrixLLT().diagonal();
   if (root.info() == Eigen::Success && diagonal.prod() * diagonal.prod() > kClearDeterminant)
@@ -124,7 +126,7 @@ void NormalEquations::add(const std::vector<Block>& blocks, const Eigen::MatrixX
 /// One factor of a landmark, linearized: the residual, its derivative by the landmark and by every other
 /// block, all scaled by the loss.
 struct NormalEquations::LandmarkTerm {
-  static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, lens
+  static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, intrinsics
   struct Part {
     int offset, size;
     Eigen::Matrix<double, 2, 6> jacobian;  // columns beyond `size` are zero

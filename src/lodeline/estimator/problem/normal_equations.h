@@ -7,12 +7,12 @@
 
 namespace lodeline {
 
-/// W with W W^T the inverse of a landmark's positive semi-definite Hessian on its range, insensitive to the
-/// units of its coordinates; what hardly anything is known of counts as unobserved and comes out as zero.
+/// W with W W^T the inverse of a landmark's positive semi-definite Hessian on its range, independent of the
+/// units of its coordinates. Directions with negligible information count as unobserved and give zero.
 Mat3 landmarkInverseRoot(const Mat3& hessian);
 
-/// The Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
-/// Jacobians are those the factors give (linearization points where they hold them), residuals are current.
+/// Gauss-Newton system H d = -g of some factors over an ordered list of blocks, landmarks eliminated.
+/// Jacobians are those of the factors (at linearization points where they have them); residuals are current.
 class NormalEquations {
  public:
   struct Block {
@@ -23,24 +23,24 @@ class NormalEquations {
     int tangentSize() const { return ambient_size == kPoseSize ? kPoseTangentSize : ambient_size; }
   };
 
-  /// Blocks that factors mention get their rows in the order of the first mention.
+  /// Adds a factor. Its new blocks get their rows in the order in which they first appear.
   void add(const Factor& factor);
 
-  /// Adds the terms of one landmark and eliminates it (Schur complement). Apart from the landmark its factors
-  /// may have blocks of at most 6 tangent coordinates.
+  /// Adds the terms of one landmark and eliminates it (Schur complement). Apart from the landmark, its
+  /// factors may have blocks of at most 6 tangent coordinates.
   void addEliminated(const LandmarkFactors& landmark);
 
-  /// Adds 1/2 d^T h d + g^T d, where d stacks the tangent coordinates of `blocks`, each at its offset; of h
-  /// the lower triangle is read.
+  /// Adds 1/2 d^T h d + g^T d, where d stacks the tangent coordinates of `blocks`, each at its offset; only
+  /// the lower triangle of h is read.
   void add(const std::vector<Block>& blocks, const Eigen::MatrixXd& h, const Eigen::VectorXd& g);
 
-  /// Makes room for as many tangent coordinates at once.
+  /// Reserves memory for this number of tangent coordinates.
   void reserve(int size);
 
-  /// Moves the eliminated landmarks along with a step d of the blocks.
+  /// Updates the eliminated landmarks for a step d of the blocks.
   void stepLandmarks(const Eigen::VectorXd& step) const;
 
-  /// Frees the system and keeps what stepLandmarks() needs.
+  /// Frees the system except for the data of stepLandmarks().
   void forgetTerms();
 
   const std::vector<Block>& blocks() const { return blocks_; }
@@ -49,18 +49,18 @@ class NormalEquations {
 
   /// Symmetric, size() x size().
   Eigen::MatrixXd hessian() const;
-  /// The same without what stands above its diagonal; of no meaning after the next change.
+  /// The Hessian with undefined entries above its diagonal; invalid after the next change.
   Eigen::Block<const Eigen::MatrixXd> lowerTriangle() const { return h_.topLeftCorner(size_, size_); }
   const Eigen::VectorXd gradient() const { return g_.head(size_); }
 
  private:
   struct LandmarkTerm;
-  /// Between a block and the landmark; rows beyond the block's size are zero.
+  /// Hessian block between a block and the landmark; rows beyond the block's size are zero.
   struct Coupling {
     int offset, size;
     Eigen::Matrix<double, 6, 3> by_landmark = Eigen::Matrix<double, 6, 3>::Zero();
   };
-  /// What back-substitution needs.
+  /// Data for back-substitution.
   struct EliminatedLandmark {
     double* value;
     Mat3 inverse_hessian;

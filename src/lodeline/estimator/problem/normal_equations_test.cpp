@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-// Largest deviation relative to the diagonal, which takes the units out.
+// Largest deviation relative to the diagonal, which makes it independent of units.
 double deviation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::VectorXd scale = b.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   return (scale.asDiagonal() * (a - b) * scale.asDiagonal()).cwiseAbs().maxCoeff();
@@ -21,7 +21,7 @@ class NormalEquationsTest : public testing::Test {
   NormalEquationsTest() {
     prior_ = test_.fill();
     test_.disturb(0.01, 3);
-    // Some blocks keep a linearization point that is not their value, as after marginalization.
+    // Some blocks have a linearization point that differs from their value, as after marginalization.
     Frame& second = *test_.window.frames()[1];
     second.first_pose = second.pose;
     (*second.first_pose)[0] += 0.02;
@@ -79,8 +79,8 @@ TEST_F(NormalEquationsTest, EliminatedLandmarksEqualTheDenseSchurComplement) {
   EXPECT_LT((system.gradient()(order) - reduced.gradient).norm(), 1e-9 * dense.gradient.norm());
 }
 
-// Two views from one place say nothing of a point's distance. What they say of the rotation must come through
-// as if the distance were not asked for, and nothing may be said of the translation that is not there.
+// Two views from one position do not determine a point's distance. Their information on the rotation must be
+// the same as without the distance among the unknowns. There must be no information on the translation.
 TEST(NormalEquations, ALandmarkOfUnknownDistanceGivesRotationOnly) {
   TestWindow test(1);
   const Rigid3 body_from_camera = test.rig.cameras[0].body_from_camera;
@@ -101,7 +101,7 @@ TEST(NormalEquations, ALandmarkOfUnknownDistanceGivesRotationOnly) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(h);
   EXPECT_GT(solver.eigenvalues()[0], -1e-9 * solver.eigenvalues()[11]) << "must stay semi-definite";
 
-  // Reference: the distance left out of the unknowns.
+  // Reference: the distance is not among the unknowns.
   DenseSystem dense = denseSystem(test.window, {}, test.factors);
   std::vector<int> order;
   for (const Frame* frame : {&host, &target}) {

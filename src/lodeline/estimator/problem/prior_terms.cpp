@@ -13,7 +13,7 @@ PriorTerms::PriorTerms(const Prior& prior) : prior_(prior) {
     offset += block.tangentSize();
   }
   if (prior.information.size() > 0) return;
-  // J^T J, a few rows of J at a time: they are zero left of the diagonal.
+  // J^T J, a few rows of J at a time, because they are zero left of the diagonal.
   constexpr int kRows = 24;
   const Eigen::MatrixXd transposed = prior.sqrt_information.transpose();
   hessian_ = Eigen::MatrixXd::Zero(offset, offset);

@@ -5,8 +5,7 @@
 
 namespace lodeline {
 
-/// The prior's part of a window's cost; as PriorFactor, but its Hessian, which is constant, is worked out
-/// once.
+/// The prior's part of a window's cost, as in PriorFactor, with its constant Hessian computed once.
 class PriorTerms {
  public:
   /// The prior must outlive the terms.

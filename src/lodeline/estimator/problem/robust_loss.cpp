@@ -10,8 +10,8 @@ namespace lodeline {
 namespace {
 
 constexpr double kLn2 = std::numbers::ln2, kLn10 = std::numbers::ln10;
-// 2 / nu. Lighter tails count as normal, heavier ones as this: a still narrower loss finds wrong minima where
-// many points slide (robust_loss_test.cpp).
+// Range of 2 / nu. Lighter tails count as normal, heavier ones as the limit: a narrower loss finds wrong
+// minima where many points slide (robust_loss_test.cpp).
 constexpr double kNormalTail = 2.0 / 9.3, kHeaviestTail = 2.0 / 4.0;
 
 double quantile(double share, std::vector<double>* values) {
@@ -34,7 +34,7 @@ double tailOf(double ratio) {
   return most;
 }
 
-/// `sigmas` of those frames where they are known.
+/// Sums the squared residuals of each track, relative to `sigmas`, over the frames in `sigmas`.
 ErrorsByTrack errorsByTrack(const std::vector<ObservationError>& errors,
                             const boost::container::flat_map<FrameId, double>& sigmas) {
   ErrorsByTrack by_track;
@@ -48,8 +48,8 @@ ErrorsByTrack errorsByTrack(const std::vector<ObservationError>& errors,
   return by_track;
 }
 
-/// How far a track's mean square is from 1, in sigmas of chance (E. B. Wilson, M. M. Hilferty, "The
-/// distribution of chi-square", PNAS 17, 1931).
+/// Deviation of a track's mean square from 1, in sigmas of a chi-squared variable (E. B. Wilson, M. M.
+/// Hilferty, "The distribution of chi-square", PNAS 17, 1931).
 double deviation(const TrackErrors& of_track) {
   const double degrees = of_track.degreesOfFreedom();
   const double variance = 2.0 / (9.0 * degrees);
@@ -60,13 +60,13 @@ double deviation(const TrackErrors& of_track) {
 
 std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const SolverOptions& options) {
   constexpr size_t kEnough = 20;
-  // Images without noise must not end in a loss that rejects everything.
+  // Lower limit for images without noise, for which the loss would reject everything.
   constexpr double kLeast_sigmas = 0.02;
   if (errors_sigmas.size() < kEnough) return std::nullopt;
   const double median = std::max(quantile(0.5, &errors_sigmas), kLeast_sigmas);
   const double ratio = quantile(0.9, &errors_sigmas) / median;
   const double narrowing = std::sqrt(std::expm1(kNormalTail * kLn2) / std::expm1(tailOf(ratio) * kLn2));
-  const double sigma = median / std::sqrt(2.0 * kLn2);  // as of a Rayleigh distribution
+  const double sigma = median / std::sqrt(2.0 * kLn2);  // by the median of a Rayleigh distribution
   return FrameErrors{
       sigma, std::min(narrowing * options.robust_scale_medians * median, options.robust_scale_sigmas)};
 }

@@ -17,7 +17,7 @@ std::vector<double> rayleigh(double sigma, int count, Random* noise) {
   return errors;
 }
 
-/// Errors of which P(r < R) = 1 - (1 + R^2 / width^2)^(-nu / 2).
+/// Errors with P(r < R) = 1 - (1 + R^2 / width^2)^(-nu / 2).
 std::vector<double> heavyTailed(double nu, double width, int count, Random* random) {
   std::vector<double> errors;
   for (int i = 0; i < count; ++i)
@@ -31,7 +31,7 @@ TEST(RobustLoss, IsThatOfTheDistributionTheErrorsHave) {
     const double width = frameErrors(heavyTailed(nu, 0.2, 20000, &random), SolverOptions()).value().width;
     EXPECT_NEAR(width, 0.2, 0.02) << nu;
   }
-  // However heavy the tail, not narrower than what four degrees of freedom ask for.
+  // For any heavy tail, the loss is not narrower than that of four degrees of freedom.
   std::vector<double> errors = heavyTailed(1.0, 0.2, 20000, &random);
   EXPECT_NEAR(frameErrors(errors, SolverOptions()).value().width, 1.55 * 0.2 * std::sqrt(3.0), 0.02);
 }
@@ -70,8 +70,8 @@ TEST(RobustLoss, StaysWhereFewErrorsTell) {
   EXPECT_FALSE(frameErrors(std::vector<double>(10, 0.1), SolverOptions()).has_value());
 }
 
-// A third of the tracks is found a tenth of a pixel well like all others, but slides to one side by 0.4 px/s,
-// as the edge of a shadow does whose lamp moves along. Returns the error of the position in the end, m.
+// All tracks are accurate to a tenth of a pixel, but a third of them also slides to one side by 0.4 px/s. The
+// edge of a shadow does so when its lamp moves with the rig. Returns the final position error, m.
 double errorAmongShadows(const SolverOptions& solver, uint64_t seed) {
   constexpr double kFocalLength_px = 458.0, kSlide_px_per_s = 0.4;
   TestSceneOptions scene_options;
@@ -144,12 +144,12 @@ TEST(TrackWeight, GoesWithTheSquareOfTheInverseVarianceOfWhatIsOftenSeen) {
   EXPECT_NEAR(trackWeight({9.0 * 2000.0, 1000}, 1.0), 1.0 / 81.0, 1e-4);
   EXPECT_NEAR(trackWeight({0.8 * 2000.0, 1000}, 1.0), 1.0 / 0.64, 1e-2);
   EXPECT_NEAR(trackWeight({9.0 * 2000.0, 1000}, 0.5), 1.0 / 9.0, 1e-3);
-  // One observation tells little, and nothing counts for ever so much.
+  // One observation has little information, and the weight is limited.
   EXPECT_GT(trackWeight({9.0, 1}, 1.0), 2.0 / 81.0);
   EXPECT_DOUBLE_EQ(trackWeight({0.0, 1000}, 1.0), 2.0);
 }
 
-// Tracks of one to 16 observations; the variance of one in `every` is nine times that of the others.
+// Tracks of one to 16 observations; one in `every` has nine times the variance of the others.
 double differenceWhereOneIn(int every, uint64_t seed) {
   Random noise(seed, "difference of tracks");
   ErrorsByTrack by_track;
@@ -184,7 +184,7 @@ TEST(TrackWeight, TellsTracksThatSlideByErrorsWhichAloneAreUsual) {
     for (TrackId track = 0; track < kTracks; ++track) {
       test.window.addObservation(track, {frame, 0, {}});
       const double usual = 0.1 * std::hypot(noise.normal(), noise.normal());
-      // Twice the sigma of one axis: one in seven of the usual errors is as large.
+      // Twice the sigma of one axis: one in seven of the usual errors is that large.
       errors.push_back({track, frame, slides(track) ? 0.2 : usual});
     }
   }

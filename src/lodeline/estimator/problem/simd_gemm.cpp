@@ -7,12 +7,12 @@
 namespace lodeline {
 namespace {
 
-/// Rows and columns of c that are summed in registers, rows in pieces of four.
+/// Tile of c that is summed in registers: rows in pieces of four, and columns.
 constexpr Eigen::Index kPiece = 4, kTileColumns = 6;
 
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 
-/// Columns of a matrix that lie `stride` apart.
+/// Columns of a matrix at a distance of `stride` elements.
 template <typename Scalar>
 struct Strided {
   Scalar* data;
@@ -54,7 +54,7 @@ inline __attribute__((always_inline)) void subtractTile(StridedInput a, StridedI
   }
 }
 
-/// The last rows of a piece whose first `skipped` rows belong to another one.
+/// Processes the last rows of a piece whose first `skipped` rows belong to another piece.
 template <int kColumns>
 inline __attribute__((always_inline)) void subtractRest(StridedInput a, StridedInput b, Eigen::Index depth,
                                                         Eigen::Index skipped, StridedOutput c) {
@@ -64,7 +64,7 @@ inline __attribute__((always_inline)) void subtractRest(StridedInput a, StridedI
   }
 }
 
-/// For fewer rows than a piece has.
+/// Processes fewer rows than one piece.
 inline __attribute__((always_inline)) void subtractFew(StridedInput a, StridedInput b, Eigen::Index rows,
                                                        Eigen::Index columns, Eigen::Index depth,
                                                        StridedOutput c) {

@@ -10,7 +10,7 @@ namespace {
 constexpr int kDepth = 7;
 constexpr int kSizes[] = {0, 1, 3, 4, 6, 9, 14, 24};
 
-/// Parts of larger matrices, as the estimator hands them over.
+/// Blocks of larger matrices, as in the estimator.
 struct Operands {
   int m, n;
   Eigen::MatrixXd a = Eigen::MatrixXd::Random(m + 3, kDepth + 1);
@@ -38,7 +38,7 @@ TEST(WideProducts, OfAMatrixWithItselfGiveItsLowerTriangle) {
     const auto a = o.a.block(1, 1, m, kDepth);
     expected.block(2, 1, m, m) -= a * a.transpose();
     subtractSquare(a, c.block(2, 1, m, m));
-    // What stands above the diagonal means nothing.
+    // Entries above the diagonal are undefined.
     for (auto* matrix : {&c, &expected})
       matrix->block(2, 1, m, m).triangularView<Eigen::StrictlyUpper>().setZero();
     EXPECT_LT((c - expected).cwiseAbs().maxCoeff(), 1e-14) << m;

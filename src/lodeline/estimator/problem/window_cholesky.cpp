@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-/// Columns of what is dense that are eliminated together.
+/// Number of columns eliminated together in the dense part.
 constexpr int kDenseColumns = 24;
 
 }  // namespace
@@ -101,7 +101,7 @@ Eigen::VectorXd WindowCholesky::solve(const Eigen::VectorXd& b) const {
 }
 
 Eigen::MatrixXd WindowCholesky::covarianceOfLast() const {
-  // With these rows last, what the others say of them is all in the factor's last block.
+  // With these rows last, their marginal information is the factor's last block.
   const Eigen::MatrixXd inverse_root = factor_.bottomRightCorner(last_size_, last_size_)
                                            .triangularView<Eigen::Lower>()
                                            .solve(Eigen::MatrixXd::Identity(last_size_, last_size_));

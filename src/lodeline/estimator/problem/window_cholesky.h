@@ -8,15 +8,15 @@
 
 namespace lodeline {
 
-/// Cholesky factor of normal equations whose rows are put into an order that keeps most of their zeros. A
-/// frame's velocity and biases touch those of its neighbours and, once these are eliminated in order of time,
-/// the poses up to the next frame: nothing later. Eliminating them first takes a fraction of the time of a
-/// dense factor when many frames have them, as while a window is starting up. The zeros are found in the
-/// matrix itself, so any order gives the right factor.
+/// Cholesky factor of normal equations whose rows are ordered to preserve most of their zeros. Velocity and
+/// biases of a frame are coupled only to those of its neighbours. Once these are eliminated in order of time,
+/// they are also coupled to the poses up to the next frame. Eliminating them first takes a fraction of the
+/// time of a dense factor when many frames have them, as while a window is starting up. The zeros are found
+/// in the matrix itself, so any order gives the correct factor.
 class WindowCholesky {
  public:
-  /// `first` are the blocks to be eliminated before all others, in the order given, `last` those to come
-  /// after all others; the system must know them all.
+  /// `first`: blocks to be eliminated before all others, in the order given; `last`: blocks after all others.
+  /// The system must contain them all.
   WindowCholesky(const NormalEquations& system, const std::vector<const double*>& first,
                  const std::vector<const double*>& last);
 
@@ -37,16 +37,16 @@ class WindowCholesky {
   std::vector<Run> runsBelow(int column, int size) const;
   bool eliminate(int column, int size);
 
-  std::vector<int> order_;  ///< row of the system that comes at each place
-  std::vector<int> sizes_;  ///< of the blocks of columns that are eliminated together
+  std::vector<int> order_;  ///< row of the system at each position
+  std::vector<int> sizes_;  ///< sizes of the column blocks that are eliminated together
   int last_size_ = 0;
-  Eigen::VectorXd scale_;    ///< roots of the diagonal's inverse, in order
-  Eigen::MatrixXd ordered_;  ///< H in order, with a diagonal of ones; lower triangle
+  Eigen::VectorXd scale_;    ///< inverse square roots of the diagonal, in order
+  Eigen::MatrixXd ordered_;  ///< H in order, scaled to a unit diagonal; lower triangle
   Eigen::MatrixXd factor_;   ///< lower triangle
 };
 
-/// The velocities and biases of all frames that have them, but of the newest, in order of time: what is best
-/// eliminated first.
+/// Motion blocks of all frames that have them except the newest, in order of time: the best blocks to
+/// eliminate first.
 std::vector<const double*> motionsButTheNewest(const Window& window);
 
 }  // namespace lodeline

@@ -20,7 +20,7 @@ class WindowCholeskyTest : public testing::Test {
     last_ = {newest.pose.data(), newest.motion.data()};
   }
 
-  // Of the system with its diagonal damped, by a factorization that knows nothing of order or zeros.
+  // Inverse of the damped system by a dense factorization without any ordering.
   Eigen::MatrixXd inverse(double damping) const {
     const Eigen::MatrixXd h = system_.hessian();
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();

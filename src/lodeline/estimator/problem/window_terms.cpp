@@ -15,8 +15,8 @@ void repropagateIfNeeded(const Frame& before, Preintegration& preintegration) {
 
 std::vector<Factor> collectGlobalTerms(Window& window, const FactorBuilder& factors) {
   std::vector<Factor> terms = factors.imuAxes(window);
-  for (ParameterBlock* further : cameraStates(window).further) {
-    if (auto placement = factors.placement(*further)) terms.push_back(std::move(*placement));
+  for (ParameterBlock* secondary : cameraStates(window).secondary) {
+    if (auto placement = factors.placement(*secondary)) terms.push_back(std::move(*placement));
   }
   for (const auto& state : window.globals()) {
     if (auto prior = factors.priorOf(*state)) terms.push_back(std::move(*prior));

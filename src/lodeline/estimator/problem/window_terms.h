@@ -13,16 +13,17 @@ struct WindowTerms {
   std::vector<LandmarkFactors> landmarks;
 };
 
-/// What is known of parameter blocks beside all measurements and the prior, whose shape a prior cannot hold
-/// or which may change: axes of the gyroscope, places of secondary cameras, priors.
+/// Priors of parameter blocks that are not part of the marginalization prior, because it cannot represent
+/// their shape or because they may change: axes of the IMU, positions of secondary cameras,
+/// ParameterBlock::priors.
 std::vector<Factor> collectGlobalTerms(Window& window, const FactorBuilder& factors);
 
-/// Those of them that are no landmarks', without the prior. Inertial terms whose biases moved too far are
-/// integrated again first.
+/// All terms without landmarks, except the prior. First, inertial terms whose biases have changed too much
+/// are integrated again.
 std::vector<Factor> collectMotionTerms(Window& window, const FactorBuilder& factors);
 
-/// In a fixed order: prior, inertial terms by time, magnetometer and depth terms by time, landmarks by
-/// track. Inertial terms whose biases moved too far are integrated again first.
+/// All terms in a fixed order: prior, inertial terms by time, magnetometer and depth terms by time, landmarks
+/// by track. First, inertial terms whose biases have changed too much are integrated again.
 WindowTerms collectTerms(Window& window, const Prior& prior, const FactorBuilder& factors);
 
 /// The linear system of all terms at the window's present values, landmarks eliminated.

@@ -17,7 +17,7 @@ BaselineMonitor::BaselineMonitor(const Rig& rig) {
 
 void BaselineMonitor::add(Time time, const CameraCorrections& corrections, Diagnostics* diagnostics) {
   constexpr double kWorthSaying = 0.01;  // of the baseline
-  constexpr int kFrames = 100;           // less may be a passing error of the motion
+  constexpr int kFrames = 100;           // fewer may be a temporary error of the motion
   for (size_t i = 0; i < baselines_.size(); ++i) {
     Baseline& baseline = baselines_[i];
     if (baseline.is_reported) continue;

@@ -9,14 +9,14 @@
 
 namespace lodeline {
 
-/// Says when a secondary camera turns out to sit elsewhere than its calibration says
-/// (FactorBuilder::placement): by as much of its distance from the first camera, every length was wrong until
-/// it was found.
+/// Reports a secondary camera whose estimated position differs from its calibration
+/// (FactorBuilder::placement). All lengths were wrong by the same fraction as its distance from camera 0
+/// until the correction was found.
 class BaselineMonitor {
  public:
   explicit BaselineMonitor(const Rig& rig);
 
-  /// Adds what has been found at a frame; reports each camera once, a Warning.
+  /// Adds the corrections estimated at a frame; reports each camera once, as a Warning.
   void add(Time time, const CameraCorrections& corrections, Diagnostics* diagnostics);
 
  private:

@@ -19,7 +19,7 @@ class BaselineMonitorTest : public testing::Test {
   void add(int frames, double longer_m) {
     CameraCorrections corrections;
     corrections.extrinsics.resize(2, Eigen::Matrix<double, 6, 1>::Zero());
-    corrections.extrinsics[0][3] = 0.05;  // where the pair sits is another matter
+    corrections.extrinsics[0][3] = 0.05;  // the pose of the pair in the body does not matter here
     corrections.extrinsics[1][3] = longer_m;
     for (int i = 0; i < frames; ++i) watch_.add(Time::fromNanoseconds(7), corrections, &diagnostics_);
   }

@@ -13,22 +13,23 @@
 namespace lodeline {
 namespace {
 
-/// What is believed of a file that is held, in units of the prior's sigmas: narrow beside what images say.
+/// Sigma of a held file, in units of the prior's sigmas: small compared with the information of images.
 constexpr double kHeld = 1e-3;
-/// Logarithms of the odds at which files are held, and let go.
+/// Logarithms of the Bayes factors at which files are held, and freed.
 constexpr double kBegin = 4.0, kEnd = 0.0;
-/// The same of every single number.
+/// The same thresholds for every single parameter.
 constexpr double kLeastBegin = -0.5, kLeastEnd = -1.5;
 
 using StatesWithSigmas = std::vector<std::pair<ParameterBlock*, Eigen::VectorXd>>;
 
-/// Further cameras first (their rotations, which lead their states), then all lenses; empty where the lenses
-/// are not estimated.
+/// States that the test covers: rotations of secondary cameras (the first coordinates of their extrinsics),
+/// then the intrinsics of all cameras. Empty where the intrinsics are not estimated.
 StatesWithSigmas judgedStates(const Window& window, const CameraCalibrationOptions& options) {
   StatesWithSigmas judged;
   const CameraStates states = cameraStates(window);
   if (!options.trust_confirmed_files || states.intrinsics.empty()) return judged;
-  for (ParameterBlock* further : states.further) judged.emplace_back(further, stereoRotationSigmas(options));
+  for (ParameterBlock* secondary : states.secondary)
+    judged.emplace_back(secondary, stereoRotationSigmas(options));
   for (ParameterBlock* lens : states.intrinsics) judged.emplace_back(lens, intrinsicsSigmas(options));
   return judged;
 }
@@ -64,11 +65,11 @@ std::optional<Deviations> deviationsOf(const StatesWithSigmas& judged, const Joi
   return deviations;
 }
 
-/// What they would be had the files not been believed.
+/// The deviations without the prior of held files.
 Deviations withoutPrior(const Deviations& believed) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(believed.covariance);
   const Eigen::ArrayXd variance = parts.eigenvalues().array().max(1e-18);
-  // No direction can be known worse than its prior says.
+  // The variance in any direction is at most that of the prior.
   const Eigen::ArrayXd information = (variance.inverse() - 1.0 / (kHeld * kHeld)).max(1.0);
   const auto inAllDirections = [&](const Eigen::ArrayXd& scale) -> Eigen::MatrixXd {
     return parts.eigenvectors() * scale.matrix().asDiagonal() * parts.eigenvectors().transpose();
@@ -77,7 +78,7 @@ Deviations withoutPrior(const Deviations& believed) {
           inAllDirections(information.inverse())};
 }
 
-/// Of the mean of all lenses, which stand last.
+/// Evidence of the mean intrinsics of all cameras, which are the last coordinates.
 double evidenceForIntrinsics(const Deviations& deviations, Eigen::Index lenses) {
   const double share = 1.0 / static_cast<double>(lenses);
   const Eigen::Index size = deviations.seen.size();
@@ -87,8 +88,9 @@ double evidenceForIntrinsics(const Deviations& deviations, Eigen::Index lenses) 
   return evidenceForFile(mean * deviations.seen, mean * deviations.covariance * mean.transpose(), share);
 }
 
-/// The least of every single number, and of how each lens differs from the first: not of many together, where
-/// those that are right would outvote one that is wrong.
+/// Smallest evidence of any single parameter and of any difference between a camera's intrinsics and those of
+/// the first camera. The test is on single parameters, because in a joint test the correct ones would
+/// outweigh a wrong one.
 double leastEvidence(const Deviations& deviations, Eigen::Index lenses) {
   const Eigen::Index size = deviations.seen.size();
   const Eigen::Index first_lens = size - kIntrinsicsSize * lenses;

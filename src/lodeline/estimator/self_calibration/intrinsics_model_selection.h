@@ -9,30 +9,32 @@
 
 namespace lodeline {
 
-/// How far a right file is found to be off, of the prior's sigma, by errors of images that no covariance
-/// knows of. No more than that is claimed of a file that is held.
+/// Apparent deviation from a correct file, in the prior's sigmas, that image errors outside every covariance
+/// cause. The reported information on a held file is not larger than this.
 constexpr double kFileTolerance = 0.1;
 
-/// Logarithm of how much likelier what was seen of a calibration makes it that its file is right than that it
-/// is off as its prior says: the ratio of the densities of "no deviation" after and before (Savage-Dickey;
-/// Dickey, Ann. Math. Stat. 1971), both blurred by kFileTolerance. `seen` and `covariance`: of the deviations
-/// from the file in units of the prior's sigmas, the prior included, which has `prior_variance` there.
+/// Logarithm of the Bayes factor for a correct file against one with errors as in its prior. It is the ratio
+/// of the densities of "no deviation" after and before (Savage-Dickey; Dickey, Ann. Math. Stat. 1971), both
+/// blurred by kFileTolerance. `seen` and `covariance`: deviations from the file in units of the prior's
+/// sigmas, with the prior included, whose variance in these units is `prior_variance`.
 double evidenceForFile(const Eigen::VectorXd& seen, const Eigen::MatrixXd& covariance, double prior_variance);
 
-/// Decides whether lenses and the rotation of secondary cameras are as their files say.
+/// Decides whether the intrinsics and the rotations of secondary cameras are as in their files.
 ///
-/// A stereo rig measures distance by fiftieths of a pixel, and what a tracker is off by in the mean is as
-/// much. Left free, lenses and rotations make up for that, by scale. But most files are either right or off
-/// by far more, in several numbers that images soon tell. So they are held while evidenceForFile() is clearly
-/// for it, and let go when it is not. Asked is the mean of all lenses: cameras that agree with one another
-/// confirm no file, since one target or one port in front of them all makes the same error. But no single
-/// number may speak against it, nor any difference between lenses. Of a baseline that is off, which is an
-/// error of scale, images say nothing, but the accelerometer does: it stays free (FactorBuilder::placement).
+/// A stereo rig measures distance by fiftieths of a pixel, and the mean error of a tracker is just as large.
+/// If they are free, intrinsics and rotations absorb that error and bias the scale. Most files, however, are
+/// either correct or wrong by far more, in several parameters that images soon reveal. The parameters are
+/// therefore held while evidenceForFile() is clearly for the file, and freed when it is not. The test uses
+/// the mean intrinsics of all cameras. Cameras that agree with each other confirm no file, because one
+/// calibration target or one port in front of all cameras causes the same error in each. In addition, no
+/// single parameter and no difference between the intrinsics of two cameras may contradict the file. A wrong
+/// baseline is an error of scale, which images do not reveal but the accelerometer does: it stays free
+/// (FactorBuilder::placement).
 class IntrinsicsModelSelection {
  public:
   explicit IntrinsicsModelSelection(const CameraCalibrationOptions& options) : options_(options) {}
 
-  /// Joint covariance after the window was solved: the next solution believes in the files, or does not.
+  /// Updates the decision for the next solution with the joint covariance of the solved window.
   void remember(const JointCovariance& covariance, Window& window);
 
  private:
@@ -40,11 +42,11 @@ class IntrinsicsModelSelection {
   bool trusts_ = false;
 };
 
-/// Holds lenses and secondary cameras' rotations at their files (ParameterBlock::priors), or frees them;
-/// nothing where the lenses are not estimated.
+/// Holds the intrinsics and the secondary cameras' rotations at their files (ParameterBlock::priors), or
+/// frees them; no effect where the intrinsics are not estimated.
 void believeInFiles(const Window& window, const CameraCalibrationOptions& options, bool is_believed);
 
-/// Of each state that is so held, the information that is used and not to be claimed.
+/// Information per held state that the estimate uses and the reported covariance leaves out.
 std::vector<std::pair<const double*, Eigen::MatrixXd>> removedFileInformation(
     const Window& window, const CameraCalibrationOptions& options);
 

@@ -27,7 +27,7 @@ TEST(EvidenceForFile, GrowsAsLongAsTheDeviationStaysNone) {
     EXPECT_GT(evidence, before) << sigma;
     before = evidence;
   }
-  // No more than the tolerance allows: six numbers, each ten times better than the prior.
+  // At most what the tolerance allows: six parameters, each ten times better than the prior.
   EXPECT_LT(before, 6.0 * std::log(10.1));
 }
 
@@ -45,7 +45,7 @@ TEST(EvidenceForFile, TurnsAgainstAFileThatIsOff) {
   EXPECT_LT(evidenceForFile(seen, 0.01 * Eigen::MatrixXd::Identity(6, 6), 1.0), 0.0);
 }
 
-/// How much more than is true the files say, of the lenses in all cameras from `first_wrong` on.
+/// Errors of the files, for the intrinsics of all cameras from `first_wrong` on.
 struct FileErrors {
   double focal_length = 0.0;  ///< relative
   double centre_px = 0.0;
@@ -53,7 +53,7 @@ struct FileErrors {
   double baseline_m = 0.0;
 };
 
-/// What the estimator makes of a lively scene.
+/// Last estimate of a lively scene.
 FrameEstimate see(int cameras, const FileErrors& errors, bool trust = true, uint64_t seed = 1) {
   TestSceneOptions options;
   options.seed = seed;
@@ -134,7 +134,7 @@ TEST(IntrinsicsModelSelection, IsNotOutvotedByWhatIsRight) {
   EXPECT_FALSE(seen.camera_corrections->are_files_held);
 }
 
-// Of noise the square is left where residuals are of first order: it would make lenses 0.1 % shorter here.
+// Residuals of first order would leave the square of the noise as a bias: focal lengths 0.1 % shorter here.
 TEST(Lenses, AreMadeNoShorterByNoise) {
   constexpr int kSeeds = 4;
   double mean = 0.0;
@@ -142,7 +142,7 @@ TEST(Lenses, AreMadeNoShorterByNoise) {
     const FrameEstimate seen = see(2, {}, false, seed);
     for (const auto& lens : seen.camera_corrections->intrinsics) mean += 0.25 * lens.head<2>().sum() / kSeeds;
   }
-  // One scene tells the focal length to 0.0002.
+  // One scene determines the focal length with a sigma of 0.0002.
   EXPECT_NEAR(mean, 0.0, 4e-4);
 }
 
@@ -154,8 +154,8 @@ TEST(Placement, IsFoundWhereTheFileIsFarOff) {
   }
 }
 
-/// Information about a secondary camera's place that is used and not claimed, where it was found `off_m` from
-/// where its file puts it; one row and column for each of its six numbers.
+/// Removed information about a secondary camera's position where its estimate is `off_m` away from its file;
+/// one row and column for each of its six parameters.
 Eigen::MatrixXd removedWhereFound(double off_m, Rig* rig) {
   TestSceneOptions scene;
   scene.cameras = 2;
@@ -164,7 +164,7 @@ Eigen::MatrixXd removedWhereFound(double off_m, Rig* rig) {
   Window window;
   Prior prior;
   addCameraStates(window, prior, 2, options.camera_calibration, {});
-  double* found = cameraStates(window).further.front()->value.data();
+  double* found = cameraStates(window).secondary.front()->value.data();
   found[3] = off_m;
   const auto removed = removedCalibration(window, options, FactorBuilder(*rig, options));
   if (removed.size() != 1 || removed.front().first != found) return {};
@@ -190,7 +190,7 @@ TEST(Placement, FoundElsewhereHasNothingToUnclaim) {
   EXPECT_EQ(removed.norm(), 0.0);
 }
 
-// Two per cent too long, and too little time for the accelerometer to find it.
+// The baseline is two per cent too long, and the time is too short for the accelerometer to correct it.
 TEST(Placement, IsNotClaimedWhereTheFileIsOff) {
   TestSceneOptions options;
   options.duration_s = 6.0;
@@ -198,11 +198,11 @@ TEST(Placement, IsNotClaimedWhereTheFileIsOff) {
   options.drift_m_per_s = Vec3(0.3, 0.0, 0.0);
   TestScene scene(options);
   Rig rig = scene.rig();
-  Vec3& further = rig.cameras[1].body_from_camera.translation;
-  further += 0.02 * (further - rig.cameras[0].body_from_camera.translation);
+  Vec3& secondary = rig.cameras[1].body_from_camera.translation;
+  secondary += 0.02 * (secondary - rig.cameras[0].body_from_camera.translation);
   EstimatorOptions estimator_options = honestOptions(options);
   estimator_options.camera_calibration = CameraCalibrationOptions();
-  // Nothing else makes the scale uncertain.
+  // Other causes of scale uncertainty are switched off.
   estimator_options.camera_calibration.intrinsics = false;
   estimator_options.camera_calibration.stereo_rotation_sigma_rad = 0.0;
   Diagnostics diagnostics;

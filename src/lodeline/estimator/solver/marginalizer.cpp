@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// Eliminates the rows in `gone` from the system (h, g), keeping `kept`.
+/// Schur complement: eliminates the rows in `gone` from the system (h, g) and keeps those in `kept`.
 void schurComplement(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const std::vector<int>& gone,
                      const std::vector<int>& kept, Eigen::MatrixXd* h_kept, Eigen::VectorXd* g_kept) {
   const Eigen::MatrixXd h_gone = h(gone, gone);
@@ -25,8 +25,8 @@ void schurComplement(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const s
   *g_kept = g(kept) - solved.transpose() * (scale.asDiagonal() * g(gone));
 }
 
-/// Upper triangular J and e with J^T J = h and J^T e = g. Directions that h leaves (numerically) free are
-/// held by a jitter far below any real information.
+/// Upper triangular J and e with J^T J = h and J^T e = g. Directions without information in h (numerically)
+/// are held by a jitter far below any real information.
 void factorize(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior) {
   const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt();
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * h * scale.cwiseInverse().asDiagonal();
@@ -42,9 +42,9 @@ void factorize(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, Prior* prior)
   prior->information.diagonal() += jitter * scale.cwiseAbs2();
 }
 
-/// The information (h, g) after the coordinates `row` to `row + size` have moved by an unknown step of
-/// `variance` each: P + E Q E^T in place of P = h^-1, by the matrix inversion lemma, which needs no inverse
-/// of h. The estimate h^-1 g stays where it was.
+/// Information (h, g) after the coordinates `row` to `row + size` have changed by an unknown step with a
+/// variance of `variance` each: P + E Q E^T in place of P = h^-1. The matrix inversion lemma avoids the
+/// inverse of h. The estimate h^-1 g does not change.
 void addNoise(int row, int size, double variance, Eigen::MatrixXd* h, Eigen::VectorXd* g) {
   Eigen::MatrixXd inner = h->block(row, row, size, size);
   inner.diagonal().array() += 1.0 / variance;
@@ -75,8 +75,8 @@ Eigen::VectorXd linearizationPoint(Window& window, const double* value) {
   return {};
 }
 
-/// The random walk of the parameter blocks among the prior's blocks over `elapsed_s`, and what came over them
-/// suddenly.
+/// Applies to (h, g) the random walk over `elapsed_s` and the sudden variance of the parameter blocks in the
+/// prior.
 void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, Eigen::MatrixXd* h,
                     Eigen::VectorXd* g) {
   int row = 0;
@@ -91,8 +91,8 @@ void letGlobalsWalk(const Window& window, const Prior& prior, double elapsed_s, 
   }
 }
 
-/// How the prior's linearization points of the frames' poses and velocities change when everything is turned
-/// about gravity, per rad.
+/// Derivative of the prior's linearization points (poses and velocities of frames) by a rotation of
+/// everything about gravity, per rad.
 Eigen::VectorXd turnAboutGravity(const Window& window, const Prior& prior) {
   Eigen::VectorXd turn = Eigen::VectorXd::Zero(prior.tangentSize());
   int row = 0;
@@ -108,7 +108,8 @@ Eigen::VectorXd turnAboutGravity(const Window& window, const Prior& prior) {
   return turn;
 }
 
-/// The newest of the old keyframes but `after`; of those with motion none, since they have just come.
+/// The newest of the old keyframes except the last `after`. Keyframes with motion do not count, because they
+/// are recent.
 FrameId lastBeforeCut(const Window& window, int after) {
   std::vector<FrameId> old;
   for (const auto& frame : window.frames()) {
@@ -118,7 +119,7 @@ FrameId lastBeforeCut(const Window& window, int after) {
   return old[static_cast<size_t>(std::max<std::ptrdiff_t>(last, 0))];
 }
 
-/// The share of each yaw in a turn of all poses: s with s . turnAboutGravity() = 1.
+/// Weight of each yaw in a common rotation of all poses: s with s . turnAboutGravity() = 1.
 Eigen::VectorXd yawShares(const Prior& prior) {
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(prior.tangentSize());
   int row = 0;
@@ -154,8 +155,9 @@ void Marginalizer::resetLinearizationPoints(Window& window) {
             Eigen::Map<const Eigen::VectorXd>(block.value, block.linearization_point.size());
     }
   }
-  // Where relative positions have changed, a turn about gravity moves the frames otherwise than it did, and
-  // the prior would take offence at it. It may say as much of a turn as before.
+  // After a change of relative positions, a rotation about gravity is another direction than before, and the
+  // prior would have information on it. The following correction keeps the prior's information on the
+  // rotation as it was.
   const Eigen::VectorXd turn_after = turnAboutGravity(window, prior_);
   const Eigen::MatrixXd root = prior_.sqrt_information + prior_.sqrt_information *
                                                              (turn_before - turn_after) *
@@ -199,10 +201,11 @@ void Marginalizer::marginalizeOldestFrame(Window& window, const WindowOptions& w
 void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
                               NormalEquations* system) const {
   for (Frame* frame : {&oldest, &next}) {
-    // A term against the frame before goes with that frame, one against the field with its own.
+    // A term relative to the frame before is removed with that frame, one relative to the field with its own
+    // frame.
     if (!frame->magnetometer || frame->magnetometer->relative != (frame == &next)) continue;
     Frame* before = frame == &next ? &oldest : nullptr;
-    // Its Jacobian is to be taken where the field will have its linearization point from now on.
+    // Its Jacobian must be taken at the linearization point that the field has from now on.
     if (ParameterBlock* field = MagnetometerStates(window).field; field && !field->first)
       field->first = field->value;
     if (const auto factor = factors_.magnetometer(window, before, *frame)) system->add(*factor);
@@ -262,7 +265,7 @@ void Marginalizer::eliminate(Window& window, const NormalEquations& system,
   Eigen::MatrixXd h_kept;
   Eigen::VectorXd g_kept;
   schurComplement(system.hessian(), system.gradient(), gone, kept, &h_kept, &g_kept);
-  // The system's gradient is taken at the current values; the prior wants it at the linearization points.
+  // The system's gradient belongs to the current values; the prior needs it at the linearization points.
   g_kept -= h_kept * from_first.head(kept_size);
   window.placeInterpolated();
   letGlobalsWalk(window, next, elapsed_s, &h_kept, &g_kept);

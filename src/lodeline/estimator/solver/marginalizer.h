@@ -8,59 +8,61 @@
 
 namespace lodeline {
 
-/// Takes frames and landmarks out of the window without forgetting what they said of those that stay: Schur
-/// complement of the terms that touch them, carried on as a Prior (paper section III-B). Blocks that the
-/// prior touches for the first time get their linearization point here, and every later Jacobian of theirs is
-/// taken there.
+/// Removes frames and landmarks from the window and keeps their information about the remaining blocks. The
+/// Schur complement of the terms that contain them becomes a Prior (paper section III-B). Blocks that the
+/// prior contains for the first time get their linearization point here. All their later Jacobians are taken
+/// at that point.
 class Marginalizer {
  public:
   explicit Marginalizer(const FactorBuilder& factors) : factors_(factors) {}
 
-  /// Starts from a prior on the first frame. It freezes no linearization point: nothing has been eliminated
-  /// yet.
+  /// Starts from a prior on the first frame. It sets no linearization point, because nothing has been
+  /// eliminated yet.
   void start(Prior prior) {
     prior_ = std::move(prior);
     prior_.information.resize(0, 0);
   }
 
-  /// Shortens the window to the wanted sizes.
+  /// Marginalizes frames until the window has the wanted sizes.
   void marginalizeToSize(Window& window, const WindowOptions& wanted);
 
   const Prior& prior() const { return prior_; }
 
-  /// Takes the frames' linearization points back: the prior is expressed about their present values, and
-  /// every factor is linearized where the frames are until the prior touches them again. Neither translations
-  /// nor a turn of everything about gravity become known by it. For frames that may still move by as much as
-  /// the baselines between them: a landmark's derivative would be taken along the baseline from one frame's
-  /// first estimate to another frame's present value, which then points anywhere.
+  /// Discards the frames' linearization points. The prior is expressed about their present values, and every
+  /// factor is linearized at the present values until the prior contains the frames again. Neither
+  /// translations nor a rotation of everything about gravity become observable by it. This is for frames that
+  /// may still move by as much as the baselines between them. For them, a landmark's derivative would be
+  /// taken along the baseline from one frame's linearization point to another frame's present value, which is
+  /// an arbitrary direction.
   void resetLinearizationPoints(Window& window);
 
-  /// Adds what is known of a parameter block from elsewhere: `sigmas` about its present value.
+  /// Adds external information on a parameter block: `sigmas` about its present value.
   void addKnowledge(ParameterBlock& state, const Eigen::VectorXd& sigmas) {
     prior_.append(state.value.data(), static_cast<int>(state.value.size()), sigmas);
   }
-  /// Takes a parameter block out of the prior without forgetting what it said of the others; no factor of the
-  /// window may mention the state any more. A later entry of it starts afresh.
+  /// Removes a parameter block from the prior and keeps the prior's information on the others. No factor of
+  /// the window may contain the state any more. The state can be added again later.
   void forget(Window& window, ParameterBlock& state);
 
-  /// Landmarks that left the window since the last call, in order.
+  /// Returns the landmarks that left the window since the last call, in order.
   std::vector<MapPoint> takeMapPoints() { return std::exchange(map_points_, {}); }
 
  private:
-  /// Oldest frame with motion: a keyframe loses its motion. Any other frame goes, for the prior to stay
-  /// small. Its observations stay where its pose can be interpolated (keyframe_policy.h); otherwise they are
-  /// dropped.
+  /// Marginalizes the oldest frame with motion. A keyframe loses its motion block. Any other frame is
+  /// removed, so that the prior stays small. Its observations stay where its pose can be interpolated
+  /// (keyframe_policy.h); otherwise they are dropped.
   void marginalizeOldestFrame(Window& window, const WindowOptions& wanted);
-  /// Magnetometer and depth terms that touch the oldest of two frames, which then have become part of the
-  /// prior.
+  /// Adds the magnetometer, depth and rest terms that contain the oldest of two frames to `system`, and
+  /// removes them from the frames.
   void addSensors(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
-  /// Oldest keyframe: landmarks that the newest keyframe does not see are marginalized with all their
-  /// observations, the others with those before a cut (WindowOptions); where that would leave too few on
-  /// either side they lose their observations in the oldest keyframe, and move to another host.
+  /// Removes the oldest keyframe. Landmarks that the newest keyframe does not observe are marginalized with
+  /// all their observations. The others are marginalized with their observations before a cut
+  /// (WindowOptions). Where that would leave too few observations on either side, they lose those in the
+  /// oldest keyframe and change to another host.
   void removeOldestKeyframe(Window& window, int split_at_keyframe);
 
-  /// New prior from `system`, which holds the old prior and all terms of the eliminated blocks. parameter
-  /// blocks walk for `elapsed_s`.
+  /// Computes the new prior from `system`, which contains the old prior and all terms of the eliminated
+  /// blocks. Parameter blocks walk for `elapsed_s`.
   void eliminate(Window& window, const NormalEquations& system, const std::vector<const double*>& eliminated,
                  double elapsed_s = 0.0);
 

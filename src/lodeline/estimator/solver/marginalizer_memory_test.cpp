@@ -1,4 +1,5 @@
-// What frames and landmarks saw outlives them, as far as it is asked for.
+// Tests that the information of removed frames and landmarks stays in the prior, as far as the options ask
+// for it.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-/// One sigma of the newest frame's yaw after so many frames, every nth of them a keyframe.
+/// Sigma of the newest frame's yaw after the given number of frames, every nth of them a keyframe.
 double yawSigmaAfter(int frames, int keyframe_every, const WindowOptions& wanted, TestWindow& test) {
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(0.1 * frames + 1.0, 10.0));
@@ -24,7 +25,8 @@ double yawSigmaAfter(int frames, int keyframe_every, const WindowOptions& wanted
   return std::sqrt(newestCovariance(test.window, marginalizer.prior(), test.factors)(5, 5));
 }
 
-// What the observations of an interpolated frame say of the keyframes beside it outlives them.
+// The information from observations of an interpolated frame about its neighbouring keyframes stays in the
+// prior.
 TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
   const auto yawSigma = [](double spacing_s) {
     TestWindow test(2, quadraticOptions());
@@ -34,12 +36,12 @@ TEST(Marginalizer, CarriesOnWhatInterpolatedFramesSaw) {
     return sigma;
   };
   const double dropped = yawSigma(1.0), kept = yawSigma(0.05);
-  // Three times the observations: 0.58 if they were all there is.
+  // Three times the observations: 0.58 if there were no others.
   EXPECT_LT(kept, 0.85 * dropped);
   EXPECT_GT(kept, 0.5 * dropped);
 }
 
-// Nor do those of a landmark that outlives the window: all of them, but for what ties both sides of a cut.
+// The same holds for a landmark that outlives the window, except for the correlation of both sides of a cut.
 TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
   const auto yawSigma = [](int split_at_keyframe) {
     TestWindow test(2, quadraticOptions());
@@ -51,7 +53,7 @@ TEST(Marginalizer, CarriesOnWhatLandmarksThatLiveOnWereSeenBy) {
   EXPECT_GT(kept, 0.2 * dropped);
 }
 
-// However many keyframes go at once.
+// For any number of keyframes that leave at once.
 TEST(Marginalizer, CutsNothingWhereNothingIsAskedToBeCut) {
   constexpr int kKeyframes = 6, kNever = std::numeric_limits<int>::max();
   const auto informationAfter = [](const auto& shorten) {

@@ -24,8 +24,9 @@ struct StartedWindow : TestWindow {
 
 enum class OldTracks { End, LiveOn };
 
-// Eight keyframes at the batch solution. Where old tracks end, the newest frame sees nothing that frame 0
-// does: then all its landmarks go with it, and marginalization drops nothing.
+// Eight keyframes at the batch solution. Where old tracks end, the newest frame observes none of the
+// landmarks of frame 0. All of frame 0's landmarks are then marginalized with it, and no observation is
+// dropped.
 class LosslessMarginalizationTest : public testing::Test {
  protected:
   static constexpr int kFrames = 8;
@@ -64,8 +65,8 @@ TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
   ASSERT_FALSE(marginalizer.takeMapPoints().empty());
   ASSERT_TRUE(solveWindow(shortened_.window, marginalizer.prior(), shortened_.factors, kToTheEnd).usable);
 
-  // Linearized 1e-4 (m, rad) away from the solution, what remains is of second order: the curvature that
-  // Gauss-Newton leaves out, some per cent of that.
+  // With linearization points 1e-4 (m, rad) away from the solution, the rest is of second order: some per
+  // cent of the curvature that Gauss-Newton leaves out.
   double moved = 0.0;
   for (const auto& frame : shortened_.window.frames()) {
     const Frame& other = *batch_.window.find(frame->id);
@@ -88,7 +89,8 @@ TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
             0.01);
 }
 
-// What a landmark that lives on was seen by before the cut counts as another track would that ends there.
+// The observations of a continuing landmark before the cut count like those of a separate track that ends
+// there.
 TEST_F(LosslessMarginalizationTest, CutTracksCountAsTwo) {
   constexpr FrameId kLastBeforeCut = 3;
   constexpr TrackId kOlder = 1000;
@@ -122,7 +124,7 @@ TEST_F(LosslessMarginalizationTest, CutTracksCountAsTwo) {
   }
 }
 
-// The four directions that neither camera nor IMU can see: translations, and rotation about gravity.
+// The four directions that neither camera nor IMU observes: translations, and rotation about gravity.
 Eigen::Vector4d unobservableInformation(const Prior& prior) {
   Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(prior.tangentSize(), 4);
   int row = 0;
@@ -138,7 +140,7 @@ Eigen::Vector4d unobservableInformation(const Prior& prior) {
   return (prior.sqrt_information * directions).colwise().squaredNorm();
 }
 
-// Enough of where a rig is for its equations to have a solution, which Ceres does without.
+// Just enough prior information for the equations to have a solution; Ceres works without it.
 InitialStateOptions nearlyNothing() {
   InitialStateOptions options;
   options.position_sigma_m = 30.0;
@@ -147,17 +149,17 @@ InitialStateOptions nearlyNothing() {
   return options;
 }
 
-// Runs a window without any prior on where it is, or with as good as none, and returns what its
-// marginalizations claim to know of that.
+// Runs a window without any prior on its pose, or with a negligible one. Returns the information of its
+// marginalization prior about that pose.
 enum class LinearizationPoints { Kept, Forgotten, ResetLinearizationPoints };
 enum class OtherFrames { Dropped, Interpolated };
 Eigen::Vector4d informationAfter(int frames, LinearizationPoints linearization_points,
                                  OtherFrames other_frames = OtherFrames::Dropped, int keyframes = 3) {
   EstimatorOptions options;
-  // A poor IMU: estimates then move far enough from their first values for the difference to show.
+  // A poor IMU: estimates then move far enough from their linearization points for the difference to matter.
   options.preintegration.noise_inflation = 10.0;
   options.preintegration.motion_noise = MotionNoiseOptions::none();
-  options.landmark.min_frames = 1;  // and so do points that little is known of
+  options.landmark.min_frames = 1;  // and so do points with little information
   TestWindow test(2, options);
   Marginalizer marginalizer(test.factors);
   TestScene scene(sceneOptions(1.0 + 0.1 * frames, 10.0));
@@ -196,12 +198,12 @@ TEST(Marginalizer, CreatesNoInformationAboutPlaceAndHeading) {
   for (const LinearizationPoints linearization_points :
        {LinearizationPoints::Kept, LinearizationPoints::ResetLinearizationPoints}) {
     const Eigen::Vector4d information = informationAfter(30, linearization_points);
-    // What is left is rounding and the factorization's jitter: less than 10 m and 0.1 rad once.
+    // The rest is rounding and the jitter of the factorization: less than a sigma of 10 m and 0.1 rad.
     EXPECT_LT(information[0], 1e-2);
     EXPECT_LT(information[1], 1e-2);
     EXPECT_LT(information[2], 1e-2);
     EXPECT_LT(information[3], 1e2);
-    // No more than was said at the start, with short windows and with those that cut tracks.
+    // No more than the initial information, with short windows and with windows that cut tracks.
     const InitialStateOptions known = nearlyNothing();
     for (const int keyframes : {3, 6}) {
       const Eigen::Vector4d interpolated =
@@ -244,7 +246,7 @@ TEST(Marginalizer, ResetLinearizationPointsSaysTheSameAtThePresentValues) {
   const Eigen::Vector4d after = unobservableInformation(marginalizer.prior());
   for (int i = 0; i < 4; ++i)
     EXPECT_NEAR(after[i], information[i], 1e-6 * information[i]) << "direction " << i;
-  // Of all derivatives only those by yaw may change.
+  // Only the derivatives by yaw may change.
   const Eigen::VectorXd gradient_after = gradient();
   int row = 0;
   for (const Prior::Block& block : marginalizer.prior().blocks) {
@@ -313,8 +315,8 @@ TEST_P(MarginalizersBooks, AreInOrder) {
   }
   EXPECT_TRUE(marginalizer.takeMapPoints().empty());
   EXPECT_EQ(interpolated > 0, GetParam() < 0.1);
-  // Frames stand at the truth, so points are as good as their observations: half a pixel over a short
-  // baseline.
+  // Frames are at their true poses, so points are as accurate as their observations: half a pixel over a
+  // short baseline.
   ASSERT_GT(map.size(), 10u);
   double squares = 0.0;
   for (const auto& [id, point] : map) {

@@ -17,9 +17,8 @@
 namespace lodeline {
 namespace {
 
-/// The blocks of a problem, copied side by side. Ceres sorts blocks by their address; with addresses in the
-/// order of frames and tracks, and not wherever the heap put them, two runs add up their sums in the same
-/// order.
+/// Copies of a problem's blocks in contiguous memory. Ceres sorts blocks by their address. With addresses in
+/// the order of frames and tracks, and not of the heap, two runs add their sums in the same order.
 class BlockCopies {
  public:
   void add(double* original, int size) {
@@ -59,8 +58,8 @@ ceres::Solver::Options solverOptions(const SolveLimits& limits) {
   options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   options.max_num_iterations = limits.max_iterations;
   options.function_tolerance = limits.function_tolerance;
-  // Directions that only the whole window holds together (scale, tilt) have a curvature far below the
-  // diagonal of their blocks; the default damping of 1e-4 of that diagonal would creep along them.
+  // Directions that only the whole window determines (scale, tilt) have a curvature far below the diagonal of
+  // their blocks. The default damping of 1e-4 of that diagonal would make convergence along them very slow.
   options.initial_trust_region_radius = 1e9;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
@@ -102,7 +101,7 @@ SolveSummary solveWindow(Window& window, const Prior& prior, const FactorBuilder
   const auto add = [&](const Factor& factor) {
     std::vector<double*> blocks;
     for (const double* block : factor.blocks) blocks.push_back(copies.copyOf(block));
-    // Ceres takes no notice of the loss's constness.
+    // Ceres does not modify the loss, although its interface is not const.
     problem.AddResidualBlock(factor.function.get(), const_cast<ceres::LossFunction*>(factor.loss.get()),
                              blocks);
   };

@@ -12,9 +12,9 @@ struct SolveSummary {
   bool converged = false;  ///< before the limit of iterations
 };
 
-/// Minimizes the cost over everything in the window (Levenberg-Marquardt, landmarks eliminated first; one
-/// thread, so that the same input gives the same bytes). Inertial terms whose biases moved too far are
-/// integrated again first.
+/// Minimizes the cost over all variables of the window: Levenberg-Marquardt with landmarks eliminated first,
+/// on one thread, so that the same input gives the same bytes. First, inertial terms whose biases have
+/// changed too much are integrated again.
 struct SolveLimits {
   int max_iterations = 4;
   double function_tolerance = 1e-4;  ///< relative change of the cost that ends the iterations

@@ -36,7 +36,8 @@ TEST(WindowSolver, FindsBackToTheTruth) {
   const SolveSummary summary = solveWindow(test.window, prior, test.factors, {50, 1e-9});
   EXPECT_TRUE(summary.usable);
   EXPECT_LT(summary.final_cost, 0.01 * summary.initial_cost);
-  // A tenth of a pixel: 0.2 mrad an observation, and as many metres as that at 5 m over 5 observations' root.
+  // A tenth of a pixel: 0.2 mrad per observation, and the corresponding distance at 5 m over the root of 5
+  // observations.
   for (size_t k = 0; k < truth.size(); ++k) {
     const auto error = perturbationBetween(truth[k], test.window.frames()[k]->worldFromBody());
     EXPECT_LT(error.head<3>().norm(), 5e-3) << "frame " << k;
@@ -82,7 +83,7 @@ TEST(WindowSolver, ScaleIsAsSureAsDistanceOrSpeed) {
   state.velocity_W = Vec3(2.0, 0.0, 0.0);
   frame.setState(state);
   Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Identity();
-  covariance(1, 1) = 0.25;  // 0.5 m along the way of 10 m
+  covariance(1, 1) = 0.25;  // 0.5 m along a distance of 10 m
   covariance(6, 6) = 0.04;  // 0.2 m/s along 2 m/s
   EXPECT_NEAR(scaleUncertainty(frame, covariance), 0.05, 1e-12);
   covariance(6, 6) = 0.0004;

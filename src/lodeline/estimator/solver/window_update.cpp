@@ -13,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-/// The values of all blocks that a step moves, to go back to when it did not help.
+/// Copy of all blocks that a step changes, to restore them after a step that did not reduce the cost.
 class Snapshot {
  public:
   Snapshot(const Window& window, const std::vector<double*>& landmarks) {
@@ -51,7 +51,7 @@ int tangentSizeOf(const Window& window) {
   return size;
 }
 
-/// All terms of a window, in a form that is quick to evaluate again and again.
+/// All terms of a window, in a form that is fast to evaluate repeatedly.
 class QuickTerms {
  public:
   QuickTerms(Window& window, const Prior& prior, const FactorBuilder& factors,
@@ -62,7 +62,7 @@ class QuickTerms {
         linearization_cache_(frozen),
         size_(tangentSizeOf(window)) {}
 
-  /// After blocks have moved.
+  /// Called after blocks have changed.
   void update() { visual_.update(); }
 
   double cost() {
@@ -112,9 +112,9 @@ class QuickTerms {
 
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                           const SolveLimits& limits, const LandmarkLinearizationCache& frozen) {
-  // None at first. After darkness the window is known to metres as a whole and its frames among one another
-  // to micrometres: however little damping there is beside the latter, it holds the whole where dead
-  // reckoning left it.
+  // The first step is undamped. After darkness the window as a whole is known to metres, and its frames
+  // relative to each other to micrometres. Any damping that is small relative to the latter would hold the
+  // whole window at its dead-reckoning position.
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e-1;
   QuickTerms terms(window, prior, factors, frozen);

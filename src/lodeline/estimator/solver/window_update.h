@@ -9,16 +9,16 @@ namespace lodeline {
 
 struct WindowUpdate {
   SolveSummary summary;
-  /// As from jointCovariance(), with the Jacobians that the last step was made from.
+  /// As from jointCovariance(), with the Jacobians of the last step.
   JointCovariance covariance;
-  /// Of all but the frozen landmarks of the window as it is now, see ReprojectionSystem::errors().
+  /// Residual norms of all but the frozen landmarks of the updated window, see ReprojectionSystem::errors().
   std::vector<double> errors_sigmas;
 };
 
-/// The quick counterpart of solveWindow(): the same cost, but Levenberg-Marquardt steps on normal equations
-/// that are set up here, with PriorTerms and ReprojectionSystem in place of their factors. It takes a
-/// fraction of the time of a general solver, and the covariance comes with it. Poses, motions and landmarks
-/// of the window are moved in place, but for the landmarks that are frozen.
+/// Fast counterpart of solveWindow() for the same cost: Levenberg-Marquardt steps on normal equations that
+/// use PriorTerms and ReprojectionSystem in place of the factors. It takes a fraction of the time of a
+/// general solver, and also gives the covariance. It updates poses, motions and landmarks of the window in
+/// place, except for frozen landmarks.
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                           const SolveLimits& limits,
                           const LandmarkLinearizationCache& frozen = LandmarkLinearizationCache(0));

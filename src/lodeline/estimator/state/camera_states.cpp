@@ -10,10 +10,10 @@ namespace {
 
 constexpr const char* kTimeOffset = "camera.dt";
 
-// Small enough to hold a state, large enough to keep the prior well conditioned.
+// Small enough to hold a state, large enough for a well conditioned prior.
 constexpr double kHeld = 1e-7;
 
-// Short enough to need no memory of their own: they are looked up for every landmark.
+// Names short enough to need no heap memory: they are looked up for every landmark.
 std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".T_BC"; }
 
 std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
@@ -34,8 +34,8 @@ Eigen::VectorXd extrinsicsSigmas(double rotation_rad, double position_m) {
   return sigmas;
 }
 
-/// Of a secondary camera's position only that it is somewhere on the rig: FactorBuilder::placement() has the
-/// rest.
+/// Prior sigmas of a secondary camera. The position is only limited to the size of the rig;
+/// FactorBuilder::placement() contains the rest.
 Eigen::VectorXd stereoSigmas(const CameraCalibrationOptions& options) {
   constexpr double kSomewhere_m = 0.05;
   return extrinsicsSigmas(options.stereo_rotation_sigma_rad,
@@ -48,7 +48,7 @@ Eigen::VectorXd stereoRotationSigmas(const CameraCalibrationOptions& options) {
   return Vec3::Constant(std::max(options.stereo_rotation_sigma_rad, kHeld));
 }
 
-double placementLossWidth(const ParameterBlock& further) { return further.priors.empty() ? 1.0 : 0.5; }
+double placementLossWidth(const ParameterBlock& secondary) { return secondary.priors.empty() ? 1.0 : 0.5; }
 
 Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options) {
   Eigen::VectorXd sigmas(kIntrinsicsSize);
@@ -81,8 +81,8 @@ CameraStates cameraStates(const Window& window) {
   states.camera0 = window.findGlobal(extrinsicsName(0));
   if (!states.camera0) return states;
   states.time_offset = window.findGlobal(kTimeOffset);
-  while (ParameterBlock* further = window.findGlobal(extrinsicsName(states.further.size() + 1)))
-    states.further.push_back(further);
+  while (ParameterBlock* secondary = window.findGlobal(extrinsicsName(states.secondary.size() + 1)))
+    states.secondary.push_back(secondary);
   while (ParameterBlock* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
     states.intrinsics.push_back(lens);
   return states;
@@ -100,8 +100,8 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   if (!states) return std::nullopt;
   CameraCorrections corrections;
   corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(states.camera0->value.data()));
-  for (const ParameterBlock* further : states.further)
-    corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(further->value.data()));
+  for (const ParameterBlock* secondary : states.secondary)
+    corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(secondary->value.data()));
   corrections.time_offset_s = states.timeOffset_s();
   for (const ParameterBlock* lens : states.intrinsics)
     corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));

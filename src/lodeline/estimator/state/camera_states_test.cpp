@@ -23,7 +23,7 @@ TestSceneOptions sceneOptions(uint64_t seed = 1) {
   return options;
 }
 
-/// The estimator's last word on a scene, with the calibration files it was given.
+/// Last estimate of a scene with the given calibration files.
 FrameEstimate lastEstimate(TestScene& scene, const Rig& files, const EstimatorOptions& options) {
   Diagnostics diagnostics;
   Estimator estimator(files, options, &diagnostics);
@@ -32,7 +32,7 @@ FrameEstimate lastEstimate(TestScene& scene, const Rig& files, const EstimatorOp
   return last;
 }
 
-/// How far the estimate of camera 0's place ends from the truth, with both cameras' files moved by that.
+/// Final error of camera 0's estimated extrinsics when both cameras' files are moved by `moved`.
 Rigid3 errorOfExtrinsics(const Rigid3& moved, uint64_t seed) {
   TestScene scene(sceneOptions(seed));
   Rig files = scene.rig();
@@ -40,7 +40,7 @@ Rigid3 errorOfExtrinsics(const Rigid3& moved, uint64_t seed) {
     camera.body_from_camera.rotation = moved.rotation * camera.body_from_camera.rotation;
     camera.body_from_camera.translation += moved.translation;
   }
-  // Both cameras moved alike: what is right between them stays right.
+  // Both cameras move together: their relative pose stays correct.
   files.cameras[1].body_from_camera =
       files.cameras[0].body_from_camera *
       (scene.rig().cameras[0].body_from_camera.inverse() * scene.rig().cameras[1].body_from_camera);
@@ -62,7 +62,7 @@ TEST(CameraStates, FindWrongExtrinsics) {
     EXPECT_LT(so3::log(error.rotation).norm(), 0.1 * so3::log(moved.rotation).norm()) << seed;
     squares_m2 += error.translation.squaredNorm() / kSeeds;
   }
-  // The place of the camera shows in turns alone, and slowly.
+  // The camera's position is observable only in rotations, and slowly.
   EXPECT_LT(std::sqrt(squares_m2), 0.7 * moved.translation.norm());
 }
 
@@ -84,7 +84,7 @@ TEST(CameraStates, FindAWrongStereoRotation) {
             0.15 * rotation.norm());
 }
 
-/// For files that are wrong by more than usual.
+/// Options for files with larger errors than usual.
 CameraCalibrationOptions calibrationOfWrongFiles(bool lenses) {
   CameraCalibrationOptions options;
   options.intrinsics = lenses;
@@ -94,7 +94,7 @@ CameraCalibrationOptions calibrationOfWrongFiles(bool lenses) {
   return options;
 }
 
-/// The scene's tracks as someone reads them who takes `files` for the cameras.
+/// The scene's tracks as interpreted with the cameras of `files`.
 FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
   for (FeatureObservation& observation : tracks.observations) {
     const auto camera = static_cast<size_t>(observation.camera);
@@ -104,7 +104,7 @@ FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
   return tracks;
 }
 
-/// Mean square of the distance to the truth, from the start on; `last` is the last estimate.
+/// Mean squared distance from the truth over the whole scene; `last` receives the last estimate.
 double squaredPositionError_m2(bool lenses, uint64_t seed, const Eigen::Matrix<double, 6, 1>& lens,
                                FrameEstimate* last) {
   TestSceneOptions scene_options = sceneOptions();
@@ -215,7 +215,7 @@ TEST(CameraStates, StartWhereTheFrontEndFoundACamera) {
   EXPECT_TRUE(corrections->extrinsics[0].isZero());
   EXPECT_EQ(Vec3(corrections->extrinsics[1].head<3>()), turn);
   EXPECT_TRUE(corrections->extrinsics[2].isZero());
-  // What is known beforehand counts from there.
+  // The prior is centred there.
   const Eigen::VectorXd known = prior.blocks[2].linearization_point;
   EXPECT_EQ(Vec3(known.head<3>()), turn);
 }
@@ -238,8 +238,8 @@ TEST(CameraStates, AreHeldByASigmaOfZeroAndAbsentWhenOff) {
   EXPECT_LT((held.state.world_from_body.translation - off.state.world_from_body.translation).norm(), 1e-4);
 }
 
-// Observations half a pixel off, whose noise must not speak for a longer lens: of each alone it is a trifle,
-// but all of them would say the same.
+// Observations with half a pixel of noise must not bias the focal length. The bias of one observation would
+// be small, but it would have the same sign in all.
 TEST(CameraStates, NoiseMakesNoLensLonger) {
   constexpr int kDives = 3;
   double mean = 0.0;
@@ -254,7 +254,7 @@ TEST(CameraStates, NoiseMakesNoLensLonger) {
     ASSERT_TRUE(corrections && !corrections->intrinsics.empty());
     mean += 0.5 * corrections->intrinsics[0].head<2>().sum() / kDives;
   }
-  // One dive tells the focal length to 0.0004.
+  // One dive determines the focal length with a sigma of 0.0004.
   EXPECT_NEAR(mean, 0.0, 1e-3);
 }
 

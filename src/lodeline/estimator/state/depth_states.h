@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// The parameter blocks by which a window knows the depth gauge; all null where it is not fused.
+/// Parameter blocks of the depth gauge in a window; all null where it is not fused.
 struct DepthStates {
   static constexpr const char* kOffset = "depth_at_origin";  ///< d_0, m
   static constexpr const char* kScale = "depth_scale";       ///< k

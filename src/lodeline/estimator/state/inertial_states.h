@@ -8,24 +8,24 @@
 
 namespace lodeline {
 
-/// The options for a rig's IMU: of one that its maker has calibrated, or whose axes are held, nothing is
-/// doubted beyond what is estimated, and what is estimated of it is not counted as motion noise as well.
-/// Everything below takes options that have been through this.
+/// Options adapted to a rig's IMU. If its maker calibrated it, or if its axes are held, no uncertainty is
+/// added beyond the estimated states. Errors that are estimated are not counted as motion noise as well. All
+/// functions below expect options that this function returned.
 EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options);
 
 /// Adds the axes of gyroscope and accelerometer (factors/inertial_factor.h), unless they are to be held.
-/// Every turn then teaches what the next one needs: vision, and the magnetometer where there is one, say how
-/// far the rig has really turned, and a rig that tilts turns its accelerometer in a gravity that is known.
-/// FactorBuilder::imuAxes() keeps them near what is known beforehand.
+/// Rotations make them observable: vision, and the magnetometer where there is one, measure the true rotation
+/// of the rig, and a rig that tilts rotates its accelerometer in known gravity. FactorBuilder::imuAxes() is
+/// the prior.
 void addInertialStates(Window& window, const ImuAxesOptions& options);
 
-/// Null where the axes are held.
+/// States of the IMU axes; null where the axes are held.
 struct ImuAxesStates {
   explicit ImuAxesStates(const Window& window);
   ParameterBlock* gyroscope;
   ParameterBlock* accelerometer;
 };
-/// None where they are held.
+/// Estimated axes; empty where they are held.
 std::optional<SensorAxes> gyroscopeAxes(const Window& window);
 std::optional<SensorAxes> accelerometerAxes(const Window& window);
 

@@ -23,15 +23,15 @@ TestSceneOptions sceneOptions(uint64_t seed) {
 
 struct Outcome {
   FrameEstimate last;
-  double first_heading_variance_rad2 = 0.0;  ///< claimed after 3 s
-  /// By what lenses make of turns the last heading claims more where gyroscopes are not known to be
-  /// calibrated.
-  double variance_by_intrinsicses_rad2 = 0.0;
-  /// What the rotation's error has changed by since the middle of the scene, root mean square.
+  double first_heading_variance_rad2 = 0.0;  ///< reported after 3 s
+  /// Difference of the last reported heading variance from rotation errors by the intrinsics, which are
+  /// larger where gyroscopes are not known to be calibrated.
+  double variance_by_intrinsics_rad2 = 0.0;
+  /// Change of the rotation error since the middle of the scene, root mean square.
   double drift_rad = 0.0;
 };
 
-/// That a gyroscope's axes are off by so much; an accelerometer's are held.
+/// Options with the given sigma of the gyroscope's axes; the accelerometer's axes are held.
 ImuAxesOptions forGyroscope(double sigma, double uncalibrated_sigma = 0.0) {
   return {.gyroscope_sigma = sigma,
           .calibrated_below_rad_per_s_sqrtHz = 0.0,
@@ -43,12 +43,12 @@ ImuAxesOptions forAccelerometer(double sigma) {
   return {.gyroscope_sigma = 0.0, .uncalibrated_sigma = 0.0, .accelerometer_sigma = sigma};
 }
 
-/// True values are (I + D) times what a sensor reads, D column by column.
+/// Sensor reading of a true value. True values are (I + D) times the reading, D column by column.
 Vec3 readingOf(const Vec3& value, const SensorAxes& axes) {
   return (Mat3::Identity() + axes.reshaped(3, 3)).inverse() * value;
 }
 
-/// A scene seen with an IMU whose axes are off.
+/// Runs a scene with an IMU that has axes errors.
 Outcome runWith(const ImuAxes& axes, const ImuAxesOptions& axes_options, uint64_t seed = 1) {
   const TestSceneOptions scene_options = sceneOptions(seed);
   TestScene scene(scene_options);
@@ -80,12 +80,12 @@ Outcome runWith(const ImuAxes& axes, const ImuAxesOptions& axes_options, uint64_
   for (const bool is_known : {false, true}) {
     Eigen::Matrix<double, 15, 15> added = Eigen::Matrix<double, 15, 15>::Zero();
     lenses.addTo({.is_scale_given = true, .are_gyroscope_axes_known = is_known}, &added);
-    outcome.variance_by_intrinsicses_rad2 += is_known ? -added(5, 5) : added(5, 5);
+    outcome.variance_by_intrinsics_rad2 += is_known ? -added(5, 5) : added(5, 5);
   }
   return outcome;
 }
 
-/// Root mean square over seeds: that of one scene is one draw of a random walk.
+/// Root mean square over seeds, because one scene is one draw of a random walk.
 double drift_rad(const ImuAxes& axes, const ImuAxesOptions& options, uint64_t seeds) {
   double squares = 0.0;
   for (uint64_t seed = 1; seed <= seeds; ++seed)
@@ -129,7 +129,7 @@ TEST(InertialStates, AreDoubtedOfALoudGyroscopeThatIsNotHeld) {
   EXPECT_FALSE(optionsFor(rig, options).imu_axes.areDoubted());
 }
 
-// What is a state need not be noise as well.
+// An estimated error must not be part of the noise as well.
 TEST(InertialStates, LeaveLittleToTheMotionNoiseOfACalibratedImu) {
   Rig rig;
   EstimatorOptions options;
@@ -160,7 +160,7 @@ TEST(InertialStates, AreNoneWhereTheAxesAreHeld) {
   EXPECT_TRUE(accelerometerAxes(estimated)->isZero());
 }
 
-/// What is believed of axes of which one is off by so much, as a cost.
+/// Cost of the prior where one axis has the error `error`.
 double costOfAxes(double error) {
   Window window;
   addInertialStates(window, {});
@@ -177,7 +177,7 @@ TEST(InertialStates, MayBeOffByPerCentsAndNotByTens) {
   EXPECT_GT(costOfAxes(0.3) - costOfAxes(0.03), 45.0) << "one that nobody sells";
 }
 
-// Vision tells an error of three of its sigmas from nothing, whatever the sensor's noise.
+// Vision detects an error of three of its sigmas, whatever the sensor's noise.
 TEST(InertialStates, FindASmallErrorOfACalibratedGyroscope) {
   SensorAxes axes;
   axes << 0.003, -0.002, 0.001, 0.002, -0.0027, 0.0024, 0.0019, -0.0024, 0.0024;
@@ -206,13 +206,13 @@ TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   EXPECT_GT(doubted.covariance(3, 3), std::pow(kUncalibrated, 2));
   EXPECT_GT(doubted.covariance(4, 4), std::pow(kUncalibrated, 2));
   EXPECT_GT(in_doubt.first_heading_variance_rad2, 1.02 * taken_for_calibrated.first_heading_variance_rad2);
-  EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_intrinsicses_rad2,
-            1.02 * believed.covariance(5, 5))
+  EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_intrinsics_rad2, 1.02 * believed.covariance(5, 5))
       << "turns have told by now";
   EXPECT_EQ(doubted.magnetometer.heading_sigma_rad, std::sqrt(doubted.covariance(5, 5)));
 }
 
-/// Means over scenes whose accelerometers are four times as biased as a start supposes, soon after it.
+/// Means over scenes with accelerometer biases four times as large as the initial sigma, soon after the
+/// start.
 ConsistencyRow biasedStarts(double uncalibrated_sigma) {
   constexpr double kBias_m_per_s2 = 0.4;
   ConsistencyOptions options;

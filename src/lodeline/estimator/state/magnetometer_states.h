@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// The parameter blocks by which a window knows the magnetometer; all null where it is not fused absolutely.
+/// Parameter blocks of the magnetometer in a window; all null unless its use is Absolute.
 struct MagnetometerStates {
   static constexpr const char* kField = "magnetic_field";              ///< m_W, T
   static constexpr const char* kOffset = "magnetometer_offset";        ///< o_B, T
@@ -28,7 +28,7 @@ struct MagnetometerStates {
   ParameterBlock* disturbance;
 };
 
-/// Of the hard iron that is left of a magnetometer's readings at the start of a dive, T per axis.
+/// Sigma of the residual hard iron in a magnetometer's readings at the start of a dive, T per axis.
 inline double offsetSigma(const MagnetometerCalibration& calibration, const MagnetometerOptions& options) {
   if (!calibration.is_calibrated) return options.uncalibrated_offset_sigma_T;
   return std::hypot(options.offset_sigma_T,

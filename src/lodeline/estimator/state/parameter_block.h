@@ -8,32 +8,32 @@
 
 namespace lodeline {
 
-/// A number as it is believed to be: a normal distribution.
+/// A normal distribution of a scalar.
 struct ScalarPrior {
   double value = 0.0, sigma = 0.0;
 };
 
-/// A quantity that the window estimates but that belongs to no frame: a field vector, a sensor's offset, an
-/// extrinsic calibration, a time offset. Factors name its block like that of a frame; solver, normal
-/// equations, marginalization (with its linearization points) and covariance treat it alike. It enters with
-/// an entry of its own in the prior (Prior::append), or with factors that determine it.
+/// An estimated quantity of the window that belongs to no frame: a field vector, a sensor's offset,
+/// extrinsics, a time offset. Factors refer to its block like to that of a frame; solver, normal equations,
+/// marginalization (with its linearization points) and covariance treat both alike. It enters with its own
+/// entry in the prior (Prior::append), or with factors that determine it.
 struct ParameterBlock {
   std::string name;
-  /// Parameter block, never resized, so that its address is the state's identity. A block of kPoseSize is a
-  /// pose with its 6 perturbation coordinates; any other moves by addition.
+  /// Parameter block, never resized, so that its address identifies the state. A block of kPoseSize is a pose
+  /// with its 6 perturbation coordinates; for any other, a perturbation is added.
   std::vector<double> value;
-  /// Where the marginalization prior first linearized it; empty while the prior does not touch it.
+  /// Linearization point, set by the marginalization prior; empty while the prior does not contain the block.
   std::optional<std::vector<double>> first;
-  /// Random walk of each coordinate, [unit of the block]/sqrt(s): what the prior knows of the state fades by
-  /// this as frames are marginalized. 0: a constant.
+  /// Random walk of each coordinate, [unit of the block]/sqrt(s), applied to the prior as frames are
+  /// marginalized. 0: a constant.
   double walk_per_sqrt_s = 0.0;
-  /// Whether JointCovariance shall hold it, at the price of as many more columns to solve for.
+  /// Whether JointCovariance contains it; this costs as many more columns to solve for.
   bool is_correlation_wanted = false;
-  /// Of a change that has happened all at once, each coordinate, [unit of the block]^2: joins the walk when
-  /// the next frame is marginalized.
+  /// Variance of a sudden change of each coordinate, [unit of the block]^2. It is added to the walk when the
+  /// next frame is marginalized.
   double sudden_variance = 0.0;
-  /// What is known of each coordinate beside all that the window was told (an infinite sigma: nothing);
-  /// empty: of none. May change from frame to frame, so it never becomes part of the prior.
+  /// Prior of each coordinate beside the measurements (infinite sigma: none); empty: none for all. It may
+  /// change from frame to frame, so it never becomes part of the marginalization prior.
   std::vector<ScalarPrior> priors = {};
 
   bool isPose() const { return value.size() == kPoseSize; }

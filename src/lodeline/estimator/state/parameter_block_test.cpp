@@ -16,8 +16,8 @@
 namespace lodeline {
 namespace {
 
-// A moving rig with two states of its own: a vector as small as a field in tesla, and a pose. A prior couples
-// them with the first frame.
+// A moving rig with two additional states: a vector as small as a field in tesla, and a pose. A prior
+// correlates them with the first frame.
 class ParameterBlockTest : public testing::Test {
  protected:
   static constexpr int kFrames = 6;
@@ -37,7 +37,7 @@ class ParameterBlockTest : public testing::Test {
 
   Frame& first() { return *test_.window.frames().front(); }
 
-  // Knows the two states, and their sum with the first frame's position and rotation as well.
+  // Prior on the two states, and on their sum with the first frame's position and rotation.
   Prior coupledPrior() {
     Prior prior = startPrior(first(), test_.options.initial_state, 0.05);
     prior.append(vector_->value.data(), 3, Vec3::Constant(1e-6));
@@ -128,7 +128,7 @@ TEST_F(ParameterBlockTest, WalksWhileFramesAreMarginalized) {
   const Mat3 expected = before + 4e-12 * elapsed_s * Mat3::Identity();
   EXPECT_LT(relativeDifference(covariance(marginalizer.prior(), {vector_->value.data()}), expected), 1e-4);
   EXPECT_GT(relativeDifference(before, expected), 0.1);
-  // The estimate itself stays.
+  // The estimate itself does not change.
   const std::vector<double> value = vector_->value;
   updateWindow(test_.window, marginalizer.prior(), test_.factors, {10, 1e-16});
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(vector_->value[i], value[i], 1e-9);
@@ -155,12 +155,12 @@ TEST_F(ParameterBlockTest, ForgottenLeavesBehindWhatItSaidOfOthers) {
   for (const Prior::Block& block : marginalizer.prior().blocks)
     EXPECT_NE(block.value, vector_->value.data()) << "still in the prior";
   EXPECT_LT(relativeDifference(covariance(marginalizer.prior(), others), before), 1e-5);
-  // It may come back, with nothing but what is said of it then.
+  // The state may be added again, with the new prior only.
   marginalizer.addKnowledge(*vector_, Vec3::Constant(3e-6));
   const Mat3 afresh = covariance(marginalizer.prior(), {vector_->value.data()});
   EXPECT_LT(relativeDifference(afresh, 9e-12 * Mat3::Identity()), 1e-6);
   marginalizer.forget(test_.window, *vector_);
-  marginalizer.forget(test_.window, *vector_);  // nothing to forget: no harm
+  marginalizer.forget(test_.window, *vector_);  // no entry in the prior: no effect
 }
 
 }  // namespace

@@ -28,27 +28,28 @@ using FrameId = int64_t;
 using PoseBlock = std::array<double, kPoseSize>;
 using MotionBlock = std::array<double, kMotionSize>;
 
-/// What the magnetometer says of a frame.
+/// Magnetometer measurement of a frame.
 struct FieldMeasurement {
   MagnetometerMean mean;
-  bool relative = false;  ///< against the frame before (MagnetometerRelativeFactor), not against the field
+  bool relative = false;  ///< relative to the frame before (MagnetometerRelativeFactor), not to the field
   FieldNoise noise;
   bool disturbed = false;  ///< the field has a disturbance to be estimated
 };
 
-/// What the pressure sensor says of a frame.
+/// Depth measurement of a frame.
 struct DepthMeasurement {
   CarriedDepth depth;
   double sigma_m = 0.0;
 };
 
-/// A frame without a state of its own: the keyframes that its pose hangs between.
+/// Pose of a frame without a state of its own: the keyframes between which it is interpolated.
 struct Interpolated {
   FrameId before = 0, after = 0;
   PoseInterpolation between;
 };
 
-/// The state at one image time. Old keyframes keep their pose only, frames between them not even that.
+/// State at one image time. Old keyframes keep only their pose; frames between them have no state of their
+/// own.
 struct Frame {
   FrameId id = 0;
   Time time;
@@ -58,20 +59,19 @@ struct Frame {
   bool has_motion = true;
   MotionBlock motion{};
   Vec3 gyroscope_B = Vec3::Zero();  ///< the gyroscope's reading at `time`, rad/s
-  /// As of the last time that the frame had its motion, see updateImageMotion().
+  /// Motion as of the last time when the frame had its motion block, see updateImageMotion().
   ImageMotion image_motion;
-  /// Where the block was first linearized by the marginalization prior; empty while the prior does not touch
-  /// it.
+  /// Linearization point, set by the marginalization prior; empty while the prior does not contain the block.
   std::optional<PoseBlock> first_pose;
   std::optional<MotionBlock> first_motion;
-  /// Inertial readings since the frame before, while that frame has its motion too.
+  /// Inertial readings since the frame before, while that frame has its motion block too.
   std::unique_ptr<Preintegration> from_previous;
-  /// Until it has become part of the prior.
+  /// Measurements, until they become part of the prior.
   std::optional<FieldMeasurement> magnetometer;
   std::optional<DepthMeasurement> depth;
-  std::optional<double> rest_sigma_m_per_s;  ///< where the rig rests: the velocity is zero, known so well
-  /// Width of the robust loss on its reprojection errors, standard deviations; as the options say until these
-  /// have shown what it should be.
+  std::optional<double> rest_sigma_m_per_s;  ///< sigma of a zero-velocity update, where the rig rests
+  /// Width of the robust loss on the frame's reprojection residuals, in standard deviations. Empty: the value
+  /// of the options, until there are residuals to compute it from.
   std::optional<double> robust_scale_sigmas;
 
   Rigid3 worldFromBody() const { return poseFromBlock(pose.data()); }
@@ -80,22 +80,23 @@ struct Frame {
   Vec3 accelerometerBias() const { return Vec3(motion.data() + 6); }
   NavigationState state() const;
   void setState(const NavigationState& state);
-  /// Brings `image_motion` up to date, which old keyframes keep.
+  /// Updates `image_motion`, which old keyframes keep.
   void updateImageMotion();
-  /// Where Jacobians are taken: at the linearization point, or at the present value where there is none.
+  /// Pose at which Jacobians are taken: the linearization point, or the present value where there is none.
   Rigid3 firstWorldFromBody() const { return poseFromBlock(first_pose ? first_pose->data() : pose.data()); }
   const double* firstPose() const { return first_pose ? first_pose->data() : nullptr; }
   const double* firstMotion() const { return first_motion ? first_motion->data() : nullptr; }
 };
 
-/// One image's view of a track.
+/// Measurement of a track in one image.
 struct Observation {
   FrameId frame = 0;
   int camera = 0;
   DirectionMeasurement measurement;
 };
 
-/// The position of a tracked point relative to its host frame (see LandmarkBase); hosts are seen by camera 0.
+/// Position of a tracked point relative to its host frame (see LandmarkBase); camera 0 of the host observes
+/// it.
 struct Landmark {
   FrameId host = 0;
   LandmarkBase base;
@@ -104,37 +105,38 @@ struct Landmark {
   double inverseDistance() const { return parameters[2]; }
 };
 
-/// A landmark that nothing will change any more.
+/// A landmark that has left the window and will not change any more.
 struct MapPoint {
   TrackId track = -1;
   Vec3 position_W = Vec3::Zero();  ///< m
-  int observations = 0;            ///< in the window when it left
+  int observations = 0;            ///< number in the window when it left
 };
 
-/// All that the window knows of one tracked point.
+/// Observations of one tracked point, and its landmark.
 struct FeatureTrack {
   std::vector<Observation> observations;  ///< in order of time, then camera
   std::optional<Landmark> landmark;
-  double weight = 1.0;     ///< of its reprojection errors, squared (robust_loss.h)
-  bool is_frozen = false;  ///< its terms are among LandmarkLinearizationCache
+  double weight = 1.0;     ///< of its squared reprojection residuals (robust_loss.h)
+  bool is_frozen = false;  ///< its terms are in the LandmarkLinearizationCache
 
   std::span<const Observation> in(FrameId frame) const;
   const Observation* find(FrameId frame, int camera) const;  ///< null where there is none
   bool seenIn(FrameId frame) const { return !in(frame).empty(); }
-  int frameCount() const;  ///< frames that see it, with whatever camera
-  /// Whether it is the one that its landmark is hosted at.
+  int frameCount() const;  ///< frames that observe it, with any camera
+  /// Whether the observation defines the landmark's host ray.
   bool isHosted(const Observation& observation) const {
     return landmark && observation.frame == landmark->host && observation.camera == 0;
   }
 };
 
-/// By their numbers, side by side in memory: a frame walks through them many times over. New ones come last.
+/// Tracks by their numbers, contiguous in memory because a frame iterates over them many times. New ones come
+/// last.
 using Tracks = boost::container::flat_map<TrackId, FeatureTrack>;
-/// Tracks with fewer observations are forgotten.
+/// Removes tracks with fewer observations.
 void removeShortTracks(Tracks& tracks, size_t least_observations);
 
 /// The sliding window: old keyframes (poses) and interpolated frames between them, then the most recent
-/// frames (poses and motions), the tracks they see, and what belongs to no frame.
+/// frames (poses and motions), their tracks, and the parameter blocks that belong to no frame.
 class Window {
  public:
   Frame& add(std::unique_ptr<Frame> frame);
@@ -152,27 +154,27 @@ class Window {
   Frame* oldestRecent() const;
   Frame* after(const Frame& frame) const;
 
-  /// References to a track stay valid until tracks come or go.
+  /// References to a track stay valid until tracks are added or removed.
   Tracks& tracks() { return tracks_; }
   const Tracks& tracks() const { return tracks_; }
 
-  /// Adds a state that belongs to no frame; the reference stays valid as long as the window's contents.
+  /// Adds a state that belongs to no frame; the reference stays valid as long as the window.
   ParameterBlock& add(ParameterBlock state);
   /// In the order in which they were added.
   const std::vector<std::unique_ptr<ParameterBlock>>& globals() const { return globals_; }
-  /// Null where there is none of that name.
+  /// Null where no block has that name.
   ParameterBlock* findGlobal(std::string_view name) const;
 
-  /// Lets the pose of a frame, which loses its motion, follow from those of two keyframes from now on. Its
+  /// Interpolates the pose of a frame, which loses its motion, between two keyframes from now on. Its
   /// observations stay.
   void interpolate(Frame& frame, const Frame& before, const Frame& after);
-  /// Brings poses and linearization points of interpolated frames up to date, after keyframes have moved.
+  /// Updates poses and linearization points of interpolated frames after keyframes have moved.
   void placeInterpolated();
 
-  /// Forgets a frame, and those interpolated from it, with all their observations. No landmark may be hosted
-  /// there any more.
+  /// Removes a frame, and those interpolated from it, with all their observations. It must not be the host of
+  /// any landmark.
   void remove(FrameId id);
-  /// Tracks without observations are forgotten.
+  /// Removes tracks without observations.
   void removeEmptyTracks();
 
  private:

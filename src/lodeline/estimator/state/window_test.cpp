@@ -79,7 +79,7 @@ TEST_F(WindowTest, TakesAnInterpolatedFrameAlongWithItsKeyframes) {
   EXPECT_EQ(window_.poseOnlyCount(), 1);
   EXPECT_EQ(window_.recentCount(), 3);
   EXPECT_LT((frame.worldFromBody().translation - Vec3(0.0, 0.1, 0.0)).norm(), 1e-15);
-  // Stamps are even, so it lies halfway.
+  // Time stamps are evenly spaced, so it lies halfway.
   before.first_pose = before.pose;
   poseToBlock(Rigid3(Quat::Identity(), Vec3(1.0, 0.0, 0.0)), after.pose.data());
   poseToBlock(Rigid3(Quat::Identity(), Vec3(0.0, 0.0, 0.4)), before.pose.data());

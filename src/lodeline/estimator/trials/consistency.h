@@ -6,9 +6,10 @@
 
 namespace lodeline {
 
-/// Whether the estimator's errors are as large as its covariance says. The normalized estimation error
-/// squared (NEES) e^T P^-1 e of an honest estimator has as mean the number of coordinates in e (Bar-Shalom,
-/// Li & Kirubarajan, "Estimation with applications to tracking and navigation", 2001, section 5.4).
+/// Normalized estimation errors squared (NEES), e^T P^-1 e, of one estimate; they show whether the errors
+/// match the covariance. The mean NEES of a consistent estimator is the number of coordinates in e
+/// (Bar-Shalom, Li & Kirubarajan, "Estimation with applications to tracking and navigation", 2001, section
+/// 5.4).
 struct NeesSample {
   double pose = 0.0;                                      ///< 6 coordinates
   double position = 0.0;                                  ///< 3
@@ -24,7 +25,7 @@ struct NeesSample {
 
 NeesSample neesOf(const Comparison& comparison);
 
-/// Samples of one moment over all seeds.
+/// Samples at one time over all seeds.
 struct ConsistencyRow {
   double time_s = 0.0;
   std::vector<NeesSample> samples;
@@ -42,17 +43,17 @@ struct ConsistencyOptions {
 
 struct Consistency {
   std::vector<ConsistencyRow> rows;
-  int lost = 0;  ///< seeds that had no estimate at one of the times
+  int lost = 0;  ///< number of seeds without an estimate at one of the times
 };
 
-/// Runs the scene once a seed.
+/// Runs the scene once per seed.
 Consistency measureConsistency(const ConsistencyOptions& options);
 
 /// Quantiles of the normal distribution: a two-sided band with probability 0.999 or 0.95.
 constexpr double kBand999 = 3.2905;
 constexpr double kBand95 = 1.9600;
 
-/// Bounds that the mean of `count` independent NEES samples of an honest estimator keeps within with the
+/// Bounds of the mean of `count` independent NEES samples of a consistent estimator. They hold with the
 /// probability that belongs to `quantile`, by Wilson & Hilferty's approximation of the chi-squared
 /// distribution.
 struct NeesBounds {

@@ -12,17 +12,17 @@ TEST(NeesBounds, AreThoseOfTheChiSquaredDistribution) {
   EXPECT_NEAR(bounds.high, 153.17 / 20.0, 0.01);
 }
 
-// The first metres of a heading that only linearization points keep honest. The robust loss counts good
-// observations as 0.7 of their worth, which makes the estimator's sigmas some 1.2 times too large: hence the
-// lower bound at half of what an exact covariance would give.
+// The first metres of motion, in which only linearization points keep the heading covariance consistent. The
+// robust loss reduces the weight of good observations to 0.7, so that the estimator's sigmas are about 1.2
+// times too large. The lower bound is therefore half of that for an exact covariance.
 void expectConsistent(int cameras) {
   ConsistencyOptions options;
   options.scene.cameras = cameras;
   options.scene.points.tracks = 50;
   options.scene.points.frame_rate_hz = 10.0;
   options.estimator = honestOptions(options.scene);
-  // The scene's cameras are what their files say; an estimator that doubts them claims errors of lenses which
-  // do not happen here (covariance_inflation.h).
+  // The scene's cameras match their files. An estimator that does not trust the files would add errors of the
+  // intrinsics that do not occur here (covariance_inflation.h).
   options.estimator.camera_calibration.enabled = false;
   options.seeds = 12;
   options.times_s = {8.0};
@@ -45,10 +45,10 @@ void expectConsistent(int cameras) {
 TEST(Consistency, StereoIsAsGoodAsItSays) { expectConsistent(2); }
 TEST(Consistency, MonoIsAsGoodAsItSays) { expectConsistent(1); }
 
-// One camera without images for six seconds in which its carrier comes to rest, then images again, rest for
-// six more seconds, and on. Neither the speed that dead reckoning leaves nor the first look from almost one
-// place tells the scale, and neither may be taken for it.
-// Without the rest being noticed it glides on past points that it takes for infinitely far: by 0.9 m.
+// One camera without images for six seconds, in which its carrier comes to rest. Then there are images again,
+// rest for six more seconds, and motion. Neither the velocity from dead reckoning nor the first images from
+// almost one place determine the scale, and neither may be used for it. Without the zero-velocity update the
+// estimate would glide on by 0.9 m past points that it takes for infinitely far.
 TEST(Consistency, OneCameraInTheDarkNoticesThatItRests) {
   constexpr double kDark_s = 7.0, kLight_s = 13.0, kOn_s = 19.0;
   ConsistencyOptions options;
@@ -72,7 +72,7 @@ TEST(Consistency, OneCameraInTheDarkNoticesThatItRests) {
   EXPECT_LT(consistency.rows.front().rootMeanSquare(&NeesSample::position_error_m), 0.25);
 }
 
-// The short version of what estimator_consistency --minutes 20 measures.
+// The short version of `estimator_consistency --minutes 20`.
 TEST(Consistency, NoBlockOfADiveIsWorseThanClaimed) {
   DiveConsistencyOptions options;
   options.dive = exactDive(45.0);

@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-/// One dive's samples, one a time, as far as it had estimates.
+/// Samples of one dive, one per time, as far as it has estimates.
 std::vector<NeesSample> samplesOf(const HeadingTrialOptions& dive, const std::vector<double>& times_s) {
   std::vector<NeesSample> samples;
   TruthComparison truth;

@@ -5,7 +5,7 @@
 
 namespace lodeline {
 
-/// Monte Carlo of whole dives instead of scenes.
+/// Options of a Monte Carlo of whole dives instead of scenes.
 struct DiveConsistencyOptions {
   HeadingTrialOptions dive;  ///< its seed is filled in
   int seeds = 50;
@@ -14,11 +14,11 @@ struct DiveConsistencyOptions {
   int threads = 1;
 };
 
-/// Options of dives that the estimator's model describes exactly: IMU noise as stated and without flicker,
-/// calibration held, one frame in a quarter of a second with 40 tracks, so that hours can be simulated.
+/// Options of dives that match the estimator's model exactly: IMU noise as stated and without flicker,
+/// calibration held, one frame per quarter second with 40 tracks, so that hours can be simulated.
 HeadingTrialOptions exactDive(double duration_s);
 
-/// Runs the dive once a seed; the samples do not depend on the number of threads.
+/// Runs the dive once per seed; the samples do not depend on the number of threads.
 Consistency measureDiveConsistency(const DiveConsistencyOptions& options);
 
 }  // namespace lodeline

@@ -51,13 +51,13 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
   }
 }
 
-/// Of sizes as MagneticNoiseEstimator expects them.
+/// Draws a value from the log-normal distribution that MagneticNoiseEstimator assumes.
 double drawSize(double root_mean_square, Random& random) {
   const double spread = std::log(MagneticNoiseEstimator::kPriorFactor);
   return root_mean_square * std::exp(spread * (random.normal() - spread));
 }
 
-/// The hard iron's walk and the wandering field of a dive.
+/// Draws the hard iron's walk and the wandering field of a dive.
 void drawAsBelieved(const HeadingTrialOptions& options, PointMagnetometer* magnetometer) {
   const MagnetometerOptions& believed = options.estimator.magnetometer;
   Random random(options.seed, "heading trial/as believed");
@@ -67,7 +67,7 @@ void drawAsBelieved(const HeadingTrialOptions& options, PointMagnetometer* magne
                          believed.correlated_noise_time_s, options.seed);
 }
 
-/// What is wrong with the calibration.
+/// Adds the option's errors to the calibration.
 void spoil(const HeadingTrialOptions& options, Random& random, MagnetometerCalibration* calibration) {
   const Vec3 direction = random.direction();
   Mat3& iron = calibration->iron_correction;
@@ -101,7 +101,7 @@ void spoil(const HeadingTrialOptions& options, Random& random, MagnetometerCalib
   }
 }
 
-/// The calibration that the rig is given for a magnetometer with these errors.
+/// Sets the rig's calibration for a magnetometer with these errors.
 void calibrate(const MagnetometerErrors& errors, const HeadingTrialOptions& options,
                MagnetometerCalibration* calibration) {
   Random random(options.seed, "heading trial/calibration");
@@ -110,7 +110,7 @@ void calibrate(const MagnetometerErrors& errors, const HeadingTrialOptions& opti
   calibration->iron_correction = errors.soft_iron.inverse();
   calibration->hard_iron_T = errors.hard_iron_T;
   calibration->is_calibrated = true;
-  calibration->hard_iron_sigma_T = 0.01e-6;  // what calibrating on a figure of eight states
+  calibration->hard_iron_sigma_T = 0.01e-6;  // as stated after a calibration with a figure of eight
   spoil(options, random, calibration);
 }
 
@@ -238,7 +238,7 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
 HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
   HeadingTrial trial;
   std::optional<double> first_rad;
-  std::vector<double> headings_rad;  // of the estimator's world against the truth's
+  std::vector<double> headings_rad;  // of the estimator's world relative to the true world
   double north_rad = 0.0;
   const Time begin = PointSimulationOptions().start;
   const auto observe = [&](const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator&) {

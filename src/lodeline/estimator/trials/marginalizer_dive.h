@@ -7,7 +7,7 @@
 
 namespace lodeline {
 
-/// A short dive of 40 points an image, for tests of the marginalizer.
+/// A short dive with 40 points per image, for tests of the marginalizer.
 inline TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {
   TestSceneOptions options;
   options.duration_s = duration_s;
@@ -18,11 +18,12 @@ inline TestSceneOptions sceneOptions(double duration_s, double frame_rate_hz) {
 
 inline EstimatorOptions quadraticOptions() {
   EstimatorOptions options;
-  options.solver.robust_scale_sigmas = 1e3;  // so that the cost is as good as quadratic
+  options.solver.robust_scale_sigmas = 1e3;  // so that the cost is practically quadratic
   return options;
 }
 
-/// One frame more of a scene, each `keyframe_every`th a keyframe; the first one starts the marginalizer.
+/// Adds the next frame of a scene, each `keyframe_every`th as a keyframe; the first one starts the
+/// marginalizer.
 inline void addNext(TestWindow& test, TestScene& scene, FrameId keyframe_every, Marginalizer* marginalizer) {
   const FrameId count = test.window.empty() ? 0 : test.window.newest().id + 1;
   Frame& added = test.add(*scene.next(), count % keyframe_every == 0);

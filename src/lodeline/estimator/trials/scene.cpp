@@ -25,7 +25,7 @@ Motion swaying(const TestSceneOptions& options) {
       const bool rests = covered(options.still, t) || (!is_turn && covered(options.on_the_spot, t));
       return rests ? 0.0 : options.liveliness;
     };
-    // A knot a second brings the rig to rest within 3 s, gently.
+    // One knot per second brings the rig to rest smoothly within 3 s.
     channel.sines.push_back(
         {motionSpline(options.duration_s, 1.0, [&](double t) { return amplitude * activity(t); }),
          motionSpline(options.duration_s, 1.0, [&](double t) { return rate_rad_per_s * t; }), 1.0,
@@ -139,20 +139,20 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
                                     const Estimator& estimator) {
   const Rigid3& truth = frame.truth.motion.world_from_body;
   Comparison result;
-  static const PointSimulationOptions usual;  // as TestScene leaves it
+  static const PointSimulationOptions usual;  // as TestScene uses it
   result.time_s = (frame.truth.time - usual.start).seconds();
   result.estimate = estimate;
   if (!estimate_from_truth_) true_poses_[frame.truth.time] = truth;
   if (!result.initialized()) return result;
   if (!estimate_from_truth_) {
-    // The prior knows the oldest frame best, at its linearization point.
+    // The oldest frame has the most accurate prior, at its linearization point.
     const Frame& oldest = *estimator.window().frames().front();
     const Rigid3 linearization_point =
         oldest.firstPose() ? poseFromBlock(oldest.firstPose()) : oldest.worldFromBody();
     const Rigid3& first_truth = true_poses_.at(oldest.time);
     estimate_from_truth_ = estimateFromTruth(linearization_point, first_truth);
     if (estimate.magnetometer.heading_reference != HeadingReference::Start) {
-      // The heading is the field's, which the simulation lets point along the world's y axis.
+      // The heading is that of the field, which points along the world's y axis in the simulation.
       *estimate_from_truth_ =
           Rigid3(Quat::Identity(), linearization_point.translation - first_truth.translation);
     }

@@ -8,25 +8,26 @@
 
 namespace lodeline {
 
-/// For tests: a rig that sways and turns in a round room, seen as tracks of points and inertial readings.
+/// Test support: a rig that sways and turns in a round room, simulated as tracks of points and inertial
+/// readings.
 struct TestSceneOptions {
   uint64_t seed = 1;  ///< of noise, points, biases and the phases of the motion
   int cameras = 2;
   double duration_s = 20.0;
   double liveliness = 1.0;   ///< 1: about 1 m/s, 1.5 m/s^2 and 0.5 rad/s; scales position and rotation
   double translation = 1.0;  ///< scales the sway of the position once more; 0 turns on the spot
-  /// More yaw than that from 5 s on: up to so much faster.
+  /// Additional yaw rate from 5 s on, at most this much.
   double hurry_rad_per_s = 0.0;
   Vec3 drift_m_per_s = Vec3::Zero();  ///< constant velocity on top
   std::vector<TimeSpan> still;        ///< the sway fades within 3 s of their borders
   std::vector<TimeSpan> on_the_spot;  ///< only the sway of the position fades
   PointSimulationOptions points;      ///< seed, end and IMU errors are filled in by the scene
-  /// The specimen's biases at the start are drawn from these, one sigma per axis.
+  /// Sigmas, per axis, of the distribution of the initial biases.
   double gyroscope_bias_sigma_rad_per_s = 0.02;
   double accelerometer_bias_sigma_m_per_s2 = 0.05;
 };
 
-/// Streams the frames of a scene. The rig states exactly the noise that its readings have.
+/// Streams the frames of a scene. The rig's stated noise is exactly that of its readings.
 class TestScene {
  public:
   explicit TestScene(const TestSceneOptions& options);
@@ -47,20 +48,20 @@ class TestScene {
   PointSimulation simulation_;
 };
 
-/// Two (or one) undistorted cameras 11 cm apart looking along the body's x axis, y to the left; a pressure
-/// port 12 cm behind.
+/// Rig with two undistorted cameras (or one), 11 cm apart, looking along the body's x axis, y to the left; a
+/// pressure port 12 cm behind.
 Rig testRig(int cameras);
 
-/// Options of an estimator that believes what a scene does: noise as stated, biases as drawn.
+/// Options of an estimator whose priors match a scene: noise as stated, biases as drawn.
 EstimatorOptions honestOptions(const TestSceneOptions& scene);
 
-/// What turns true poses into the estimator's world, whose origin and heading are those of its first frame.
-/// The prior on that frame holds the z component of its rotation's perturbation at zero, so that is how the
-/// true heading is carried over, however far off the first tilt was. `linearization_point` is the pose that
-/// the prior was built around.
+/// Transformation of true poses into the estimator's world, whose origin and heading are those of its first
+/// frame. The prior on that frame holds the z component of its rotation's perturbation at zero. The true
+/// heading is transferred in the same way, however large the first tilt error was. `linearization_point`: the
+/// pose around which the prior was built.
 Rigid3 estimateFromTruth(const Rigid3& linearization_point, const Rigid3& first_truth);
 
-/// An estimate beside the truth.
+/// An estimate together with the true state.
 struct Comparison {
   double time_s = 0.0;  ///< since the start of the motion
   FrameEstimate estimate;
@@ -75,7 +76,7 @@ struct Comparison {
   double rotationError() const { return error.tail<3>().norm(); }
 };
 
-/// Sets an estimator's output beside the truth, frame by frame from the first.
+/// Compares an estimator's output with the truth, frame by frame from the first.
 class TruthComparison {
  public:
   Comparison compare(const SimulatedFrame& frame, const FrameEstimate& estimate, const Estimator& estimator);
@@ -85,7 +86,7 @@ class TruthComparison {
   std::optional<Rigid3> estimate_from_truth_;
 };
 
-/// An estimator that is compared with the truth after every frame.
+/// An estimator whose output is compared with the truth after every frame.
 class ComparedEstimator {
  public:
   ComparedEstimator(const TestScene& scene, const EstimatorOptions& options)

@@ -8,38 +8,40 @@
 
 namespace lodeline {
 
-/// For tests: a window filled by hand, with frames at known states.
+/// Test support: a window filled by hand, with frames at known states.
 class TestWindow {
  public:
   explicit TestWindow(int cameras = 2, const EstimatorOptions& options = {});
 
-  /// A frame without inertial term; identities count up from 0.
+  /// Adds a frame without inertial term; identities count up from 0.
   Frame& add(const Rigid3& world_from_body, bool is_keyframe = true);
-  /// A simulated frame at its true state, with its tracks and the inertial term to the frame before.
+  /// Adds a simulated frame at its true state, with its tracks and the inertial term to the frame before.
   Frame& add(const SimulatedFrame& frame, bool is_keyframe = true);
 
-  /// An observation of `point_W` from where the frame stands now, off by `error_px`. Fails the test where the
-  /// camera cannot see it.
+  /// Adds an observation of `point_W` from the frame's present pose, with a pixel error `error_px`. Fails the
+  /// test where the camera cannot observe the point.
   void see(TrackId track, const Vec3& point_W, const Frame& frame, int camera = 0,
            const Vec2& error_px = Vec2::Zero());
-  /// As see(), for points that may lie outside the image or behind the camera: from the ray alone.
+  /// As see(), from the ray alone, for points that may lie outside the image or behind the camera.
   void seeAlong(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera = 0);
 
-  /// Adds the states of the camera calibration, with `lens` (factors/intrinsics_factor.h) for every camera.
+  /// Adds the states of the camera calibration, with the intrinsics block `lens`
+  /// (factors/intrinsics_factor.h) for every camera.
   void calibrate(const std::vector<double>& lens);
-  /// An observation through such a lens. Fails the test where the camera cannot see the point.
+  /// Adds an observation by a camera with such intrinsics. Fails the test where the camera cannot observe the
+  /// point.
   void seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W, const Frame& frame,
                   int camera);
 
-  /// A landmark at `point_W`, hosted in `host`, which must have seen the track with camera 0.
+  /// Creates a landmark at `point_W` with the host `host`, which must have observed the track with camera 0.
   Landmark& place(TrackId track, const Vec3& point_W, const Frame& host);
   Vec3 position(TrackId track) const;
 
-  /// Fills it with two seconds of a moving rig: ten frames, 40 tracks and their landmarks. Returns the prior
-  /// of its first frame.
+  /// Fills the window with two seconds of a moving rig: ten frames, 40 tracks and their landmarks. Returns
+  /// the prior of its first frame.
   Prior fill();
 
-  /// Moves all states by normal noise: metres and radians by `sigma`, m/s by `sigma`, biases by a tenth.
+  /// Adds normal noise to all states: metres and radians with `sigma`, m/s with `sigma`, biases with a tenth.
   void disturb(double sigma, uint64_t seed);
 
   Rig rig;
@@ -55,8 +57,8 @@ class TestWindow {
   FrameId next_id_ = 0;
 };
 
-/// The window's cost as one dense Gauss-Newton system, put together without NormalEquations: rows of the
-/// frames' blocks (pose 6, motion 9 where there is one) in the window's order, then those of the landmarks.
+/// The window's cost as one dense Gauss-Newton system, computed without NormalEquations. Rows: the frames'
+/// blocks (pose 6, motion 9 where there is one) in the window's order, then the landmarks.
 struct DenseSystem {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
@@ -68,7 +70,7 @@ struct DenseSystem {
 };
 DenseSystem denseSystem(Window& window, const Prior& prior, const FactorBuilder& factors);
 
-/// h_kk - h_kg h_gg^-1 h_gk over the first `kept` rows, and the gradient with it.
+/// Schur complement h_kk - h_kg h_gg^-1 h_gk on the first `kept` rows, and the corresponding gradient.
 struct Reduced {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;

@@ -10,7 +10,7 @@ namespace lodeline {
 
 double unmodelledDensitySigma(const EstimatorOptions& options) {
   if (!options.camera_calibration.enabled) return 0.0;
-  // Who was told the density better than that learns nothing of it from images.
+  // A density stated more accurately than that gains nothing from images.
   return std::min(options.depth.least_density_sigma, options.depth.density_ratio_sigma);
 }
 

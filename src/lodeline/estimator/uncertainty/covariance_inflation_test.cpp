@@ -15,7 +15,7 @@ Rigid3 heading(double yaw_rad, const Vec3& position_W) {
   return Rigid3(so3::exp(yaw_rad * Vec3::UnitZ()), position_W);
 }
 
-/// In steps, as frames come: from the newest pose to this one.
+/// Moves from one pose to another in steps of frames.
 void swim(const Rigid3& from, const Rigid3& to, double scene_distance_m, CovarianceInflation* errors) {
   constexpr int kSteps = 2000;
   const Vec3 turn = so3::log(from.rotation.conjugate() * to.rotation);
@@ -56,7 +56,7 @@ TEST(CovarianceInflation, OfATurnGrowWithItsAngleAndTheDistanceOfTheScene) {
   swim(heading(0.0, kPosition), heading(3.0, kPosition), 2.0, &errors);
   const Mat15 covariance = added(errors, kTwoCameras);
   EXPECT_NEAR(std::sqrt(covariance(2, 2)), kWayPerTurnSigma * 2.0 * 3.0, 1e-6);
-  // A slide to a side of the body turns with it.
+  // A translation error to one side of the body rotates with the body.
   const double chord = 2.0 * std::sin(1.5);
   EXPECT_NEAR(std::sqrt(covariance(0, 0)), kWayPerTurnSigma * 2.0 * chord, 1e-5);
   swim(heading(3.0, kPosition), heading(0.0, kPosition), 2.0, &errors);

@@ -11,8 +11,8 @@ namespace {
 
 using Matrix15 = Eigen::Matrix<double, 15, 15>;
 
-/// The covariance of the newest frame's state when that of the frame before is `known` and inertial readings
-/// lead from the one to the other.
+/// Covariance of the newest frame's state after propagation by inertial readings from the frame before, whose
+/// covariance is `known`.
 Matrix15 carriedByInertialReadings(Window& window, const FactorBuilder& factors, const Matrix15& known) {
   Frame& newest = window.newest();
   Frame& before = *window.frames()[window.frames().size() - 2];
@@ -35,7 +35,8 @@ Matrix15 carriedByInertialReadings(Window& window, const FactorBuilder& factors,
     }
     return block;
   };
-  // Whitened residual J_b b + J_n n with as many rows as n: n = -J_n^-1 J_b b plus noise of (J_n^T J_n)^-1.
+  // The whitened residual J_b b + J_n n has as many rows as n: n = -J_n^-1 J_b b plus noise with covariance
+  // (J_n^T J_n)^-1.
   const Eigen::LLT<Matrix15> of_newest(coupling(newest, newest));
   const Matrix15 transition = -of_newest.solve(coupling(newest, before));
   return transition * known * transition.transpose() + of_newest.solve(Matrix15::Identity());

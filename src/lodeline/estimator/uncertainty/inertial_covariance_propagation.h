@@ -8,18 +8,19 @@
 
 namespace lodeline {
 
-/// Keeps what is claimed in the dark from ceasing to grow.
+/// Propagates the covariance of the newest state by inertial readings alone, so that the reported covariance
+/// keeps growing without images.
 ///
-/// After minutes without images a position that is known to 100 m hangs on neighbours that know each other to
-/// micrometres. What the window knows of it is what is left when informations are subtracted that are larger
-/// by 1e14, as many digits as a number has, and comes out too large. So the covariance is carried along by
-/// itself as well, by inertial readings alone, and of horizontal position and velocity, which nothing but
-/// images tells, no less is claimed; nor of heading without a magnetometer. Where the window gives no
-/// covariance (isCovariance()), the one carried along stands for it.
+/// After minutes without images, a position that is known to 100 m depends on neighbours that are known
+/// relative to each other to micrometres. The window's covariance is then the small difference of
+/// informations that are larger by 1e14. That exhausts the digits of a double, and the information left comes
+/// out too large. For horizontal position and velocity, which only images determine, the reported variance is
+/// therefore at least the propagated one. The same holds for heading without a magnetometer. Where the window
+/// gives no covariance (isCovariance()), the propagated one replaces it.
 class InertialCovariancePropagation {
  public:
-  /// `claimed`: by the window, of the newest frame's [dp, dtheta, dv, db_g, db_a]; widened where it
-  /// `is_blind`.
+  /// `claimed`: the window's covariance of the newest frame's [dp, dtheta, dv, db_g, db_a]. It is enlarged
+  /// where `is_blind`. `is_heading_told`: a magnetometer determines the heading.
   void follow(Window& window, const FactorBuilder& factors, bool is_blind, bool is_heading_told,
               Eigen::Matrix<double, 15, 15>* claimed);
 

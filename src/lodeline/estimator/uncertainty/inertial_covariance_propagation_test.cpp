@@ -19,7 +19,7 @@ struct Claim {
   double time_s, position_m, heading_rad;
 };
 
-/// Horizontal, of every frame of a scene whose images end after kLight_s.
+/// Reported horizontal sigmas of every frame of a scene whose images end after kLight_s.
 std::vector<Claim> claimsInTheDark() {
   TestSceneOptions options;
   options.cameras = 2;
@@ -48,8 +48,8 @@ TEST(InertialCovariancePropagation, ClaimsLessAndLess) {
   const auto at = [&](double time_s) {
     return *std::find_if(claims.begin(), claims.end(), [&](const Claim& c) { return c.time_s > time_s; });
   };
-  // A wrong tilt makes the position wrong by the square of time, and a bias of the gyroscope by its cube;
-  // what the window claims by itself wanders when its digits have run out.
+  // The position error grows with the square of time by a wrong tilt and with its cube by a gyroscope bias.
+  // The window's own covariance is random once its digits are exhausted.
   for (const double time_s : {30.0, 60.0, 120.0}) {
     const double growth = at(2.0 * time_s).position_m / at(time_s).position_m;
     EXPECT_GT(growth, 3.0) << time_s << " s";

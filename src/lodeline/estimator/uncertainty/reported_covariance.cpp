@@ -9,8 +9,9 @@
 namespace lodeline {
 namespace {
 
-/// What of the start's information about the accelerometer's bias its present covariance can have: the bias
-/// walks, and no direction of it is to be claimed worse than the start's sigma, `sigma_m_per_s2`.
+/// The part of the initial information on the accelerometer bias that its present covariance can still
+/// contain. The bias walks, so that part may be smaller than `removed`. In no direction does the reported
+/// sigma exceed the initial one, `sigma_m_per_s2`.
 Eigen::MatrixXd biasInformation(const Mat3& known, double removed, double sigma_m_per_s2) {
   const Eigen::SelfAdjointEigenSolver<Mat3> parts(known);
   const Vec3 left = parts.eigenvalues().cwiseInverse().array() - 1.0 / (sigma_m_per_s2 * sigma_m_per_s2);
@@ -21,7 +22,8 @@ Eigen::MatrixXd biasInformation(const Mat3& known, double removed, double sigma_
   return information;
 }
 
-/// What is used is what the loss leaves of it: a camera that was found elsewhere has little.
+/// Information to remove from a secondary camera's extrinsics. The used information is that after the robust
+/// loss, which is small for a camera found at another position.
 Eigen::MatrixXd removedExtrinsics(const Factor& placement, double baseline_m) {
   const double reported_sigma_m = kBaselineTolerance * baseline_m;
   NormalEquations used;
@@ -50,12 +52,12 @@ std::vector<std::pair<const double*, Eigen::MatrixXd>> removedCalibration(const 
                                                                           const FactorBuilder& factors) {
   auto removed = removedFileInformation(window, options.camera_calibration);
   const CameraStates states = cameraStates(window);
-  for (size_t i = 0; i < states.further.size(); ++i) {
-    ParameterBlock& further = *states.further[i];
-    const std::optional<Factor> placement = factors.placement(further);
+  for (size_t i = 0; i < states.secondary.size(); ++i) {
+    ParameterBlock& secondary = *states.secondary[i];
+    const std::optional<Factor> placement = factors.placement(secondary);
     const double baseline_m = factors.camera0FromCamera(static_cast<int>(i) + 1).translation.norm();
     if (placement && baseline_m > 0.0)
-      removed.emplace_back(further.value.data(), removedExtrinsics(*placement, baseline_m));
+      removed.emplace_back(secondary.value.data(), removedExtrinsics(*placement, baseline_m));
   }
   return removed;
 }

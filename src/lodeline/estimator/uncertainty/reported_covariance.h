@@ -10,28 +10,31 @@
 
 namespace lodeline {
 
-// Not all that the estimate uses is to be claimed. Files that images confirm (IntrinsicsModelSelection) are
-// held more firmly than images can confirm them, the accelerometers of some IMUs start with more of a bias
-// than is good to suppose (ImuAxesOptions::areDoubted()), and how far apart cameras sit is wrong in some
-// files by more than the best guess is to allow for.
+// The reported covariance leaves out some prior information that the estimate uses. The estimate holds
+// calibration files that images confirm (IntrinsicsModelSelection) more firmly than images can confirm them.
+// The accelerometers of some IMUs have a larger initial bias than the estimate should assume
+// (ImuAxesOptions::areDoubted()). Some files state baselines with a larger error than the best estimate
+// should allow for.
 
-/// How far off a file's baselines may be, of their length (one sigma), for all that is claimed.
+/// Relative error of a file's baseline length that the reported covariance allows for (one sigma).
 constexpr double kBaselineTolerance = 0.01;
 
-/// Of every axis of the first frame's accelerometer bias, the information that is used and not claimed,
-/// (m/s^2)^-2; 0 where it is not doubted.
+/// Information about each axis of the first frame's accelerometer bias that the estimate uses and the
+/// reported covariance leaves out, (m/s^2)^-2. 0 where the IMU is not doubted.
 double removedBiasInformation(const EstimatorOptions& options);
-/// Adds to a state's covariance what no state stands for: an accelerometer that warms up changes by more than
-/// its bias walks, and what it takes for up is as wrong as that. Counted as large as its axes may be off.
+/// Adds the tilt error that no state represents to the covariance of a state. The output of an accelerometer
+/// that warms up changes by more than its bias walk, and the estimated vertical has the same error. Its size
+/// is taken from ImuAxesOptions::accelerometerSigma(), rad.
 void addDoubtAboutUp(const ImuAxesOptions& options, Eigen::Matrix<double, 15, 15>* covariance);
 
-/// Of each state of the cameras' calibration, the information of its file that is used and not claimed: of
-/// what is held (removedFileInformation()), and of where secondary cameras sit (FactorBuilder::placement()).
+/// Information per camera calibration state that the estimate uses and the reported covariance leaves out. It
+/// consists of the information of held files (removedFileInformation()) and of the secondary cameras'
+/// positions (FactorBuilder::placement()).
 std::vector<std::pair<const double*, Eigen::MatrixXd>> removedCalibration(const Window& window,
                                                                           const EstimatorOptions& options,
                                                                           const FactorBuilder& factors);
 
-/// Covariance of the newest frame's state as it is to be claimed, `known` being what the window knows.
+/// Covariance of the newest frame's state to be reported. `known`: covariance of the window's own estimate.
 Eigen::Matrix<double, 15, 15> reportedCovariance(const JointCovariance& known, const Window& window,
                                                  const EstimatorOptions& options,
                                                  const FactorBuilder& factors);

@@ -12,11 +12,11 @@ namespace lodeline {
 namespace {
 
 constexpr double kMemory_s = 30.0;
-// Relative sigma of what no file states: the scale of a triad of accelerometers (0.05 to 1 % by their
+// Relative sigma of errors that no file states: the scale of an accelerometer triad (0.05 to 1 % by their
 // makers), the length of a baseline that counts as exact.
 constexpr double kUnstated = 1e-3;
 
-/// What is left of some information when an unstated error of the scale is added.
+/// Information after the addition of an unstated error of the scale.
 double trusted(double information, double unstated) {
   return information > 0.0 ? 1.0 / (1.0 / information + unstated * unstated) : 0.0;
 }
@@ -77,13 +77,13 @@ double ScaleObservability::stereoInformation(const Window& window) const {
   double position_sigma_m = calibration_.enabled ? calibration_.stereo_position_sigma_m : 0.0;
   double rotation_sigma_rad = calibration_.enabled ? calibration_.stereo_rotation_sigma_rad : 0.0;
   const CameraStates states = cameraStates(window);
-  if (!states.further.empty()) {
-    const ParameterBlock& further = *states.further.front();
+  if (!states.secondary.empty()) {
+    const ParameterBlock& secondary = *states.secondary.front();
     if (!further.priors.empty()) rotation_sigma_rad *= kFileTolerance;
     const double found_m = Eigen::Map<const Vec3>(further.value.data() + 3).norm();
-    // The weight that the loss leaves is 1 / (1 + (x / width)^2).
+    // The weight from the loss is 1 / (1 + (x / width)^2).
     if (position_sigma_m > 0.0)
-      position_sigma_m = std::hypot(position_sigma_m, found_m / placementLossWidth(further));
+      position_sigma_m = std::hypot(position_sigma_m, found_m / placementLossWidth(secondary));
   }
   const double by_position = position_sigma_m / *baseline_m_;
   const double by_rotation = rotation_sigma_rad * *distance_m / *baseline_m_;

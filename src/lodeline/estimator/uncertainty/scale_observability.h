@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// What each source says of the length of a metre, as information 1 / sigma^2 of the logarithm of the scale.
+/// Information that each sensor gives about the scale: 1 / sigma^2 of the logarithm of the scale.
 struct ScaleInformation {
   double stereo = 0.0;
   double accelerometer = 0.0;
@@ -17,26 +17,27 @@ struct ScaleInformation {
   double sum() const { return stereo + accelerometer + depth; }
 };
 
-/// Keeps an account of what carries the scale, beside the estimator and without effect on it. Every source is
-/// taken by itself, over the half-minute for which images hand a scale on:
-/// - stereo: the baseline b, known as the calibration is, sigma^2 = (sigma_b / b)^2 +
-///   (sigma_rotation d / b)^2 at the mean distance d of what both cameras see (a turn of one camera moves all
-///   points). A rotation that images confirm is known to a tenth of its sigma (IntrinsicsModelSelection); of
-///   a baseline that was found to be off, its file says as little as the robust loss has left of it;
-/// - accelerometer: changes of the acceleration against the noise of its integral; what is constant counts as
-///   bias and tilt; never better than the 0.1 % that files leave open, nor than uncalibrated_sigma of an IMU
-///   that was perhaps never calibrated (estimator/inertial_states.h);
-/// - depth: changes of the height against the readings' sigma, and the water's density.
+/// Computes which sensors determine the scale, without any effect on the estimator. Each source is evaluated
+/// by itself, over the half-minute for which images carry a scale onwards:
+/// - stereo: the baseline b with the uncertainty of its calibration, sigma^2 = (sigma_b / b)^2 +
+///   (sigma_rotation d / b)^2, where d is the mean distance of the points that both cameras observe (a
+///   rotation of one camera moves all points). A rotation that images confirm is known to a tenth of its
+///   sigma (IntrinsicsModelSelection). The file's information about a baseline that was found to be wrong is
+///   what the robust loss leaves of it;
+/// - accelerometer: changes of the acceleration compared with the noise of its integral. A constant part
+///   counts as bias and tilt. The sigma is never below the 0.1 % that files leave open, nor below
+///   uncalibrated_sigma of an IMU that may never have been calibrated (estimator/state/inertial_states.h);
+/// - depth: changes of the height compared with the readings' sigma, and the density of the water.
 class ScaleObservability {
  public:
   ScaleObservability(const Rig& rig, const EstimatorOptions& options);
 
-  /// The window with its newest frame solved. `density_sigma`: what is known of a depth gauge's ratio of
-  /// densities (DepthFactor's k) without images.
+  /// Updates the information from a window whose newest frame is solved. `density_sigma`: sigma of a depth
+  /// gauge's density ratio (k of DepthFactor) without images.
   ScaleInformation add(const Window& window, double density_sigma);
 
  private:
-  /// Weighted scatter of a quantity about its mean, with a memory.
+  /// Weighted scatter of a quantity about its mean, with fading weights.
   class Scatter {
    public:
     void fade(double keep);

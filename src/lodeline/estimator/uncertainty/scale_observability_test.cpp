@@ -12,14 +12,14 @@
 namespace lodeline {
 namespace {
 
-/// Of an IMU that its maker has calibrated, or perhaps not.
+/// Options for an IMU that its maker calibrated, or one that may not be calibrated.
 EstimatorOptions optionsOf(bool is_calibrated) {
   EstimatorOptions options;
   if (is_calibrated) options.imu_axes.uncalibrated_sigma = 0.0;
   return options;
 }
 
-/// Information after the frames of a scene, at their true states.
+/// Information after all frames of a scene, at their true states.
 ScaleInformation informationAfter(int cameras, double liveliness, double depth_sigma_m, double sink_m_per_s,
                                   const EstimatorOptions& options = optionsOf(true)) {
   TestSceneOptions scene_options;
@@ -46,7 +46,7 @@ TEST(ScaleObservability, OneCameraAtConstantSpeedHasNothing) {
   const ScaleInformation information = informationAfter(1, 0.0, 0.0, 0.2);
   EXPECT_EQ(information.stereo, 0.0);
   EXPECT_EQ(information.depth, 0.0);
-  EXPECT_LT(information.accelerometer, 1.0);  // a sigma of more than 100 %
+  EXPECT_LT(information.accelerometer, 1.0);  // a scale sigma of more than 100 %
 }
 
 TEST(ScaleObservability, AccelerationCountsWithItsSquare) {
@@ -73,11 +73,11 @@ TEST(ScaleObservability, StereoIsAsGoodAsItsCalibration) {
   const double by_coarse = informationAfter(2, 1.0, 0.0, 0.0, coarse).stereo;
   const double by_fine = informationAfter(2, 1.0, 0.0, 0.0, fine).stereo;
   EXPECT_NEAR(by_fine / by_coarse, 4.0, 0.2);
-  // Walls 4 m away, 11 cm apart: 0.002 * 4 / 0.11.
+  // Walls at 4 m, baseline 11 cm: 0.002 * 4 / 0.11.
   EXPECT_NEAR(1.0 / std::sqrt(by_fine), 0.07, 0.03);
 }
 
-/// Sigma of the scale by two cameras whose baseline was found to be longer than its file says.
+/// Sigma of the scale by two cameras whose estimated baseline is longer than that of the file.
 double stereoSigma(double found_m, bool is_file_held, const CameraCalibrationOptions& calibration) {
   EstimatorOptions options;
   options.camera_calibration = calibration;
@@ -85,7 +85,7 @@ double stereoSigma(double found_m, bool is_file_held, const CameraCalibrationOpt
   test.fill();
   test.calibrate(std::vector<double>(kIntrinsicsSize, 0.0));
   believeInFiles(test.window, calibration, is_file_held);
-  cameraStates(test.window).further.front()->value[3] = found_m;
+  cameraStates(test.window).secondary.front()->value[3] = found_m;
   return 1.0 / std::sqrt(ScaleObservability(test.rig, options).add(test.window, 1.0).stereo);
 }
 
@@ -113,7 +113,7 @@ TEST(ScaleObservability, DepthCountsWhereTheRigSinksAndNeverBeyondTheWater) {
   const double level = informationAfter(1, 0.0, 0.05, 0.0).depth;
   const double sinking = informationAfter(1, 0.0, 0.05, 0.2).depth;
   EXPECT_LT(level, 1.0);
-  // 1.6 m evenly in 40 readings: scatter of 0.46 m against 0.05 m / sqrt(40).
+  // 1.6 m at constant speed in 40 readings: scatter of 0.46 m compared with 0.05 m / sqrt(40).
   EXPECT_NEAR(1.0 / std::sqrt(sinking), 0.023, 0.008);
   EXPECT_LT(informationAfter(1, 0.0, 1e-4, 0.2).depth, 1.0 / (0.015 * 0.015));
 }

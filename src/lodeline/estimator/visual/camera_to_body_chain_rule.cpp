@@ -74,7 +74,7 @@ void CameraToBodyChainRule::transform(const Eigen::MatrixXd& h_nodes, const Eige
 }
 
 void CameraToBodyChainRule::addPoses(const Eigen::MatrixXd& of_nodes, Eigen::MatrixXd* h) const {
-  // -h_nodes T, of which the lower triangle of T^T h_nodes T needs the rows of later frames only.
+  // -h_nodes T. The lower triangle of T^T h_nodes T needs only its rows of later frames.
   Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * frames_, poses_);
   for (int i = 0; i < frames_; ++i) {
     for (const Part& part : follows_[static_cast<size_t>(i)]) {

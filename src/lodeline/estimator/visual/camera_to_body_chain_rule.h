@@ -10,19 +10,19 @@
 
 namespace lodeline {
 
-/// From the nodes of ReprojectionSystem to the blocks of the window that they come from. A node's step is T
-/// times that of the blocks: the camera pose of a frame follows the pose of its body (of two bodies where it
-/// is interpolated between them) and the calibration; the other nodes are blocks themselves.
+/// Chain rule from the nodes of ReprojectionSystem to the window's blocks. A node's step is T times the step
+/// of the blocks. The camera pose of a frame depends on the pose of its body (of two bodies where the frame
+/// is interpolated between them) and on the calibration. The other nodes are blocks themselves.
 class CameraToBodyChainRule {
  public:
-  /// All must outlive this. `nodes`: those of the frames come first.
+  /// All must outlive this object. `nodes`: number of nodes; those of the frames come first.
   CameraToBodyChainRule(const Window& window, const CameraStates& states, const CameraViews& first,
                         int nodes);
 
-  /// Takes T where the views are now.
+  /// Computes T at the present camera poses.
   void update();
 
-  /// T^T h T and T^T g; of h the lower triangle is read.
+  /// Computes T^T h T and T^T g; only the lower triangle of h is read.
   void transform(const Eigen::MatrixXd& h_nodes, const Eigen::VectorXd& g_nodes, Eigen::MatrixXd* h,
                  Eigen::VectorXd* g) const;
 

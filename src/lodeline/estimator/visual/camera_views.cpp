@@ -15,14 +15,14 @@ CameraViews::CameraViews(const Window& window, const CameraStates& states, const
       cameras_(factors.cameraCount()),
       hosts_(std::move(hosts)),
       placements_(window.frames().size()),
-      further_(static_cast<size_t>(cameras_) - 1),
+      secondary_(static_cast<size_t>(cameras_) - 1),
       relative_(static_cast<size_t>(frames_ * frames_ * cameras_)) {}
 
 void CameraViews::update() {
   for (int i = 0; i < frames_; ++i)
     placements_[static_cast<size_t>(i)] = placeFrame(*window_.frames()[static_cast<size_t>(i)]);
   for (int camera = 1; camera < cameras_; ++camera)
-    further_[static_cast<size_t>(camera) - 1] = placeFurther(camera);
+    secondary_[static_cast<size_t>(camera) - 1] = placeFurther(camera);
   for (const int host : hosts_) {
     for (int target = 0; target < frames_; ++target) relate(host, target);
   }
@@ -61,16 +61,16 @@ CameraViews::Placement CameraViews::placeFrame(const Frame& frame) const {
 
 CameraViews::Further CameraViews::placeFurther(int camera) const {
   Rigid3 camera0_from_camera = factors_.camera0FromCamera(camera);
-  Further further;
-  further.left_jacobian.setIdentity();
+  Further secondary;
+  secondary.left_jacobian.setIdentity();
   if (states_) {
     const double* correction = valueOf(*states_.secondary[static_cast<size_t>(camera) - 1]);
     camera0_from_camera = correctedExtrinsics(camera0_from_camera, correction);
-    further.left_jacobian = so3::leftJacobian(Vec3(correction));
+    secondary.left_jacobian = so3::leftJacobian(Vec3(correction));
   }
-  further.camera0_from_camera = camera0_from_camera.rotation.toRotationMatrix();
-  further.position_C0 = camera0_from_camera.translation;
-  return further;
+  secondary.camera0_from_camera = camera0_from_camera.rotation.toRotationMatrix();
+  secondary.position_C0 = camera0_from_camera.translation;
+  return secondary;
 }
 
 void CameraViews::relate(int host, int target) {
@@ -84,9 +84,9 @@ void CameraViews::relate(int host, int target) {
     relative->translation = to.world_from_camera.transpose() * (from.position_W - to.position_W);
   }
   for (int camera = 1; camera < cameras_; ++camera) {
-    const Mat3 camera_from_camera0 = further(camera).camera0_from_camera.transpose();
+    const Mat3 camera_from_camera0 = secondary(camera).camera0_from_camera.transpose();
     relative[camera] = {camera_from_camera0 * relative->rotation,
-                        camera_from_camera0 * (relative->translation - further(camera).position_C0)};
+                        camera_from_camera0 * (relative->translation - secondary(camera).position_C0)};
   }
 }
 

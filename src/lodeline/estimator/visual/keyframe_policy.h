@@ -6,20 +6,21 @@
 
 namespace lodeline {
 
-/// Whether the newest frame should become a keyframe: when it sees too few of what the last keyframe saw, has
-/// moved far enough against it, or vision is short of landmarks. A rig that stands still makes no keyframes,
-/// so that its window keeps what it knows.
+/// Whether the newest frame should become a keyframe. It should if it observes too few of the last keyframe's
+/// landmarks, has moved far enough from it, or if too few landmarks are in view. A rig at rest makes no
+/// keyframes, so that its window keeps its information.
 bool wantsKeyframe(const Window& window, const FactorBuilder& factors, const KeyframeOptions& options);
 
-/// Where images have ended: the last frame that saw at least so many landmarks becomes a keyframe when it is
-/// about to leave the `recent_frames`. Any other frame's observations would be dropped with it, and with them
-/// all that images said of the motion since the last keyframe: of a rig that has rested so far, everything.
+/// Makes the last frame with at least `least_landmarks` landmarks a keyframe when it is about to leave the
+/// `recent_frames`, where images have ended. Otherwise the observations of that frame would be dropped
+/// together with all image information on the motion since the last keyframe. For a rig that has been at
+/// rest, that is all image information.
 void keepLastView(Window& window, int recent_frames, int least_landmarks);
 
-/// The keyframes before and after a frame that is neither and leaves the window's recent ones, where it is
-/// worth being interpolated between them: when it saw landmarks, and far enough from other frames in time for
-/// what it saw to tell something that they do not (their errors are alike otherwise). Nothing where the next
-/// keyframe has not come yet, or is too far away for the way there to be known.
+/// The keyframes before and after a frame that is not a keyframe and leaves the window's recent frames, if
+/// the frame should be interpolated between them. It should if it observes landmarks and is far enough in
+/// time from other frames for independent information (close frames have similar errors). Empty where the
+/// next keyframe does not exist yet, or is too far away for the motion in between to be known.
 struct KeyframesAbout {
   const Frame* before;
   const Frame* after;
@@ -27,8 +28,8 @@ struct KeyframesAbout {
 std::optional<KeyframesAbout> keyframesAbout(const Window& window, const Frame& frame,
                                              const WindowOptions& options);
 
-/// Median angle (rad) by which the tracks common to two frames have shifted in camera 0, rotation taken out;
-/// nothing without common tracks.
+/// Median angle (rad) of the shift of two frames' common tracks in camera 0, after compensation of the
+/// rotation; empty without common tracks.
 std::optional<double> medianParallax(const Window& window, const Frame& a, const Frame& b,
                                      const FactorBuilder& factors);
 

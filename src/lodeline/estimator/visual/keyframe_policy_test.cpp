@@ -10,19 +10,19 @@ namespace {
 
 class KeyframePolicyTest : public testing::Test {
  protected:
-  // A wall 4 m ahead of the first frame, a keyframe.
+  // A wall 4 m in front of the first frame, which is a keyframe.
   KeyframePolicyTest() : first_(test_.add(Rigid3(), true)) {
     for (int i = 0; i < 60; ++i) wall_.emplace_back(4.0, 0.25 * (i % 10) - 1.1, 0.25 * (i / 10) - 0.6);
     see(first_, 0, 60);
     for (int i = 0; i < 60; ++i) test_.place(i, wall_[i], first_);
   }
 
-  // Tracks begin..end-1 seen with half a pixel of noise.
+  // Observes the tracks begin..end-1 with half a pixel of noise.
   void see(const Frame& frame, int begin, int end) {
     for (int i = begin; i < end; ++i)
       test_.see(i, wall_[i], frame, 0, 0.5 * Vec2(random_.normal(), random_.normal()));
   }
-  // New tracks of the same points.
+  // Observes the same points with new tracks.
   void seeFresh(const Frame& frame, int count) {
     for (int i = 0; i < count; ++i) test_.see(1000 + i, wall_[i], frame);
   }
@@ -53,7 +53,7 @@ TEST_F(KeyframePolicyTest, TurningAloneMakesNone) {
 }
 
 TEST_F(KeyframePolicyTest, MovingFarEnoughMakesOne) {
-  // The points ahead shift by about step / 4 m.
+  // The points in front shift by about step / 4 m.
   const auto seeFrom = [&](double share_of_parallax) {
     const double step_m = share_of_parallax * 4.0 * options_.min_parallax_rad;
     Frame& next = test_.add(Rigid3(Quat::Identity(), Vec3(0.0, step_m, 0.0)), false);
@@ -124,7 +124,7 @@ TEST_F(KeyframePolicyTest, ParallaxIsTheAngleWithoutRotation) {
   const Frame& moved = test_.add(Rigid3(so3::exp(Vec3(0.1, 0.05, 0.1)), Vec3(0.0, step_m, 0.0)), false);
   for (int i = 0; i < 60; ++i) test_.see(i, wall_[i], moved);
   const std::optional<double> parallax = medianParallax(test_.window, first_, moved, test_.factors);
-  // The camera's arm turns with the body, which adds a little; points aside of the axis shift less.
+  // The lever arm of the camera rotates with the body, which adds a little; points off the axis shift less.
   ASSERT_TRUE(parallax.has_value());
   EXPECT_NEAR(*parallax, step_m / 4.0, 0.15 * step_m / 4.0);
   EXPECT_FALSE(medianParallax(test_.window, first_, test_.add(Rigid3()), test_.factors).has_value());

@@ -21,7 +21,7 @@ void moveToNewHost(const Window& window, FeatureTrack& track, FrameId excluded,
     const Frame* frame = window.find(observation->frame);
     if (observation->camera != 0 || !frame->is_keyframe || frame->id == excluded) continue;
     const Rigid3 new_from_old = factors.worldFromCamera(window, *frame, 0).inverse() * world_from_old;
-    // Homogeneous, so that points at infinity move too.
+    // Homogeneous, so that points at infinity can be converted too.
     const Vec3 point_new = new_from_old.rotation * landmark.base.direction(landmark.parameters.data()) +
                            landmark.inverseDistance() * new_from_old.translation;
     const LandmarkBase base(observation->measurement.bearing_C);

@@ -24,7 +24,7 @@ class MoveToNewHostTest : public testing::Test {
 
 TEST_F(MoveToNewHostTest, KeepsThePoint) {
   const Vec3 point_W(4.0, 0.3, 0.5);
-  // The new host's own ray is off, which must not move the point.
+  // The ray of the new host has an error, which must not move the point.
   for (int i = 0; i < 4; ++i) test_.see(1, point_W, frame(i), 0, Vec2(3.0 * i, -2.0 * i));
   test_.place(1, point_W, frame(0));
   move(1, 0);
@@ -51,7 +51,7 @@ TEST_F(MoveToNewHostTest, MovesPointsAtInfinityToo) {
 TEST_F(MoveToNewHostTest, GivesUpALandmarkWithoutAHost) {
   const Vec3 point_W(4.0, 0.3, 0.5);
   test_.see(1, point_W, frame(0));
-  test_.see(1, point_W, frame(3));  // no keyframe
+  test_.see(1, point_W, frame(3));  // not a keyframe
   test_.place(1, point_W, frame(0));
   move(1, 0);
   EXPECT_FALSE(test_.window.tracks().at(1).landmark.has_value());
@@ -115,11 +115,11 @@ TEST_F(TakeOlderPartTest, LeavesATrackAloneThatIsTooShortOnEitherSide) {
     EXPECT_EQ(track().observations.size(), observations);
     EXPECT_EQ(track().landmark->host, host);
   };
-  seeFrom(2, 8);  // three before the cut
+  seeFrom(2, 8);  // three observations before the cut
   test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
   expectWhole(6);
   track().observations.clear();
-  seeFrom(0, 6);  // one after it, in no keyframe
+  seeFrom(0, 6);  // one after it, not in a keyframe
   test_.place(kTrack, kPoint_W, *test_.window.frames()[2]);
   expectWhole(6);
   track().observations.clear();

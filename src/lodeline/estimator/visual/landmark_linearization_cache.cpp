@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// The newest keyframe that has no motion any more. Frames interpolated after it hang on a recent one.
+/// The newest keyframe without motion. Frames interpolated after it depend on a recent keyframe.
 const Frame* newestOldKeyframe(const Window& window) {
   const Frame* newest = nullptr;
   for (const auto& frame : window.frames()) {
@@ -50,7 +50,7 @@ void LandmarkLinearizationCache::freeze(Window& window, const FactorBuilder& fac
 void LandmarkLinearizationCache::keep(const NormalEquations& system, const Window& window) {
   std::vector<int> rows;
   for (const NormalEquations::Block& block : system.blocks()) {
-    // The poses of recent frames have nothing to do with it, and may go sooner.
+    // The cached terms do not depend on the poses of recent frames, which may be removed sooner.
     const auto is_recent = [&](const auto& frame) {
       return frame->has_motion && frame->pose.data() == block.value;
     };

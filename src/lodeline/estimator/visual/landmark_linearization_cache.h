@@ -13,32 +13,31 @@
 
 namespace lodeline {
 
-/// What landmarks that no recent frame sees any more, nor one that hangs on a recent one, say of poses and
-/// calibration. They make half of a window's observations, lie between keyframes that hardly move, and have
-/// their Jacobians taken at linearization points anyway: for some frames their terms, landmarks eliminated,
-/// stand as the quadratic cost that they are about the values of one frame. Then all of them are evaluated
-/// again.
+/// Cached linearization of the landmarks that no recent frame observes, nor a frame that is interpolated with
+/// a recent keyframe. These landmarks have half of a window's observations, lie between keyframes that hardly
+/// move, and have their Jacobians at linearization points anyway. For some frames their terms, landmarks
+/// eliminated, are replaced by the quadratic cost about the values of one frame. Then all of them are
+/// linearized again.
 class LandmarkLinearizationCache {
  public:
-  /// They hold for `most_frames` frames at most; 0: never.
+  /// The cache is valid for `most_frames` frames at most; 0: never.
   explicit LandmarkLinearizationCache(int most_frames) : most_frames_(most_frames) {}
 
-  /// At the end of a frame that evaluated all landmarks: puts those that were last seen by the old keyframes
-  /// or between them to sleep (FeatureTrack::is_frozen) at their present values. Does nothing while some are
-  /// asleep.
+  /// Caches, at the end of a frame that linearized all landmarks, those last observed by the old keyframes or
+  /// between them, at their present values (FeatureTrack::is_frozen). Does nothing while the cache is in use.
   void freeze(Window& window, const FactorBuilder& factors);
 
-  /// Before a frame is solved: wakes them all where they have slept for long enough, where what they hang on
-  /// has been removed or linearized anew, or where it has moved by more than a quadratic cost is good for.
+  /// Empties the cache, before a frame is solved, in three cases: it is old enough, a frame or block it
+  /// depends on was removed or has a new linearization point, or one has moved beyond the range of the
+  /// quadratic cost.
   void invalidateIfStale(Window& window);
 
-  /// What ReprojectionSystem would say of them at the blocks' present values: to first order of the change
-  /// since they were put to sleep in the gradient, to second order in the cost. 0 and no terms where none is
-  /// asleep.
+  /// Approximate terms of ReprojectionSystem for these landmarks at the blocks' present values: first order
+  /// in the gradient, second order in the cost. 0 and no terms where the cache is empty.
   double cost() const;
   void addTo(NormalEquations* system) const;
 
-  /// Of their observations when they were put to sleep.
+  /// Residuals of their observations when they were cached.
   const std::vector<ObservationError>& errors() const { return errors_; }
 
  private:
@@ -49,24 +48,25 @@ class LandmarkLinearizationCache {
   bool hold(const Window& window) const;
   bool haveMoved() const;
   void keep(const NormalEquations& system, const Window& window);
-  /// Of the blocks, with poses as seen from the newest of the keyframes and that one put where it was first
-  /// estimated. Where all of them lie makes no difference to what landmarks say, but it would to a quadratic
-  /// cost that was linearized elsewhere: one that resists every turn of what has turned since then.
+  /// Values of the blocks. Poses are relative to the newest of the keyframes, with that keyframe at its
+  /// linearization point. A rigid motion of all poses does not change the landmarks' residuals. Without this
+  /// transformation it would change the quadratic cost, which would then resist rotations that happened after
+  /// its linearization.
   std::vector<Eigen::VectorXd> values() const;
   Eigen::VectorXd step() const;
 
   int most_frames_;
-  int frames_ = 0;  ///< that they have slept for
-  Prior then_;      ///< blocks and their values() when they were put to sleep; nothing else of it is used
+  int frames_ = 0;  ///< number of frames since
+  Prior then_;      ///< blocks and their values() when they were cached; its other members are unused
   std::vector<NormalEquations::Block> blocks_;
-  const double* reference_ = nullptr;  ///< the pose of that keyframe
+  const double* reference_ = nullptr;  ///< pose of that keyframe
   Rigid3 first_reference_;
   Eigen::MatrixXd hessian_;
   Eigen::VectorXd gradient_;
   double cost_ = 0.0;
   std::vector<ObservationError> errors_;
   std::vector<FrameThen> old_frames_;
-  std::vector<std::pair<TrackId, size_t>> tracks_;  ///< and how many observations each has
+  std::vector<std::pair<TrackId, size_t>> tracks_;  ///< with the number of observations of each
   size_t parameter_blocks_ = 0;
 };
 

@@ -13,9 +13,9 @@ namespace {
 
 using Step = Eigen::Matrix<double, 6, 1>;
 
-// A window of three keyframes without motion, a frame that hangs between the last of them and the first of
-// the recent frames, and these. A third of the tracks ends with the keyframes, a third with the frame
-// between.
+// A window of three keyframes without motion, a frame interpolated between the last of them and the first
+// recent frame, and the recent frames. A third of the tracks ends with the keyframes, a third with the
+// interpolated frame.
 class LandmarkLinearizationCacheTest : public testing::Test {
  protected:
   LandmarkLinearizationCacheTest() {
@@ -49,7 +49,7 @@ class LandmarkLinearizationCacheTest : public testing::Test {
     return count;
   }
 
-  // Of the old keyframes' poses, by what the frozen landmarks stand for and by their observations.
+  // Gradient by the old keyframes' poses from the cached terms or from the observations.
   Eigen::VectorXd gradient(const NormalEquations& system) const {
     Eigen::VectorXd gradient(6 * kOld);
     for (size_t i = 0; i < kOld; ++i) {
@@ -102,7 +102,7 @@ TEST_F(LandmarkLinearizationCacheTest, AreWithTheOthersAllThatTheWindowHas) {
 }
 
 TEST_F(LandmarkLinearizationCacheTest, FollowMovesOfTheKeyframesToFirstOrder) {
-  // A loss that bends has another curvature than the system that stands for it.
+  // The curvature of a robust loss differs from that of its quadratic cost.
   for (const auto& frame : test_.window.frames()) frame->robust_scale_sigmas = 1e3;
   linearization_cache_.freeze(test_.window, test_.factors);
   const Eigen::VectorXd before = evaluated();

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// Observation by camera 0 in the newest keyframe that has one.
+/// Observation by camera 0 in the newest keyframe that observes the track.
 const Observation* hostObservation(const Window& window, const FeatureTrack& track) {
   for (auto observation = track.observations.rbegin(); observation != track.observations.rend();
        ++observation) {
@@ -20,19 +20,19 @@ const Observation* hostObservation(const Window& window, const FeatureTrack& tra
   return nullptr;
 }
 
-/// What the lens adds to the residual of a point that is seen there, sigmas.
+/// Shift of the residual by the estimated intrinsics for a point at the observed pixel, sigmas.
 Vec2 shiftByIntrinsics(const Observation& observation, const CameraStates& cameras) {
   if (cameras.intrinsics.empty()) return Vec2::Zero();
   const ParameterBlock* lens = cameras.intrinsics[static_cast<size_t>(observation.camera)];
   return intrinsicsShift(observation.measurement, Vec2::Zero(), lens->value.data());
 }
 
-/// Inverse distance along a host's ray from all other observations; every candidate asks for it in every
-/// frame, so it is a closed form and not the full fit of features/triangulation.h. With the host's direction
-/// d held, each observation says
-///   B^T (R d + rho t) = 0,
-/// which is linear in rho, but for what the lens adds; a second pass weights by the depth that the first one
-/// found.
+/// Inverse distance along a host's ray from all other observations. It is a closed form and not the full fit
+/// of frontend/stereo/triangulation.h, because every candidate needs it in every frame. With the host's
+/// direction d held, each observation gives
+///   B^T (R d + rho t) = 0.
+/// This is linear in rho, apart from the shift by the intrinsics. Further passes weight by the depth that the
+/// pass before has found.
 struct InverseDistance {
   double value = 0.0;  ///< 1/m
   double sigma = 1e9;  ///< 1/m
@@ -83,8 +83,8 @@ InverseDistance solveInverseDistance(const Window& window, const FeatureTrack& t
   return result;
 }
 
-/// The inverse distance that points have here, 1/m: median of the landmarks in view, of all where few are.
-/// Nothing where the window has hardly any.
+/// Usual inverse distance of points in this scene, 1/m: median over the landmarks in view, over all where few
+/// are in view. Empty where the window has hardly any.
 std::optional<double> usualInverseDistance(const Window& window) {
   constexpr size_t kEnough = 8;
   std::vector<double> in_view, all;
@@ -100,13 +100,14 @@ std::optional<double> usualInverseDistance(const Window& window) {
   return *middle;
 }
 
-/// Whether a point becomes a landmark must not depend on what noise makes of its distance: where the rig
-/// hardly moves, points that seem to be near are those that move by themselves, such as flakes in the water,
-/// and those with the largest errors. So its sigma is compared with the `usual` inverse distance.
+/// Whether the inverse distance is accurate enough for a landmark. The decision must not depend on the effect
+/// of noise on the distance. Where the rig hardly moves, apparently near points are those that move by
+/// themselves, such as flakes in the water, and those with the largest errors. The sigma is therefore
+/// compared with the `usual` inverse distance.
 bool isUsable(const InverseDistance& rho, std::optional<double> usual, const LandmarkOptions& options) {
   const bool known = rho.sigma < options.max_relative_sigma * usual.value_or(std::abs(rho.value)) ||
                      rho.sigma < options.max_inverse_distance_sigma_per_m;
-  // A far point's inverse distance may come out a little below zero.
+  // The inverse distance of a far point may be slightly negative.
   const bool in_front = rho.value > -2.0 * rho.sigma && rho.value < 1.0 / options.min_distance_m;
   return known && in_front && rho.rms_sigmas < options.max_error_sigmas;
 }
@@ -174,7 +175,8 @@ int removeOutliers(Window& window, const std::vector<double>& errors_sigmas, con
     const double rho = track.landmark->inverseDistance();
     const bool sane = rho > -0.05 && rho < 1.0 / options.min_distance_m;
     if (host_kept && other_kept && sane) continue;
-    // What remains is inconsistent with itself or with the poses: start over with later observations.
+    // The remaining observations contradict each other or the poses: the track starts again with later
+    // observations.
     track.landmark.reset();
     track.observations.clear();
   }

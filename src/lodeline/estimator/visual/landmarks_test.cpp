@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-// Three keyframes 20 cm apart that look along the world's x axis, then a frame that is none.
+// Three keyframes 20 cm apart that look along the world's x axis, then a frame that is not a keyframe.
 class LandmarksTest : public testing::Test {
  protected:
   LandmarksTest() {
@@ -44,7 +44,7 @@ TEST_F(LandmarksTest, AreCreatedWhereThePointIs) {
   EXPECT_EQ(create(), 0) << "nothing is created twice";
 }
 
-// By the lens of the file the point would be 25 mm off.
+// With the intrinsics of the file, the error of the point would be 25 mm.
 TEST_F(LandmarksTest, AreCreatedByTheLensThatTheWindowKnows) {
   const std::vector<double> lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01};
   const Vec3 point_W(3.0, -0.9, 0.4);
@@ -73,12 +73,12 @@ TEST_F(LandmarksTest, NeedTwoObservationsAKeyframeAndTheNewestFrame) {
   test_.see(1, point_W, *frames[3]);  // once
   test_.see(2, point_W, *frames[0]);  // not in the newest frame
   test_.see(2, point_W, *frames[1]);
-  test_.see(3, point_W, *frames[3], 0);  // in no keyframe
+  test_.see(3, point_W, *frames[3], 0);  // in none of the keyframes
   test_.see(3, point_W, *frames[3], 1);
   EXPECT_EQ(create(), 0);
 }
 
-// From two images any chance match has a place in space.
+// Any wrong match can be triangulated from two images.
 TEST_F(LandmarksTest, NeedThreeFramesWhereTheWindowHasThem) {
   const Vec3 point_W(3.0, -0.5, 0.0);
   const auto& frames = test_.window.frames();
@@ -102,12 +102,12 @@ TEST_F(LandmarksTest, NeedThreeFramesWhereTheWindowHasThem) {
 
 TEST_F(LandmarksTest, BehindTheCameraOrTooNearAreRefused) {
   options_.min_frames = 2;
-  // Rays that part instead of meeting: the point would lie behind.
+  // Diverging rays: the point would lie behind the camera.
   const auto& frames = test_.window.frames();
   test_.seeAlong(1, Vec3(-0.1, 0.0, 1.0), *frames[2], 0);
   test_.seeAlong(1, Vec3(0.1, 0.0, 1.0), *frames[2], 1);
   test_.see(1, Vec3(100.0, 0.0, 0.0), *frames[3]);
-  // A point 2 cm in front of the camera, seen across it.
+  // A point 2 cm in front of the camera, with a baseline across the line of sight.
   const Rigid3 world_from_camera = frames[2]->worldFromBody() * test_.rig.cameras[0].body_from_camera;
   const Vec3 near_W = world_from_camera * Vec3(0.0, 0.0, 0.02);
   test_.seeAlong(2, Vec3::UnitZ(), *frames[2]);
@@ -125,7 +125,7 @@ TEST_F(LandmarksTest, FarAwayKeepTheirDirection) {
   EXPECT_EQ(clean(), 0);
 }
 
-// One camera that hardly moves, among landmarks that are known, looks at 100 new points as far away.
+// One camera that hardly moves among known landmarks observes 100 new points at the same distance.
 class SlowLandmarksTest : public testing::Test {
  protected:
   static constexpr double kDistance_m = 3.0;
@@ -135,7 +135,7 @@ class SlowLandmarksTest : public testing::Test {
     for (TrackId id = kPoints; id < kPoints + known; ++id) known_.push_back(id);
   }
 
-  /// How many of them become landmarks with frames `step_m` apart.
+  /// Number of points that become landmarks with frames `step_m` apart.
   int create(double step_m) {
     for (int i = 0; i < 4; ++i) test_.add(Rigid3(Quat::Identity(), Vec3(0.0, -step_m * i, 0.0)), i < 3);
     Random noise(5, "slow landmarks");
@@ -177,7 +177,7 @@ class SlowLandmarksTest : public testing::Test {
   std::vector<TrackId> known_;
 };
 
-// Measured by their own distance, those that noise makes seem near would be known well enough.
+// Relative to their own distance, points that appear near by noise would be accurate enough.
 TEST_F(SlowLandmarksTest, DoNotOweTheirPlaceToNoise) { EXPECT_EQ(create(stepFor(0.5)), 0); }
 
 TEST_F(SlowLandmarksTest, LieWhereTheirPointsLieInTheMean) {
@@ -198,7 +198,7 @@ TEST_F(FirstLandmarksTest, AreMeasuredByThemselves) {
 }
 
 TEST_F(LandmarksTest, WhoseViewsContradictEachOtherAreRefused) {
-  // 15 px across the epipolar lines, half of it in the mean.
+  // 15 px across the epipolar lines; half of it is the mean error.
   for (const auto& frame : test_.window.frames())
     test_.see(1, Vec3(3.0, -0.5, 0.0), *frame, 0, Vec2(0.0, frame->id % 2 == 0 ? 15.0 : -15.0));
   EXPECT_EQ(create(), 0);
@@ -218,7 +218,7 @@ TEST_F(LandmarksTest, AreLimitedToThoseSeenLongest) {
   EXPECT_FALSE(track(12).landmark.has_value());
 }
 
-// After darkness the window is full of points that are out of view.
+// After darkness the window is full of points that are not in view.
 TEST_F(LandmarksTest, AreMadeWhenFewAreInViewHoweverManyTheWindowHolds) {
   const auto& frames = test_.window.frames();
   for (int i = 0; i < 12; ++i) {
@@ -271,7 +271,7 @@ TEST_F(LandmarksTest, StatisticsCountTheFramesOwnObservations) {
     seeInAll(i, point_W, &noise);
     test_.place(i, point_W, *test_.window.frames()[2]);
   }
-  // Placed at the truth, the whitened errors are the noise: 400 numbers of unit variance, 4 sigma of their
+  // At the true poses, the whitened residuals are the noise: 400 numbers of unit variance; 4 sigma of their
   // root mean square is 0.14.
   const ReprojectionStatistics statistics = reprojectionStatistics(test_.window, test_.factors, 3);
   EXPECT_EQ(statistics.landmarks, 100);

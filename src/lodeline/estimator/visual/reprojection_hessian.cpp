@@ -7,7 +7,8 @@ namespace {
 
 constexpr int kCount = ObservationColumns::kCount;
 
-/// Adds a^T b to `sums`, a the columns from `first` on of both rows and b as many columns as `sums` has.
+/// Adds a^T b to `sums`, where a has the columns from `first` on of both rows, and b as many columns as
+/// `sums`.
 template <typename Sums>
 inline __attribute__((always_inline)) void add(const double* __restrict rows, int first,
                                                double* __restrict sums) {

@@ -4,9 +4,10 @@
 
 namespace lodeline {
 
-/// An observation's two rows: its derivatives by the lens of its camera, by the extrinsics of a secondary
-/// camera and by the pose of its landmark's host, zero where there is none, and among them the residual,
-/// since gradients add up as Hessians do. The last column is empty, so that rows are whole vectors.
+/// Columns of the two rows of an observation: its derivatives by the intrinsics of its camera, by the
+/// extrinsics of a secondary camera and by the pose of its landmark's host (zero where there is none). The
+/// residual is one more column, because gradients are summed like Hessians. The last column is empty, so that
+/// rows are whole SIMD vectors.
 struct ObservationColumns {
   static constexpr int kIntrinsics = 0, kSecondary = 6, kResidual = 12, kHost = 13, kCount = 20;
 };
@@ -14,8 +15,9 @@ using ObservationRows = Eigen::Matrix<double, 2, ObservationColumns::kCount, Eig
 
 /// Sums of products of the derivatives by the host's pose with all columns.
 using HostProducts = Eigen::Matrix<double, 6, ObservationColumns::kCount, Eigen::RowMajor>;
-/// The same of the derivatives by lens and extrinsics. The last columns mean nothing there, but with rows of
-/// 16 GCC 12 unrolls the sums whole and gathers them across rows, which takes several times as long.
+/// The same products of the derivatives by intrinsics and extrinsics. The last columns have no meaning there.
+/// With rows of 16, however, GCC 12 unrolls the sums completely and gathers them across rows, which takes
+/// several times as long.
 using CalibrationProducts =
     Eigen::Matrix<double, ObservationColumns::kResidual, ObservationColumns::kCount, Eigen::RowMajor>;
 

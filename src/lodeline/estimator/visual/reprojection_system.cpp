@@ -28,7 +28,7 @@ std::vector<FrameId> idsOf(const Window& window) {
   return ids;
 }
 
-/// Of a frame, counted from the oldest.
+/// Index of a frame, counted from the oldest.
 int placeOf(FrameId id, const std::vector<FrameId>& ids) {
   return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
 }
@@ -38,7 +38,7 @@ bool isAmong(const FeatureTrack& track, ReprojectionSystem::Of which) {
                             track.is_frozen == (which == ReprojectionSystem::Of::kFrozen));
 }
 
-/// The frames that a landmark has for its host, counted from the oldest.
+/// The frames that are hosts of landmarks, counted from the oldest.
 std::vector<int> hostsOf(const Window& window, ReprojectionSystem::Of which) {
   const std::vector<FrameId> ids = idsOf(window);
   std::vector<bool> is_host(ids.size(), false);
@@ -52,8 +52,8 @@ std::vector<int> hostsOf(const Window& window, ReprojectionSystem::Of which) {
   return hosts;
 }
 
-/// From derivatives by the pose of a host's camera (columns) to those by that of a target's, to which the
-/// host has the baseline given: moving the one is moving the other backwards.
+/// Converts derivatives by the pose of a host's camera (columns) to those by the pose of a target's camera,
+/// at the given baseline from target to host. A motion of one is the reverse motion of the other.
 Mat6 byTarget(const Mat6& by_host, const Vec3& baseline_W) {
   const Eigen::Matrix<double, 6, 3> by_position = by_host.leftCols<3>();
   Mat6 by_target;
@@ -63,7 +63,7 @@ Mat6 byTarget(const Mat6& by_host, const Vec3& baseline_W) {
 
 }  // namespace
 
-/// One observation's residual and derivatives, scaled by the loss.
+/// Residual and derivatives of one observation, scaled by the loss.
 struct ReprojectionSystem::Linearized {
   ObservationRows by_nodes = ObservationRows::Zero();
   Mat23 by_landmark;
@@ -105,7 +105,7 @@ void ReprojectionSystem::add(FeatureTrack& track, std::optional<FrameId> only,
   const std::span<const lodeline::Observation> all(track.observations);
   int frame = 0;
   for (const lodeline::Observation& observation : only ? track.in(*only) : all) {
-    // They come in order of time.
+    // Observations are in order of time.
     while (ids[static_cast<size_t>(frame)] < observation.frame) ++frame;
     landmark.first_frame = std::min(landmark.first_frame, frame);
     landmark.end_frame = std::max(landmark.end_frame, frame + 1);
@@ -116,8 +116,8 @@ void ReprojectionSystem::add(FeatureTrack& track, std::optional<FrameId> only,
   landmarks_.push_back(landmark);
 }
 
-/// Most landmarks are seen by some frames of the window only. With columns in the order of the time that
-/// landmarks were seen, a stretch of them touches few frames more than each does.
+/// Orders the columns by the time at which landmarks were observed. Most landmarks are observed by some
+/// frames of the window only, so that a stretch of such columns involves few more frames than each landmark.
 void ReprojectionSystem::arrangeColumns() {
   constexpr size_t kStretch = 16;
   std::vector<Landmark*> by_time;
@@ -210,11 +210,11 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
 
   term.by(Columns::kIntrinsics) *= weight;
   if (observation.camera > 0) {
-    const CameraViews::Further& further = first_.further(observation.camera);
+    const CameraViews::Further& secondary = first_.secondary(observation.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, observation.frame, 0);
-    const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - further.position_C0);
-    const Mat23 by_point_C0 = by_point * further.camera0_from_camera.transpose();
-    term.by(Columns::kSecondary) << timesSkew(by_point_C0, offset_C0) * further.left_jacobian,
+    const Vec3 offset_C0 = camera0.rotation * direction + rho * (camera0.translation - secondary.position_C0);
+    const Mat23 by_point_C0 = by_point * secondary.camera0_from_camera.transpose();
+    term.by(Columns::kSecondary) << timesSkew(by_point_C0, offset_C0) * secondary.left_jacobian,
         -rho * by_point_C0;
   }
   if (observation.frame == landmark.host) return term;
@@ -246,7 +246,7 @@ void ReprojectionSystem::eliminate(Landmark* of) {
     if (observation.camera > 0) couple(secondaryNode(observation.camera), Columns::kSecondary);
     if (!states_.intrinsics.empty()) couple(intrinsicsNode(observation.camera), Columns::kIntrinsics);
   }
-  // What the targets' poses do follows from what the host's would do with each target alone.
+  // The effect of the targets' poses follows from the host's effect with each target alone.
   auto of_host = coupling.middleRows<6>(6 * landmark.host);
   for (int frame = landmark.first_frame; frame < landmark.end_frame; ++frame) {
     if (frame == landmark.host) continue;
@@ -319,7 +319,7 @@ void ReprojectionSystem::addTo(NormalEquations* system) {
   gradient_.setZero(rows);
   couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
   rooted_gradients_.resize(kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
-  // While a stretch's couplings are at hand.
+  // Done here while a stretch's couplings are in the cache.
   for (const Stretch& stretch : stretches_) {
     couplingsOfFrames(stretch).setZero();
     couplingsOfCalibration(stretch).setZero();

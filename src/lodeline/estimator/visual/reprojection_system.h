@@ -11,39 +11,39 @@
 
 namespace lodeline {
 
-/// All reprojection terms of a window at once: the same cost and derivatives as the factors of
-/// FactorBuilder::landmark(), which remain the reference, at a fraction of their price. Landmarks are
-/// eliminated against the poses of the cameras, of which each frame has one; what those mean for the poses of
-/// the bodies and for the calibration is worked out once for the sum, not for every observation.
+/// All reprojection residuals of a window at once. Cost and derivatives equal those of the factors of
+/// FactorBuilder::landmark(), which remain the reference, at a fraction of the computing time. Landmarks are
+/// eliminated with respect to camera poses, of which each frame has one. The chain rule to body poses and
+/// calibration is applied once to the sum and not to every observation.
 class ReprojectionSystem {
  public:
-  /// All landmarks of the window, or apart those that LandmarkLinearizationCache stand for and the others.
+  /// All landmarks of the window, or those without or with a linearization in LandmarkLinearizationCache.
   enum class Of { kAll, kLive, kFrozen };
 
-  /// Window and factors must outlive the terms, and tracks must stay as they are. With `only`, of the
-  /// observations in that frame alone.
+  /// Window and factors must outlive the terms, and tracks must not change. With `only`, the terms contain
+  /// only the observations of that frame.
   ReprojectionSystem(Window& window, const FactorBuilder& factors, Of which = Of::kAll,
                      std::optional<FrameId> only = {});
   ReprojectionSystem(const ReprojectionSystem&) = delete;
   ReprojectionSystem& operator=(const ReprojectionSystem&) = delete;
 
-  /// Takes the blocks' present values: to be called after they have moved. All of the following is at the
-  /// values taken last, at first those of the construction.
+  /// Linearizes at the blocks' present values; to be called after they have changed. All of the following
+  /// functions use the values of the last call, or first those at construction.
   void update();
 
   double cost() const;
 
-  /// Length of the whitened error of every observation, landmarks in the order of their tracks.
+  /// Norm of the whitened residual of every observation, landmarks in the order of their tracks.
   std::vector<double> errors() const;
 
-  /// The blocks of the landmarks in that order.
+  /// Parameter blocks of the landmarks in that order.
   std::vector<double*> landmarks() const;
 
-  /// Adds the terms, landmarks eliminated. Jacobians are taken at linearization points where blocks hold
-  /// them.
+  /// Adds the terms with eliminated landmarks. Jacobians are taken at the blocks' linearization points where
+  /// they have one.
   void addTo(NormalEquations* system);
 
-  /// Moves the landmarks along with a step of `system`, to which the terms were added last.
+  /// Updates the landmarks for a step of `system`, to which the terms were added last.
   void stepLandmarks(const NormalEquations& system, const Eigen::VectorXd& step);
 
  private:
@@ -57,19 +57,19 @@ class ReprojectionSystem {
     double* value;
     int host;
     LandmarkBase base;
-    double weight;  ///< of its errors, squared
+    double weight;  ///< of its squared residuals
     size_t first_observation, end_observation;
-    int first_frame, end_frame;  ///< of those that see it and its host
+    int first_frame, end_frame;  ///< range of the frames that observe it, including its host
     Eigen::Index column;         ///< of its couplings
     Mat3 inverse_root;           ///< of the last linearization: W with W W^T the inverse of its Hessian
   };
-  /// Landmarks whose couplings are side by side, and the frames that any of them touches.
+  /// Landmarks with adjacent columns of couplings, and the range of frames that observe any of them.
   struct Stretch {
     std::vector<Landmark*> landmarks;
     Eigen::Index column, columns;
     int first_frame, end_frame;
   };
-  /// Of an observation, by the lens of the calibration file and by the lens as it is estimated.
+  /// Residuals of an observation, by the intrinsics of the calibration file and by the estimated ones.
   struct Residual {
     Vec2 by_file, by_intrinsics;
   };
@@ -94,7 +94,7 @@ class ReprojectionSystem {
   auto couplingsOfCalibration(const Stretch& stretch) {
     return couplings_.block(6 * frames_, stretch.column, 6 * (nodes_ - frames_), stretch.columns);
   }
-  /// From a target's camera 0 to a host's.
+  /// Vector from a target's camera 0 to a host's.
   Vec3 baseline_W(int host, int target) const {
     return first_.placement(host).position_W - first_.placement(target).position_W;
   }
@@ -117,16 +117,17 @@ class ReprojectionSystem {
   std::vector<Stretch> stretches_;
   std::vector<Observation> observations_;
   std::vector<Residual> residuals_;  ///< of the observations
-  // Nodes are what landmarks are eliminated against, six coordinates each: the camera poses of the frames in
-  // the window's order, then the extrinsics of secondary cameras, then the lenses where they are estimated.
+  // Nodes are the variables with respect to which landmarks are eliminated, six coordinates each: the camera
+  // poses of the frames in the window's order, then the extrinsics of secondary cameras, then the intrinsics
+  // where they are estimated.
   std::vector<HostProducts> by_host_;                ///< by indexOf()
   std::vector<CalibrationProducts> by_calibration_;  ///< by camera
   Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle
   Eigen::VectorXd gradient_;
-  /// Of nodes (rows) and landmarks, times the latter's inverse roots. Of the frames that a stretch does not
-  /// touch it says nothing.
+  /// Couplings of nodes (rows) and landmarks (columns), times the landmarks' inverse roots. Rows of frames
+  /// outside a stretch's range are undefined.
   Eigen::MatrixXd couplings_;
-  Eigen::VectorXd rooted_gradients_;  ///< of landmarks, by the transposed inverse roots
+  Eigen::VectorXd rooted_gradients_;  ///< gradients by the landmarks, times the transposed inverse roots
 };
 
 }  // namespace lodeline

@@ -10,8 +10,8 @@ namespace {
 
 enum class Calibrated { No, Placement, PlacementAndLens };
 
-// A window of a moving rig in three versions of the calibration, each block off its linearization point, as
-// after marginalization.
+// A window of a moving rig in three versions of the calibration. The value of each block differs from its
+// linearization point, as after marginalization.
 class ReprojectionSystemTest : public testing::TestWithParam<std::tuple<int, Calibrated, bool>> {
  protected:
   ReprojectionSystemTest() : test_(std::get<0>(GetParam())) {
@@ -27,7 +27,7 @@ class ReprojectionSystemTest : public testing::TestWithParam<std::tuple<int, Cal
     if (std::get<2>(GetParam())) interpolate(4);
   }
 
-  // The frame hangs between its neighbours, which have moved since.
+  // Interpolates the frame between its neighbours, which have moved since.
   void interpolate(size_t index) {
     const auto& frames = test_.window.frames();
     for (auto& [id, track] : test_.window.tracks()) {
@@ -56,7 +56,8 @@ class ReprojectionSystemTest : public testing::TestWithParam<std::tuple<int, Cal
     }
   }
 
-  // Landmarks at a time by the factors, with the prior before them so that rows come in the same order.
+  // The same system from the factors, one landmark at a time, with the prior first so that rows are in the
+  // same order.
   NormalEquations reference() {
     NormalEquations system;
     system.add(test_.factors.prior(prior_));
@@ -187,7 +188,7 @@ TEST(ReprojectionSystem, OfAWindowWithoutLandmarksAreNothing) {
   terms.stepLandmarks(system, Eigen::VectorXd::Zero(system.size()));
 }
 
-// A point that moved behind a camera holds its constant error there and pulls at nothing.
+// The residual of a point behind a camera is constant, with zero derivatives.
 TEST(ReprojectionSystem, BearAPointBehindACamera) {
   TestWindow test(1);
   const Frame& host = test.add(Rigid3());

@@ -6,7 +6,8 @@
 namespace lodeline {
 namespace {
 
-/// Readings may stray from their means by five sigmas of white noise on top of what the options say.
+/// Options of the readings' detector. Deviations from the means may reach five sigmas of white noise in
+/// addition to the options' limits.
 RestDetectorOptions detectorOptions(const ImuCalibration& imu, const RestOptions& options) {
   constexpr double kSigmas = 5.0;
   const double per_density = kSigmas * std::sqrt(imu.rate_hz);
@@ -41,7 +42,7 @@ bool StationaryDetector::add(const FrameTracks& tracks, std::span<const ImuSampl
     if (observation.camera == 0) picture.points.push_back({observation.track, observation.bearing_C});
   }
   pictures_.push_back(std::move(picture));
-  // The oldest one that stays is the newest that is `span_s` old.
+  // The oldest image kept is the newest one with an age of at least `span_s`.
   while (pictures_.size() > 1 && (tracks.time - pictures_[1].time).seconds() >= options_.span_s)
     pictures_.pop_front();
   if (!options_.enabled || !readings_rest) return false;
@@ -55,7 +56,8 @@ bool StationaryDetector::add(const FrameTracks& tracks, std::span<const ImuSampl
 
 std::optional<GyroscopeAtRest> StationaryDetector::gyroscope() const {
   if (!last_rest_) return std::nullopt;
-  // The Earth's turn is part of what a gyroscope reads at rest and changes its direction with the rig's.
+  // A gyroscope at rest also measures the Earth's rotation, whose direction in body axes changes with the
+  // rig's attitude.
   constexpr double kEarth_rad_per_s = 7.292e-5;
   const double wander = noise_.gyroscope_random_walk_rad_per_s2_sqrtHz;
   const double since_s = (pictures_.back().time - *last_rest_).seconds();
@@ -111,11 +113,13 @@ std::optional<double> StationaryDetector::shiftAtRest() const {
     bends.push_back((c.bearing_C - 2.0 * b->bearing_C + a->bearing_C).norm());
   }
   if (static_cast<int>(shifts.size()) < options_.min_tracks) return std::nullopt;
-  // Noise shifts by sqrt(2) sigma and bends by sqrt(6) sigma, a steady motion only shifts.
+  // Noise gives a shift of sqrt(2) sigma and a second difference of sqrt(6) sigma; a steady motion gives only
+  // a shift.
   const double noise_shift = std::sqrt(2.0 / 6.0) * median(&bends);
   const double shift = median(&shifts);
   if (shift >= std::max(options_.shift_px / focal_length_px_, 1.4 * noise_shift)) return std::nullopt;
-  // What all tracks have in common: their noise does not add to it but for the little that it hides.
+  // The common shift of all tracks, after subtraction of the noise, plus the uncertainty of the median by
+  // noise.
   const double of_all = std::max(shift * shift - noise_shift * noise_shift, 0.0);
   return std::sqrt(of_all + noise_shift * noise_shift / static_cast<double>(shifts.size()));
 }

@@ -12,25 +12,26 @@
 
 namespace lodeline {
 
-/// What rests say of a gyroscope: where nothing turns, it reads its bias.
+/// Gyroscope bias from rests: at zero rotation the gyroscope reads its bias.
 struct GyroscopeAtRest {
   Vec3 bias_B;  ///< rad/s
   double sigma_rad_per_s;
 };
 
-/// Tells when a rig rests: its inertial readings stay close to their means, and its images stay as they are.
-/// That tells more than observations do. Points that do not move in the image are as well infinitely far from
-/// a rig that glides, which is what one camera makes of them whose speed dead reckoning has got wrong; no
-/// cave is as far as that.
+/// Detects that a rig is at rest: its inertial readings stay close to their means, and its images do not
+/// change. This is more information than the observations themselves. Points that do not move in the image
+/// could also be infinitely far from a rig that glides. One camera with a wrong velocity from dead reckoning
+/// interprets them so. No cave is that large.
 class StationaryDetector {
  public:
   StationaryDetector(const Rig& rig, const RestOptions& options);
 
-  /// Frames in order, with the readings since the frame before. True where a frame's velocity is to be
-  /// counted as none: once in `RestOptions::span_s` at most, since what is left of motion lasts.
+  /// Adds frames in order, with the readings since the frame before. Returns true for a zero-velocity update
+  /// at the frame: at most once in `RestOptions::span_s`, because the residual motion is correlated over
+  /// time.
   bool add(const FrameTracks& tracks, std::span<const ImuSample> imu);
 
-  /// From all rests up to the newest frame, as of that frame; nothing before the first.
+  /// Bias from all rests up to the newest frame, valid at that frame; empty before the first rest.
   std::optional<GyroscopeAtRest> gyroscope() const;
 
  private:
@@ -42,11 +43,11 @@ class StationaryDetector {
     Time time;
     std::vector<Point> points;  ///< of the first camera, by track
     Vec3 sum_of_rates_B = Vec3::Zero();
-    int readings = 0;  ///< since the picture before
+    int readings = 0;  ///< since the image before
   };
 
   bool readingsRest(std::span<const ImuSample> imu, Picture* picture);
-  /// How far the images may have shifted over `span_s`, rad; nothing where that is more than noise.
+  /// Largest common shift of the images over `span_s`, rad; empty where that is more than noise.
   std::optional<double> shiftAtRest() const;
   void learnBias(double shift_rad);
 

@@ -21,7 +21,7 @@ TestSceneOptions ofOneCamera() {
   return options;
 }
 
-/// Times at which the rig was said to rest, s; `shake_m_per_s2` goes into the accelerometer's readings.
+/// Times of zero-velocity updates, s; `shake_m_per_s2` is added to the accelerometer's readings.
 std::vector<double> rests(const TestSceneOptions& scene_options, double shake_m_per_s2 = 0.0,
                           const RestOptions& options = {}) {
   TestScene scene(scene_options);
@@ -44,7 +44,7 @@ TEST(StationaryDetector, SaysSoOnceASecondAtRest) {
 }
 
 TEST(StationaryDetector, DoesNotTakeAGlideForRest) {
-  // Steady, so that the readings say nothing of it.
+  // A constant velocity, which the readings do not show.
   TestSceneOptions options = ofOneCamera();
   options.drift_m_per_s = Vec3(0.0, 0.04, 0.0);
   EXPECT_TRUE(rests(options).empty());
@@ -96,7 +96,7 @@ TEST(StationaryDetector, LearnsTheGyroscopesBiasFromAllRests) {
     EXPECT_LT(found.sigma_rad_per_s, 0.6 * sigma_after_one);
     squares += ((found.bias_B - bias_B) / found.sigma_rad_per_s).squaredNorm();
   }
-  // The Earth's turn and what images may have missed are allowed for and do not happen here.
+  // The sigma includes the Earth's rotation and undetected motion, which do not occur here.
   EXPECT_LT(squares / (3 * kSeeds), 1.5);
   EXPECT_GT(squares / (3 * kSeeds), 0.05);
 }
@@ -123,7 +123,7 @@ TEST(RestFactor, HoldsTheVelocityAndNothingElse) {
   };
   EXPECT_DOUBLE_EQ(costAt(Vec3::Zero(), 0.0), 0.0);
   EXPECT_DOUBLE_EQ(costAt(Vec3::Zero(), 0.7), 0.0);
-  // Two sigmas, whichever way: nothing that would tell where north is.
+  // Two sigmas in every direction: the cost contains no information about north.
   EXPECT_NEAR(costAt(Vec3(0.06, 0.0, 0.0), 0.0), 2.0, 1e-12);
   EXPECT_NEAR(costAt(Vec3(0.0, -0.06, 0.0), 0.0), 2.0, 1e-12);
   EXPECT_NEAR(costAt(0.06 * Vec3(1.0, 2.0, -2.0) / 3.0, 0.0), 2.0, 1e-12);

@@ -14,11 +14,11 @@
 namespace lodeline {
 namespace {
 
-// Second singular value of the cross-covariance against the first below which the points count as one line:
-// position noise would decide on the rotation about it.
+// Ratio of the second to the first singular value of the cross-covariance below which the points count as one
+// line: position noise would determine the rotation about it.
 constexpr double kDegenerateRatio = 1e-9;
 
-// Standard deviation of the positions against their size below which they are one place, up to rounding.
+// Ratio of the positions' standard deviation to their size below which they are equal, except for rounding.
 constexpr double kRestingRatio = 1e-12;
 
 struct Moments {
@@ -54,7 +54,7 @@ Moments computeMoments(const PosePairs& pairs) {
   return m;
 }
 
-/// The rotation R that maximizes trace(R^T * covariance) and the trace it reaches.
+/// The rotation R that maximizes trace(R^T * covariance), and the maximum of the trace.
 struct Rotation {
   Mat3 matrix = Mat3::Identity();
   double trace = 0.0;

@@ -8,9 +8,9 @@
 
 namespace lodeline {
 
-/// Which transformation takes the world of the estimate to that of the reference before errors are measured.
-/// The unobservable directions of the estimator decide: visual-inertial odometry cannot know position and yaw
-/// (Yaw), a single camera alone not even the scale (Sim3).
+/// Type of the transformation from the world of the estimate to that of the reference before errors are
+/// computed. It should contain the unobservable directions of the estimator: visual-inertial odometry does
+/// not know position and yaw (Yaw), a single camera alone does not know the scale either (Sim3).
 enum class AlignmentType { None, Yaw, SE3, Sim3 };
 
 /// "none", "yaw", "se3", "sim3" and back; UsageError for another name.
@@ -22,41 +22,41 @@ struct Alignment {
   double scale = 1.0;
   Rigid3 reference_from_estimate;  ///< R and t (m); t is applied after the scale
 
-  /// The positions do not fix the rotation (fewer than three, all in one place or on one line; for Yaw: no
-  /// horizontal extent), so that it was taken from the orientations.
+  /// Whether the rotation comes from the orientations, because the positions do not determine it (fewer than
+  /// three, all at one position or on one line; for Yaw: no horizontal extent).
   bool rotation_from_orientations = false;
 
   Rigid3 apply(const Rigid3& estimate_world_from_body) const;
 
-  /// By how much the estimate is too large, as a share of the true size: 1/scale - 1.
+  /// Relative scale error of the estimate, positive where it is too large: 1/scale - 1.
   double scaleError() const { return 1.0 / scale - 1.0; }
 };
 
 /// The least-squares alignment of the positions. SE3 and Sim3: Umeyama, "Least-squares estimation of
 /// transformation parameters between two point patterns", PAMI 1991. Yaw: the closed form of Zhang &
 /// Scaramuzza, "A tutorial on quantitative trajectory evaluation for visual(-inertial) odometry", IROS 2018.
-/// Where the positions leave the rotation open it is the chordal mean of the rotations between the two
+/// Where the positions do not determine the rotation, it is the chordal mean of the rotations between the two
 /// trajectories' orientations. Throws InputError without pairs, and for Sim3 when the estimate or the
-/// reference has no extent, which leaves the scale open.
+/// reference has no extent, so that the scale is undetermined.
 Alignment align(AlignmentType type, const PosePairs& pairs);
 
-/// The alignment that makes the first poses coincide in what `type` leaves free (Yaw: position and yaw). Sim3
-/// keeps `scale`, which a single pose cannot give.
+/// Alignment of the first poses in the free directions of `type` (Yaw: position and yaw). Sim3 keeps `scale`,
+/// which a single pose does not determine.
 Alignment alignFirstPose(AlignmentType type, const PosePairs& pairs, double scale);
 
-/// What the heading of an estimate is measured from.
+/// Reference direction of an estimate's heading.
 enum class HeadingBasis {
-  North,  ///< its y axis claims to be north as the reference's: nothing about its heading is free
+  North,  ///< its y axis is north like that of the reference, so its heading has no free direction
   Start,  ///< its first heading is arbitrary
 };
 
 const char* toString(HeadingBasis basis);
 
-/// Of a run by its word for what its heading is counted from (`heading.reference` of run.json). Magnetic
-/// north is off the reference's north by a declination that such a run does not know.
+/// Basis of a run from the name of its heading reference (`heading.reference` of run.json). Magnetic north
+/// differs from the reference's north by a declination that such a run does not know.
 HeadingBasis headingBasisOf(const std::string& heading_reference);
 
-/// Makes the first positions coincide and, with HeadingBasis::Start, the first headings.
+/// Alignment of the first positions and, with HeadingBasis::Start, of the first headings.
 Alignment alignStarts(HeadingBasis basis, const PosePairs& pairs);
 
 /// The estimate's poses in the world of the reference.

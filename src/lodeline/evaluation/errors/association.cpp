@@ -34,7 +34,7 @@ struct Match {
   int64_t distance_ns = 0;
 };
 
-/// For each of `few` the nearest of `many` within the tolerance, every one of `many` used once.
+/// For each of `few` the nearest of `many` within the tolerance; each of `many` is used at most once.
 std::vector<Match> matchNearest(const Poses& few, const Poses& many, Duration many_minus_few,
                                 Duration tolerance) {
   std::vector<Match> matches;

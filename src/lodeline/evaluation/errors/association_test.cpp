@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// Poses whose x is their time, so that a pair shows which poses met.
+/// Poses whose x is their time, so that a pair shows which poses were associated.
 Trajectory atTimes(const std::vector<double>& times_s) {
   Trajectory trajectory;
   trajectory.name = "times";

@@ -8,26 +8,26 @@
 
 namespace lodeline {
 
-/// One pose with what the run that estimated it says of its errors.
+/// One pose with the reported sigmas of its errors.
 struct ReportedPose {
   StampedPose pose;
   Vec3 position_sigma_m = Vec3::Zero();    ///< axes of the estimate's world
   Vec3 rotation_sigma_rad = Vec3::Zero();  ///< the same; z: of the heading
 };
 
-/// The poses of `lodeline run`.
+/// Poses of `lodeline run`.
 struct ReportedUncertainty {
   std::vector<ReportedPose> poses;
-  HeadingBasis basis = HeadingBasis::Start;  ///< what the heading's sigma is measured from
+  HeadingBasis basis = HeadingBasis::Start;  ///< reference direction of the heading's sigma
 };
 
-/// Errors of one kind beside their standard deviations, each axis of the estimate's world for itself.
+/// Errors of one kind compared with their standard deviations, for each axis of the estimate's world.
 struct ReportedAxes {
-  Vec3 within_3_sigma_percent = Vec3::Zero();  ///< of the poses; 99.7 where errors are normal and white
-  Vec3 rms_sigmas = Vec3::Zero();              ///< of error over sigma; 1 where the claim is exact
+  Vec3 within_3_sigma_percent = Vec3::Zero();  ///< of the poses; 99.7 for normal and white errors
+  Vec3 rms_sigmas = Vec3::Zero();              ///< of error over sigma; 1 where the sigma is exact
 };
 
-/// Whether errors are as large as claimed.
+/// Comparison of errors with their reported sigmas.
 struct ConsistencyCheck {
   std::size_t poses = 0;
   HeadingBasis basis = HeadingBasis::Start;
@@ -35,11 +35,11 @@ struct ConsistencyCheck {
   ReportedAxes rotation;
 };
 
-/// Errors against a reference from equal first positions and, with HeadingBasis::Start, first headings: what
-/// sigmas of a run are about. They are turned to the axes of the estimate's world, where a way's length and
-/// its direction may be known very differently. The first pair, which has no error then, does not count.
-/// Nothing to judge (`poses` is 0) without claims or without times in the reference; throws InputError as
-/// associate() does.
+/// Computes errors relative to a reference from equal first positions and, with HeadingBasis::Start, equal
+/// first headings, because the sigmas of a run refer to these. The errors are rotated to the axes of the
+/// estimate's world, because distances along and across the path may have very different sigmas. The first
+/// pair has no error by construction and does not count. `poses` is 0 without reported sigmas or without
+/// times in the reference. Throws InputError as associate() does.
 ConsistencyCheck checkConsistency(const ReportedUncertainty& claims, const Trajectory& reference,
                                   const AssociationOptions& association);
 

@@ -10,9 +10,9 @@ namespace lodeline {
 
 /// One run of one method on one recording.
 struct ComparedRun {
-  std::string seed;                 ///< what tells it from the other runs, in words
-  std::optional<RunErrors> errors;  ///< nothing where no trajectory came of it
-  std::string failure;              ///< why, where there are no errors
+  std::string seed;                 ///< distinguishes it from the other runs, in words
+  std::optional<RunErrors> errors;  ///< empty where it gave no trajectory
+  std::string failure;              ///< the reason where there are no errors
   double completion = 0.0;          ///< share of the images with a pose, 0 to 1
   double core_ms_per_frame = 0.0;   ///< zero where it was not measured
 };
@@ -24,15 +24,15 @@ struct ComparedMethod {
 
 struct ComparedRecording {
   std::string name;
-  std::string extent;  ///< what was measured on: in full, or which excerpt, in words
+  std::string extent;  ///< the evaluated part: all, or an excerpt, in words
   std::vector<ComparedMethod> methods;
 };
 
 /// Means over the runs that have errors.
 struct MethodMeans {
-  int runs = 0;                              ///< that have errors
-  int total_runs = 0;                        ///< that were made
-  HeadingBasis basis = HeadingBasis::Start;  ///< North where it is that of all these runs
+  int runs = 0;                              ///< with errors
+  int total_runs = 0;                        ///< all of them
+  HeadingBasis basis = HeadingBasis::Start;  ///< North if all these runs have it
   PoseRmse sim3, yaw;
   double scale = 0.0;
   double heading_rmse_deg = 0.0;
@@ -40,13 +40,13 @@ struct MethodMeans {
   double end_point_equal_start_percent = 0.0;
   double relative_yaw_deg = 0.0;
   double relative_yaw_growth_deg = 0.0;
-  double completion = 0.0;  ///< over all runs, failed ones too
+  double completion = 0.0;  ///< over all runs, including failed ones
   double core_ms_per_frame = 0.0;
 };
 
 MethodMeans meansOf(const ComparedMethod& method);
 
-/// The method that others are measured against: that named "off", else the first; none without methods.
+/// The method to which others are compared: that named "off", else the first; null without methods.
 const ComparedMethod* baselineOf(const ComparedRecording& recording);
 
 }  // namespace lodeline

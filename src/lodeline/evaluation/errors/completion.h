@@ -7,7 +7,7 @@
 
 namespace lodeline {
 
-/// How much of what should have been estimated was.
+/// Share of the expected poses that were estimated.
 struct Completion {
   double share = 0.0;         ///< 0 to 1
   bool by_images = false;     ///< share of images with a pose; otherwise share of the reference's time
@@ -19,9 +19,9 @@ struct Completion {
 Completion completionByImages(const Trajectory& estimate, const std::vector<Time>& image_stamps,
                               Duration time_offset, Duration tolerance);
 
-/// Share of the reference's time span covered by the estimate. A gap between two poses counts as covered
-/// while it is shorter than a second or three times the estimate's usual interval, so that a keyframe
-/// trajectory is not blamed for its sparsity. 0 for a reference without extent in time.
+/// Share of the reference's time span that the estimate covers. A gap between two poses counts as covered if
+/// it is shorter than a second or three times the estimate's usual interval. The spacing of a keyframe
+/// trajectory is then not a gap. 0 for a reference of zero duration.
 Completion completionByTime(const Trajectory& estimate, const Trajectory& reference, Duration time_offset);
 
 }  // namespace lodeline

@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-// A stretch may miss its length by this share (Zhang & Scaramuzza's toolbox uses the same).
+// Relative tolerance of a section's length (Zhang & Scaramuzza's toolbox uses the same).
 constexpr double kStretchTolerance = 0.2;
 
 PosePairs firstPairs(const PosePairs& pairs, std::size_t count) {
@@ -50,7 +50,7 @@ void computeRelative(Evaluation& e, Diagnostics& diagnostics) {
     }
     e.relative.push_back(computeRelativeErrors(aligned, e.pairs.reference, stretches, length_m));
   }
-  // Selected along the estimate, as evo does, whose figures these are to be compared with.
+  // Selected along the estimate as in evo, so that the results are comparable.
   const double length_m = e.options.consecutive_length_m;
   const auto consecutive = consecutiveStretches(distancesFromStart(aligned), length_m);
   e.consecutive = computeRelativeErrors(aligned, e.pairs.reference, consecutive, length_m);

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t kMostPairs = 300;
 constexpr std::size_t kFewestPairs = 10;
-constexpr double kDoubtful = 10.0 * M_PI / 180.0;  ///< rms (rad) from which on another order is tried
+constexpr double kDoubtful = 10.0 * M_PI / 180.0;  ///< rms (rad) from which other orders are tried
 constexpr double kFarBetter = 0.2;                 ///< of that rms
-constexpr double kSameRms = 1e-3;                  ///< rad; of two that fit as well the first counts
+constexpr double kSameRms = 1e-3;                  ///< rad; of two orders with equal rms the first counts
 
 using Rotations = std::vector<Mat3>;
 
@@ -26,7 +26,7 @@ struct Reading {
   Quat (*read)(const Quat&);
 };
 
-/// The quaternion that the file means where it was read in another order.
+/// The intended quaternion if the file was read in another order.
 constexpr std::array<Reading, 5> kReadings = {{
     {"w first", [](const Quat& q) { return Quat(q.x(), q.y(), q.z(), q.w()); }},
     {"w last", [](const Quat& q) { return Quat(q.z(), q.w(), q.x(), q.y()); }},
@@ -43,7 +43,7 @@ Mat3 nearestRotation(const Mat3& matrix) {
 }
 
 /// Rms angle (rad) between a_i and W b_i B for the best constant rotation B, and for the given W or the best
-/// one, found in turns.
+/// one, found by alternation.
 double disagreement(const Rotations& a, const Rotations& b, const std::optional<Mat3>& known_world) {
   Mat3 world = known_world.value_or(Mat3::Identity()), body = Mat3::Identity();
   for (int iteration = 0; iteration < (known_world ? 1 : 15); ++iteration) {
@@ -72,7 +72,7 @@ Rotations rotationsOf(const std::vector<Rigid3>& poses, Read read) {
   return rotations;
 }
 
-/// What is wrong with the order; empty where nothing is, or nothing else fits.
+/// The error in the order; empty where there is none, or where no other order fits.
 std::string findingOf(const PosePairs& pairs, const std::optional<Mat3>& estimate_from_reference) {
   const auto asRead = [](const Quat& q) { return q; };
   const Rotations estimate = rotationsOf(pairs.estimate, asRead);
@@ -90,7 +90,7 @@ std::string findingOf(const PosePairs& pairs, const std::optional<Mat3>& estimat
         "check the order of the columns of both files and --format",
         as_read * 180.0 / M_PI, which, reading.what, rms * 180.0 / M_PI);
   };
-  // Between equal frames, one file read wrongly and the other read as wrongly agree: the estimate goes first.
+  // Between equal frames, correcting either file gives the same agreement: the estimate is tried first.
   for (const Reading& reading : kReadings) {
     const Rotations other = rotationsOf(pairs.estimate, reading.read);
     consider(disagreement(other, reference, estimate_from_reference), "estimate", reading);
@@ -106,8 +106,8 @@ std::string findingOf(const PosePairs& pairs, const std::optional<Mat3>& estimat
 
 void checkOrientationOrder(const PosePairs& pairs, Diagnostics& diagnostics) {
   if (pairs.size() < kFewestPairs) return;
-  // Turns about one axis and their inverses differ by constant rotations only: the positions must fix the
-  // world.
+  // Rotations about one axis and their inverses differ by constant rotations only: the positions must
+  // determine the world.
   const Alignment by_positions = align(AlignmentType::SE3, pairs);
   std::string finding;
   if (!by_positions.rotation_from_orientations) {

@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Orientations that turn about all axes, and what `read` makes of them in another world and body frame.
+/// Pairs of rotations about all axes and their `read` versions in another world and body frame.
 template <typename Read>
 PosePairs pairsWith(Read read) {
   const Quat world(Eigen::AngleAxisd(0.7, Vec3(0.2, 0.3, 0.9).normalized()));
@@ -46,7 +46,7 @@ TEST(OrientationOrder, IsNoFindingWhereNothingFits) {
 }
 
 TEST(OrientationOrder, NamesTheOrderThatFits) {
-  // A file with x y z w that was read as w x y z, one the other way round, and inverse ones.
+  // A file with x y z w read as w x y z, one with the reverse error, and one with inverse rotations.
   const auto mistakenForWFirst = [](const Quat& q) { return Quat(q.x(), q.y(), q.z(), q.w()); };
   const auto mistakenForWLast = [](const Quat& q) { return Quat(q.z(), q.w(), q.x(), q.y()); };
   EXPECT_THAT(findingOf(pairsWith(mistakenForWFirst)), HasSubstr("estimate read as w last"));

@@ -51,7 +51,7 @@ std::vector<Stretch> overlappingStretches(const std::vector<double>& distances_m
     const double wanted_m = distances_m[start] + length_m;
     const auto first = distances_m.begin() + static_cast<std::ptrdiff_t>(start) + 1;
     const auto after = std::lower_bound(first, distances_m.end(), wanted_m);
-    // Past the end of the path a stretch would be too short as a rule, not by chance.
+    // Beyond the end of the path sections would be systematically too short.
     if (after == distances_m.end()) break;
     const bool before_is_closer = after != first && wanted_m - *(after - 1) <= *after - wanted_m;
     const auto closest = before_is_closer ? after - 1 : after;

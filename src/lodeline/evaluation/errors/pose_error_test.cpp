@@ -54,7 +54,7 @@ TEST(AbsoluteErrors, SeparatePositionRotationAndYaw) {
 
 TEST(Stretches, OverlappingOnesTakeTheClosestEnd) {
   const auto stretches = overlappingStretches({0.0, 0.9, 1.3, 2.0, 2.05}, 1.0, 0.2);
-  ASSERT_EQ(stretches.size(), 2u);  // from 0.9 the closest are 2.0 and 1.3: 0.1 and 0.6 off
+  ASSERT_EQ(stretches.size(), 2u);  // from 0.9 the closest are 2.0 and 1.3, with errors of 0.1 and 0.6
   EXPECT_EQ(stretches[0].start, 0u);
   EXPECT_EQ(stretches[0].end, 1u);
   EXPECT_EQ(stretches[1].start, 1u);
@@ -92,7 +92,7 @@ TEST(RelativeErrors, OfAWrongScaleAreTheSameShareOfEveryStretch) {
   EXPECT_NEAR(e.percentOfPath(e.end_point_m), 2.0, 1e-9);
 }
 
-/// Heading that drifts by `rate_deg_per_m` bends a straight path into an arc of radius 1 / rate.
+/// A heading drift of `rate_deg_per_m` bends a straight path into an arc of radius 1 / rate.
 Trajectory driftedStraight(int count, double rate_deg_per_m) {
   Trajectory trajectory = test::straight(count);
   const double rate = rate_deg_per_m * kRad;
@@ -127,7 +127,7 @@ TEST(RelativeErrors, OfADriftingHeadingGrowWithTheLength) {
 }
 
 TEST(RelativeErrors, ReadYawInTheWorldAndNotInATiltedBody) {
-  // The body looks down its x axis; turning about the world's vertical is a turn about the body's y axis.
+  // The body looks along its x axis; a rotation about the world's vertical is one about the body's y axis.
   const Quat tilted(Eigen::AngleAxisd(90.0 * kRad, Vec3::UnitX()));
   const Quat turned = Quat(Eigen::AngleAxisd(2.0 * kRad, Vec3::UnitZ())) * tilted;
   const std::vector<Rigid3> reference = {Rigid3(tilted, Vec3::Zero()), Rigid3(tilted, Vec3::UnitX())};

@@ -5,7 +5,7 @@
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/util/files/test_data.h"
 
-// Trajectories of others and the figures their own tools found on them.
+// Tests on published trajectories with the results of their authors' tools.
 
 namespace lodeline {
 namespace {
@@ -72,8 +72,9 @@ TEST_F(ReferenceResults, EvoSptamOnKitti00) {
              1e-5);
 }
 
-// No figures are stored beside these. The bounds stand just above what was found (0.24 % of the path, 1.95
-// deg, mostly a constant turn of the body frame); wrong times, conventions or alignment exceed them by far.
+// These have no published results. The bounds are slightly above the measured values (0.24 % of the path,
+// 1.95 deg, mostly a constant rotation of the body frame); wrong times, conventions or alignment exceed them
+// by far.
 TEST_F(ReferenceResults, RpgVisualInertialEstimatesAlignInYaw) {
   for (const char* name : {"laptop_vislam_ba_MH_04", "laptop_vislam_ba_V1_02"}) {
     for (const char* estimate : {"/stamped_ba_estimate0.txt.gz", "/stamped_ba_estimate1.txt.gz"}) {

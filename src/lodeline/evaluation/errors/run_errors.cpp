@@ -27,7 +27,7 @@ double yawGrowth_deg(const std::vector<RelativeErrors>& relative) {
   return variance > 0.0 ? 100.0 * covariance / variance : 0.0;
 }
 
-/// What the world as it is says about the aligned poses.
+/// Errors of the aligned poses relative to the world itself.
 void compareWithWorld(const Evaluation& e, HeadingBasis basis, RunErrors* errors) {
   const Alignment equal_start = alignFirstPose(AlignmentType::Yaw, e.pairs, 1.0);
   const Alignment alignment = alignStarts(basis, e.pairs);

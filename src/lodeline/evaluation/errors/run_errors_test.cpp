@@ -16,7 +16,8 @@ RunErrors errorsOf(const Trajectory& estimate, const Trajectory& truth, HeadingB
   return computeRunErrors(estimate, truth, basis, {}, diagnostics);
 }
 
-/// 1 m a step eastwards, the heading off by `rate` degrees more at every step, positions with it.
+/// 1 m per step eastwards; the heading error grows by `rate_deg_per_m` at every step, and the positions
+/// follow it.
 Trajectory bending(int count, double rate_deg_per_m) {
   Trajectory trajectory = test::straight(count);
   for (int i = 1; i < count; ++i) {

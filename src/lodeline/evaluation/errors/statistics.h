@@ -20,8 +20,8 @@ struct Statistics {
 
 Statistics computeStatistics(const std::vector<double>& values);
 
-/// The value below which a share `fraction` (0 to 1) of sorted values lies, interpolated linearly between
-/// neighbours. Sorted and not empty.
+/// Quantile: value below which the share `fraction` (0 to 1) of the sorted values lies, interpolated linearly
+/// between neighbours. The values must be sorted and not empty.
 double quantile(const std::vector<double>& sorted_values, double fraction);
 
 }  // namespace lodeline

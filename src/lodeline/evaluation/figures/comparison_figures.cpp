@@ -14,7 +14,7 @@ namespace {
 
 using gnuplot::Curve;
 
-/// The palette of Okabe and Ito, which colour-blind readers can tell apart.
+/// Palette of Okabe and Ito, distinguishable for colour-blind readers.
 constexpr std::array<const char*, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
                                                  "#cc79a7", "#e69f00", "#56b4e9"};
 
@@ -46,7 +46,8 @@ struct Box {
     }
   }
   double extent(int axis) const { return most[axis] - least[axis]; }
-  /// A margin of a twentieth, and no strip: the smaller side is at least 0.35 of the larger one.
+  /// Adds a margin of a twentieth, and limits the aspect ratio: the smaller side is at least 0.35 of the
+  /// larger one.
   void widen() {
     const double largest = std::max({extent(0), extent(1), 1e-3});
     for (int axis = 0; axis < 2; ++axis) {
@@ -61,7 +62,7 @@ std::string legend(const ComparedMethod& method, const RunErrors& errors) {
   return fmt::format("{}: ends {:.2f} % off", method.name, errors.end_point_percent);
 }
 
-/// Lengths that occur in any run, each with the yaw errors of all runs of one method.
+/// Yaw errors of all runs of one method for every length that occurs in any run.
 std::map<double, std::vector<double>> yawByLength(const ComparedMethod& method) {
   std::map<double, std::vector<double>> by_length;
   for (const ComparedRun& run : method.runs) {
@@ -74,7 +75,7 @@ std::map<double, std::vector<double>> yawByLength(const ComparedMethod& method) 
   return by_length;
 }
 
-/// The lengths of stretches of any method.
+/// Lengths of the path sections of all methods.
 std::set<double> lengthsOf(const ComparedRecording& recording) {
   std::set<double> lengths_m;
   for (const ComparedMethod& method : recording.methods) {
@@ -83,7 +84,7 @@ std::set<double> lengthsOf(const ComparedRecording& recording) {
   return lengths_m;
 }
 
-/// Smallest distance between two of them, zero included.
+/// Smallest difference between two lengths, including zero as a length.
 double smallestStep(const std::set<double>& lengths_m) {
   double step_m = INFINITY;
   double before_m = 0.0;

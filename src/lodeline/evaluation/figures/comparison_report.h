@@ -7,25 +7,25 @@
 #include "lodeline/evaluation/figures/gnuplot.h"
 #include "lodeline/util/diagnostics.h"
 
-/// A comparison for people (text, Markdown), for programs (JSON) and in pictures.
+/// Output of a comparison: text and Markdown for people, JSON for programs, figures.
 namespace lodeline {
 
-/// One row a method with the means over its runs; below it, what became of runs that failed or did not get a
-/// pose for every image.
+/// One row per method with the means over its runs; below, remarks on runs that failed or have no pose for
+/// some images.
 std::string comparisonTable(const ComparedRecording& recording);
 
-/// The same as a table of Markdown, with errors relative to those of baselineOf().
+/// The same as a Markdown table, with errors relative to those of baselineOf().
 std::string comparisonMarkdown(const ComparedRecording& recording);
 
-/// Every run and the means; keys carry units.
+/// Every run and the means; keys contain units.
 nlohmann::ordered_json comparisonJson(const ComparedRecording& recording);
 
-/// Paths of every method's first run with errors from above, from equal first positions (and headings, where
-/// a method knows no north), with the reference; NAME_trajectories.
+/// Top view of the paths of every method's first run with errors, from equal first positions (and headings,
+/// where a method does not know north), with the reference; NAME_trajectories.
 gnuplot::Figure trajectoriesFigure(const ComparedRecording& recording);
 
-/// Relative yaw error over the length of the stretch, one box a method and length over all runs: median,
-/// quartiles, 5 and 95 %; NAME_relative_yaw.
+/// Relative yaw error over the length of the path section, one box per method and length over all runs:
+/// median, quartiles, 5 and 95 %; NAME_relative_yaw.
 gnuplot::Figure relativeYawFigure(const ComparedRecording& recording);
 
 }  // namespace lodeline

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kComplete = 0.9995;
 
-/// Runs that failed, missed images, or know less about north than the others of their method.
+/// Remarks on runs that failed, missed images, or know less about north than the others of their method.
 std::vector<std::string> remarks(const ComparedRecording& recording) {
   std::vector<std::string> lines;
   for (const ComparedMethod& method : recording.methods) {
@@ -56,7 +56,8 @@ const char* const kTextHeader =
     "method      runs  images      deg           m         scale      deg         m       %"
     "      deg from        %      deg  deg/100m core-ms\n";
 
-/// Rotation and position error with their ratios to the baseline's, scale; the rest of a row of Markdown.
+/// Rotation and position error with their ratios to the baseline's, and the scale: the rest of a Markdown
+/// row.
 std::string markdownRow(const std::string& name, const MethodMeans& m, const MethodMeans& baseline) {
   const std::string runs =
       fmt::format("| `{}` | {}/{} | {:.1f} % |", name, m.runs, m.total_runs, 100.0 * m.completion);

@@ -8,10 +8,10 @@
 
 namespace lodeline {
 
-/// The figures as a table for people, lengths in metres, angles in degrees; ends with the remarks.
+/// The results as a table for people, lengths in metres, angles in degrees; ends with the remarks.
 std::string evaluationTable(const Evaluation& evaluation, const Diagnostics& diagnostics);
 
-/// All figures for programs; every key carries its unit.
+/// All results in JSON; every key contains its unit.
 nlohmann::ordered_json evaluationJson(const Evaluation& evaluation, const Diagnostics& diagnostics);
 
 }  // namespace lodeline

@@ -42,7 +42,7 @@ std::string scriptFor(const std::vector<Figure>& figures, const std::filesystem:
   return script;
 }
 
-/// A file that is removed when it goes out of scope.
+/// A file that the destructor removes.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& content) {

@@ -6,7 +6,7 @@
 
 namespace lodeline::gnuplot {
 
-/// One picture in a gnuplot script, independent of the file type it is drawn to.
+/// One figure as a gnuplot script, independent of the file type.
 struct Figure {
   std::string name;     ///< file name without ending
   int width_px = 1200;  ///< of the PNG; the SVG has the same shape
@@ -24,7 +24,7 @@ struct Curve {
   std::vector<Point> points;
 };
 
-/// `$name << EOD ... EOD`, thinned to a few thousand points so that pictures of long recordings stay small.
+/// `$name << EOD ... EOD`, reduced to a few thousand points so that figures of long recordings stay small.
 std::string dataBlock(const std::string& name, const Curve& curve);
 
 /// `$name << EOD ... EOD` with any number of columns.
@@ -34,7 +34,7 @@ enum class Outcome { Drawn, Missing, Failed };
 
 struct Result {
   Outcome outcome = Outcome::Drawn;
-  std::string message;  ///< what gnuplot said
+  std::string message;  ///< message of gnuplot
 };
 
 /// Draws every figure into `folder` as NAME.svg and NAME.png.

@@ -10,7 +10,7 @@ namespace {
 
 using gnuplot::Curve;
 
-/// Where the reference is drawn: while images ask for poses, or everywhere when no images were named.
+/// Time span in which the reference is drawn: that of the images, or all of it when no images were given.
 struct Span {
   Time begin;
   Time end;
@@ -78,7 +78,7 @@ struct Range {
   }
 };
 
-/// Ranges with a margin, the smaller one widened so that the box is neither a strip nor a column.
+/// Ranges with a margin; the smaller one is enlarged to limit the aspect ratio.
 std::pair<Range, Range> boxAround(const Curves& curves) {
   Range x;
   Range y;

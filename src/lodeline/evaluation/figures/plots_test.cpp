@@ -24,7 +24,7 @@ Evaluation evaluation() {
                   diagnostics);
 }
 
-/// Puts back the environment's PATH at the end.
+/// Restores the environment's PATH in the destructor.
 class EmptyPath {
  public:
   EmptyPath() : path_(std::getenv("PATH")) { setenv("PATH", "/nonexistent", 1); }

@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// By how much the world of the odometry has to be turned about z, as one reading has it.
+/// Rotation of the odometry's world about z by one reading.
 struct Correction {
   Time time;
   double angle_rad = 0.0;
@@ -33,14 +33,14 @@ std::vector<Correction> correctionsOf(const std::vector<StampedPose>& poses,
     const double share = (reading.time - before.time).seconds() / span_s;
     const Quat world_from_body = before.world_from_body.rotation.slerp(share, after.world_from_body.rotation);
     const Vec3 field_W = world_from_body * reading.field_B;
-    // Turning the world counterclockwise takes as much off every azimuth.
+    // A counterclockwise rotation of the world reduces every azimuth by its angle.
     const double azimuth_rad = std::atan2(field_W.x(), field_W.y());
     corrections.push_back({reading.time, wrapped(azimuth_rad - options.field_azimuth_rad)});
   }
   return corrections;
 }
 
-/// Median of angles that lie around one direction: of their differences from their mean direction.
+/// Median of angles around one direction, computed from their differences from their mean direction.
 double medianAngle(std::vector<Correction>::const_iterator begin,
                    std::vector<Correction>::const_iterator end) {
   double sine = 0.0, cosine = 0.0;
@@ -72,7 +72,7 @@ std::vector<double> smoothed(const std::vector<StampedPose>& poses,
       at_pose.push_back(at_pose.empty() ? std::nullopt : at_pose.back());
     }
   }
-  // A window shorter than the interval of the poses may hold no reading at any of them.
+  // If the window is shorter than the interval of the poses, some poses may have no reading.
   const auto first =
       std::find_if(at_pose.begin(), at_pose.end(), [](const auto& a) { return a.has_value(); });
   const double at_start_rad = first == at_pose.end() ? corrections.front().angle_rad : **first;

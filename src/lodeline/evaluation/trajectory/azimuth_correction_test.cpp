@@ -13,7 +13,7 @@ namespace {
 const double kDeclination = -6.4 * kDegree;
 const Vec3 kField_W(24e-6 * std::sin(kDeclination), 24e-6 * std::cos(kDeclination), -38e-6);
 
-/// What a perfect magnetometer reads along the truth, halfway between its poses.
+/// Readings of an exact magnetometer along the true trajectory, halfway between its poses.
 std::vector<StampedField> fieldAlong(const Trajectory& truth) {
   std::vector<StampedField> field;
   for (std::size_t i = 1; i < truth.size(); ++i) {
@@ -26,8 +26,8 @@ std::vector<StampedField> fieldAlong(const Trajectory& truth) {
   return field;
 }
 
-/// The truth as an odometry has it whose heading starts at `start_rad` and drifts by `rate` rad/s: steps and
-/// attitudes turned about the vertical.
+/// The true trajectory by an odometry whose heading starts at `start_rad` and drifts by `rate_rad_per_s`:
+/// steps and attitudes are rotated about the vertical.
 Trajectory drifting(const Trajectory& truth, double start_rad, double rate_rad_per_s) {
   Trajectory odometry = truth;
   double before_rad = start_rad;
@@ -61,10 +61,11 @@ const AzimuthCorrectionOptions kTrueNorth{.field_azimuth_rad = kDeclination};
 
 TEST(AzimuthCorrection, TurnsAWholeTrajectoryToTrueNorth) {
   const Trajectory truth = test::bend(600);
-  // Nearly the opposite direction: the angles of the readings lie on both sides of the cut at 180 degrees.
+  // Nearly the opposite direction: the angles of the readings are on both sides of the discontinuity at 180
+  // degrees.
   const Trajectory odometry = drifting(truth, 179.9 * kDegree, 0.0);
   const AbsoluteErrors left = errors(correctHeadingByAzimuth(odometry, fieldAlong(truth), kTrueNorth), truth);
-  // The reading's attitude is interpolated over 0.1 s of a turning body.
+  // The attitude at the reading is interpolated over 0.1 s of a rotating body.
   EXPECT_LT(left.rotation().max, 1e-2);
   EXPECT_LT(left.position().max, 1e-3);
 }
@@ -75,7 +76,8 @@ TEST(AzimuthCorrection, TakesOutSlowDriftAndKeepsRollPitchAndHeight) {
   ASSERT_GT(errors(odometry, truth).yaw().max, 20.0);
   const Trajectory corrected = correctHeadingByAzimuth(odometry, fieldAlong(truth), kTrueNorth);
   const AbsoluteErrors left = errors(corrected, truth);
-  // Within half a window of an end the median lies up to 5 s beside the pose: 0.25 degrees of drift.
+  // Within half a window of an end the centre of the median is up to 5 s away from the pose: 0.25 degrees of
+  // drift.
   EXPECT_LT(left.yaw().max, 0.27);
   EXPECT_LT(left.yaw().median, 0.01);
   for (std::size_t i = 0; i < truth.size(); ++i) {

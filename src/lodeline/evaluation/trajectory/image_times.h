@@ -16,13 +16,13 @@ class ImageTimes {
   /// Times are read from the names themselves.
   ImageTimes() = default;
 
-  /// From a file with lines `name time[s]`, or EuRoC's `time[ns],name`. Throws InputError, naming the line,
-  /// on anything else.
+  /// Reads a file with lines `name time[s]`, or EuRoC's `time[ns],name`. Throws InputError with the line's
+  /// number for any other content.
   explicit ImageTimes(const std::filesystem::path& path);
 
-  /// The time of an image: from the file if one was given (looked up by the whole name, then by its last path
-  /// component), else from the name without folder and ending: whole nanoseconds of at least 17 digits, or
-  /// seconds with a decimal point. Nothing when there is none.
+  /// The time of an image: from the file if one was given (by the whole name, then by its last path
+  /// component), else from the name without folder and extension: whole nanoseconds of at least 17 digits, or
+  /// seconds with a decimal point. Empty when there is none.
   std::optional<Time> find(const std::string& image_name) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// From a keyframe each ten seconds to the rate of an IMU.
+/// Plausible rates: from one keyframe per ten seconds to the rate of an IMU.
 constexpr PlausibleRate kPoseRate = {0.1, 2000.0};
 constexpr double kTolerance = 0.05;
 
@@ -27,8 +27,8 @@ TableOptions poseTableOptions() {
   return options;
 }
 
-/// The unit in which a number of this size is a Unix time between 1973 and 5138; a clock that starts at zero
-/// gives seconds.
+/// Unit in which a number of this size is a Unix time between 1973 and 5138; seconds for a clock that starts
+/// at zero.
 TimeUnit unitBySizeOf(double stamp) {
   const double size = std::abs(stamp);
   return size >= 1e17   ? TimeUnit::Nanoseconds

@@ -12,42 +12,42 @@
 
 namespace lodeline {
 
-/// All rows of a table of poses in memory, as numbers, with the text of their times.
+/// All rows of a table of poses as numbers, with the text of their times.
 class PoseRows {
  public:
-  /// Throws InputError where there is no row, or rows differ in their number of columns. With
-  /// `ignores_header` a header is passed over.
+  /// Throws InputError where there are no rows, or rows with different numbers of columns. With
+  /// `ignores_header` a header is skipped.
   PoseRows(std::unique_ptr<ByteSource> bytes, std::string name, bool ignores_header,
            Diagnostics& diagnostics);
 
   const std::string& name() const { return name_; }
-  /// Of a header with a time, a position and a quaternion; else empty.
+  /// Columns of a header with a time, a position and a quaternion; else empty.
   const std::vector<ColumnName>& columns() const { return columns_; }
   const std::vector<std::string>& preamble() const { return preamble_; }
   std::size_t columnCount() const { return column_count_; }
   std::size_t size() const { return lines_.size(); }
   std::string where(std::size_t row) const;
 
-  /// Throws InputError where the cell is no number.
+  /// Throws InputError where the cell is not a number.
   double number(std::size_t row, std::size_t column) const;
-  /// The 3x4 matrix that begins in a column, row by row, over (0, 0, 0, 1).
+  /// The 3x4 matrix that starts at a column, row by row, completed by (0, 0, 0, 1).
   Eigen::Matrix4d matrix(std::size_t row, std::size_t first_column) const;
 
-  /// Whether the numbers from a column on are what they should be in nine of ten finite rows.
+  /// Whether the numbers from a column on are valid matrices or quaternions in nine of ten finite rows.
   bool areMatrices(std::size_t first_column) const;
   bool areQuaternions(std::size_t first_column) const;
 
-  /// Whether the first column holds Unix times in nanoseconds, or its name says nanoseconds.
+  /// Whether the first column contains Unix times in nanoseconds, or its name states nanoseconds.
   bool timesAreNanoseconds() const;
   bool timesHaveDecimals() const;
   bool hasSeparators() const { return has_separators_; }  ///< rather than blanks
 
   TimeUnit timeUnit(const TimeColumn& column, Diagnostics& diagnostics) const;
-  /// Throws InputError where the cell is no time.
+  /// Throws InputError where the cell is not a time.
   Time time(std::size_t row, const TimeColumn& column, TimeUnit unit) const;
 
  private:
-  /// Columns behind these are not kept: poses and matrices stand before.
+  /// Number of stored columns; poses and matrices come before further ones.
   static constexpr std::size_t kMostNumbers = 64;
 
   void keep(const TableReader& table);
@@ -60,7 +60,7 @@ class PoseRows {
   std::size_t column_count_ = 0;
   std::size_t kept_columns_ = 0;
   bool has_separators_ = false;
-  std::vector<double> numbers_;          ///< row by row; NaN where a cell is none
+  std::vector<double> numbers_;          ///< row by row; NaN where a cell is not a number
   std::vector<int> lines_;               ///< of each row in the file
   std::vector<std::size_t> times_;       ///< columns that may be times
   std::vector<std::string> time_texts_;  ///< of each row, those of times_

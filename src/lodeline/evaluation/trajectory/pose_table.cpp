@@ -13,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-/// What the columns of a table hold.
+/// Contents of a table's columns.
 struct PoseLayout {
   std::optional<TimeColumn> time;  ///< none: the rows are counted
   PoseColumns columns;
@@ -34,7 +34,7 @@ PoseLayout matrixLayout(std::size_t first) {
   PoseLayout layout;
   if (first > 0) layout.time = TimeColumn{0, "column 1", {}, 1, {}, {}, 0};
   layout.matrix = first;
-  // KITTI's cameras look along z with y down; a table with times says nothing of the kind.
+  // KITTI's cameras look along z with y down; a table with times has no such convention.
   if (first == 0) layout.up = WorldUp::MinusY;
   return layout;
 }
@@ -50,7 +50,8 @@ PoseLayout layoutOfHeader(const PoseRows& rows, Diagnostics& diagnostics) {
   return layout;
 }
 
-/// OpenVINS names blocks of columns: `# timestamp(s) q p v bg ba ...` for 1, 4, 3, 3, ... of them.
+/// Layout of OpenVINS tables, whose header names blocks of columns: `# timestamp(s) q p v bg ba ...` for 1,
+/// 4, 3, 3, ... of them.
 std::optional<PoseLayout> layoutOfBlocks(const PoseRows& rows) {
   for (const std::string& line : rows.preamble()) {
     const std::vector<std::string> words = ColumnName(line).words;
@@ -153,8 +154,7 @@ Trajectory readPoseTable(std::unique_ptr<ByteSource> bytes, const std::string& n
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::optional<Rigid3> pose = poseOf(layout, rows, row, diagnostics);
     if (!pose) continue;
-    // The row is the only clock of a table without times; rows that are left out must not shift the later
-    // ones.
+    // In a table without times the row number is the time; skipped rows must not shift the later ones.
     const Time time = layout.time ? rows.time(row, *layout.time, unit)
                                   : Time::fromNanoseconds(static_cast<int64_t>(row) * 1'000'000'000);
     trajectory.poses.push_back({time, *pose});

@@ -22,7 +22,7 @@ class PoseTableTest : public ::testing::Test {
     return readPoseTable(bytesInMemory(text), "poses.txt", format, diagnostics_);
   }
 
-  /// One row a pose of `truth_`, in which `layout` has the fields {ns} {us} {ms} {s} {x} {y} {z} {qx} {qy}
+  /// One row per pose of `truth_`, in which `layout` has the fields {ns} {us} {ms} {s} {x} {y} {z} {qx} {qy}
   /// {qz} {qw}, the rows of the matrix {r0} {r1} {r2}, and the row's number {i}.
   std::string rows(const std::string& layout) const {
     std::string text;
@@ -137,10 +137,10 @@ TEST_F(PoseTableTest, ReadsUtf16) {
 TEST_F(PoseTableTest, TakesTheUnitThatThePosesRateAllows) {
   std::string uptime_ms;
   for (int i = 0; i < 50; ++i) uptime_ms += fmt::format("{} {} 0 0 0 0 0 1\n", 1500000 + i * 50000, i);
-  const Trajectory poses = read(uptime_ms);  // in seconds the poses would come every 14 hours
+  const Trajectory poses = read(uptime_ms);  // in seconds the interval of the poses would be 14 hours
   EXPECT_EQ((poses.poses[1].time - poses.poses[0].time).nanoseconds(), 50'000'000);
   EXPECT_EQ(diagnostics_.count("time_unit"), 1);
-  // A header that says nanoseconds over seconds.
+  // A header that states nanoseconds, with times in seconds.
   const Trajectory stated = read(
       "timestamp [ns],x,y,z,qw,qx,qy,qz\n1403636579.70,0,0,0,1,0,0,0\n1403636579.75,1,0,0,1,0,0,0\n"
       "1403636579.80,1,0,0,1,0,0,0\n");

@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// Turns COLMAP's entries into a trajectory, whichever of the two layouts they came from.
+/// Converts COLMAP's entries of both layouts to a trajectory.
 class ColmapTrajectory {
  public:
   ColmapTrajectory(const std::filesystem::path& path, const TrajectoryReadOptions& options,
@@ -19,7 +19,7 @@ class ColmapTrajectory {
     if (options.image_times) times_ = ImageTimes(*options.image_times);
   }
 
-  /// COLMAP's world to camera transformation of one image.
+  /// Adds one image with COLMAP's world to camera transformation.
   void add(const std::string& where, const Quat& camera_from_world_rotation, const Vec3& camera_from_world_m,
            const std::string& image_name) {
     const std::optional<Time> time = times_.find(image_name);
@@ -46,7 +46,7 @@ class ColmapTrajectory {
   Trajectory trajectory_;
 };
 
-/// Takes fixed-size little-endian values off a buffer, refusing to read past its end.
+/// Reads fixed-size little-endian values from a buffer and throws beyond its end.
 class ByteReader {
  public:
   ByteReader(std::string bytes, std::string name) : bytes_(std::move(bytes)), name_(std::move(name)) {}
@@ -102,7 +102,7 @@ Quat takeQuat(ByteReader& reader) {
 
 }  // namespace
 
-// Two lines an image: `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME`, then its 2D points, possibly an empty
+// Two lines per image: `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME`, then its 2D points, possibly an empty
 // line. (COLMAP documentation, "Output format".)
 Trajectory readColmapText(const std::filesystem::path& path, const TrajectoryReadOptions& options,
                           Diagnostics& diagnostics) {

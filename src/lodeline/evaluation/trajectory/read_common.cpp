@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-// Published references round quaternions to four digits; a wrong column order is off by far more than this.
+// Published references round quaternions to four digits; a wrong column order exceeds this tolerance by far.
 constexpr double kQuaternionNormTolerance = 0.05;
 
 }  // namespace

@@ -41,7 +41,7 @@ TrajectoryFormat detectFormat(const std::filesystem::path& file) {
   return TrajectoryFormat::Table;
 }
 
-/// The file in a folder that holds the trajectory, most specific first.
+/// The file with the trajectory in a folder; the most specific names are tried first.
 std::filesystem::path findInFolder(const std::filesystem::path& folder) {
   const std::filesystem::path truth = "state_groundtruth_estimate0";
   const std::array<std::filesystem::path, 10> candidates = {

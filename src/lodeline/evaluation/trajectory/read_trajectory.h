@@ -9,11 +9,11 @@
 
 namespace lodeline {
 
-/// The layouts of trajectories that can be read.
+/// Layouts of trajectories that can be read.
 enum class TrajectoryFormat {
-  Table,         ///< columns by their header, or by their number (readPoseTable)
-  Tum,           ///< `t x y z qx qy qz qw`, further columns passed over
-  Kitti,         ///< 12 numbers a line: the upper 3x4 part of world_from_camera, row by row; no times
+  Table,         ///< columns by their header, or by their position (readPoseTable)
+  Tum,           ///< `t x y z qx qy qz qw`, further columns ignored
+  Kitti,         ///< 12 numbers per line: the upper 3x4 part of world_from_camera, row by row; no times
   Euroc,         ///< `t, x, y, z, qw, qx, qy, qz, ...`, the EuRoC ground truth
   ColmapText,    ///< COLMAP images.txt
   ColmapBinary,  ///< COLMAP images.bin
@@ -30,11 +30,11 @@ struct TrajectoryReadOptions {
   /// be times (nanoseconds, or seconds with a decimal point).
   std::optional<std::filesystem::path> image_times;
 
-  /// COLMAP gives camera poses; with this transformation they become body poses.
+  /// Transformation of COLMAP's camera poses to body poses.
   std::optional<Rigid3> body_from_camera;
 };
 
-/// A file or folder resolved to the file that holds the poses, and its layout.
+/// The file that contains the poses, and its layout.
 struct TrajectorySource {
   std::filesystem::path file;
   TrajectoryFormat format;
@@ -42,14 +42,14 @@ struct TrajectorySource {
 
 /// Finds the poses: a file in one of the layouts (text may be compressed with gzip), a folder written by
 /// `lodeline run` (`trajectory.tum`), a EuRoC recording, its `mav0` or its `state_groundtruth_estimate0`, or
-/// a COLMAP model folder. Throws InputError, saying what was looked for, when nothing fits.
+/// a COLMAP model folder. Throws InputError, with the expected files, when nothing fits.
 TrajectorySource findTrajectory(const std::filesystem::path& path,
                                 std::optional<TrajectoryFormat> format = std::nullopt);
 
 /// Reads a trajectory and orders it by time. Tables may be in UTF-8, UTF-16 or Latin-1, with any line ends
-/// and separators (TableReader). A line that does not fit its layout, a quaternion that is no rotation and a
-/// file without poses throw InputError with file and line. Poses with NaN ("lost" in some references) and a
-/// last line that was cut off are passed over with a warning.
+/// and separators (TableReader). A line that does not fit its layout, a quaternion that is not a rotation and
+/// a file without poses throw InputError with file and line. Poses with NaN ("lost" in some references) and
+/// an incomplete last line are skipped with a warning.
 Trajectory readTrajectory(const std::filesystem::path& path, const TrajectoryReadOptions& options,
                           Diagnostics& diagnostics);
 

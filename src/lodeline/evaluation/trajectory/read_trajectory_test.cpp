@@ -21,7 +21,7 @@ class ReadTrajectoryTest : public ::testing::Test {
     return readTrajectory(folder_.write(name, content), options_, diagnostics_);
   }
 
-  /// The message of the InputError that reading throws.
+  /// Message of the InputError that the reader throws.
   std::string failure(const std::string& content, const std::string& name = "trajectory.txt") {
     try {
       read(content, name);
@@ -135,7 +135,8 @@ TEST_F(ReadTrajectoryTest, FindsTheTrajectoryInFolders) {
   EXPECT_EQ(findTrajectory(folder_.path() / "recording/mav0").file, truth);
 }
 
-// Camera half a turn about z from the world, at (1, 2, 3): camera_from_world t = -R^T p = (1, 2, -3).
+// Camera rotated by 180 degrees about z in the world, at (1, 2, 3): camera_from_world t = -R^T p = (1, 2,
+// -3).
 const char* const kColmapText =
     "# Image list with two lines of data per image:\n"
     "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"

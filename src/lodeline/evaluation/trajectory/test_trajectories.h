@@ -7,10 +7,10 @@
 
 #include "lodeline/evaluation/trajectory/trajectory.h"
 
-/// What the tests of this layer share.
+/// Shared functions of the tests in this folder.
 namespace lodeline::test {
 
-/// A climbing bend with changing attitude, 10 Hz: no direction or rotation is left open by it.
+/// A climbing curve with changing attitude, 10 Hz: it determines all directions and rotations.
 inline Trajectory bend(int count, double start_s = 100.0) {
   Trajectory trajectory;
   trajectory.name = "bend";
@@ -23,7 +23,7 @@ inline Trajectory bend(int count, double start_s = 100.0) {
   return trajectory;
 }
 
-/// 1 m a step along x, identity attitude, one pose a second.
+/// 1 m per step along x, identity attitude, one pose per second.
 inline Trajectory straight(int count) {
   Trajectory trajectory;
   trajectory.name = "straight";
@@ -42,7 +42,7 @@ inline Trajectory transformed(Trajectory trajectory, const Rigid3& transform, do
   return trajectory;
 }
 
-/// An empty folder that is removed with its content at the end.
+/// An empty folder that is removed with its content by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

@@ -88,7 +88,7 @@ TextTable readTextTable(const std::filesystem::path& path) {
 }
 
 bool parseSeconds(std::string_view text, Time& time) {
-  // A double resolves today's Unix times to 0.2 us only; a long double reaches below a nanosecond.
+  // A double resolves present Unix times to 0.2 us only; a long double resolves less than a nanosecond.
   const std::string copy(text);
   char* end = nullptr;
   const long double seconds = std::strtold(copy.c_str(), &end);

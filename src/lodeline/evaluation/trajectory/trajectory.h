@@ -10,25 +10,25 @@
 
 namespace lodeline {
 
-/// The pose of a body (or a camera) at one instant, in the world of its trajectory.
+/// Pose of a body (or a camera) at one time, in the world of its trajectory.
 struct StampedPose {
   Time time;
   Rigid3 world_from_body;
 };
 
-/// How the times of a trajectory came about. Formats without times (KITTI) count their rows: such a
-/// trajectory can only be associated by index.
+/// Origin of a trajectory's times. Formats without times (KITTI) number their rows: such a trajectory can
+/// only be associated by index.
 enum class TimeBase { Stamps, Index };
 
-/// Which axis of the world points up. Camera-based formats (KITTI) have y down.
+/// The world axis that points up. Camera-based formats (KITTI) have y down.
 enum class WorldUp { Z, MinusY };
 
-/// Poses in the order of their times; `sortByTime` establishes the order.
+/// Poses in the order of their times; `sortByTime` sorts them.
 struct Trajectory {
-  std::string name;  ///< where it was read from, for messages
+  std::string name;  ///< source, for messages
   TimeBase time_base = TimeBase::Stamps;
   WorldUp up = WorldUp::Z;
-  std::size_t rows = 0;  ///< of a table without times, those that were left out included
+  std::size_t rows = 0;  ///< of a table without times, including skipped rows
   std::vector<StampedPose> poses;
 
   bool empty() const { return poses.empty(); }

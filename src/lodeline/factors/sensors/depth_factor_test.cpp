@@ -28,7 +28,7 @@ Blocks trueBlocks(const Rigid3& pose = kPose) {
   return {poseVector(pose), scalar(kSurface_m), scalar(kScale), scalar(kLag_s)};
 }
 
-/// As read by a port that sinks at 0.2 m/s, with the lag known to 0.1 s only.
+/// Reading of a port that sinks at 0.2 m/s; the lag is known to 0.1 s only.
 CarriedDepth reading() {
   constexpr double kSpeed_m_per_s = -0.2;
   CarriedDepth depth;
@@ -105,7 +105,8 @@ TEST(DepthFactor, LinearizationPointsKeepTheHeightOfTheWorldUnobservable) {
   const double* pointers[] = {blocks[0].data(), blocks[1].data(), blocks[2].data(), blocks[3].data()};
   double* jacobians[] = {by_pose.data(), &by_surface, nullptr, nullptr};
   ASSERT_TRUE(factor.Evaluate(pointers, &residual, jacobians));
-  // The world lifted by 1 m, with the depth at its origin less by what the gauge makes of that.
+  // A world lifted by 1 m is unobservable when the depth at its origin changes by the gauge's reading of that
+  // metre.
   EXPECT_NEAR(by_pose[2] + first_scale * by_surface, 0.0, 1e-12);
   EXPECT_EQ(by_pose[5], 0.0);
 }

@@ -8,12 +8,12 @@
 namespace lodeline {
 namespace {
 
-// Cosine of the angle to the measured ray below which a point counts as a gross outlier (about 84 degrees
-// off), and the error that it then has, in standard deviations.
+// Cosine of the angle to the measured ray below which a point is a gross outlier (about 84 degrees), and the
+// residual of such a point, in sigmas.
 constexpr double kMinCosine = 0.1;
 constexpr double kOutlierResidual = 1e4;
 
-/// DirectionMeasurement::in_plane of a unit ray, with its derivative.
+/// DirectionMeasurement::in_plane of a unit ray, and its derivative by the ray.
 Vec2 placeInPlane(DistortionModel model, const Vec3& ray, Mat23* by_ray) {
   constexpr double kOnAxis = 1e-6;
   const double sine = ray.head<2>().norm();
@@ -30,8 +30,8 @@ Vec2 placeInPlane(DistortionModel model, const Vec3& ray, Mat23* by_ray) {
   return angle * outwards;
 }
 
-/// d^2(pixel) / d(offset)^2, columns aa, ab, bb, from the derivative at the ray and beside it; none where the
-/// lens ends there.
+/// Second derivative d^2(pixel) / d(offset)^2, columns aa, ab, bb, by finite differences of the first
+/// derivative. Zero where the camera cannot project the neighbouring ray.
 Mat23 imageCurvature(const Camera& camera, const Vec3& ray, const Mat32& tangent, const Mat2& by_offset) {
   constexpr double kStep = 1e-4;
   Mat23 curvature = Mat23::Zero();
@@ -45,7 +45,8 @@ Mat23 imageCurvature(const Camera& camera, const Vec3& ray, const Mat32& tangent
   return curvature;
 }
 
-/// The quadratic part of a residual, damped far off, where it describes no lens.
+/// The quadratic term of a residual. It is damped for large offsets, where the second order does not describe
+/// the projection.
 struct Quadratic {
   static constexpr double kFar_rad = 0.1;
   double damping;

@@ -4,14 +4,13 @@
 
 namespace lodeline {
 
-/// What one image says about the direction of a point: the unit ray z of the pixel, a basis B (3x2) of the
-/// plane normal to it, and the weight that turns an offset in that plane into pixels over their standard
-/// deviation,
+/// Measured direction of a point in one image. z is the unit ray of the pixel and B (3x2) a basis of the
+/// plane normal to it. The weight converts an offset in that plane into pixels over their standard deviation,
 ///   sqrt_information = d(pixel) / d(tangent offset) / sigma_px      (2x2).
-/// With the curvature of the image about the pixel, a residual is the pixel error over sigma to second order,
-/// for every camera model and without evaluating the distortion again. To first order alone it is not enough:
-/// of noise that has no mean in pixels the square would be left, outwards, and calibrations take it for a
-/// shorter lens.
+/// With the curvature of the image at the pixel, a residual equals the pixel error over sigma to second
+/// order. This holds for every camera model without a further evaluation of the distortion. The first order
+/// alone is not sufficient: zero-mean pixel noise would leave its square as an outward bias, and a
+/// calibration would absorb that bias as a shorter focal length.
 struct DirectionMeasurement {
   Vec3 bearing_C = Vec3::UnitZ();
   Mat32 tangent_C = Mat32::Identity();
@@ -21,20 +20,21 @@ struct DirectionMeasurement {
   Vec2 from_centre_sigmas = Vec2::Zero();    ///< pixel minus principal point, over sigma_px
   double sigmas_per_px = 1.0;                ///< 1 / sigma_px
   Vec2 focal_lengths_sigmas = Vec2::Ones();  ///< over sigma_px
-  /// Where the ray lies in the plane in which the lens' model counts its radius: as far from the centre as
-  /// the tangent of the angle off the axis, of an equidistant lens the angle.
+  /// Position of the ray in the plane in which the camera model defines its radius. Its distance from the
+  /// centre is the tangent of the angle to the optical axis; in the equidistant model it is the angle.
   Vec2 in_plane = Vec2::Zero();
   Mat2 in_plane_by_sigmas = Mat2::Zero();  ///< d(in_plane) / d(pixel over sigma_px)
 
-  /// From a pixel's ray. The camera must be able to project that ray.
+  /// Measurement of a pixel whose ray is `bearing_C`. The camera must be able to project that ray.
   static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
 };
 
-/// Residual of a DirectionMeasurement for the homogeneous point q (target camera frame, any positive scale),
-/// with the derivative d(residual)/dq where asked for. With the offset o = B^T q / (z^T q) in the tangent
-/// plane,
-///   residual = sqrt_information * o + (curvature * (o_a^2, 2 o_a o_b, o_b^2)) / 2,
-/// where the second term goes on linearly, in place of by the square, beyond a tenth of a radian.
+/// Residual of a DirectionMeasurement for the homogeneous point q (frame of the target camera, any positive
+/// scale). `by_point` receives the derivative d(residual)/dq unless it is null. With the offset o = B^T q /
+/// (z^T q) in the tangent plane,
+///   residual = sqrt_information * o + (curvature * (o_a^2, 2 o_a o_b, o_b^2)) / 2.
+/// Beyond a tenth of a radian the second term grows linearly instead of quadratically. A point more than
+/// about 84 degrees from the measured ray has a large constant residual and a zero derivative.
 Vec2 directionResidual(const DirectionMeasurement& measurement, const Vec3& point_C, Mat23* by_point);
 
 }  // namespace lodeline

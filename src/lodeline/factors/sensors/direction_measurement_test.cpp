@@ -20,7 +20,7 @@ class ResidualThroughALens : public testing::TestWithParam<DistortionModel> {
   Vec3 towards_the_corner_C_ = *camera_->unproject(Vec2(60.0, 40.0));
 };
 
-// As many observations on one side of the truth as on the other.
+// Pixel noise is symmetric about the true pixel.
 TEST_P(ResidualThroughALens, HasNoMeanWhereNoiseHasNone) {
   constexpr double kSigma_px = 0.5, kNoise_px = 1.0;
   const Vec2 pixel = *camera_->project(towards_the_corner_C_);
@@ -46,7 +46,7 @@ TEST_P(ResidualThroughALens, IsThePixelErrorToSecondOrder) {
     for (const double error_px : {1.0, 4.0, 16.0}) {
       const Vec2 error(0.6 * error_px, -0.8 * error_px);
       const Vec3 point_C = 3.0 * *camera_->unproject(pixel + error);
-      // The third order: a pixel is two thousandths of a radian.
+      // The remaining error is of third order; a pixel is two thousandths of a radian.
       EXPECT_LT((directionResidual(measurement, point_C, nullptr) - error).norm(),
                 5e-6 * std::pow(error_px, 3))
           << pixel.transpose();
@@ -71,7 +71,8 @@ TEST_P(ResidualThroughALens, HasItsDerivativeNearAndFar) {
   }
 }
 
-// Far off the second order describes no lens: it must neither turn a residual round nor make it small.
+// Far from the measured ray the second order does not describe the projection. It must neither reverse a
+// residual nor make it small.
 TEST_P(ResidualThroughALens, GrowsOutwardsHoweverFarOff) {
   const DirectionMeasurement measurement =
       DirectionMeasurement::fromBearing(*camera_, towards_the_corner_C_, 1.0);

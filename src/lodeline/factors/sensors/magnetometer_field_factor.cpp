@@ -68,8 +68,8 @@ bool MagnetometerFieldFactor::Evaluate(double const* const* parameters, double* 
 
   const double* pose = first_pose_ != nullptr ? first_pose_ : parameters[0];
   if (jacobians[0] != nullptr) {
-    // Where linearization points are held, the field's stands in for the measurement turned into the world,
-    // so that the yaw of poses and field together stays exactly in the null space.
+    // With linearization points, that of the field replaces the measurement in world axes. The common yaw of
+    // poses and field then stays exactly in the null space.
     const Vec3 seen_W = first_field_ != nullptr ? Vec3(Vec3Map(first_field_)) : measured_W;
     const Vec3 difference = so3::log(poseFromBlock(pose).rotation * reference_.conjugate());
     const Vec3 psi_by_rotation = so3::rightJacobianInverse(-difference).row(2).transpose();

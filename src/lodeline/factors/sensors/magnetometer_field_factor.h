@@ -7,36 +7,38 @@
 
 namespace lodeline {
 
-/// How well one frame's mean field is known.
+/// Standard deviations of one frame's mean field.
 struct FieldNoise {
-  double sigma_T = 0.0;             ///< per axis, independent from frame to frame
-  double rotation_sigma_rad = 0.0;  ///< of the rotation that carried the readings to the frame, per axis
-  double tilt_sigma_rad = 0.0;      ///< of the attitude's roll and pitch, which the factor takes as given
+  double sigma_T = 0.0;  ///< per axis, independent from frame to frame
+  double rotation_sigma_rad =
+      0.0;  ///< of the rotation that carried the readings to the time of the frame, per axis
+  double tilt_sigma_rad = 0.0;  ///< of the roll and pitch in the attitude, which the factor does not estimate
 };
 
-/// One frame's mean magnetometer reading against the field of the world, 3 residuals on the blocks pose (7),
-/// field m_W (3, T), offset o_B (3, T) and, where there is one, disturbance d_W (3, T):
+/// Mean magnetometer reading of one frame compared with the field of the world: 3 residuals on the blocks
+/// pose (7), field m_W (3, T), offset o_B (3, T) and, where there is one, disturbance d_W (3, T):
 ///
 ///   e = Rz R_ref (z_B - C o_B) - m_W - d_W                       T, world axes
 ///   Rz = exp(psi e_z),  psi = e_z . log(R_W_B R_ref^-1)          rad
 ///
-/// z_B is the mean, C the mean rotation that carried its readings (MagnetometerMean), R_ref an attitude close
-/// to R_W_B. So the factor sees the heading of the pose and nothing else of it: its roll and pitch are those
-/// of R_ref, and no disturbance of the field can tilt gravity. All three components inform m_W, o_B and d_W;
-/// of the residual only the part across the horizontal field, (e_z x m_W) / |e_z x m_W|, informs the heading.
+/// z_B is the mean reading and C the mean rotation that carried its readings (MagnetometerMean). R_ref is an
+/// attitude close to R_W_B. The factor informs only the heading of the pose: roll and pitch are those of
+/// R_ref, so no disturbance of the field can tilt gravity. All three components inform m_W, o_B and d_W. Only
+/// the component of the residual across the horizontal field, (e_z x m_W) / |e_z x m_W|, informs the heading.
 ///
 /// Covariance, world axes, with [m] the skew matrix of m_W + d_W at construction and P = diag(1, 1, 0):
-///   sigma^2 I + rotation_sigma^2 [m][m]^T + tilt_sigma^2 [m] P [m]^T,
-/// the last term being what a wrong roll or pitch of R_ref does to the residual.
+///   sigma^2 I + rotation_sigma^2 [m][m]^T + tilt_sigma^2 [m] P [m]^T.
+/// The last term is the effect of an error in the roll or pitch of R_ref.
 ///
-/// A yaw of the world that turns poses, m_W and d_W together changes nothing: heading is anchored to m_W, and
-/// m_W has to get its direction from elsewhere. First estimates of the pose as in factors/parameters.h (they
-/// are R_ref too), of m_W as given; the residual is linear in o_B and d_W.
-/// Derivation: docs/magnetometer.md.
+/// A yaw of the world that rotates poses, m_W and d_W together does not change the residual. The factor ties
+/// the heading to m_W, so other terms have to determine the direction of m_W. The linearization points of the
+/// pose (which are R_ref too) are as in factors/parameters.h, that of m_W is as given. The residual is linear
+/// in o_B and d_W. Derivation: docs/magnetometer.md.
 class MagnetometerFieldFactor final : public ceres::CostFunction {
  public:
-  /// `reference` is R_ref. `first_pose`, `first_field` (T): where the Jacobian is taken; null for the current
-  /// values. Throws InputError for readings or noise that are not finite, or noise without positive sigma_T.
+  /// `reference` is R_ref. `first_pose`, `first_field` (T): linearization points; null for the current
+  /// values. Throws InputError for readings or noise that are not finite, and for a sigma_T that is not
+  /// positive.
   MagnetometerFieldFactor(const Vec3& mean_B, const Mat3& carried, const Quat& reference, const Vec3& field_W,
                           const FieldNoise& noise, bool disturbed, const double* first_pose = nullptr,
                           const double* first_field = nullptr);
@@ -53,7 +55,7 @@ class MagnetometerFieldFactor final : public ceres::CostFunction {
   const double* first_field_;
 };
 
-/// The angle psi by which `rotation` (R_W_B) is turned about the vertical against `reference`.
+/// Angle psi (rad) of the rotation from `reference` to `rotation` (both R_W_B) about the vertical.
 double headingBetween(const Quat& reference, const Quat& rotation);
 
 /// Covariance of the field factor's residual before whitening, T^2, world axes.

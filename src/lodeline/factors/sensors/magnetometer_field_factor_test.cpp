@@ -70,7 +70,7 @@ TEST(MagnetometerFieldFactor, IsZeroAtTheTruth) {
 }
 
 TEST(MagnetometerFieldFactor, JacobiansAgreeWithNumericDifferentiation) {
-  // The reference attitude may lie some degrees off.
+  // The reference attitude may be wrong by some degrees.
   const Quat reference = so3::exp(Vec3(0.05, -0.08, 0.3)) * kPose.rotation;
   for (const bool disturbed : {false, true}) {
     Blocks blocks = trueBlocks(disturbed);
@@ -84,7 +84,7 @@ TEST(MagnetometerFieldFactor, SeesHeadingButNeitherTiltNorPosition) {
   const auto jacobian = poseJacobian(factor, trueBlocks(false));
   EXPECT_EQ(jacobian.leftCols<3>().norm(), 0.0);
   EXPECT_LT(jacobian.middleCols<2>(3).norm(), 1e-9 * jacobian.col(5).norm());
-  // And that not only to first order: half a radian about a horizontal axis.
+  // The property also holds beyond first order: half a radian about a horizontal axis.
   for (const Vec3& axis : {Vec3(0.5, 0.0, 0.0), Vec3(-0.3, 0.4, 0.0)}) {
     Blocks blocks = trueBlocks(false);
     blocks[0] = poseVector(Rigid3(so3::exp(axis) * kPose.rotation, kPose.translation));
@@ -93,7 +93,8 @@ TEST(MagnetometerFieldFactor, SeesHeadingButNeitherTiltNorPosition) {
 }
 
 TEST(MagnetometerFieldFactor, TakesHeadingFromTheHorizontalFieldAlone) {
-  // J_yaw^T e is what moves the heading; a residual along the field's vertical plane must not.
+  // J_yaw^T e is the gradient of the cost with respect to heading. A residual in the vertical plane of the
+  // field must not change it.
   const FieldNoise isotropic{0.2e-6, 0.0, 0.0};
   for (const Vec3& change_W : {Vec3(0.0, 0.0, 3e-6), Vec3(1e-7, 24e-7, 0.0)}) {
     const MagnetometerFieldFactor factor(meanOf(kPose, kField_W + change_W), kCarried, kPose.rotation,
@@ -135,13 +136,13 @@ TEST(MagnetometerFieldFactor, TurningTheWorldAboutGravityChangesNothing) {
                                                so3::exp(Vec3(0.0, 0.0, yaw_rad)) * kPose.rotation,
                                                so3::exp(Vec3(0.0, 0.0, yaw_rad)) * kField_W, kNoise, false);
     EXPECT_NEAR(residualOf(factor, blocks).norm(), residualOf(other_factor, other).norm(), 1e-9);
-    // Turning the poses alone must be seen.
+    // A rotation of the poses alone must change the residual.
     EXPECT_GT(residualOf(factor, {other[0], blocks[1], blocks[2]}).norm(), 10.0);
   }
 }
 
-// With linearization points, the yaw of the pose and that of the field cancel exactly, whatever the values
-// are.
+// With linearization points, the yaw of the pose and that of the field cancel exactly at all values of the
+// blocks.
 TEST(MagnetometerFieldFactor, LinearizationPointsKeepTheYawOfTheWorldUnobservable) {
   const Eigen::VectorXd first_pose =
       poseVector(Rigid3(so3::exp(Vec3(0.01, 0.02, -0.03)) * kPose.rotation, Vec3::Zero()));
@@ -168,7 +169,7 @@ TEST(MagnetometerFieldFactor, RefusesWhatCannotBeWeighed) {
   EXPECT_THROW(make(Vec3(nan, 0.0, 0.0), kNoise), InputError);
   EXPECT_THROW(make(kField_W, FieldNoise{0.0, 0.0, 0.0}), InputError);
   EXPECT_THROW(make(kField_W, FieldNoise{nan, 0.0, 0.0}), InputError);
-  // A field of nothing has no heading, and says so.
+  // A zero field has no heading, so its Jacobian by the pose is zero.
   const MagnetometerFieldFactor nothing(Vec3::Zero(), kCarried, kPose.rotation, Vec3::Zero(), kNoise, false);
   EXPECT_EQ(poseJacobian(nothing, {poseVector(kPose), Vec3::Zero(), Vec3::Zero()}).norm(), 0.0);
 }

@@ -34,7 +34,7 @@ bool MagnetometerRelativeFactor::Evaluate(double const* const* parameters, doubl
 
   const double* pose_k = first_pose_k_ != nullptr ? first_pose_k_ : parameters[0];
   const double* pose_k1 = first_pose_k1_ != nullptr ? first_pose_k1_ : parameters[1];
-  // Both rotations turn the same world vector, in opposite senses.
+  // Both rotations rotate the same world vector, in opposite directions.
   const Mat3 by_rotation_k = weight_ * poseFromBlock(pose_k).rotation.conjugate().toRotationMatrix() *
                              so3::skew(poseFromBlock(pose_k1).rotation * newest_B_);
   for (int i = 0; i < 2; ++i) {

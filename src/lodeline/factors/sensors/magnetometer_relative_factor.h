@@ -6,25 +6,27 @@
 
 namespace lodeline {
 
-/// The paper's magnetometer term between two frames, as it is printed: for every reading j of the interval
-/// (k, k+1], with the preintegrated rotation dR_k^j = gamma_k^j,
+/// The magnetometer term of the paper between two frames, as printed. For every reading j of the interval (k,
+/// k+1], with the preintegrated rotation dR_k^j = gamma_k^j,
 ///
 ///   e[j,k] = R_B_W^k R_W_B^{k+1} m^{k+1} - dR_k^j m^j            T, axes of body k
 ///
-/// under the sensor's noise alone, covariance sigma^2 I (paper section III-D). Blocks: pose k, pose k+1.
+/// whitened by the sensor's noise alone, covariance sigma^2 I (paper section III-D). Blocks: pose k, pose
+/// k+1.
 ///
 /// All n residuals of an interval share their first term a and have the same Jacobian, and
 ///   sum_j |a - b_j|^2 = n |a - mean(b)|^2 + const,
-/// so 3 residuals, sqrt(n)/sigma (a - mean(b)), are the same term of the cost for a fraction of the work. The
-/// rotations dR are those at the gyroscope bias of the moment: the readings do not inform that bias.
+/// so the 3 residuals sqrt(n)/sigma (a - mean(b)) give the same cost with a fraction of the work. The
+/// rotations dR use the current gyroscope bias: the readings do not inform that bias.
 ///
-/// What this form cannot do, by its construction: m^{k+1} is one noisy reading, which n residuals count as n
-/// independent ones, and errors of consecutive intervals do not cancel. Heading drifts as without a
-/// magnetometer, and its covariance says otherwise (docs/magnetometer.md).
+/// Limits of this form: m^{k+1} is one noisy reading, but n residuals count it as n independent ones. The
+/// errors of consecutive intervals do not cancel. Heading drifts as without a magnetometer, and the
+/// covariance does not show this drift (docs/magnetometer.md).
 class MagnetometerRelativeFactor final : public ceres::SizedCostFunction<3, kPoseSize, kPoseSize> {
  public:
   /// `newest_B`: m^{k+1}, axes of body k+1; `mean_Bk`: mean over j of dR_k^j m^j, axes of body k; T.
-  /// `sigma_T`: of one reading, positive. First estimates of the poses as in factors/parameters.h.
+  /// `sigma_T`: of one reading, positive. `first_pose_k`, `first_pose_k1`: linearization points as in
+  /// factors/parameters.h.
   MagnetometerRelativeFactor(const Vec3& newest_B, const Vec3& mean_Bk, int readings, double sigma_T,
                              const double* first_pose_k = nullptr, const double* first_pose_k1 = nullptr);
 

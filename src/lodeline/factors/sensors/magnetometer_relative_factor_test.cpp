@@ -21,7 +21,7 @@ const Rigid3 kPoseK1(kPoseK.rotation* so3::exp(kTurn_B), Vec3(3.1, -2.0, 1.0));
 constexpr double kSigma_T = 0.1e-6;
 constexpr int kReadings = 5;
 
-// The rig turns evenly from k to k+1: the preintegrated rotation to reading j of n.
+// The rig turns at a constant rate from k to k+1: the preintegrated rotation to reading j of n.
 Quat gamma(int j) { return so3::exp(kTurn_B * (static_cast<double>(j) / kReadings)); }
 
 class Interval {
@@ -34,7 +34,7 @@ class Interval {
       readings_.push_back((kPoseK.rotation * gamma(j)).conjugate() * kField_W + sigma_T * noise);
     }
   }
-  // As printed, one after the other.
+  // The sum over readings, exactly as the paper prints it.
   double printedCost(const Blocks& blocks) const {
     const Quat k_from_k1 =
         poseFromBlock(blocks[0].data()).rotation.conjugate() * poseFromBlock(blocks[1].data()).rotation;

@@ -16,7 +16,7 @@ struct Corner {
   float strength = 0.0F;
 };
 
-/// Marks the surroundings of points, so that none is taken too close to another.
+/// Marks the neighbourhood of points, in which no further point is taken.
 class Occupancy {
  public:
   Occupancy(cv::Size size, const cv::Mat& mask, double distance_px)
@@ -35,7 +35,7 @@ class Occupancy {
   cv::Mat free_;
 };
 
-/// Divides a picture into about `count` square cells.
+/// Divides an image into about `count` square cells.
 class Grid {
  public:
   Grid(cv::Size size, int count) : size_(size) {
@@ -49,7 +49,7 @@ class Grid {
     const int left = size_.width * column / columns_, top = size_.height * row / rows_;
     return {left, top, size_.width * (column + 1) / columns_ - left, size_.height * (row + 1) / rows_ - top};
   }
-  /// Of the cell in which a point lies: the last one whose rounded-down edge is not beyond it.
+  /// Index of the cell that contains a point: the last one whose rounded-down edge is not beyond it.
   int indexOf(const Eigen::Vector2f& point) const {
     return along(point.y(), rows_, size_.height) * columns_ + along(point.x(), columns_, size_.width);
   }
@@ -63,14 +63,14 @@ class Grid {
   int columns_ = 1, rows_ = 1;
 };
 
-/// Finds corners of one cell of the picture that is `scale` times smaller than the image.
+/// Finds corners in one cell of the image, which is `scale` times smaller than the original.
 class CellSearch {
  public:
   CellSearch(const cv::Mat& picture, const cv::Rect& cell, int scale, const Occupancy& occupancy)
       : picture_(picture), cell_(cell), scale_(scale), occupancy_(occupancy), tensor_(picture, cell) {}
 
-  /// The strongest that is free and none of a particle's. Strength zero where there is none: a cell with more
-  /// particles than a few shows water and not rock.
+  /// Strongest free corner that does not belong to a particle. Strength zero where there is none: a cell with
+  /// more than a few particles shows water and not rock.
   Corner strongestOnRock(float min_strength) {
     constexpr size_t kMostParticles = 3;
     while (particles_.size() <= kMostParticles) {
@@ -101,7 +101,8 @@ class CellSearch {
   cv::Point toPicture(const Eigen::Vector2f& pixel) const {
     return {static_cast<int>(pixel.x()) / scale_, static_cast<int>(pixel.y()) / scale_};
   }
-  /// A dot makes corners wherever the tensor's window touches it.
+  /// Whether a corner belongs to a particle found before. A dot causes corners wherever the tensor's window
+  /// overlaps it.
   bool isOfParticle(const cv::Point& at) const {
     constexpr int kReach = 2 * StructureTensor::kWindowRadius + 1;
     return std::any_of(particles_.begin(), particles_.end(), [&](const cv::Point& particle) {
@@ -117,10 +118,10 @@ class CellSearch {
   std::vector<cv::Point> particles_;
 };
 
-/// Mean absolute second difference, over steps of two pixels, of the smoothest tenth of a picture's blocks,
-/// grey levels: what the sensor's noise makes, where some of the picture is plain. Blocks that are black or
-/// saturated say nothing of it. Steps of two make it depend as little on the smoothing as the strength of
-/// corners does.
+/// Mean absolute second difference, over steps of two pixels, in the smoothest tenth of an image's blocks,
+/// grey levels: the sensor's noise, if part of the image is plain. Black or saturated blocks are skipped,
+/// because they do not show it. With steps of two pixels its dependence on the smoothing is as small as that
+/// of corner strengths.
 double noiseGrey(const cv::Mat& picture) {
   constexpr int kBlock_px = 16;
   constexpr float kBlack_grey = 4.0F, kSaturated_grey = 250.0F;

@@ -58,7 +58,7 @@ TEST(CornerDetector, FindsNothingOnABareWallOrInATinyImage) {
   EXPECT_TRUE(detect(ImagePyramid(cv::Mat(10, 12, CV_8U, cv::Scalar(80)), 2)).empty());
 }
 
-/// A plain picture with a slope of light, as in silted water.
+/// A plain image with a brightness gradient, as in silted water.
 cv::Mat siltedWater(double noise_grey) {
   cv::Mat light(480, 752, CV_32F), noise(480, 752, CV_32F), picture;
   for (int y = 0; y < light.rows; ++y) light.row(y).setTo(70.0 + 0.1 * y);

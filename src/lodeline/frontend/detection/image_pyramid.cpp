@@ -12,13 +12,13 @@
 namespace lodeline {
 namespace {
 
-// Weights of cv::getGaussianKernel(side, 0) in whole numbers, from the middle outwards.
+// Integer weights of cv::getGaussianKernel(side, 0), from the middle outwards.
 constexpr std::array<int, 2> kThree = {2, 1};
 constexpr std::array<int, 4> kSeven = {18, 14, 7, 2};
 
-/// One row of the smoothed image from the rows about it, this one in the middle. `columns`: room for the sums
-/// down the columns, with the kernel's reach more at either end, where the image is mirrored about its
-/// outermost pixels.
+/// Computes one row of the smoothed image from its neighbouring rows, with this row in the middle. `columns`:
+/// buffer for the sums along the columns, enlarged by the kernel's radius at both ends, where the image is
+/// mirrored at its outermost pixels.
 template <size_t kWeights>
 inline __attribute__((always_inline)) void smoothRowBy(const std::array<int, kWeights>& weights,
                                                        const uint8_t* const* rows, int width,
@@ -75,8 +75,8 @@ void smooth(const cv::Mat& image, const std::array<int, kWeights>& weights, cv::
   }
 }
 
-/// As cv::GaussianBlur, which cannot give floating-point pixels for those of 8 bits, and to the last bit as
-/// OpenCV's filter of floating-point weights, which takes half as long again.
+/// Gaussian smoothing as in cv::GaussianBlur, which cannot convert 8-bit pixels to floating point. The result
+/// is bit-identical to OpenCV's filter with floating-point weights, which takes half as long again.
 void smooth(const cv::Mat& image, int side_px, cv::Mat* smoothed) {
   const bool is_wide = std::min(image.rows, image.cols) > side_px / 2;
   if (side_px == 3 && is_wide) {

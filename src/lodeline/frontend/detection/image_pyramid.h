@@ -5,14 +5,14 @@
 
 namespace lodeline {
 
-/// An image and its successive halvings, in floating point: a dim picture whose texture spans only a few grey
-/// levels would lose most of it to rounding when it is smoothed in 8 bits. Pixel (x, y) of level l is
-/// (x, y) * 2^l of the image.
+/// An image and its successive halvings, in floating point. A dim image whose texture spans only a few grey
+/// levels would lose most of it by rounding if it were smoothed in 8 bits. Pixel (x, y) of level l is at (x,
+/// y) * 2^l in the image.
 class ImagePyramid {
  public:
   ImagePyramid() = default;
-  /// `image`: 8-bit, one channel. Levels that would be smaller than 16 px are left out. `smoothing_side_px`:
-  /// of the Gaussian kernel (odd) that keeps noise from being sampled along with the texture.
+  /// `image`: 8-bit, one channel. Levels smaller than 16 px are omitted. `smoothing_side_px`: size (odd) of
+  /// the Gaussian kernel that reduces noise before sampling.
   ImagePyramid(const cv::Mat& image, int levels, int smoothing_side_px = 3);
 
   bool empty() const { return levels_.empty(); }

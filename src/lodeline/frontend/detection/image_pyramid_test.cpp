@@ -14,7 +14,7 @@ cv::Mat noise(int width, int height) {
   return image;
 }
 
-// To the last bit: the sums are of whole numbers, borders are mirrored about the outermost pixels.
+// Results must be bit-identical: the sums are of integers, and borders are mirrored at the outermost pixels.
 TEST(ImagePyramid, IsSmoothedAsByAGaussian) {
   for (const auto& [width, height] :
        {std::pair(97, 51), {64, 48}, {4, 4}, {3, 5}, {2, 2}, {1, 40}, {40, 1}}) {

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// Mean absolute second difference along rows and columns, grey levels: blind to slopes of light.
+/// Mean absolute second difference along rows and columns, grey levels: insensitive to brightness gradients.
 double detailGrey(const cv::Mat& image) {
   double sum = 0.0;
   int64_t count = 0;

@@ -6,14 +6,15 @@
 
 namespace lodeline {
 
-/// What can be said of an image at a glance.
+/// Statistics of an image's quality.
 struct ImageQuality {
   double mean_grey = 0.0;
   double contrast_grey = 0.0;  ///< standard deviation of the image
-  double texture_grey = 0.0;   ///< mean second difference on the quarter-size image, blind to slopes of light
-  double sharpness = 0.0;      ///< share of fine detail: about 0.37 when sharp, 0.25 blurred over ten px
-  double saturated = 0.0;      ///< share of pixels at the upper end
-  /// "good", or what hinders tracking: "dark", "overexposed", "textureless", "faint" or "blurred".
+  /// Mean second difference on the quarter-size image; insensitive to brightness gradients.
+  double texture_grey = 0.0;
+  double sharpness = 0.0;  ///< share of fine detail: about 0.37 when sharp, 0.25 blurred over ten px
+  double saturated = 0.0;  ///< share of pixels at the upper limit
+  /// "good", or the problem for tracking: "dark", "overexposed", "textureless", "faint" or "blurred".
   std::string word = "good";
 };
 

@@ -6,8 +6,9 @@
 
 namespace lodeline {
 
-/// The mask that a camera's calibration names, 8-bit, zero where nothing may be detected; empty where it
-/// names none. Throws InputError where the file cannot be read or has another size than the camera's images.
+/// Loads the mask named in a camera's calibration, 8-bit, zero where no points may be detected; empty where
+/// there is none. Throws InputError where the file cannot be read or has another size than the camera's
+/// images.
 cv::Mat loadMask(const CameraCalibration& calibration);
 
 }  // namespace lodeline

@@ -39,8 +39,9 @@ cv::Point brightestNear(const cv::Mat& image, const cv::Point& corner) {
 }  // namespace
 
 bool isParticle(const cv::Mat& image, const cv::Point& corner) {
-  // How far a dot must stand out of the ground, in multiples of the ground's largest deviation from its
-  // trend: the ground of a corner of rock has two brightnesses, and the corner stands out by one.
+  // Minimum height of a dot above the background, in multiples of the background's largest deviation from its
+  // trend. The background of a rock corner has two brightnesses, and the corner exceeds it by a factor of
+  // one.
   constexpr float kProminence = 3.0F;
   static const std::array<cv::Point, kRingPoints> kCircle = circle();
   const cv::Point centre = brightestNear(image, corner);

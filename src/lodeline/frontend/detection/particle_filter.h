@@ -5,17 +5,16 @@
 
 namespace lodeline {
 
-/// Whether the brightest point near a corner is a particle: a small bright dot that stands alone on ground
-/// whose texture is nothing beside it. Flakes adrift in the water, lit by the divers' lamps, look like that
-/// and make the strongest corners of all where the water is milky, yet they move with the water and not with
-/// the rock.
+/// Whether the brightest point near a corner is a particle: a small, isolated bright dot on a background with
+/// much weaker texture. Flakes in the water, lit by the divers' lamps, look like that. Where the water is
+/// milky they give the strongest corners of all, but they move with the water and not with the rock.
 ///
-/// `image`: CV_32FC1, a half-size level of an ImagePyramid. `corner` must lie at least `kParticleReachPx`
-/// pixels inside it. The ground is a ring about the brightest point within the window of the structure
-/// tensor; a gradient of its own, as lamps cast one, is taken out of it.
+/// `image`: CV_32FC1, a half-size level of an ImagePyramid. `corner` must be at least `kParticleReachPx`
+/// pixels inside it. The background is a ring around the brightest point within the window of the structure
+/// tensor; its own gradient, e.g. from lamps, is subtracted.
 bool isParticle(const cv::Mat& image, const cv::Point& corner);
 
-/// Farthest pixel that `isParticle` looks at.
+/// Distance of the farthest pixel that `isParticle` reads.
 constexpr int kParticleReachPx = 8;
 
 }  // namespace lodeline

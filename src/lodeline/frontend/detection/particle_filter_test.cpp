@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Dim ground with a lamp's gradient and a sensor's noise.
+/// Dim background with a lamp's gradient and a sensor's noise.
 cv::Mat milkyWater() {
   cv::Mat image(480, 640, CV_32F), noise(480, 640, CV_32F);
   for (int y = 0; y < image.rows; ++y) {
@@ -27,7 +27,7 @@ cv::Mat toGrey(const cv::Mat& image) {
   return grey;
 }
 
-/// A dot of light as wide as a lens makes a point.
+/// Adds a bright dot as wide as the image of a point.
 void addDot(cv::Mat& image, const cv::Point& at, float height, float radius_px) {
   for (int y = at.y - 9; y <= at.y + 9; ++y) {
     for (int x = at.x - 9; x <= at.x + 9; ++x) {

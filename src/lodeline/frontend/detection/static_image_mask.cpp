@@ -7,10 +7,10 @@
 namespace lodeline {
 namespace {
 
-constexpr int kUnit = 100;             // length of a direction in a look
-constexpr int kTiles = 8;              // a row and a column of a look
-constexpr int kSide_px = 9;            // of the surroundings of a place
-constexpr int kLargestWidth_px = 200;  // of a look
+constexpr int kUnit = 100;             // norm of a direction in a sample
+constexpr int kTiles = 8;              // per row and per column of a sample
+constexpr int kSide_px = 9;            // of the neighbourhood of a position
+constexpr int kLargestWidth_px = 200;  // of a sample
 
 int levelOfLooks(const ImagePyramid& image) {
   int level = 0;
@@ -18,16 +18,17 @@ int levelOfLooks(const ImagePyramid& image) {
   return level;
 }
 
-/// Without the slopes of a lamp's pool of light, which stands still in the image as well.
+/// Subtracts the local mean, i.e. the brightness gradients of a lamp's pool of light, which is fixed in the
+/// image as well.
 cv::Mat withoutSlopes(const cv::Mat& image) {
   cv::Mat mean;
   cv::boxFilter(image, mean, CV_32F, {kSide_px, kSide_px}, {-1, -1}, true, cv::BORDER_REFLECT);
   return image - mean;
 }
 
-/// Median absolute second difference, grey levels: where the sensor's noise is stronger than texture, the
-/// noise. Sizes of gradients one level further up are below 3 times that of mere noise with all of this front
-/// end's smoothing, those on the same level below 4 times.
+/// Median absolute second difference, grey levels: where noise is stronger than texture, it measures the
+/// noise. For mere noise with all of this front end's smoothing, gradients one level further up are below 3
+/// times this value, and those on the same level below 4 times.
 float detail(const cv::Mat& image) {
   std::vector<float> sizes;
   sizes.reserve(image.total() / 4 + 1);
@@ -54,7 +55,7 @@ StaticImageMask::Look StaticImageMask::look(const ImagePyramid& pyramid) {
   cv::filter2D(image, x, CV_32F, difference);
   cv::filter2D(image, y, CV_32F, difference.t());
   cv::magnitude(x, y, size);
-  // Beside something strong, taking the slopes out leaves an echo.
+  // The subtraction of the local mean leaves artefacts beside strong texture.
   cv::Mat strongest;
   cv::dilate(size, strongest, cv::Mat::ones(kSide_px, kSide_px, CV_8U));
   size.setTo(0.0F, size < kEcho * strongest);
@@ -131,7 +132,7 @@ void StaticImageMask::add(Time time, const ImagePyramid& image) {
 void StaticImageMask::update(cv::Size size, cv::Size image_size) {
   if (fixed_.empty()) fixed_ = cv::Mat::zeros(size, CV_8U);
   cv::Mat fixed(size, CV_8U);
-  // Unit vectors of independent directions have a mean longer than this in one case of exp(-9).
+  // The mean of unit vectors in independent directions is longer than this with a probability of exp(-9).
   constexpr double kChance = 3.0;
   const auto number = static_cast<double>(looks_.size());
   const double begin = kUnit * number * std::max(options_.min_persistence, kChance / std::sqrt(number));
@@ -141,14 +142,14 @@ void StaticImageMask::update(cv::Size size, cv::Size image_size) {
     const double x = sum_x_[i], y = sum_y_[i];
     fixed.data[i] = x * x + y * y >= least * least ? 255 : 0;
   }
-  // A place alone is chance.
+  // An isolated position is random.
   cv::Mat neighbours;
   cv::boxFilter(fixed, neighbours, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
   fixed.setTo(0, neighbours < 1.5 * 255);
   if (cv::countNonZero(fixed != fixed_) == 0) return;
   fixed_ = fixed;
 
-  // Closed first: places without texture between others belong to the same thing.
+  // Morphological closing first: positions without texture between static ones belong to the same structure.
   const int margin = static_cast<int>(std::ceil(options_.margin_px * size.width / image_size.width));
   const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * margin + 1, 2 * margin + 1});
   cv::Mat wide;

@@ -24,7 +24,7 @@ cv::Mat texture(int seed, cv::Size size, double contrast_grey) {
   return result;
 }
 
-/// A camera that looks at a part of a wide picture, with noise of its own.
+/// A camera that observes a part of a wide image, with its own noise.
 class StaticImageMaskTest : public testing::Test {
  protected:
   cv::Mat view(double x_px, double y_px) {
@@ -36,7 +36,7 @@ class StaticImageMaskTest : public testing::Test {
     return image;
   }
   void add(const cv::Mat& image) { fixed_.add(Time::fromSeconds(1.1 * number_++), ImagePyramid(image, 4)); }
-  /// A way that never comes back to where it was.
+  /// View along a path that never returns to a previous position.
   cv::Mat viewOnTheWay(int i) { return view(10.0 + 12.0 * i, 60.0 + 40.0 * std::sin(0.7 * i)); }
   static cv::Mat withBar(cv::Mat image) {
     static const cv::Mat kLooks = texture(7, kBar.size(), 120.0);

@@ -31,7 +31,7 @@ void StereoDelay::add(const std::vector<RayPair>& pairs, const Rigid3& second_fr
     const Vec3& ray = pairs[i].second;
     const double error_px = focal_px * normal->dot(ray);
     if (std::abs(error_px) > kNoMatch_px) continue;
-    // ray x (R first + rho t) = 0 in the least-squares sense.
+    // Solves ray x (R first + rho t) = 0 by least squares.
     const Vec3 a = ray.cross(second_from_first.translation);
     const Vec3 b = ray.cross(second_from_first.rotation * pairs[i].first);
     const double rho_per_m = std::clamp(-a.dot(b) / std::max(a.squaredNorm(), 1e-12), 0.0, 1.0 / kNearest_m);
@@ -62,8 +62,8 @@ std::optional<StereoDelay::Estimate> StereoDelay::estimate() const {
     }
     unknowns = information.ldlt().solve(right_side);
   }
-  // Matches of one frame err alike, as do those of its neighbours: the scatter is that of sums over blocks of
-  // frames.
+  // Errors of matches in the same or neighbouring frames are correlated: the scatter is that of sums over
+  // blocks of frames.
   constexpr int kFramesOfBlock = 10;
   std::map<int, Unknowns> sums;
   for (const Equation& equation : newest_) {

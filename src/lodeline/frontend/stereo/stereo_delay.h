@@ -8,18 +8,18 @@
 
 namespace lodeline {
 
-/// Estimates by how much later than its stamp says the second camera of a pair takes its images, from the
-/// distances of stereo matches to their epipolar lines. A delay d moves the second camera, between the first
-/// image and its own, by the rotation w d and the translation v d (its own axes), so a match b at inverse
-/// depth rho lies off its line by
+/// Estimates the delay of a pair's second camera relative to its time stamps from the distances of stereo
+/// matches to their epipolar lines. A delay d moves the second camera, between the first image and its own,
+/// by the rotation w d and the translation v d (its own axes). A match b at inverse depth rho is then off its
+/// line by
 ///   e = -focal_px (w . (b x n) + rho n . v) d + focal_px (b x n) . theta,
-/// with n the unit normal of the epipolar plane and theta a constant turn of the camera against its file. w
-/// and v change from frame to frame, which tells d from theta. Minimizes the sum of |e - model| over the
-/// latest matches, right and wrong ones (iteratively reweighted least squares).
+/// with n the unit normal of the epipolar plane and theta a constant rotation of the camera relative to its
+/// file. w and v change from frame to frame, which separates d from theta. The estimate minimizes the sum of
+/// |e - model| over the latest matches, correct and wrong ones (iteratively reweighted least squares).
 class StereoDelay {
  public:
-  /// The matches of one frame, as `second_from_first` places them, and the second camera's motion: angular
-  /// velocity, rad/s, and velocity, m/s, in its own axes.
+  /// Adds the matches of one frame with the extrinsics `second_from_first`, and the second camera's motion:
+  /// angular velocity, rad/s, and velocity, m/s, in its own axes.
   void add(const std::vector<RayPair>& pairs, const Rigid3& second_from_first, double focal_px,
            const Vec3& rate_C, const Vec3& velocity_C);
 
@@ -27,10 +27,10 @@ class StereoDelay {
     double delay_s;
     double sigma_s;
   };
-  /// Nothing before the motion has shown it.
+  /// Empty until the motion makes the delay observable.
   std::optional<Estimate> estimate() const;
 
-  /// Forgets all matches: the delay they tell of is taken into account from now on.
+  /// Discards all matches, because the estimated delay is compensated from now on.
   void restart() { newest_.clear(); }
 
  private:

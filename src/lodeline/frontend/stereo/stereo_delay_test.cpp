@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kDelayFocal_px = 450.0, kDelayNoise_px = 0.3;
 
-/// A pair of cameras that sways and drifts before points 1 to 8 m away; the second one takes its images
-/// `delay_s` later than the first, is turned by `turn_rad` about x against its file, and a share of the
-/// matches is wrong.
+/// Estimator after matches of a pair of cameras that sways and drifts in front of points at 1 to 8 m. The
+/// second camera takes its images `delay_s` later than the first and is rotated by `turn_rad` about x
+/// relative to its file. A share of the matches is wrong.
 StereoDelay watched(double delay_s, double turn_rad, double sway_rad_per_s, double wrong_share = 0.1) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -33,7 +33,7 @@ StereoDelay watched(double delay_s, double turn_rad, double sway_rad_per_s, doub
     for (int i = 0; i < 80; ++i) {
       const double depth_m = 4.5 + 3.5 * uniform(random);
       const Vec3 point_C1 = depth_m * Vec3(0.6 * uniform(random), 0.4 * uniform(random), 1.0);
-      // The second camera turns and moves on before it takes its image.
+      // The second camera moves on before it takes its image.
       const Vec3 at_first = really * point_C1;
       const Vec3 at_second = so3::exp(Vec3(-rate_C * delay_s)) * (at_first - velocity_C * delay_s);
       Vec3 ray = at_second / at_second.z();

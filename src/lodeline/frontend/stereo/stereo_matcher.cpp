@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSearchLevel = 2;
 constexpr int kFramesBetweenSearches = 4;
-/// A match may lie this far on the wrong side of infinity, for calibrations are not perfect.
+/// Tolerance beyond infinity for a match, because calibrations are not perfect.
 constexpr double kBeyondInfinityPx = 1.0;
 constexpr double kLimit_rad = 0.25 * kDegree;
 
@@ -57,7 +57,7 @@ void StereoMatcher::setMotion(const RigMotion& motion, size_t camera) {
 
 Vec3 StereoMatcher::rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const {
   if (!frame_from_image_C_) return rays.second;
-  // The point times its inverse depth, which also holds for points at infinity.
+  // The point times its inverse depth, which is also valid for points at infinity.
   const Vec3 point_C =
       second_from_first_.rotation * rays.first + inverse_depth_per_m * second_from_first_.translation;
   return (frame_from_image_C_->rotation * (point_C.norm() * rays.second) +
@@ -76,7 +76,7 @@ double StereoMatcher::epipolarErrorPx(const RayPair& rays) const {
 }
 
 std::optional<double> StereoMatcher::inverseDepth(const RayPair& rays) const {
-  // second x (R first + inverse_depth t) = 0, in the least-squares sense.
+  // Solves second x (R first + inverse_depth t) = 0 by least squares.
   const Vec3 a = rays.second.cross(second_from_first_.translation);
   const Vec3 b = rays.second.cross(second_from_first_.rotation * rays.first);
   const double parallax2 = a.squaredNorm();
@@ -137,7 +137,7 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
   std::optional<PatchWarp> warp;
   int coarsest = options_.coarsest_level;
   bool is_near = false;
-  // A point that is not seen in the other camera would be searched for in vain in every frame.
+  // Otherwise a point that the other camera does not observe would be searched in every frame.
   const bool search_again = !hint && (track.id + track.observations) % kFramesBetweenSearches == 0;
   if (track.inverse_depth_per_m && !search_again) {
     const auto expected = projectAt(*first_bearing, *track.inverse_depth_per_m);

@@ -15,64 +15,66 @@ struct StereoMatcherOptions {
   MatchQuality quality;
   int coarsest_level = 3;
   double min_depth_m = 0.2;
-  /// Of a match; a quarter of a degree where that is more, for what is wrong with a lens grows with it.
+  /// Limit for a match; a quarter of a degree where that is more, because errors of the intrinsics grow with
+  /// it.
   double max_epipolar_px = 2.0;
-  /// Learn how a camera is turned against its file (StereoRotation), up to so much.
+  /// Whether the rotation of a camera relative to its file is estimated (StereoRotation), up to
+  /// `max_rotation_rad`.
   bool learn_rotation = true;
   double max_rotation_rad = 1.5 * kDegree;
   double max_left_right_px = 0.7;
   double border_px = 8.0;
 };
 
-/// How the rig moves while its cameras take their images, body axes.
+/// Motion of the rig while its cameras take their images, body axes.
 struct RigMotion {
-  /// Per camera, from the body at the time of its image to the body at the frame's time; empty where all
-  /// images were taken at the frame's time.
+  /// Per camera, transformation from the body at the time of its image to the body at the frame's time; empty
+  /// where all images were taken at the frame's time.
   std::vector<Rigid3> frame_from_image_B = {};
   Vec3 rate_B = Vec3::Zero();      ///< rad/s
   Vec3 velocity_B = Vec3::Zero();  ///< m/s
 };
 
-/// A point found in another camera by its looks.
+/// A patch match in another camera, not yet checked against the epipolar geometry.
 struct StereoCandidate {
   PatchWarp warp;
   RayPair rays;
 };
 
-/// Finds points of camera 0 in the image that another camera of the rig took at the same time, or nearly: its
-/// own motion up to the frame's time is taken into account. What is found by
-/// its looks is a candidate; all candidates of a frame together tell how the camera is turned against its
-/// file, and then which of them are matches.
+/// Matches points of camera 0 in an image that a secondary camera took at the same or nearly the same time;
+/// the camera's motion up to the frame's time is compensated. A patch match is a candidate. All candidates of
+/// a frame together give the rotation of the camera relative to its file, and this decides which of them are
+/// matches.
 class StereoMatcher {
  public:
   StereoMatcher(std::shared_ptr<const Camera> first, std::shared_ptr<const Camera> second,
                 const StereoMatcherOptions& options);
 
-  /// The rig's motion between the two images; before a frame's matches are looked for.
+  /// Sets the rig's motion between the two images; to be called before a frame's points are matched.
   void setMotion(const RigMotion& motion, size_t camera);
-  /// Looks for `track.current`, expected at `track.inverse_depth_per_m` or, where that is unknown, anywhere
-  /// between `min_depth_m` and infinity; `hint` is the match in the images before.
+  /// Searches for `track.current` at `track.inverse_depth_per_m` or, where that is unknown, anywhere between
+  /// `min_depth_m` and infinity; `hint` is the match in the previous images.
   std::optional<StereoCandidate> find(const ImagePyramid& first, const ImagePyramid& second,
                                       const std::optional<PatchWarp>& hint, const Track& track) const;
-  /// All that were found in a frame.
+  /// Updates the rotation with all candidates of a frame.
   void learn(const std::vector<RayPair>& candidates);
-  /// The inverse depth (1/m along the first camera's ray, not below zero) of a candidate that lies on its
-  /// epipolar line and neither too near nor beyond infinity.
+  /// Inverse depth (1/m along the first camera's ray, not negative) of a candidate that is on its epipolar
+  /// line and neither too near nor beyond infinity; empty for others.
   std::optional<double> accept(const RayPair& candidate) const;
 
-  /// The ray that the second camera would have seen at the frame's time, of a point it saw on `second` at its
-  /// own time and that lies at `inverse_depth_per_m` on the ray `first`.
+  /// Ray of the second camera at the frame's time for a point that it observed on `second` at its own time,
+  /// at `inverse_depth_per_m` on the ray `first`.
   Vec3 rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const;
 
-  /// By how much later than thought the second camera takes its images.
+  /// Estimator of the second camera's delay relative to the assumed time.
   StereoDelay& delay() { return delay_; }
 
-  /// Rotation phi (rad, axes of the first camera) by which the second one is turned against its file:
-  /// first_from_second is exp(phi) times the file's. Zero where nothing speaks against that.
+  /// Rotation phi (rad, axes of the first camera) of the second camera relative to its file:
+  /// first_from_second is exp(phi) times the file's. Zero unless a deviation was found.
   Vec3 rotationCorrection() const;
 
  private:
-  /// By file, at the times of their images.
+  /// Extrinsics of the file, at the times of the images.
   Rigid3 imageSecondFromFirst() const;
   void place();
   /// Distance of a candidate from the epipolar plane, px of the second camera.
@@ -80,8 +82,8 @@ class StereoMatcher {
   std::optional<Vec2> projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const;
   std::optional<PatchWarp> search(const ImagePyramid& second, const Vec3& first_bearing,
                                   const PatchTemplate& looks) const;
-  /// Finds `looks` from the fine levels where it `is_near` what is expected, and from level `coarsest` where
-  /// that fails.
+  /// Searches for `looks` from the fine levels if it `is_near` the expected position, and from level
+  /// `coarsest` where that fails.
   std::optional<PatchWarp> align(const ImagePyramid& second, const PatchTemplate& looks,
                                  const PatchWarp& expected, bool is_near, int coarsest) const;
   std::optional<double> inverseDepth(const RayPair& rays) const;
@@ -90,13 +92,13 @@ class StereoMatcher {
 
   std::shared_ptr<const Camera> first_, second_;
   StereoMatcherOptions options_;
-  double limit_px_;  ///< max_epipolar_px or what takes its place
+  double limit_px_;  ///< max_epipolar_px, or a quarter of a degree
   StereoRotation rotation_;
   StereoDelay delay_;
   Rigid3 second_from_first_by_file_;
-  std::optional<Rigid3> frame_from_image_C_;  ///< of the second camera, where its image is of another moment
+  std::optional<Rigid3> frame_from_image_C_;  ///< of the second camera, if its image is of another time
   Vec3 rate_C_ = Vec3::Zero(), velocity_C_ = Vec3::Zero();  ///< of the second camera
-  Rigid3 second_from_first_;  ///< at the times of their images, with the turn found
+  Rigid3 second_from_first_;  ///< at the times of their images, with the estimated rotation
 };
 
 }  // namespace lodeline

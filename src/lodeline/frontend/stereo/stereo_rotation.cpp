@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-// Three numbers that fit fewer matches well may do so by chance.
+// With fewer matches, three parameters may fit well by chance.
 constexpr size_t kEnough = 60, kMost = 300;
 constexpr int kIterations = 10;
 constexpr double kSigma_rad = 1.0 * kDegree;  // beforehand

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFocal_px = 450.0, kLimit_px = 2.0;
 
-// Points in front of a pair that stands 12 cm apart and is turned a little.
+// Points in front of a pair with a baseline of 12 cm and a small rotation.
 class StereoRotationTest : public testing::Test {
  protected:
   std::mt19937 random_{1};
@@ -25,7 +25,7 @@ class StereoRotationTest : public testing::Test {
     return (ray / ray.z() + Vec3(normal(random_), normal(random_), 0.0)).normalized();
   }
 
-  /// Matches of a pair whose second camera is turned by `turn`, `wrong` of them chance.
+  /// Matches of a pair whose second camera is rotated by `turn`; `wrong` of them are random.
   std::vector<RayPair> pairs(const Vec3& turn, int right, int wrong = 0) {
     std::vector<RayPair> pairs;
     const Quat rotation = so3::exp(turn);

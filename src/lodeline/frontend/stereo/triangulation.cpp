@@ -10,13 +10,14 @@
 namespace lodeline {
 namespace {
 
-/// Direction and inverse distance in the first view: the point is `origin + ray / inverse_depth`.
+/// Parametrization by direction and inverse distance in the first view: the point is `origin + ray /
+/// inverse_depth`.
 struct FirstViewPoint {
   Vec3 origin_W;
   Vec3 ray_W;
   double inverse_depth = 0.0;
 
-  /// Proportional to the direction from `view` to the point, positive factor; finite at infinity.
+  /// Direction from `view` to the point times a positive factor; finite for points at infinity.
   Vec3 directionFrom(const BearingView& view) const {
     return view.world_from_camera.rotation.conjugate() *
            (ray_W + inverse_depth * (origin_W - view.world_from_camera.translation));
@@ -38,7 +39,7 @@ double maxParallax(const std::vector<BearingView>& views) {
 FirstViewPoint startingPoint(const std::vector<BearingView>& views) {
   const Rigid3& first = views.front().world_from_camera;
   FirstViewPoint point{first.translation, first.rotation * views.front().bearing_C};
-  // Least squares of bearing x (ray + inverse_depth * baseline) = 0.
+  // Solves bearing x (ray + inverse_depth * baseline) = 0 by least squares.
   double numerator = 0.0, denominator = 0.0;
   for (const BearingView& view : views) {
     const Vec3 bearing_W = view.world_from_camera.rotation * view.bearing_C;
@@ -87,7 +88,8 @@ Triangulation triangulate(const std::vector<BearingView>& views, const Triangula
   result.max_parallax_rad = maxParallax(views);
 
   FirstViewPoint point = startingPoint(views);
-  // Keeps the inverse depth at its start where views share one place and nothing is known of it.
+  // Keeps the inverse depth at its initial value where all views have the same position and do not determine
+  // it.
   constexpr double kWeakest = 1e-9;
   NormalEquations equations;
   for (int i = 0; i < kMaxIterations; ++i) {

@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// One view of a point from a known place.
+/// One observation of a point from a known pose.
 struct BearingView {
   Rigid3 world_from_camera;
   Vec3 bearing_C = Vec3::UnitZ();  ///< unit ray
@@ -14,23 +14,23 @@ struct BearingView {
 };
 
 struct TriangulationOptions {
-  /// Least angle between two of the rays, rad; below, the point is as good as infinitely far.
+  /// Smallest angle between two of the rays, rad; with a smaller one, the point counts as infinitely far.
   double min_parallax_rad = 0.01;
-  /// Greatest root-mean-square residual, in standard deviations.
+  /// Largest root-mean-square residual, in standard deviations.
   double max_rms_sigmas = 3.0;
 };
 
 enum class TriangulationStatus {
   Good,
-  TooFewViews,   ///< fewer than two
-  LowParallax,   ///< the rays are nearly parallel: point and covariance hold, but the depth is poorly known
-  BehindCamera,  ///< in front of not all of the views
-  Inconsistent,  ///< the rays do not meet within their accuracy
+  TooFewViews,  ///< fewer than two
+  LowParallax,  ///< the rays are nearly parallel: point and covariance are valid, but the depth is inaccurate
+  BehindCamera,  ///< not in front of all views
+  Inconsistent,  ///< the rays do not intersect within their accuracy
 };
 
 struct Triangulation {
   TriangulationStatus status = TriangulationStatus::TooFewViews;
-  /// Meaningful where `inverse_depth_per_m` is positive.
+  /// Valid where `inverse_depth_per_m` is positive.
   Vec3 point_W = Vec3::Zero();
   /// 1 / distance from the first view; 0 for a point at infinity.
   double inverse_depth_per_m = 0.0;
@@ -41,9 +41,10 @@ struct Triangulation {
   bool good() const { return status == TriangulationStatus::Good; }
 };
 
-/// The point that several rays see best, by Gauss-Newton on direction and inverse distance in the first view
-/// (J. Civera et al., "Inverse depth parametrization for monocular SLAM", TRO 2008), which stays well
-/// conditioned up to infinity. Residuals are components of the unit rays' difference across the measured ray.
+/// Point with the smallest residuals to several rays, by Gauss-Newton on direction and inverse distance in
+/// the first view (J. Civera et al., "Inverse depth parametrization for monocular SLAM", TRO 2008). This
+/// parametrization is well conditioned up to infinity. Residuals are the components of the unit rays'
+/// difference perpendicular to the measured ray.
 Triangulation triangulate(const std::vector<BearingView>& views, const TriangulationOptions& options = {});
 
 const char* toString(TriangulationStatus status);

@@ -61,7 +61,7 @@ TEST(Triangulation, ReportsParallaxAndHonestUncertainty) {
     squared_residual += result.rms_sigmas * result.rms_sigmas;
   }
   EXPECT_NEAR(squared_error / squared_sigma, 1.0, 0.2);
-  // Ten components less three parameters.
+  // Ten components minus three parameters.
   EXPECT_NEAR(squared_residual / kTrials, 0.7, 0.05);
 }
 

@@ -4,11 +4,11 @@
 
 namespace lodeline {
 
-/// When an alignment counts as the same point.
+/// Limits within which an alignment counts as the same point.
 struct MatchQuality {
   double min_correlation = 0.85;
-  /// In a dim picture noise alone lowers the correlation; what differs no more than the sensor's noise is
-  /// accepted down to `min_correlation_in_noise`.
+  /// In a dim image noise alone reduces the correlation. If the residual is not larger than this noise of the
+  /// sensor, a correlation down to `min_correlation_in_noise` is accepted.
   double noise_grey = 2.0;
   double min_correlation_in_noise = 0.5;
 

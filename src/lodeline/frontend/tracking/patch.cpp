@@ -10,18 +10,18 @@ namespace {
 
 constexpr int kMaxIterations = 10;
 constexpr float kConvergedStepPx = 0.01F;
-/// Change of the linear part; 0.1 px at the rim of the patch.
+/// Convergence limit of the linear part: a change of 0.1 px at the edge of the patch.
 constexpr float kConvergedBend = 0.1F / PatchPattern::kReach;
-/// A coarse level only has to bring the patch within reach of the next finer one.
+/// Convergence limit on a coarse level, which only has to be within reach of the next finer one, px.
 constexpr float kCoarseStepPx = 0.05F;
-/// A patch this weak, as the norm of its detrended values, is noise.
+/// A patch with a smaller norm of its detrended values is noise.
 constexpr float kMinContrastGrey = 3.0F;
-/// Damping of the linear part relative to the information on the shift: it slows the steps that a patch of
-/// few edges determines badly, without moving the minimum.
+/// Damping of the linear part relative to the information on the shift. It reduces steps in directions that a
+/// patch with few edges hardly determines, and does not move the minimum.
 constexpr float kDeformationDamping = 0.5F;
 /// Determinant over squared trace of the information on the shift; an edge determines only one direction.
 constexpr float kMinConditioning = 0.03F;
-/// Patches shrunk or stretched beyond this have lost their point.
+/// Patches whose area is reduced or enlarged by more than this factor have lost their point.
 constexpr float kMinDeterminant = 0.25F;
 
 PatchWarp atLevel(const PatchWarp& warp, int level) {
@@ -104,7 +104,7 @@ bool PatchTemplate::shiftOnLevel(const Level& level, const cv::Mat& image, float
     if (!staysInside(image, warp, 0.0F)) return false;
     PatchValues values;
     sample(image, warp, values);
-    // The gain's rows are orthogonal to the template, so it need not be subtracted from the values.
+    // The rows of the gain are orthogonal to the template, so it need not be subtracted from the values.
     const auto along =
         normalizedAlong<3>(values, {&level.values, &level.shift_gain[0], &level.shift_gain[1]});
     correlation = along[0];
@@ -126,7 +126,7 @@ bool PatchTemplate::deform(const cv::Mat& image, PatchWarp& warp, float& correla
     sample(image, warp, values);
     const auto along = normalizedAlong(values, rows);
     correlation = along[0];
-    // As the gain's, these rows are orthogonal to the template.
+    // Like those of the gain, these rows are orthogonal to the template.
     const Eigen::Matrix<float, kParameters, 1> step =
         inverse_information_ * Eigen::Map<const Eigen::Matrix<float, kParameters, 1>>(along.data() + 1);
     Eigen::Matrix2f deformation;

@@ -9,38 +9,39 @@
 
 namespace lodeline {
 
-/// What alignment may change of a warp: its position, or its linear part as well.
+/// Parameters of a warp that an alignment estimates: its position, or its linear part as well.
 enum class PatchMotion { Shift, Deformation };
 
-/// How well a patch was found.
+/// Quality of an alignment.
 struct PatchMatch {
   float correlation = 0.0F;    ///< of the normalized patches at the finest level, 1 = equal
   float residual_grey = 0.0F;  ///< RMS difference after normalization, grey levels of the template
 };
 
-/// The looks of a small neighbourhood, on several pyramid levels, with everything that can be computed once
-/// for finding it again in other images.
+/// Template of a small image patch on several pyramid levels, with all quantities that can be precomputed for
+/// its alignment in other images.
 ///
 /// Alignment is inverse compositional Gauss-Newton (S. Baker, I. Matthews, "Lucas-Kanade 20 years on", IJCV
-/// 2004) on normalized values: constant, linear trend and gain are taken out of template and image alike, for
-/// a lamp that moves with the camera draws a pool of light over the rock that is bright, steep, and stands
-/// still in the image; whatever of it is left in the residual holds the patch back.
+/// 2004) on normalized values. Constant, linear trend and gain are removed from template and image. A lamp
+/// that moves with the camera projects a bright area with steep gradients on the rock, which is fixed in the
+/// image. Any rest of it in the residual would hold the patch in place.
 class PatchTemplate {
  public:
   PatchTemplate() = default;
 
-  /// `motion`: the most that align() will ever change. Nothing where the finest level leaves the image or has
-  /// no texture. Coarser levels that leave the image are passed over.
+  /// `motion`: the most general motion that align() will ever estimate. Empty where the finest level is not
+  /// inside the image or has no texture. Coarser levels that are not inside the image are skipped.
   static std::optional<PatchTemplate> extract(const ImagePyramid& image, const Eigen::Vector2f& centre,
                                               int levels, PatchMotion motion = PatchMotion::Deformation);
 
-  /// Finds the template in another image, from level `coarsest` down to the image itself. Deformation
-  /// follows the linear part of the warp as well, on the finest level. Nothing where it leaves the image or
-  /// does not converge; `warp` is then unspecified.
+  /// Aligns the template in another image, from level `coarsest` down to the image itself. Deformation also
+  /// estimates the linear part of the warp, on the finest level. Empty where it leaves the image or does not
+  /// converge; `warp` is then unspecified.
   std::optional<PatchMatch> align(const ImagePyramid& image, int coarsest, PatchMotion motion,
                                   PatchWarp& warp) const;
 
-  /// Correlation of the image at `warp` with the template on one level, without moving; nothing outside.
+  /// Correlation of the image at `warp` with the template on one level, without alignment; empty outside the
+  /// image.
   std::optional<float> correlate(const ImagePyramid& image, int level, const PatchWarp& warp) const;
 
   int levels() const { return static_cast<int>(levels_.size()); }
@@ -57,7 +58,7 @@ class PatchTemplate {
     std::array<PatchValues, 2> shift_gain{};
   };
 
-  /// The Jacobian of the normalized values by the shift, or by (shift, linear part).
+  /// Computes the Jacobian of the normalized values by the shift, or by (shift, linear part).
   static bool fillLevel(const cv::Mat& image, const Eigen::Vector2f& centre, PatchMotion motion, Level& level,
                         Jacobian& jacobian, float& norm);
   void invertInformation();
@@ -67,8 +68,8 @@ class PatchTemplate {
 
   std::vector<Level> levels_;
   PatchMotion most_ = PatchMotion::Shift;
-  /// Of the finest level, by (shift, linear part), and the inverse of its damped square; not worked out in a
-  /// template that is only shifted.
+  /// Jacobian on the finest level, by (shift, linear part), and the inverse of its damped square; not
+  /// computed in a template that is only shifted.
   Jacobian jacobian_{};
   Eigen::Matrix<float, kParameters, kParameters> inverse_information_;
   float contrast_grey_ = 0.0F;

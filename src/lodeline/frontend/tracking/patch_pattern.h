@@ -4,8 +4,8 @@
 
 namespace lodeline {
 
-/// Where a patch is sampled, px from its centre: a disc on a grid of odd offsets. It is symmetric, so that
-/// constant, u and v are orthogonal over it.
+/// Sampling pattern of a patch, px from its centre: a disc on a grid of odd offsets. It is symmetric, so that
+/// constant, u and v are orthogonal on it.
 struct PatchPattern {
   static constexpr int kSide = 8;
   static constexpr float kSpacing = 2.0F;
@@ -22,7 +22,7 @@ struct PatchPattern {
     for (int i = 0; i < kSide * kSide; ++i) n += inside(i % kSide, i / kSide) ? 1 : 0;
     return n;
   }
-  /// Greatest offset along one axis.
+  /// Largest offset along one axis.
   static constexpr float kReach = 0.5F * (kSide - 1) * kSpacing;
 
   static constexpr auto offsets(bool vertical) {

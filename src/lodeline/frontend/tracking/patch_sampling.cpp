@@ -24,7 +24,7 @@ float sum(const PatchValues& a) {
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-/// `pixels` must not be part of the other arguments, else the loop could not be vectorised.
+/// `pixels` must not overlap the other arguments, or the loop could not be vectorized.
 LODELINE_WIDE_VECTORS
 void sampleWarped(const float* __restrict pixels, int stride, const PatchWarp& warp, PatchValues& values) {
   const float x0 = warp.position.x(), y0 = warp.position.y();
@@ -82,13 +82,13 @@ float normalize(PatchValues& values) {
 template <size_t kRows>
 std::array<float, kRows> normalizedAlong(const PatchValues& values,
                                          const std::array<const PatchValues*, kRows>& rows) {
-  // All sums side by side: one after the other, each would wait for its own additions.
+  // All sums run in parallel; one after the other, each would wait for its own additions.
   using Lanes = Eigen::Array4f;
   const auto lanes = [](const PatchValues& of, size_t i) { return Eigen::Map<const Lanes>(of.data() + i); };
   Lanes constant = Lanes::Zero(), along_u = Lanes::Zero(), along_v = Lanes::Zero(), squares = Lanes::Zero();
   std::array<Lanes, kRows> along;
   along.fill(Lanes::Zero());
-  // The squares lose digits to what the values have in common.
+  // Subtracts a common offset, because the sums of squares would lose digits to it.
   const float pivot = values[kPatchSize / 2];
   for (size_t i = 0; i < values.size(); i += 4) {
     const Lanes value = lanes(values, i) - pivot;

@@ -8,13 +8,13 @@
 
 namespace lodeline {
 
-/// Where a patch lies in an image: pattern offset u is found at `position + linear * u` (px of level 0).
+/// Position of a patch in an image: pattern offset u maps to `position + linear * u` (px of level 0).
 struct PatchWarp {
   Eigen::Vector2f position = Eigen::Vector2f::Zero();
   Eigen::Matrix2f linear = Eigen::Matrix2f::Identity();
 };
 
-/// Whether all samples of a warped patch, and `margin` pixels around them, lie in the image.
+/// Whether all samples of a warped patch, with a margin of `margin` pixels, are inside the image.
 bool staysInside(const cv::Mat& image, const PatchWarp& warp, float margin);
 
 /// Bilinear values of a CV_32FC1 image at the warped pattern, which must stay inside.
@@ -22,24 +22,24 @@ void sample(const cv::Mat& image, const PatchWarp& warp, PatchValues& values);
 
 float dot(const PatchValues& a, const PatchValues& b);
 
-/// Takes constant and linear trend out.
+/// Subtracts constant and linear trend.
 void detrend(PatchValues& values);
 
 /// Detrends and scales to unit norm; returns the norm before.
 float normalize(PatchValues& values);
 
-/// What normalized values would be along rows that are free of trend, without normalizing them: the trend
-/// drops out of every such product. All zero where the values have no contrast.
+/// Scalar products of the normalized values with rows that are free of trend, computed without normalization,
+/// because the trend drops out of every such product. All zero where the values have no contrast.
 template <size_t kRows>
 std::array<float, kRows> normalizedAlong(const PatchValues& values,
                                          const std::array<const PatchValues*, kRows>& rows);
 
-/// Derivative of `normalize`, up to the scale, applied to a column of a Jacobian: trend and the normalized
-/// values themselves are projected out.
+/// Derivative of `normalize`, except for the scale, applied to a column of a Jacobian: it projects out the
+/// trend and the normalized values themselves.
 void projectOutNormalization(const PatchValues& normalized, PatchValues& column);
 
-/// Upright surroundings of a point, resampled so that every sample of the pattern and its four neighbours
-/// fall on it: cheaper than sampling each of them alone.
+/// Neighbourhood of a point without rotation, resampled so that every sample of the pattern and its four
+/// neighbours are on its grid. This is cheaper than a separate interpolation of each sample.
 class PatchBlock {
  public:
   static constexpr float kReach = PatchPattern::kReach + 1.0F;
@@ -48,7 +48,7 @@ class PatchBlock {
   PatchBlock(const cv::Mat& image, const Eigen::Vector2f& centre);
 
   void values(PatchValues& values) const;
-  /// By central differences, per px times `scale`.
+  /// Gradients by central differences, per px times `scale`.
   void gradients(float scale, PatchValues& by_u, PatchValues& by_v) const;
 
  private:

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// Texture of the given contrast on a steep slope of light.
+/// Texture of the given contrast on a steep brightness gradient.
 PatchValues texture(float contrast, float phase) {
   PatchValues values;
   for (size_t i = 0; i < values.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// A picture with texture in all directions whose value is known between the pixels too.
+/// An image with texture in all directions whose value is also known between the pixels.
 double texture(double x, double y) {
   return 110.0 + 22.0 * std::sin(0.31 * x + 0.4) * std::cos(0.27 * y) + 18.0 * std::sin(0.17 * x - 0.23 * y) +
          14.0 * std::cos(0.45 * y + 0.12 * x);
@@ -74,7 +74,7 @@ TEST(PatchTemplate, IsBlindToGainOffsetAndSlopeOfLight) {
   EXPECT_LT((warp.position - kCentre - Eigen::Vector2f(0.5F, -0.25F)).norm(), 0.03F);
 }
 
-/// Detail within the patch, without which its deformation cannot be told.
+/// Detail within the patch, which makes its deformation observable.
 double fineTexture(double x, double y) {
   return texture(x, y) + 25.0 * std::sin(0.8 * x + 0.2 * y) * std::cos(0.7 * y - 0.3 * x);
 }
@@ -93,7 +93,7 @@ TEST(PatchTemplate, FollowsRotationAndScale) {
   PatchWarp warp{kCentre + Eigen::Vector2f(0.8F, -0.5F), Eigen::Matrix2f::Identity()};
   ASSERT_TRUE(patch.align(warped, 0, PatchMotion::Deformation, warp));
   EXPECT_LT((warp.position - kCentre).norm(), 0.1F);
-  // The linear part is damped and carried on from image to image.
+  // The linear part is damped and converges over several images.
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(patch.align(warped, 0, PatchMotion::Deformation, warp));
   const auto match = patch.align(warped, 0, PatchMotion::Deformation, warp);
   ASSERT_TRUE(match);

@@ -21,7 +21,8 @@ std::optional<PatchWarp> TemporalTracker::predict(const Mat3& current_from_previ
 }
 
 bool TemporalTracker::find(const ImagePyramid& current, const PatchWarp& predicted, Track& track) const {
-  // What was where it was expected will be again, within reach of the fine levels.
+  // A point that was close to its predicted position will probably be so again, within reach of the fine
+  // levels.
   constexpr float kNear_px = 1.0F;
   constexpr int kNearLevel = 1;
   if (track.prediction_error_px && *track.prediction_error_px < kNear_px &&
@@ -38,7 +39,8 @@ bool TemporalTracker::findFrom(int coarsest, const ImagePyramid& current, const 
     track.warp = warp;
     return true;
   }
-  // The point no longer looks as it first did: carry on from the image before, which costs one step of drift.
+  // The appearance of the point has changed: the template of the image before is used, which adds one step of
+  // drift.
   warp = {predicted.position, predicted.linear * track.warp.linear.inverse()};
   match = track.current.align(current, coarsest, PatchMotion::Deformation, warp);
   if (!match || !options_.quality.accepts(*match)) return false;
@@ -49,8 +51,8 @@ bool TemporalTracker::findFrom(int coarsest, const ImagePyramid& current, const 
 
 bool TemporalTracker::returns(const ImagePyramid& previous, const PatchWarp& predicted,
                               const Eigen::Vector2f& previous_position, const Track& track) const {
-  // Starting as far off as the forward search did, within reach of the fine levels, keeps the check from
-  // agreeing by standing still.
+  // The backward search starts at an offset like that of the forward search, within reach of the fine levels.
+  // Without it the check would succeed without any motion of the patch.
   constexpr int kCoarsestLevel = 1;
   constexpr float kReachPx = 1.5F;
   Eigen::Vector2f offset = predicted.position - track.warp.position;

@@ -9,27 +9,27 @@
 namespace lodeline {
 
 struct TemporalTrackerOptions {
-  /// Against the image before.
+  /// For the comparison with the image before.
   MatchQuality quality{.min_correlation = 0.7};
-  /// Against the first observation, which may have become another sight of the place.
+  /// For the comparison with the first observation, in which the point may have looked different.
   MatchQuality reference_quality{.min_correlation = 0.9};
   int coarsest_level = 3;
   double max_forward_backward_px = 1.0;
   double border_px = 8.0;
 };
 
-/// Follows points from one image of a camera to the next.
+/// Tracks points from one image of a camera to the next.
 class TemporalTracker {
  public:
   TemporalTracker(std::shared_ptr<const Camera> camera, const TemporalTrackerOptions& options)
       : camera_(std::move(camera)), options_(options) {}
 
-  /// Moves `track` into the current image; false where it cannot be found there, `track` is then unspecified.
-  /// `current_from_previous_C`: rotation of the camera between the images. Sets `track.current`.
+  /// Moves `track` into the current image; returns false where it is not found there, `track` is then
+  /// unspecified. `current_from_previous_C`: rotation of the camera between the images. Sets `track.current`.
   bool follow(const ImagePyramid& previous, const ImagePyramid& current, const Mat3& current_from_previous_C,
               Track& track) const;
 
-  /// Where the rotation alone carries a patch, with its in-plane rotation and distortion.
+  /// Prediction of a patch by the rotation alone, including its in-plane rotation and distortion.
   std::optional<PatchWarp> predict(const Mat3& current_from_previous_C, const PatchWarp& warp) const;
 
  private:

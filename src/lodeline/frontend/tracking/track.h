@@ -8,23 +8,23 @@
 
 namespace lodeline {
 
-/// A point while the front end follows it. It lives in camera 0 and is matched into the others.
+/// A tracked point of the front end. It is tracked in camera 0 and matched in the others.
 struct Track {
   TrackId id = -1;
-  int observations = 1;  ///< images of camera 0 it was seen in
-  /// Its looks when it was first seen, or when it last had to be renewed. Comparing with this and not with
-  /// the image before keeps small errors of alignment from adding up.
+  int observations = 1;  ///< number of images of camera 0 that observe it
+  /// Its patch at the first observation, or at the last renewal. Comparison with this patch, and not with
+  /// that of the image before, prevents the accumulation of small alignment errors.
   PatchTemplate reference;
-  PatchWarp warp;  ///< where `reference` lies in the last image of camera 0
-  /// How far it moved between the last two images beyond what the rotation explains.
+  PatchWarp warp;  ///< position of `reference` in the last image of camera 0
+  /// Motion between the last two images that the rotation does not explain.
   Eigen::Vector2f parallax_px = Eigen::Vector2f::Zero();
-  /// How far it lay from where it was expected in the last image; nothing before there was such an image.
+  /// Distance from the predicted position in the last image; empty before the first prediction.
   std::optional<float> prediction_error_px;
-  /// Its looks in the last image of camera 0, to be found in the images taken at the same time.
+  /// Its patch in the last image of camera 0, to be matched in the images taken at the same time.
   PatchTemplate current;
-  /// 1/m along the ray of camera 0, from the last match in another camera.
+  /// 1/m along the ray of camera 0, from the last match in a secondary camera.
   std::optional<double> inverse_depth_per_m;
-  /// Where it lies in the last image of each secondary camera (index 0: camera 1).
+  /// Position in the last image of each secondary camera (index 0: camera 1).
   std::vector<std::optional<PatchWarp>> matches;
 };
 

@@ -20,14 +20,13 @@ struct FeatureObservation {
   double sigma_px = 1.0;           ///< standard deviation of the pixel along each axis
 };
 
-/// Everything the front end knows of one moment. Sorted by track, then camera; a track occurs at most once a
-/// camera.
+/// All observations of one time. Sorted by track, then camera; a track occurs at most once per camera.
 struct FrameTracks {
   Time time;
   std::vector<FeatureObservation> observations = {};
-  /// How camera 1, 2, ... are turned against what the rig says, where their epipolar lines say so beyond
-  /// doubt: phi in rad, axes of camera 0, whose exp(phi) comes before the rotation of camera0_from_camera.
-  /// Zero where the rig may be right; empty where nothing was compared.
+  /// Rotation of camera 1, 2, ... relative to the rig's calibration, where their epipolar lines show a
+  /// significant deviation: phi in rad, axes of camera 0; exp(phi) is multiplied on the left of the rotation
+  /// of camera0_from_camera. Zero where the calibration may be correct; empty where nothing was compared.
   std::vector<Vec3> camera_rotations = {};
 };
 

@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Sine of the angle between ray and translation below which an epipolar plane is not to be relied upon.
+/// Sine of the angle between ray and translation below which an epipolar plane is not reliable.
 constexpr double kNearEpipole = 0.05;
 
 struct Motion {
@@ -28,7 +28,8 @@ class Consensus {
     return focal_px_ * std::abs(normal.dot(current_[i])) / std::max(normal.norm(), kNearEpipole);
   }
 
-  /// Sum of errors, each cut off at `limit_px`: unlike a count it also ranks the hypotheses of a slow camera.
+  /// Sum of errors, each limited to `limit_px`: unlike a count of inliers it also ranks the hypotheses of a
+  /// slow camera.
   double truncatedCost(const Motion& motion, double limit_px) const {
     double cost = 0.0;
     for (size_t i = 0; i < current_.size(); ++i) cost += std::min(errorPx(motion, i), limit_px);
@@ -55,7 +56,7 @@ class Consensus {
     return best;
   }
 
-  /// One step on rotation and direction with Cauchy weights.
+  /// One Gauss-Newton step on rotation and direction with Cauchy weights.
   Motion refine(const Motion& motion, const TwoPointRansacOptions& options) const {
     using Vec5 = Eigen::Matrix<double, 5, 1>;
     Eigen::Matrix<double, 5, 5> hessian = Eigen::Matrix<double, 5, 5>::Zero();

@@ -44,7 +44,7 @@ const Rigid3 kMotion(so3::exp(Vec3(0.02, -0.03, 0.01)), Vec3(0.04, 0.01, 0.02));
 
 TEST(TwoPointRansac, KeepsGoodPairsAndRejectsOutliers) {
   Pairs pairs = pairsFor(kMotion);
-  // A fifth of the points slips across its epipolar line.
+  // A fifth of the points is displaced across its epipolar line.
   const Vec3 translation = kMotion.rotation.conjugate() * -kMotion.translation;
   for (size_t i = 0; i < kPoints; i += 5) {
     const Vec3 normal = translation.cross(kMotion.rotation.conjugate() * pairs.previous[i]).normalized();

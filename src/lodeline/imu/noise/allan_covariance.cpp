@@ -9,12 +9,13 @@ namespace {
 
 using KindValues = std::array<double, kRandomKinds>;
 
-/// Averaging times further apart than this have all but independent estimates.
+/// Ratio of averaging times beyond which estimates are nearly independent.
 constexpr double kCorrelatedRatio = 40.0;
 constexpr std::array<double, 3> kSecondDifference = {1.0, -2.0, 1.0};
 
-/// Autocovariance of the integrated noise at a lag, of coefficient 1, up to polynomials that second
-/// differences take away. Quantization is white in the integral: it has none but at lag zero.
+/// Autocovariance of the integrated noise at a lag, for coefficient 1, up to polynomials that second
+/// differences remove. Quantization is white in the integral, so its autocovariance is zero except at lag
+/// zero.
 KindValues integralAutocovariance(double lag_s, double interval_s) {
   const double t = std::abs(lag_s);
   const bool is_zero = t < 0.5 * interval_s;
@@ -47,12 +48,12 @@ std::array<double, kNoiseKinds> unitAllanVariance(double tau_s) {
 double flickerShare(double tau_s, double corner_s) {
   if (corner_s <= 0.0) return 1.0;
   // Allan variance of a Gauss-Markov process of variance 1 and time constant T (IEEE 952-1997, annex C),
-  // summed over equal steps of log T; variance dT/T per step makes the full sum 2 ln2.
+  // summed over equal steps of log T. With variance dT/T per step, the full sum is 2 ln2.
   constexpr double kStep = 0.1;
   double sum = 0.0;
   for (double log_ratio = 0.5 * kStep; log_ratio < 40.0; log_ratio += kStep) {
     const double x = tau_s / (corner_s * std::exp(log_ratio));
-    // The closed form loses its digits where x is small; 2x/3 is the first term of its series.
+    // The closed form is inaccurate for small x; 2x/3 is the first term of its series.
     if (x < 1e-3) {
       sum += 2.0 / 3.0 * x;
       continue;
@@ -82,7 +83,8 @@ void AllanCovariance::fill(int row, int column, const AllanPoint& shorter, const
   const double step_s = static_cast<double>(shorter.stride) * interval_s;
   const double first_span_s = std::max(step_s, duration_s - 2.0 * first_s);
   const double second_span_s = std::max(step_s, duration_s - 2.0 * second_s);
-  // White noise and walk have no covariance once the differences do not overlap; flicker's dies off quickly.
+  // Covariances of white noise and random walk vanish when the differences do not overlap; that of flicker
+  // noise decays quickly.
   const double reach_s = 3.0 * (first_s + second_s);
   const auto steps = static_cast<int64_t>(reach_s / step_s);
   std::array<std::array<double, kRandomKinds>, kRandomKinds> sums{};

@@ -18,7 +18,7 @@ void AllanAccumulator::add(const Eigen::Array3d& integral, Level* level) {
   const int64_t last = level->count++;
   at(last) = integral;
   for (Sum& sum : level->sums) {
-    if (last < 2 * sum.factor) break;  // factors ascend
+    if (last < 2 * sum.factor) break;  // factors are ascending
     sum.squares += (integral - 2.0 * at(last - sum.factor) + at(last - 2 * sum.factor)).square();
     ++sum.terms;
   }
@@ -27,7 +27,7 @@ void AllanAccumulator::add(const Eigen::Array3d& integral, Level* level) {
 void AllanAccumulator::add(const Vec3& reading) {
   if (count_ == 0) origin_ = reading.array();
   if (levels_.empty()) levels_.push_back(makeLevel(true));
-  // The integral before the first reading of a stretch counts too.
+  // The integral before the first reading of a stretch is a point too.
   if (since_break_ == 0) {
     for (Level& level : levels_) add(integral_, &level);
   }
@@ -36,7 +36,8 @@ void AllanAccumulator::add(const Vec3& reading) {
   ++count_;
   for (size_t i = 0; since_break_ % (int64_t{1} << i) == 0; ++i) {
     if (i == levels_.size()) {
-      // Made when the first stretch is long enough to enter it; it then lacks only the integral's start.
+      // A level is created when the first stretch is long enough for it; only the start of the integral is
+      // then missing.
       levels_.push_back(makeLevel(false));
       add(Eigen::Array3d::Zero(), &levels_.back());
     }
@@ -63,7 +64,7 @@ AllanCurve AllanAccumulator::curve(double interval_s) const {
       point.terms = sum.terms;
       point.tau_s = static_cast<double>(point.factor) * interval_s;
       const double squared_factor = static_cast<double>(point.factor) * static_cast<double>(point.factor);
-      // The integral is kept in units of reading * interval, so that the interval cancels.
+      // The integral has units of reading * interval, so that the interval cancels.
       point.variance = sum.squares.matrix() / (2.0 * squared_factor * static_cast<double>(sum.terms));
       curve.points.push_back(point);
     }

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kInterval_s = 0.01;
 
-/// The definition, from averages over neighbouring stretches of `factor` readings that begin at every
-/// reading.
+/// Allan variance by definition, from averages over neighbouring stretches of `factor` readings, starting at
+/// every reading.
 double overlappingVariance(const std::vector<Vec3>& readings, size_t factor, int axis) {
   double sum = 0.0;
   size_t count = 0;
@@ -50,7 +50,7 @@ TEST(AllanDeviation, IsTheMeanSquareOfDifferencesOfNeighbouringAverages) {
     EXPECT_DOUBLE_EQ(at(curve, factor).tau_s, factor * kInterval_s);
     EXPECT_EQ(at(curve, factor).terms, 3000 - 2 * factor + 1);
   }
-  // Longer ones begin at every second, fourth, … reading only.
+  // Longer differences start only at every second, fourth, … reading.
   for (const int factor : {32, 56, 64, 96, 224, 256}) {
     const double expected = overlappingVariance(readings, static_cast<size_t>(factor), 1);
     EXPECT_NEAR(at(curve, factor).variance[1], expected, 0.05 * expected) << factor;
@@ -83,7 +83,7 @@ TEST(AllanDeviation, LooksAtNoDifferenceAcrossABreak) {
   AllanAccumulator accumulator;
   for (int stretch = 0; stretch < 4; ++stretch) {
     accumulator.breakOff();
-    // Constant within a stretch, so that any mixture of two would show.
+    // Constant within a stretch, so that any mixture of two stretches would be visible.
     for (int i = 0; i < 500; ++i) accumulator.add(Vec3::Constant(100.0 * stretch));
   }
   const AllanCurve curve = accumulator.curve(kInterval_s);

@@ -27,7 +27,7 @@ bool isEven(std::span<const ImuSample> window, double step_s) {
   return length_s < 1.2 * step_s * static_cast<double>(window.size() - 1);
 }
 
-/// Variance of one axis' white noise.
+/// Variance of the white noise of one axis.
 double variance(std::span<const ImuSample> window, Vec3 ImuSample::*reading) {
   double squares = 0.0;
   for (size_t i = 3; i < window.size(); ++i) {
@@ -63,7 +63,7 @@ double density(std::span<const ImuSample> samples, Vec3 ImuSample::*reading, dou
   return result < worst ? result : 0.0;
 }
 
-/// Judges one of gyroscope and accelerometer.
+/// Checks the noise of one sensor (gyroscope or accelerometer).
 class Judge {
  public:
   Judge(const char* sensor, const char* unit, double least, Diagnostics* diagnostics)
@@ -71,7 +71,7 @@ class Judge {
 
   double white(double stated, double shown, double common) const {
     constexpr double kTooSmall = 3.0, kTooLarge = 8.0;
-    // The quietest moment shows less than there mostly is, and filters within the sensor hide a part.
+    // The quietest window has less noise than most, and filters within the sensor remove a part.
     constexpr double kMore = 1.5;
     if (stated < least_) {
       const double taken = shown > least_ ? kMore * shown : common;
@@ -90,7 +90,7 @@ class Judge {
                          sensor_, stated, unit_, shown, kMore * shown));
       return kMore * shown;
     }
-    // Readings of less noise than any MEMS sensor's are simulated.
+    // Readings with less noise than any MEMS sensor's are simulated.
     constexpr double kSimulated = 30.0;
     if (shown > kSimulated * least_ && stated > kTooLarge * shown) {
       report(Severity::Notice, "imu_noise_too_large",

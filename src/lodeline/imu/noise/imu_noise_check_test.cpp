@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPeriod_s = 0.005;
 
-/// Readings of a rig that sways, then rests, with white noise of these densities.
+/// Readings of a rig that sways, then rests, with these white noise densities.
 std::vector<ImuSample> readings(double gyroscope, double accelerometer, double resolution = 0.0) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

@@ -22,8 +22,8 @@ double slope(const AllanPoint& from, const AllanPoint& to, double from_variance,
   return 0.5 * std::log(to_variance / from_variance) / std::log(to.tau_s / from.tau_s);
 }
 
-/// The averaging times of the fit and the variances there: one an octave, since between them there is hardly
-/// anything new.
+/// The averaging times of the fit and their variances: one per octave, because intermediate ones add almost
+/// no information.
 struct Sampled {
   std::vector<AllanPoint> points;
   Eigen::VectorXd variance;
@@ -44,16 +44,17 @@ Sampled sample(const AllanCurve& curve, std::optional<int> axis, double longest_
   return sampled;
 }
 
-/// Index of the point from which on the deviation falls as that of white noise; nothing where it never does.
+/// Index of the point from which the deviation decreases like that of white noise; nothing where it never
+/// does.
 std::optional<size_t> whiteBegin(const Sampled& s, double tolerance, bool* is_filtered) {
   std::optional<size_t> steepest;
   double least = -0.5 + tolerance;
   for (size_t i = 0; i + 1 < s.points.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double here = slope(s.points[i], s.points[i + 1], s.variance[k], s.variance[k + 1]);
-    // At the very beginning a steeper slope is quantization, which the model holds.
+    // At the first point, a steeper slope is quantization, which the model includes.
     if (i == 0 && here < least) return i;
-    // After a filter's corner, white noise comes out only gradually.
+    // Beyond a filter's corner, white noise appears only gradually.
     if (here >= least) continue;
     least = here;
     steepest = i;
@@ -64,13 +65,13 @@ std::optional<size_t> whiteBegin(const Sampled& s, double tolerance, bool* is_fi
 }
 
 struct Solution {
-  Coefficients squared = Coefficients::Zero();  ///< c^2 over the fitter's scale
+  Coefficients squared = Coefficients::Zero();  ///< c^2 divided by the scale of the fit
   double chi_square = std::numeric_limits<double>::infinity();
 };
 
 Solution solveSubset(const Information& information, const Coefficients& right, double total,
                      unsigned subset) {
-  // A coefficient that is not in the set gets the equation "equals zero".
+  // The equation of a coefficient outside the set is "equals zero".
   Information reduced = Information::Identity();
   Coefficients reduced_right = Coefficients::Zero();
   const auto isIn = [subset](int kind) { return (subset >> static_cast<unsigned>(kind) & 1U) != 0; };
@@ -89,7 +90,7 @@ Solution solveSubset(const Information& information, const Coefficients& right, 
   return solution;
 }
 
-/// Non-negative least squares by trying all sets of coefficients that may differ from zero: there are few.
+/// Non-negative least squares by testing all sets of non-zero coefficients; their number is small.
 Solution solveNonNegative(const Information& information, const Coefficients& right, double total,
                           bool with_ramp) {
   Solution best;
@@ -106,12 +107,12 @@ NoiseFigure figure(double squared, double squared_sigma) {
   result.value = std::sqrt(squared);
   result.at_most = std::sqrt(squared + 1.645 * squared_sigma);
   result.resolved = squared > 2.0 * squared_sigma;
-  // By the derivative of the square root, which is useless near zero.
+  // First-order propagation through the square root, which is not valid near zero.
   result.sigma = result.resolved ? 0.5 * squared_sigma / result.value : result.at_most - result.value;
   return result;
 }
 
-/// What a fit may hold besides the noises themselves.
+/// Optional parts of the model besides the noise processes.
 struct Shape {
   bool with_ramp = false;
   double corner_s = 0.0;
@@ -129,7 +130,7 @@ class Fit {
       design_.row(i) = Eigen::Map<const Coefficients>(unit.data());
       design_(i, static_cast<int>(NoiseKind::Flicker)) *= flickerShare(tau_s, shape.corner_s);
     }
-    // So that every coefficient is of order one.
+    // Scales every coefficient to order one.
     for (int kind = 0; kind < kNoiseKinds; ++kind) {
       scale_[kind] = (variance.array() / design_.col(kind).array()).minCoeff();
       design_.col(kind) *= scale_[kind];
@@ -152,7 +153,7 @@ class Fit {
     return solution_.squared[static_cast<int>(kind)] * scale_[static_cast<int>(kind)];
   }
 
-  /// One sigma of each squared coefficient, with all of them unknown but a ramp that is not there.
+  /// One sigma of each squared coefficient, with all coefficients unknown except an absent ramp.
   Coefficients sigmas() const {
     const int count = squared(NoiseKind::Ramp) > 0.0 ? kNoiseKinds : kRandomKinds;
     const Eigen::MatrixXd inverse =
@@ -187,14 +188,14 @@ class Fit {
   double log_determinant_ = 0.0;
 };
 
-/// The simplest fit that no other beats by far.
+/// The simplest fit that no other one exceeds by the required gain.
 Fit bestFit(const Sampled& sampled, const AllanCovariance& covariance, int axes,
             const NoiseFitOptions& options) {
   const auto fitOf = [&](const Shape& shape) {
     return Fit(sampled, covariance, axes, options.model_error, shape);
   };
   Fit best = fitOf({});
-  constexpr double kCornerStep = 1.7782794;  // four a decade
+  constexpr double kCornerStep = 1.7782794;  // four per decade
   Fit cornered = best;
   for (double corner_s = 2.0 * sampled.points.front().tau_s; corner_s < options.longest_corner_s;
        corner_s *= kCornerStep) {

@@ -16,7 +16,7 @@ AllanCurve curveOf(TestNoise noise, int readings) {
 }
 
 TEST(AllanCovariance, IsTheScatterOfManyRecords) {
-  // White noise and walk that are equal at 0.4 s.
+  // White noise and random walk with equal deviations at 0.4 s.
   const double white = 1e-3, walk = 4e-3;
   constexpr int kRecords = 400, kReadings = 1024;
   std::vector<AllanPoint> points;
@@ -42,8 +42,8 @@ TEST(AllanCovariance, IsTheScatterOfManyRecords) {
   const AllanCovariance covariance(points, 1.0 / kRate_hz, kReadings / kRate_hz);
   const Eigen::MatrixXd predicted = covariance({0.0, white * white, 0.0, walk * walk});
   for (int i = 0; i < 5; ++i) {
-    // A sample variance of 400 values is known to 7 % if they are normal; those of long times have longer
-    // tails.
+    // The relative error of a sample variance of 400 normal values is 7 %. The distributions at long times
+    // have longer tails.
     EXPECT_NEAR(scatter(i, i) / predicted(i, i), 1.0, 0.3) << points[static_cast<size_t>(i)].factor;
     for (int j = i + 1; j < 5; ++j) {
       const double scale = std::sqrt(predicted(i, i) * predicted(j, j));
@@ -90,7 +90,7 @@ TEST(NoiseFit, ClaimsTheUncertaintyItHas) {
     white_error += std::pow((fit->white.value - white) / fit->white.sigma, 2) / kSeeds;
     walk_error += std::pow((fit->walk.value - walk) / fit->walk.sigma, 2) / kSeeds;
   }
-  // One if exact; the model's own error makes the claim for white noise cautious.
+  // One if exact; the model error makes the uncertainty of the white noise conservative.
   EXPECT_GT(white_error, 0.2);
   EXPECT_LT(white_error, 1.9);
   EXPECT_GT(walk_error, 0.4);

@@ -14,10 +14,10 @@ namespace {
 constexpr size_t kReadingsForPeriod = 65;
 constexpr int64_t kFewestReadings = 256;
 constexpr double kGapPeriods = 3.0;
-constexpr double kGapPauses = 1.5;  ///< times the usual pause between bursts
+constexpr double kGapPauses = 1.5;  ///< multiple of the usual pause between bursts
 constexpr double kLongestFilledGap_s = 1.0;
-constexpr double kWorthReporting = 0.01;  ///< share of readings
-constexpr double kMovedTooMuch = 0.5;     ///< share of windows
+constexpr double kWorthReporting = 0.01;  ///< fraction of readings
+constexpr double kMovedTooMuch = 0.5;     ///< fraction of windows
 constexpr double kGoodWhite = 0.05;       ///< relative sigma
 constexpr double kGoodSlow = 0.30;
 
@@ -59,7 +59,8 @@ void SensorNoiseAnalysis::learnPeriod() {
     steps_s.push_back((first_[i].first - first_[i - 1].first).seconds());
   }
   std::sort(steps_s.begin(), steps_s.end());
-  // The mean, not the median: readings that come in bursts have mostly tiny steps. The longest may be a gap.
+  // The mean instead of the median, because readings in bursts have mostly tiny steps. The longest step may
+  // be a gap.
   const double longest_s = steps_s.size() > 1 ? steps_s.back() : 0.0;
   const double sum_s = (first_.back().first - first_.front().first).seconds() - longest_s;
   period_s_ = sum_s / static_cast<double>(std::max<size_t>(1, steps_s.size() - (longest_s > 0.0 ? 1 : 0)));
@@ -70,8 +71,8 @@ void SensorNoiseAnalysis::learnPeriod() {
 }
 
 bool SensorNoiseAnalysis::isSpike(Time time, const Vec3& reading) {
-  constexpr double kFar = 100.0;  // times the scatter of a sensor that counts as still
-  constexpr int kSpikes = 2;      // more on end are no spike
+  constexpr double kFar = 100.0;  // multiple of the scatter of a stationary sensor
+  constexpr int kSpikes = 2;      // more consecutive ones are not a spike
   const bool is_far = (reading - last_).norm() > kFar * sensor_.still.largest_std;
   spikes_ = is_far ? spikes_ + 1 : 0;
   if (!is_far || spikes_ > kSpikes) return false;
@@ -126,10 +127,10 @@ void SensorNoiseAnalysis::bridge(Time time, const Vec3& reading) {
 }
 
 bool SensorNoiseAnalysis::holdsReadings() const {
-  // A share h of readings is held, and in the others an axis repeats by chance with probability q, for
-  // itself, as coarse resolution makes it. Then an axis repeats in p = h + (1 - h) q of the readings, and all
-  // three together in j = h + (1 - h) q^3, so that (1 - j) / (1 - p) = 1 + q + q^2. The least repeating axis
-  // gives p, since one that is not read at all always repeats.
+  // Model: a fraction h of readings is held; in the others, each axis repeats independently with probability
+  // q due to coarse resolution. Then an axis repeats in p = h + (1 - h) q of the readings, and all three
+  // together in j = h + (1 - h) q^3, so that (1 - j) / (1 - p) = 1 + q + q^2. The axis with the fewest
+  // repetitions gives p, because an axis that is not measured always repeats.
   const auto count = static_cast<double>(std::max<int64_t>(1, readings_ - 1));
   const double p =
       static_cast<double>(*std::min_element(repeated_axis_.begin(), repeated_axis_.end())) / count;

@@ -10,15 +10,15 @@
 
 namespace lodeline {
 
-/// One sensor of three axes as the analysis names and judges it.
+/// Name, unit and limits of a three-axis sensor to analyse.
 struct AnalysedSensor {
   std::string name;  ///< "gyroscope"
-  std::string unit;  ///< of its readings, "rad/s"
+  std::string unit;  ///< of its readings, e.g. "rad/s"
   StillLimits still;
 };
 
-/// Gyroscope (rad/s), accelerometer (m/s^2) and magnetometer (T), with limits that a sensor on solid ground
-/// keeps whatever its grade.
+/// Gyroscope (rad/s), accelerometer (m/s^2) and magnetometer (T), with limits that a stationary sensor of any
+/// grade satisfies.
 AnalysedSensor gyroscopeToAnalyse();
 AnalysedSensor accelerometerToAnalyse();
 AnalysedSensor magnetometerToAnalyse();
@@ -26,35 +26,37 @@ AnalysedSensor magnetometerToAnalyse();
 /// Noise of one sensor.
 struct SensorNoise {
   AnalysedSensor sensor;
-  double rate_hz = 0.0;  ///< of the readings that count
+  double rate_hz = 0.0;  ///< of the readings used
   double duration_s = 0.0;
   int64_t readings = 0;
-  int64_t repeated = 0;  ///< that only repeat the one before, and were left out
+  int64_t repeated = 0;  ///< number of repeated readings that were left out
   Stillness stillness;
   AllanCurve curve;
   std::array<NoiseFit, 3> axes;
-  NoiseFit all;  ///< of the mean variance of the three axes
+  NoiseFit all;  ///< fit of the mean variance of the three axes
 };
 
-/// Takes the readings of one sensor at rest, in order, and finds its noise; in one pass, whatever the length.
+/// Estimates the noise of one stationary sensor from its readings in order of time, in one pass at any
+/// length.
 ///
-/// Readings count as evenly spaced at their mean rate. A gap of more than three periods (or half again as
-/// long as the pauses between bursts of readings) is filled by interpolation if it is shorter than a second,
-/// and splits the record if it is longer. A sensor that is logged faster than it measures repeats readings;
-/// these are left out, since a held value is not a measurement. Coarse resolution repeats values too, but
-/// each axis for itself: then all count.
+/// The readings are treated as evenly spaced at their mean rate. A gap is longer than three periods, or
+/// longer than 1.5 pauses between bursts of readings. Interpolation fills gaps shorter than a second; longer
+/// gaps split the record. A sensor that is logged faster than it measures repeats readings. They are left
+/// out, since a held value is not a measurement. Coarse resolution also repeats values, but independently in
+/// each axis; all readings are then used.
 class SensorNoiseAnalysis {
  public:
   /// `diagnostics` must outlive the analysis.
   SensorNoiseAnalysis(AnalysedSensor sensor, Diagnostics* diagnostics);
 
-  /// A reading that is not finite, not later than the one before, or one of two at most that lie a hundred
-  /// times farther off than a still sensor scatters, is reported and passed over.
+  /// Adds a reading. Readings that are not finite or not later than the previous one are reported and
+  /// ignored. So are at most two consecutive readings that differ by a hundred times the scatter of a
+  /// stationary sensor.
   void add(Time time, const Vec3& reading);
 
-  /// Reports what limits the figures: a record that is short, not still, repeated, filtered, drifting. Throws
-  /// InputError where there are no figures at all: too few readings, a frozen sensor, one that moved for more
-  /// than half of the record.
+  /// Returns the result and reports its limitations: a record that is short, not stationary, repeated,
+  /// filtered or drifting. Throws InputError where no result is possible: too few readings, a frozen sensor,
+  /// or a sensor that moved for more than half of the record.
   SensorNoise finish();
 
  private:
@@ -70,21 +72,21 @@ class SensorNoiseAnalysis {
 
   AnalysedSensor sensor_;
   Diagnostics* diagnostics_;
-  std::vector<std::pair<Time, Vec3>> first_;  ///< until they have shown the period
+  std::vector<std::pair<Time, Vec3>> first_;  ///< readings held until the period is known
   double period_s_ = 0.0;
   double gap_limit_s_ = 0.0;
   std::optional<Time> begin_;
-  Time last_time_;      ///< of everything added
-  Time previous_time_;  ///< of what was taken
+  Time last_time_;      ///< of all added readings
+  Time previous_time_;  ///< of the accepted readings
   Vec3 last_ = Vec3::Zero();
-  int spikes_ = 0;  ///< on end, up to the newest reading
+  int spikes_ = 0;  ///< number of consecutive spikes up to the newest reading
   int64_t readings_ = 0;
   int64_t repeated_ = 0;                    ///< in all axes at once
   std::array<int64_t, 3> repeated_axis_{};  ///< in one axis
-  double split_s_ = 0.0;                    ///< length of the gaps that split the record
+  double split_s_ = 0.0;                    ///< total length of the gaps that split the record
   StillnessMonitor stillness_;
   AllanAccumulator all_readings_;
-  AllanAccumulator fresh_readings_;  ///< without the repeated ones
+  AllanAccumulator fresh_readings_;  ///< without the repeated readings
 };
 
 }  // namespace lodeline

@@ -18,8 +18,8 @@ Time at(int64_t i) { return Time::fromNanoseconds(1700000000000000000 + i * 1000
 
 class SensorNoiseTest : public ::testing::Test {
  protected:
-  /// Twenty minutes of a gyroscope at rest, changed by `change`; readings for which it returns false are left
-  /// out.
+  /// Twenty minutes of a gyroscope at rest, modified by `change`. Readings for which it returns false are
+  /// left out.
   template <typename Change>
   SensorNoise analyse(Change change, int readings = 120000) {
     SensorNoiseAnalysis analysis(gyroscopeToAnalyse(), &diagnostics_);
@@ -79,7 +79,7 @@ TEST_F(SensorNoiseTest, PassesOverSpikes) {
 }
 
 TEST_F(SensorNoiseTest, BridgesShortGapsAndSplitsAtLongOnes) {
-  // A drift that a splice of both sides would turn into a step.
+  // A drift that would become a step if both sides were joined.
   const SensorNoise noise = analyse([](int i, Time*, Vec3* reading) {
     reading->x() += i < 60000 ? 0.0 : 2.0 * kWhite;
     const bool short_gap = i % 5000 > 4980;
@@ -95,7 +95,7 @@ TEST_F(SensorNoiseTest, BridgesShortGapsAndSplitsAtLongOnes) {
 
 TEST_F(SensorNoiseTest, TakesReadingsThatComeInBurstsAsEvenlySpaced) {
   const SensorNoise noise = analyse([](int i, Time* time, Vec3*) {
-    // Ten at a time, stamped when they arrive.
+    // Bursts of ten readings, stamped on arrival.
     *time = at(i / 10 * 10 + 9) + Duration::fromNanoseconds(i % 10 * 100000);
     return true;
   });
@@ -114,12 +114,12 @@ TEST_F(SensorNoiseTest, LeavesOutReadingsThatAreOnlyHeld) {
   EXPECT_EQ(diagnostics_.count("gyroscope_repeated"), 1);
   EXPECT_EQ(noise.repeated, 90000);
   EXPECT_NEAR(noise.rate_hz, 25.0, 0.01);
-  // The readings scatter as before, but there is one in four.
+  // The scatter of the readings is unchanged, but only one in four is a new reading.
   EXPECT_NEAR(noise.all.white.value, 2.0 * kWhite, 0.02 * 2.0 * kWhite);
 }
 
 TEST_F(SensorNoiseTest, KeepsReadingsThatCoarseResolutionRepeats) {
-  // A resolution of two sigma: each axis repeats often, now and then all three at once.
+  // A resolution of two sigma: each axis repeats often, and sometimes all three at once.
   const double step = 2.0 * kWhite * std::sqrt(kRate_hz);
   const SensorNoise noise = analyse([&](int, Time*, Vec3* reading) {
     *reading = (*reading / step).array().round().matrix() * step;
@@ -127,7 +127,7 @@ TEST_F(SensorNoiseTest, KeepsReadingsThatCoarseResolutionRepeats) {
   });
   EXPECT_EQ(noise.repeated, 0);
   EXPECT_EQ(diagnostics_.count("gyroscope_repeated"), 0);
-  // Rounding adds its own scatter, a twelfth of its step squared.
+  // Rounding adds a variance of a twelfth of its step squared.
   EXPECT_NEAR(noise.all.white.value, kWhite * std::sqrt(1.0 + 4.0 / 12.0), 0.05 * kWhite);
 }
 

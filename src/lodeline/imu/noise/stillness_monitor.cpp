@@ -7,7 +7,7 @@ namespace lodeline {
 namespace {
 
 constexpr double kWindow_s = 10.0;
-constexpr double kUnusualScatter = 3.0;  ///< times the median window's
+constexpr double kUnusualScatter = 3.0;  ///< multiple of the median window's
 constexpr int kFewestInAMean = 4;
 
 }  // namespace
@@ -50,7 +50,7 @@ Stillness StillnessMonitor::result() const {
   result.median_std = *middle;
   const double limit = std::min(limits_.largest_std, kUnusualScatter * result.median_std);
   for (const Window& window : windows_) {
-    // A sensor without noise has a median of zero, which forbids nothing.
+    // A sensor without noise has a median of zero, which gives no limit.
     const bool scatters = window.std > (result.median_std > 0.0 ? limit : limits_.largest_std);
     if (!scatters && window.step <= limits_.largest_step) continue;
     if (!result.first_moved) result.first_moved = window.begin;

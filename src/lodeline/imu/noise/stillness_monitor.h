@@ -8,25 +8,25 @@
 
 namespace lodeline {
 
-/// What still means for a sensor; [u] is the unit of its reading.
+/// Limits for a stationary sensor; [u] is the unit of its reading.
 struct StillLimits {
   double largest_std = 0.0;   ///< [u], root mean square over the axes within ten seconds
-  double largest_step = 0.0;  ///< [u], change of the mean between neighbouring ten seconds
+  double largest_step = 0.0;  ///< [u], change of the mean between neighbouring ten-second windows
 };
 
-/// How still a sensor was kept: shares of the record's ten-second windows.
+/// Result of the stationary test over the record's ten-second windows.
 struct Stillness {
   int windows = 0;
-  int moved = 0;                    ///< windows beyond the limits
-  std::optional<Time> first_moved;  ///< begin of the first of them
+  int moved = 0;                    ///< number of windows beyond the limits
+  std::optional<Time> first_moved;  ///< start of the first of them
   double median_std = 0.0;          ///< [u]
 
   double movedShare() const { return windows == 0 ? 0.0 : static_cast<double>(moved) / windows; }
 };
 
-/// Watches readings of a sensor that ought to lie still. A window counts as moved when it scatters more than
-/// the limit, or three times as much as the median window, or when its mean steps away from that of the one
-/// before.
+/// Stationary detector for readings of a sensor at rest. A window counts as moved where its scatter exceeds
+/// the limit or three times that of the median window, or where its mean changes from that of the previous
+/// window.
 class StillnessMonitor {
  public:
   explicit StillnessMonitor(const StillLimits& limits) : limits_(limits) {}
@@ -45,7 +45,7 @@ class StillnessMonitor {
   StillLimits limits_;
   std::vector<Window> windows_;
   std::optional<Time> begin_;
-  Vec3 origin_ = Vec3::Zero();  ///< first reading of the window, taken off for the sake of precision
+  Vec3 origin_ = Vec3::Zero();  ///< first reading of the window, subtracted for numerical precision
   Vec3 sum_ = Vec3::Zero();
   Vec3 squares_ = Vec3::Zero();
   int count_ = 0;

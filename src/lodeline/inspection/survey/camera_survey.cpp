@@ -23,7 +23,7 @@ bool isWithin(Time time, const std::vector<SurveySpan>& spans) {
                      [&](const SurveySpan& span) { return time >= span.begin && time <= span.end; });
 }
 
-/// An image with its corners, to be followed into the next.
+/// An image with its corners, to be tracked into the next.
 struct Followed {
   Time time;
   cv::Mat image;
@@ -61,14 +61,14 @@ class Survey {
     if (follow) previous_ = std::move(current);
   }
 
-  /// Whether the next image comes too soon after the last one that was followed.
+  /// Whether the next image comes too soon after the last tracked one.
   bool isTooSoon(Time time) const {
     if (!previous_ && next_pair_ && time < *next_pair_) return true;
     return previous_ && time > previous_->time && (time - previous_->time).seconds() < options_.least_step_s;
   }
 
-  /// Whether an image is stored with the same bytes as the one before, which is much cheaper to tell than to
-  /// decode both. A repeat shows the moment of the image before: what follows must be compared with that.
+  /// Whether an image has the same stored bytes as the one before; this is much cheaper than decoding both. A
+  /// repeated image shows the time of the image before, so later images must be compared with that.
   bool repeats(const PendingImage& pending) {
     if (!pending.stored) return false;
     StoredImage image = pending.stored();
@@ -82,7 +82,7 @@ class Survey {
   }
 
  private:
-  /// Nothing but the turn is asked of the second image of a pair.
+  /// Tracks points into the second image of a pair, for the rotation only.
   void endPair(Time time, const cv::Mat& image) {
     FrameSurvey unused;
     compare({time, image, {}}, &unused);
@@ -135,16 +135,16 @@ class Survey {
   CameraSurveyOptions options_;
   Duration offset_;
   const CameraCalibration& calibration_;
-  std::shared_ptr<const Camera> camera_;  ///< none where the camera is not calibrated
+  std::shared_ptr<const Camera> camera_;  ///< null where the camera is not calibrated
   cv::Mat mask_;
   CornerDetector detector_;
   CameraSurvey* result_;
   std::optional<Followed> previous_;
   std::optional<Time> next_pair_;
-  std::optional<StoredImage> before_;  ///< the image before, in the stretches that are followed
+  std::optional<StoredImage> before_;  ///< the image before, in the tracked spans
 };
 
-/// How variedly the rig turned in each stretch; readings in order of time.
+/// Amount of varied rotation in each span; readings in order of time.
 std::vector<std::pair<double, SurveySpan>> rateSpans(const std::vector<ImuSample>& samples,
                                                      const StreamSummary& images, double span_s) {
   std::vector<std::pair<double, SurveySpan>> spans;
@@ -214,7 +214,7 @@ std::vector<SurveySpan> liveliestSpans(const std::vector<ImuSample>& samples, co
   std::vector<std::pair<double, SurveySpan>> spans = rateSpans(samples, images, span_s);
   std::stable_sort(spans.begin(), spans.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  // The liveliest of each half comes first: what changed in mid-recording shows between them.
+  // The best span of each half comes first, so that changes during the recording are detected.
   const Time middle = *images.first + Duration::fromSeconds(0.5 * images.duration_s);
   const auto startsLate = [&](const auto& span) { return span.second.begin >= middle; };
   if (!spans.empty()) {

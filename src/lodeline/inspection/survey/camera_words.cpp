@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// "+x", with the angle in between where it is not small.
+/// Name of the nearest axis, e.g. "+x", with the angle to it where that is not small.
 std::string nearestAxis(const Vec3& direction) {
   int axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);
@@ -21,7 +21,7 @@ std::string nearestAxis(const Vec3& direction) {
   return angle_deg < 5.0 ? name : fmt::format("{} ({:.0f} deg off)", name, angle_deg);
 }
 
-/// Full angle between the middles of the left and right edges.
+/// Full angle between the centres of the left and right edges.
 std::optional<double> widthAngle_deg(const CameraCalibration& calibration) {
   const std::shared_ptr<const Camera> camera = makeCamera(calibration);
   const double row = 0.5 * calibration.height_px;

@@ -6,17 +6,17 @@
 
 namespace lodeline {
 
-/// Whether it has what projecting takes; a camera without a calibration file has not.
+/// Whether a camera has the parameters of a projection; one without a calibration file has not.
 bool isCalibrated(const CameraCalibration& camera);
 
-/// Where a camera looks, in words: "looks along the body's +x; the top of its image points along +z".
+/// Viewing direction of a camera in words: "looks along the body's +x; the top of its image points along +z".
 std::string describeAxes(const CameraCalibration& camera);
 
-/// Where gravity points in its image: "upright (gravity 5 deg off the image's downward direction)". `up_B`:
+/// Direction of gravity in its image: "upright (gravity 5 deg off the image's downward direction)". `up_B`:
 /// unit vector.
 std::string describeGravity(const CameraCalibration& camera, const Vec3& up_B);
 
-/// What is odd about a camera's own parameters, in words; empty where nothing is.
+/// Implausible intrinsics of a camera in words; empty where there are none.
 std::string oddIntrinsics(const CameraCalibration& camera);
 
 }  // namespace lodeline

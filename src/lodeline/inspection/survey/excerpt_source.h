@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// A part of a recording: the readings whose stamps lie from `begin_s` after the first image of the first
+/// Part of a recording: the readings with time stamps from `begin_s` after the first image of the first
 /// camera on (without cameras, after the first inertial reading), for `length_s`. Inertial readings begin a
 /// second earlier. Every stream ends at its first reading beyond the part, so that the rest of the recording
 /// is not read.
@@ -26,7 +26,7 @@ class ExcerptSource : public MeasurementSource {
   auto within(Time begin, const Next& next) -> decltype(next());
 
   std::unique_ptr<MeasurementSource> source_;
-  std::optional<PendingImage> first_image_;  ///< pulled, not yet given out
+  std::optional<PendingImage> first_image_;  ///< read, not yet returned
   std::optional<ImuSample> first_imu_;       ///< likewise
   Time begin_, end_;
 };

@@ -8,12 +8,12 @@
 
 namespace lodeline {
 
-/// The gyroscope's rate, averaged over any stretch of time. Readings must be in order of time.
+/// Mean rate of the gyroscope over any time span. Readings must be in order of time.
 class GyroscopeIntegral {
  public:
   explicit GyroscopeIntegral(std::span<const ImuSample> samples);
 
-  /// Mean rate over [begin_s, end_s], seconds after origin(), rad/s; nothing beyond the readings.
+  /// Mean rate over [begin_s, end_s], seconds after origin(), rad/s; empty beyond the readings.
   std::optional<Vec3> meanRate_B(double begin_s, double end_s) const;
   Time origin() const { return origin_; }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kImuGapPeriods = 4.0;
 constexpr double kStandardGravity_m_per_s2 = 9.80665;
-/// Blocks of readings at rest, and between which gravity's turning is looked at.
+/// Length of a block of readings, at rest or for the rotation of gravity.
 constexpr double kBlock_s = 0.25;
 
 /// Mean readings over a short time.
@@ -83,7 +83,7 @@ TriadSurvey surveyTriad(const std::vector<ImuSample>& samples, Vec3 ImuSample::*
     const auto i = static_cast<size_t>(axis);
     survey.is_dead[i] = samples.size() > 50 && survey.spread[axis] <= 0.02 * survey.spread.maxCoeff() &&
                         survey.spread[axis] < 1e-9 + 1e-6 * std::abs(mean[axis]);
-    // An axis that never changes is dead, not saturated.
+    // An axis with constant readings is dead, not saturated.
     if (!survey.is_dead[i] && at_limit[i] > 5 && at_limit[i] > near_limit[i]) {
       survey.saturated_share = std::max(
           survey.saturated_share, static_cast<double>(at_limit[i]) / static_cast<double>(samples.size()));
@@ -92,7 +92,8 @@ TriadSurvey surveyTriad(const std::vector<ImuSample>& samples, Vec3 ImuSample::*
   return survey;
 }
 
-/// What size of readings can only be gravity in another unit; 1 where it is m/s^2 or nothing known.
+/// Factor to m/s^2 if the norm of the readings can only be gravity in another unit; 1 where they are in m/s^2
+/// or the unit is unknown.
 double forceToSI(double median_force) {
   for (const double unit : {kStandardGravity_m_per_s2, 1e-3 * kStandardGravity_m_per_s2}) {
     const double gravity = kStandardGravity_m_per_s2 / unit;

@@ -12,12 +12,12 @@ namespace lodeline {
 namespace {
 
 constexpr double kMagnetometerGapPeriods = 4.0;
-/// Stretches over which the gyroscope alone carries the attitude; its bias turns by little in them.
+/// Length of a window, in which the gyroscope alone gives the attitude; the effect of its bias is small.
 constexpr double kWindow_s = 8.0;
-/// Rows a window, so that long recordings take no longer than they need to.
+/// Readings per window, and number of windows, to limit the computing time for long recordings.
 constexpr size_t kRowsPerWindow = 80;
 constexpr size_t kMostWindows = 12;
-/// The rig has to turn by so much within a window, rad.
+/// Minimum rotation of the rig within a window, rad.
 constexpr double kLeastTurn_rad = 0.35;
 
 /// Attitudes of the body by the gyroscope, from the first reading on.
@@ -49,11 +49,11 @@ class AttitudePath {
   std::vector<Quat> attitudes_;
 };
 
-/// Readings of one stretch in time.
+/// Readings of one time span.
 using Window = std::vector<MagnetometerSample>;
 
-/// Sum of squares that is left of the field, turned back, when the best steady field and hard iron are taken
-/// off; and the number of readings.
+/// Sum of squares of the compensated field after subtraction of the best constant field and hard iron; and
+/// the number of readings.
 struct Remainder {
   double squares = 0.0;
   double count = 0.0;
@@ -93,7 +93,8 @@ Remainder remainderOf(const std::vector<Window>& windows, const AttitudePath& pa
     }
     result.count += count;
   }
-  // A hard iron as large as the field itself is allowed for, no more: little turning must not invent one.
+  // The prior allows a hard iron as large as the field itself: with little rotation a larger one would be
+  // arbitrary.
   const double prior = result.count * 1e-3;
   const Vec3 iron = (hessian + prior * Mat3::Identity()).ldlt().solve(gradient);
   result.squares = std::max(0.0, squares - 2.0 * iron.dot(gradient) + iron.dot(hessian * iron));
@@ -127,7 +128,7 @@ Vec3 medianRate(const std::vector<ImuSample>& imu) {
     for (const ImuSample& sample : imu) values.push_back(sample.angular_velocity_B[axis]);
     result[axis] = median(values);
   }
-  // A turn-on bias is small; what is larger is a turn that lasts.
+  // The bias at switch-on is small; a larger mean is a long rotation.
   constexpr double kLargestBias_rad_per_s = 0.1;
   return result.norm() < kLargestBias_rad_per_s ? result : Vec3::Zero();
 }
@@ -160,8 +161,8 @@ std::optional<FieldTurning> compareWithGyroscope(const std::vector<MagnetometerS
   return turning;
 }
 
-/// Mean angle of the field below the horizon, with the accelerometer's mean of the second around each reading
-/// as the vertical.
+/// Mean angle of the field below the horizon. The vertical is the accelerometer's mean over the second around
+/// each reading.
 std::optional<double> inclinationOf(const std::vector<MagnetometerSample>& readings,
                                     const std::vector<ImuSample>& imu,
                                     const MagnetometerCalibration& calibration) {

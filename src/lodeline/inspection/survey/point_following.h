@@ -7,13 +7,13 @@
 
 namespace lodeline {
 
-/// Where one point lies in two images, px.
+/// Positions of one point in two images, px.
 struct PointPair {
   Vec2 first, second;
 };
 
-/// Finds points of one image in another, by pyramidal Lucas-Kanade there and back: what does not return to
-/// where it came from is left out. 8-bit grey images of the same size.
+/// Tracks points of one image in another by pyramidal Lucas-Kanade with a forward-backward check. 8-bit grey
+/// images of the same size.
 std::vector<PointPair> followPoints(const cv::Mat& first, const cv::Mat& second,
                                     const std::vector<cv::Point2f>& points);
 

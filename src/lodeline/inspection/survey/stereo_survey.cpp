@@ -12,15 +12,16 @@
 namespace lodeline {
 namespace {
 
-/// Images taken within this are taken together, s: what a rig moves meanwhile is little in these terms.
+/// Images within this time difference count as simultaneous, s: the motion of a rig in that time is
+/// negligible here.
 constexpr double kTogether_s = 25e-3;
 constexpr int64_t kMostImages = 16;
-/// Off the epipolar line by more than calibrations of the field are, port and all; rad.
+/// Distance from the epipolar line beyond the errors of real calibrations with a port; rad.
 constexpr double kOffLine_rad = 0.02;
-/// Parallax at which even such a calibration tells before from behind.
+/// Parallax at which the side of the camera is certain even with such a calibration.
 constexpr double kParallax_rad = 0.02;
 
-/// A hypothesis in full: which camera took which image, and the second camera's pose in the first.
+/// A complete hypothesis: which camera took which image, and the second camera's pose in the first.
 struct Arrangement {
   StereoHypothesis hypothesis;
   const Camera* first;
@@ -44,7 +45,7 @@ Arrangements arrangements(const Camera& first, const Camera& second) {
 
 enum class PointVerdict { NoParallax, Agrees, Disagrees };
 
-/// From the depth z of a point on ray f1 that the second camera sees on ray f2, p = z f1 = t + s R f2:
+/// From the depth z of a point on ray f1 that the second camera observes on ray f2, p = z f1 = t + s R f2:
 /// z |f1 x R f2|^2 = (t x R f2) . (f1 x R f2).
 PointVerdict judge(const PointPair& point, const Arrangement& arrangement) {
   const std::optional<Vec3> ray = arrangement.first->unproject(point.first);
@@ -106,7 +107,7 @@ StereoSurvey compareStereo(const CameraCalibration& first, const CameraCalibrati
     std::array<PointVerdict, 5> verdicts{};
     std::transform(all.begin(), all.end(), verdicts.begin(),
                    [&](const Arrangement& arrangement) { return judge(point, arrangement); });
-    // All hypotheses are held to the same points, lest one do well on a few.
+    // All hypotheses are compared on the same points, so that none can win with only a few.
     if (std::count(verdicts.begin(), verdicts.end(), PointVerdict::NoParallax) > 0) continue;
     ++survey.points;
     for (size_t i = 0; i < all.size(); ++i) agreeing[i] += verdicts[i] == PointVerdict::Agrees ? 1 : 0;

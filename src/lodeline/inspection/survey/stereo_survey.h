@@ -9,38 +9,38 @@
 
 namespace lodeline {
 
-/// How the calibration of a pair of cameras may be wrong as a whole.
+/// Possible gross errors in the calibration of a pair of cameras.
 enum class StereoHypothesis {
   AsCalibrated,
-  ImagesExchanged,      ///< each camera's images are the other's
-  ExtrinsicsExchanged,  ///< each camera's T_BS is the other's
-  ExtrinsicsInverted,   ///< both T_BS are given the wrong way round
-  BaselineReversed,     ///< the rotations are right, the way from one camera to the other is not
+  ImagesExchanged,      ///< the images of both cameras are exchanged
+  ExtrinsicsExchanged,  ///< the T_BS of both cameras are exchanged
+  ExtrinsicsInverted,   ///< both T_BS are inverted
+  BaselineReversed,     ///< the rotations are correct, the direction of the baseline is reversed
 };
 
-/// What images taken at the same time say of a pair of cameras.
+/// Evaluation of a pair of cameras from images taken at the same time.
 struct StereoSurvey {
   double baseline_m = 0.0;  ///< as calibrated
   int images = 0;           ///< pairs of them
-  int points = 0;           ///< in both, and near enough to have parallax whichever hypothesis holds
-  /// Share of these that lie on their epipolar lines and in front of both cameras, as calibrated.
+  int points = 0;           ///< in both images, and with enough parallax under every hypothesis
+  /// Share of these points that are on their epipolar lines and in front of both cameras, as calibrated.
   double agreement = 0.0;
-  double best_agreement = 0.0;  ///< under the hypothesis under which most do
-  /// The hypotheses under which (nearly) as many do: often more than one, as all of them turn the baseline.
+  double best_agreement = 0.0;  ///< with the hypothesis under which it is largest
+  /// Hypotheses with (nearly) that share: often more than one, because all of them reverse the baseline.
   std::vector<StereoHypothesis> fitting;
-  /// By which the second camera is turned against its calibration, rad, as far as epipolar lines show it
-  /// (features/stereo_rotation.h); 0 where they need no turn.
+  /// Rotation of the second camera relative to its calibration, rad, as far as epipolar lines show it
+  /// (frontend/stereo/stereo_rotation.h); 0 where they need no correction.
   double turn_rad = 0.0;
 };
 
-/// Corners of the first image outside of `mask`, found in the second one.
+/// Corners of the first image outside `mask`, matched in the second one.
 std::vector<PointPair> matchStereo(const cv::Mat& first, const cv::Mat& second, const cv::Mat& mask);
 
-/// Looks at the first two cameras of the rig, which must be calibrated. `stream`: of the first; the source
-/// must be a fresh one. Nothing where the cameras' images are not taken together.
+/// Surveys the first two cameras of the rig, which must be calibrated. `stream`: of the first; the source
+/// must be a fresh one. Empty where the images of the cameras are not taken together.
 std::optional<StereoSurvey> surveyStereo(MeasurementSource* source, const StreamSummary& stream);
 
-/// Judges the points of both images, px: the part of surveyStereo() that needs no images.
+/// Evaluates points in both images, px: the part of surveyStereo() without images.
 StereoSurvey compareStereo(const CameraCalibration& first, const CameraCalibration& second,
                            const std::vector<PointPair>& points);
 

@@ -30,7 +30,7 @@ class StereoSurveyTest : public testing::Test {
         Rigid3(left_.body_from_camera.rotation * so3::exp(Vec3(0.004, -0.01, 0.006)), Vec3(0.2, 0.1, 0.02));
   }
 
-  /// Seen by both, at 1 to 4 m, with half a pixel of noise.
+  /// Points in both images, at 1 to 4 m, with half a pixel of noise.
   std::vector<PointPair> points() const {
     std::mt19937 generator(5);
     std::uniform_real_distribution<double> column(40.0, 600.0), row(40.0, 440.0), depth_m(1.0, 4.0);
@@ -65,7 +65,7 @@ TEST_F(StereoSurveyTest, AgreesWithACalibrationThatIsHalfADegreeOff) {
   right_.body_from_camera.rotation = right_.body_from_camera.rotation * so3::exp(Vec3(0.008, 0.003, 0.003));
   const StereoSurvey survey = compareStereo(left_, right_, seen);
   EXPECT_GT(survey.agreement, 0.9);
-  // As far as epipolar lines show it: not what looks like depth.
+  // Only the part that epipolar lines show, not that which changes depths.
   EXPECT_NEAR(survey.turn_rad, std::hypot(0.008, 0.003), 0.001);
 }
 

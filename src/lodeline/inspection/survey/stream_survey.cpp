@@ -10,10 +10,10 @@
 namespace lodeline {
 namespace {
 
-/// A sensor that repeats itself for longer than this does not measure.
+/// A sensor that repeats its reading for longer than this does not measure.
 constexpr double kFrozen_s = 1.0;
 
-/// The usual silence between bursts.
+/// Usual interval between bursts.
 double stepBetweenBursts_s(const std::vector<double>& steps_s, double period_s) {
   std::vector<double> between_s;
   for (const double step_s : steps_s) {

@@ -9,13 +9,13 @@
 
 namespace lodeline {
 
-/// A stretch in which a sensor said nothing.
+/// A time span without readings.
 struct StreamGap {
   Time after;
   double length_s = 0.0;
 };
 
-/// What the stamps of one sensor look like.
+/// Properties of one sensor's time stamps.
 struct StreamSummary {
   int64_t readings = 0;
   double rate_hz =
@@ -25,20 +25,20 @@ struct StreamSummary {
   int64_t duplicates = 0;         ///< stamps equal to the one before
   int64_t backwards = 0;          ///< stamps before an earlier one
   int64_t clock_jumps = 0;        ///< of these, where the clock was set back
-  int64_t repeated = 0;           ///< readings equal to the one before, figure by figure
-  double longest_frozen_s = 0.0;  ///< of nothing but repetition
-  double frozen_share = 0.0;      ///< of the duration, in repetitions of a second or longer
+  int64_t repeated = 0;           ///< readings identical to the one before
+  double longest_frozen_s = 0.0;  ///< longest span of identical readings
+  double frozen_share = 0.0;      ///< of the duration, in spans of a second or longer of identical readings
   std::vector<StreamGap> gaps;    ///< longest first
   double gap_s = 0.0;             ///< all of them together
   std::optional<Time> first, last;
 };
 
-/// Watches one stream as it was stored. Keeps 8 bytes a reading.
+/// Collects the statistics of one stream as stored. Needs 8 bytes per reading.
 class StreamSurvey {
  public:
-  /// `repeats`: the reading says the same as the one before.
+  /// `repeats`: the reading is identical to the one before.
   void add(Time time, bool repeats = false);
-  /// `gap_periods`: silence of more periods than this counts as a gap.
+  /// `gap_periods`: intervals of more periods than this count as gaps.
   StreamSummary summarize(double gap_periods) const;
 
  private:

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
-/// A camera that turns less than this (root mean square) shows nothing.
+/// A camera with a smaller rate (root mean square) does not allow a comparison.
 constexpr double kLeastRate_rad_per_s = 0.02;
-/// A direction about which the rig hardly turned cannot be judged.
+/// A direction with a smaller share of the rotation is not evaluated.
 constexpr double kHiddenShare = 0.08;
 constexpr double kSignificant_sigmas = 4.0;
 
@@ -23,7 +23,7 @@ struct Pair {
   Vec3 gyroscope_B = Vec3::Zero();
 };
 
-/// Sums over pairs about their means.
+/// Second moments of the pairs about their means.
 struct Moments {
   Mat3 gyroscope = Mat3::Zero();
   Mat3 cross = Mat3::Zero();  ///< camera by gyroscope
@@ -44,7 +44,7 @@ struct Moments {
     }
   }
 
-  /// How well some rotation, proper or not, and scale make one of the other.
+  /// Correlation under the best rotation (proper or improper) and scale.
   double correlation() const {
     const double sizes = camera * gyroscope.trace();
     if (!(sizes > 0.0)) return 0.0;
@@ -98,12 +98,13 @@ class Comparison {
 
   double correlationAt(double offset_s) const {
     const std::vector<Pair> pairs = pairsAt(offset_s);
-    // Fewer turns within the readings correlate better by chance.
+    // A smaller number of rotations within the readings correlates better by chance.
     if (static_cast<int>(pairs.size()) < least_turns_ || 2 * pairs.size() < turns_.size()) return 0.0;
     return Moments(pairs).correlation();
   }
 
-  /// Of the greatest correlation; among nearly equal ones, as periodic motion has them, the least.
+  /// Offset with the largest correlation; among nearly equal ones, as with periodic motion, the smallest
+  /// offset.
   double bestOffset_s() const {
     constexpr double kNearlyEqual = 0.01;
     double best_s = 0.0;
@@ -136,7 +137,7 @@ class Comparison {
     return moments.cross * inverse;
   }
 
-  /// Turns that no linear relation explains were seen badly.
+  /// Removes rotations that do not fit the linear relation, because their estimates are wrong.
   void rejectOutliers(double offset_s) {
     const std::vector<Pair> pairs = pairsAt(offset_s);
     const Moments moments(pairs);
@@ -162,7 +163,7 @@ class Comparison {
     const Eigen::JacobiSVD<Mat3> svd(moments.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Mat3 any = svd.matrixU() * svd.matrixV().transpose();
     const Vec3 sizes = svd.singularValues();
-    // A proper rotation gives up the smallest singular value twice over where the best one is improper.
+    // If the best rotation is improper, a proper one loses twice the smallest singular value.
     const double proper = sizes.sum() - 2.0 * (any.determinant() < 0.0 ? sizes[2] : 0.0);
     constexpr double kMuchBetter = 0.95;
     result->is_mirrored = proper < kMuchBetter * sizes.sum();
@@ -184,7 +185,7 @@ class Comparison {
     judgeFocalLength(pairs, moments, variance, result);
   }
 
-  /// The information that the rates give on a small rotation is the sum of |w|^2 I - w w^T.
+  /// The information of the rates on a small rotation is the sum of |w|^2 I - w w^T.
   void judgeMisalignment(const Moments& moments, double variance, TurnComparison* result) const {
     if (result->is_mirrored) return;
     const Vec3 rotation = so3::log(Quat(result->axes));
@@ -204,7 +205,8 @@ class Comparison {
     result->misalignment_rad = result->misalignment_B.norm();
   }
 
-  /// Rotation about the optical axis shows at any focal length; pan and tilt are seen in proportion to it.
+  /// The rotation about the optical axis is independent of the focal length; pan and tilt are proportional to
+  /// it.
   void judgeFocalLength(const std::vector<Pair>& pairs, const Moments& moments, double variance,
                         TurnComparison* result) const {
     double products = 0.0, squares = 0.0;
@@ -220,7 +222,7 @@ class Comparison {
     result->focal_ratio_sigma = std::sqrt(variance / squares);
   }
 
-  /// From the noise of the turns and how quickly the rates change.
+  /// Sigma of the offset from the noise of the rotations and the derivative of the rates.
   double offsetSigma_s(double offset_s, const Moments& moments, const TurnComparison& result) const {
     const std::vector<Pair> before = pairsAt(offset_s - kSearchStep_s);
     const std::vector<Pair> after = pairsAt(offset_s + kSearchStep_s);

@@ -18,7 +18,7 @@ Vec3 rateAt(double t) {
 
 const Quat kBodyFromCamera(Eigen::AngleAxisd(1.2, Vec3(0.3, -0.8, 0.5).normalized()));
 
-/// Ten seconds of a gyroscope at 200 Hz whose readings are `axes` times the truth.
+/// Ten seconds of gyroscope readings at 200 Hz that are `axes` times the true rates.
 std::vector<ImuSample> gyroscope(const Mat3& axes = Mat3::Identity()) {
   std::vector<ImuSample> samples;
   for (int i = 0; i < 2000; ++i) {
@@ -29,7 +29,7 @@ std::vector<ImuSample> gyroscope(const Mat3& axes = Mat3::Identity()) {
   return samples;
 }
 
-/// Turns at 20 Hz whose stamps are late by `delay_s`, with noise.
+/// Rotations at 20 Hz with stamps late by `delay_s`, with noise.
 std::vector<CameraTurn> turns(double delay_s, const Quat& body_from_camera = kBodyFromCamera,
                               double focal_ratio = 1.0) {
   std::vector<CameraTurn> result;
@@ -96,7 +96,7 @@ TEST(TurnComparison, SaysNothingOfACameraThatHardlyTurns) {
   EXPECT_FALSE(compareTurns(still, GyroscopeIntegral(gyroscope()), kBodyFromCamera));
 }
 
-/// Rays of 150 points 1.5 to 4.5 m away; every so many of them lead elsewhere.
+/// Rays of 150 points at 1.5 to 4.5 m; one of every `outlier_every` is wrong.
 void makeRays(int outlier_every, const Quat& rotation, const Vec3& translation, std::vector<Vec3>* before,
               std::vector<Vec3>* after) {
   std::mt19937 random(3);
@@ -130,7 +130,7 @@ TEST(VisualRotation, BearsOutliers) {
   makeRays(8, rotation, Vec3(0.05, -0.02, 0.03), &before, &after);
   const auto estimate = visualRotation(before, after);
   ASSERT_TRUE(estimate);
-  // Translation alone makes a flow of 0.02 rad here.
+  // Translation alone gives a flow of 0.02 rad here.
   EXPECT_LT((estimate->rotation_C - so3::log(rotation)).norm(), 7e-3);
   EXPECT_GE(estimate->points, 125);
 }

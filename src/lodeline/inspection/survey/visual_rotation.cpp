@@ -10,11 +10,11 @@
 namespace lodeline {
 namespace {
 
-/// Rays further from their plane than this, about a pixel, count less and less.
+/// Scale of the robust loss, about a pixel: rays further from their plane have decreasing weight.
 constexpr double kRobustScale_rad = 2e-3;
 constexpr double kInlier_rad = 4e-3;
-/// Flow that is not rotation, of an ordinary scene between two images. Where points tell translation from
-/// rotation badly, the rotation stays near the one that explains most of the flow.
+/// Typical flow without rotation between two images. Where points do not separate translation from rotation
+/// well, the prior keeps the rotation near the one that explains most of the flow.
 constexpr double kFlowSigma_rad = 0.05;
 constexpr double kPrior = (kRobustScale_rad * kRobustScale_rad) / (kFlowSigma_rad * kFlowSigma_rad);
 
@@ -25,14 +25,14 @@ double robustWeight(double residual, double scale) {
 /// The rotation R that minimizes the robust sum of |f1 - R f2|^2.
 Quat alignedRotation(const std::vector<Vec3>& previous, const std::vector<Vec3>& current) {
   Quat rotation = Quat::Identity();
-  double scale = 0.3;  // of all sizes at first: a far too large one only weighs all rays alike
+  double scale = 0.3;  // of all sizes at first: with a far too large scale all rays have the same weight
   for (int iteration = 0; iteration < 10; ++iteration) {
     Mat3 hessian = Mat3::Zero();
     Vec3 gradient = Vec3::Zero();
     for (size_t i = 0; i < previous.size(); ++i) {
       const Vec3 turned = rotation * current[i];
       const Vec3 residual = previous[i] - turned;
-      const Mat3 jacobian = so3::skew(turned);  // of residual, by a rotation vector from the left
+      const Mat3 jacobian = so3::skew(turned);  // of the residual, by a rotation vector on the left
       const double weight = robustWeight(residual.norm(), scale);
       hessian += weight * jacobian.transpose() * jacobian;
       gradient += weight * jacobian.transpose() * residual;
@@ -45,7 +45,7 @@ Quat alignedRotation(const std::vector<Vec3>& previous, const std::vector<Vec3>&
   return rotation;
 }
 
-/// Directions by how nearly they are normal to all f1 x R f2, the nearest first.
+/// Candidate directions, ordered by how close they are to the normal of all f1 x R f2, the closest first.
 Mat3 translationDirections(const std::vector<Vec3>& previous, const std::vector<Vec3>& current,
                            const Quat& rotation) {
   Mat3 sum = Mat3::Zero();
@@ -56,21 +56,22 @@ Mat3 translationDirections(const std::vector<Vec3>& previous, const std::vector<
   return Eigen::SelfAdjointEigenSolver<Mat3>(sum).eigenvectors();
 }
 
-/// A motion of the camera up to the length of its way, and the robust cost of the rays under it.
+/// Motion of the camera up to the length of its translation, and the robust cost of the rays.
 struct Motion {
   Quat rotation = Quat::Identity();
   Vec3 direction = Vec3::UnitX();
   double cost = std::numeric_limits<double>::infinity();
 };
 
-/// Of a point from the epipolar plane, rad nearly.
+/// Distance of a point from the epipolar plane, approximately in rad.
 double distanceFromPlane(const Vec3& previous, const Vec3& current, const Motion& motion) {
   return previous.dot(motion.direction.cross(motion.rotation * current));
 }
 
-/// Gauss-Newton from a start. Rotation and direction move together: by turns, they would creep along the way
-/// on which one makes up for the other. `first_scale_rad`: of the robust loss, halved down to the final one,
-/// so that points need not be given up before the translation is known.
+/// Gauss-Newton from an initial value. Rotation and direction are updated together, because alternate updates
+/// converge very slowly along the direction in which both compensate each other. `first_scale_rad`: initial
+/// scale of the robust loss, halved down to the final one, so that points are not rejected before the
+/// translation is known.
 Motion refine(const std::vector<Vec3>& previous, const std::vector<Vec3>& current, const Quat& start,
               const Vec3& direction, double first_scale_rad) {
   using Step = Eigen::Matrix<double, 5, 1>;

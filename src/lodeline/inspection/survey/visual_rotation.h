@@ -7,17 +7,17 @@
 
 namespace lodeline {
 
-/// How a camera turned between two images, from the images alone.
+/// Rotation of a camera between two images, from the images alone.
 struct VisualRotation {
   /// Rotation vector of previous_from_current_C, rad.
   Vec3 rotation_C = Vec3::Zero();
-  int points = 0;        ///< that agree with it
-  double rms_rad = 0.0;  ///< of their distance from their epipolar planes
+  int points = 0;        ///< number of inliers
+  double rms_rad = 0.0;  ///< of the distance from their epipolar planes
 };
 
-/// Rotation and direction of translation that bring pairs of unit rays onto common epipolar planes, by robust
-/// Gauss-Newton on f1 . (t x R f2) from the rotation that fits the rays best by itself: no knowledge of other
-/// sensors enters. Nothing where fewer than `least_points` pairs agree.
+/// Rotation and direction of translation for which pairs of unit rays are on common epipolar planes, by
+/// robust Gauss-Newton on f1 . (t x R f2). The initial rotation is the one that fits the rays best without
+/// translation; other sensors are not used. Empty where fewer than `least_points` pairs agree.
 std::optional<VisualRotation> visualRotation(const std::vector<Vec3>& previous,
                                              const std::vector<Vec3>& current, int least_points = 15);
 

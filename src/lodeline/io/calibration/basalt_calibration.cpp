@@ -43,7 +43,7 @@ YAML::Node basaltCamera(CalibrationMap* map, const YAML::Node& resolution) {
   return camera;
 }
 
-/// One figure of three axes: the largest.
+/// The largest of the values of three axes.
 std::string largest(const std::string& key, CalibrationMap* map) {
   const YAML::Node node = map->node()[key];
   const std::vector<double> values = node.IsScalar() ? std::vector{map->number(key)} : map->numbers(key);
@@ -51,9 +51,8 @@ std::string largest(const std::string& key, CalibrationMap* map) {
   return fmt::format("{}", *std::max_element(values.begin(), values.end()));
 }
 
-/// Basalt's calibrated reading is (I + S) reading - b. Sets what a rig file says of that: reading = M
-/// calibrated
-/// + bias with M = (I + S)^-1.
+/// Converts Basalt's model, calibrated = (I + S) reading - b, to that of a rig file, reading = M calibrated +
+/// bias with M = (I + S)^-1, and writes it to `section`.
 void setCorrection(const Mat3& scale, const Vec3& bias, YAML::Node* section) {
   if (scale.isZero(0.0) && bias.isZero(0.0)) return;
   const Mat3 axes = (Mat3::Identity() + scale).inverse();

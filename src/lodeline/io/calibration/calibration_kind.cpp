@@ -20,7 +20,7 @@ bool hasAllKeys(const YAML::Node& node, std::initializer_list<const char*> keys)
   return std::all_of(keys.begin(), keys.end(), [&](const char* key) { return node[key].IsDefined(); });
 }
 
-/// A section of a rig, also where a letter of its name is wrong.
+/// Whether a key is the section of a rig, also with one wrong letter in its name.
 bool isAlmostSensor(const std::string& key, const YAML::Node& value) {
   if (isSensorName(key)) return true;
   if (!value.IsMap()) return false;

@@ -240,7 +240,7 @@ TEST_F(CalibrationTranslationTest, CameraInfoWithARigFileForTheRest) {
   const std::string extrinsics = fmt::format("{}cam0: {{T_BS: [{}]}}\ncam1: {{T_BS: [{}]}}\n",
                                              test::kEurocImu, test::kLeftPose, test::kRightPose);
   place_.write("rest.yaml", extrinsics);
-  std::swap(files[0], files[1]);  // names count, not their order
+  std::swap(files[0], files[1]);  // the names decide, not the order
   files.push_back(place_.path("rest.yaml"));
   expectSameRig(readRigFiles(files, &diagnostics_), truth());
   EXPECT_THAT(refusal("cam0.yaml", place_.read("left.yaml")),

@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-/// The first of several spellings that is there.
+/// The first existing key of several spellings.
 std::string requireOneOf(std::initializer_list<const char*> keys, CalibrationMap* map) {
   for (const char* key : keys) {
     if (map->has(key)) return key;

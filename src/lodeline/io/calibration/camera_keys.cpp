@@ -54,7 +54,8 @@ std::vector<double> readDistortion(const std::string& key, DistortionModel model
   return values;
 }
 
-/// Refuses what no lens and sensor have: most often other units, or the calibration of another image size.
+/// Rejects values that no lens and sensor can have. The usual causes are other units, or the calibration of
+/// another image size.
 void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) {
   const double width = camera.width_px, height = camera.height_px;
   const double focal_share = camera.fx_px / width;
@@ -67,7 +68,7 @@ void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) 
         "cx by {}, fy and cy by {}",
         map.at("intrinsics"), camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, width, height));
   }
-  constexpr double kShortest = 0.1, kLongest = 20.0;  // of the width; lenses in use have 0.25 to 5
+  constexpr double kShortest = 0.1, kLongest = 20.0;  // in image widths; real lenses have 0.25 to 5
   if (focal_share < kShortest || focal_share > kLongest || camera.fy_px < kShortest * height ||
       camera.fy_px > kLongest * width) {
     throw InputError(
@@ -83,7 +84,7 @@ void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) 
   }
 }
 
-/// Refuses a distortion under which less than half of the image has viewing rays.
+/// Rejects a distortion for which less than half of the image has viewing rays.
 void checkDistortion(const std::string& key, const CalibrationMap& map,
                      const CameraCalibration& calibration) {
   const std::shared_ptr<const Camera> camera = makeCamera(calibration);

@@ -8,9 +8,9 @@
 
 namespace lodeline {
 
-/// Reads what EuRoC's sensor.yaml and Kalibr's camchain say alike: `camera_model` (pinhole), `resolution`,
-/// `intrinsics` (fx fy cx cy, px), `distortion_model` (radial-tangential or radtan, equidistant, none) and
-/// its coefficients under `coefficients_key`. Throws InputError for anything else.
+/// Reads the camera keys common to EuRoC's sensor.yaml and Kalibr's camchain: `camera_model` (pinhole),
+/// `resolution`, `intrinsics` (fx fy cx cy, px), `distortion_model` (radial-tangential or radtan,
+/// equidistant, none) and the coefficients under `coefficients_key`. Throws InputError for anything else.
 void readPinhole(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera);
 
 }  // namespace lodeline

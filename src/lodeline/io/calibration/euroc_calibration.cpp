@@ -27,7 +27,7 @@ std::string maskOrNone(CalibrationMap* map) {
   return mask.string();
 }
 
-/// A sensor of which the file tells no more than place, rate and one figure of noise.
+/// Reads a sensor with only extrinsics, rate and one noise value.
 template <typename Calibration>
 Calibration readSmallSensor(Rigid3 Calibration::*body_from_sensor, const std::string& noise_key,
                             double Calibration::*noise, CalibrationMap* map) {

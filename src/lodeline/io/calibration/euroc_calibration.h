@@ -9,11 +9,10 @@
 
 namespace lodeline {
 
-/// Readers of sections in the keys of EuRoC's `sensor.yaml`, which are those of Lodeline's rig files too.
-/// Extrinsics come as the file says them, from the sensor to EuRoC's body; the caller moves them to the IMU
-/// frame where the two differ. Every function throws InputError naming file and key for what is missing or
-/// wrong; which keys are unknown is left to the caller. A `rate_hz` that the file leaves out is returned as
-/// 0.
+/// Functions that read sections with the keys of EuRoC's `sensor.yaml`, which Lodeline's rig files also use.
+/// The extrinsics are those of the file, from the sensor to EuRoC's body. The caller transforms them to the
+/// IMU frame where the two frames differ. Every function throws InputError naming file and key for missing or
+/// wrong values. The caller handles unknown keys. A missing `rate_hz` is returned as 0.
 
 struct EurocImu {
   ImuCalibration calibration;
@@ -22,13 +21,13 @@ struct EurocImu {
 };
 EurocImu readEurocImu(CalibrationMap* map);
 
-/// `name`: for example "cam0". The mask's path is resolved against the file's folder.
+/// `name`: for example "cam0". The mask's path is relative to the folder of the file.
 CameraCalibration readEurocCamera(const std::string& name, CalibrationMap* map);
 MagnetometerCalibration readEurocMagnetometer(CalibrationMap* map);
 PressureCalibration readEurocPressure(CalibrationMap* map);
 SonarCalibration readEurocSonar(CalibrationMap* map);
 
-/// What Kalibr's camchain does not hold, beside which it may stand.
+/// Camera values that Kalibr's camchain does not contain; they may be given beside it.
 struct EurocCameraExtras {
   double rate_hz = 0.0;
   std::string mask_file;

@@ -20,7 +20,7 @@ double density(const std::string& key, CalibrationMap* map) {
   return value;
 }
 
-/// Axes of a sensor that is in order are within a few per cent and degrees of orthogonal.
+/// Maximum condition number. The axes of a working sensor are orthogonal to a few per cent and degrees.
 constexpr double kGreatestCondition = 3.0;
 
 Mat3 inverseOf(const Mat3& matrix, const std::string& where) {

@@ -45,7 +45,7 @@ TEST(ImuKeys, KalibrsMatricesAreInverted) {
   gyro << 1.1, 0, 0, 0.01, 0.9, 0, 0.02, 0.03, 1.05;
   acc << 1.02, 0, 0, 0.01, 0.98, 0, 0.03, -0.02, 1.01;
   sensitivity << 0.001, 0, 0, 0, 0, 0, 0, 0, 0.002;
-  // Kalibr's model: the accelerations that disturb the gyroscope are in its own axes.
+  // Kalibr's model: the accelerations that affect the gyroscope are in the gyroscope's axes.
   const ImuSample reading{testTime(1.0), gyro * (turn * w) + sensitivity * (turn * f), acc * f};
   const ImuSample sample = correction->applied(reading);
   EXPECT_TRUE(sample.angular_velocity_B.isApprox(w, 1e-12));

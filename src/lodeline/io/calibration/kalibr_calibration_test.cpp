@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// cam0 is turned by 90 degrees about z against the IMU; cam1 stands 0.1 m to its right.
+/// cam0 is rotated by 90 degrees about z relative to the IMU; cam1 is 0.1 m to its right.
 constexpr const char* kCamchain = R"(cam0:
   T_cam_imu:
   - [0.0, 1.0, 0.0, 0.5]

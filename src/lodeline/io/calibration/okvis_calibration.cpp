@@ -38,7 +38,7 @@ YAML::Node okvisCamera(CalibrationMap* map) {
   return camera;
 }
 
-/// A number of a section, under any of the names that versions of OKVIS gave it.
+/// Text of a number in a section, under any of the names used in the versions of OKVIS.
 std::optional<std::string> textIn(std::initializer_list<std::pair<const char*, const char*>> places,
                                   CalibrationMap* root) {
   for (const auto& [section, key] : places) {
@@ -68,7 +68,7 @@ YAML::Node okvisImu(CalibrationMap* map) {
 TranslatedSections translateOkvis(CalibrationMap* root) {
   TranslatedSections sections;
   const YAML::Node cameras = root->node()["cameras"];
-  // What OKVIS subtracts from stamps of images, Lodeline adds.
+  // OKVIS subtracts the delay from image stamps, whereas Lodeline adds its offset.
   const std::optional<std::string> delay = textIn({{"camera_parameters", "image_delay"},
                                                    {"camera_params", "image_delay"},
                                                    {"", "image_delay"},

@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-/// The transform under a key, of 12 or 16 numbers.
+/// The transformation under a key, given as 12 or 16 numbers.
 Rigid3 transformOf(const std::string& key, CalibrationMap* root) {
   const std::vector<double> numbers = root->numbers(key);
   if (numbers.size() != 12 && numbers.size() != 16) {
@@ -18,7 +18,7 @@ Rigid3 transformOf(const std::string& key, CalibrationMap* root) {
   return Rigid3::fromMatrix(matrix, root->atLine(key).c_str());
 }
 
-/// The first of several keys that is there; the first one where none is.
+/// The first existing key of several; the first one where none exists.
 std::string firstPresent(std::initializer_list<const char*> keys, CalibrationMap* root) {
   for (const char* key : keys) {
     if (root->has(key)) return key;
@@ -51,7 +51,7 @@ YAML::Node orbCamera(const std::string& prefix, const std::string& type, Calibra
   return camera;
 }
 
-/// How camera 2 is mounted; nothing for settings of one camera.
+/// Transformation from camera 2 to camera 1; nothing for settings of one camera.
 std::optional<Rigid3> firstFromSecond(const std::string& prefix, const std::string& type,
                                       CalibrationMap* root) {
   const std::string key = firstPresent({"Stereo.T_c1_c2", "Tlr"}, root);

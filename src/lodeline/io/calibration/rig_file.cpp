@@ -15,11 +15,11 @@ namespace lodeline {
 namespace {
 
 constexpr double kGravity_m_per_s2 = 9.80665;
-/// Depths that came from pressures are rounded to this, far below what any sensor resolves, so that a depth
-/// in decimals survives being kept as a pressure.
+/// Rounding of depths computed from pressures. It is far below the resolution of any sensor, and a decimal
+/// depth stays unchanged when it is stored as a pressure.
 constexpr double kDepthSteps_per_m = 1e9;
 
-/// Reads the sections one after the other, keeping the topics.
+/// Reads the sections in order and stores the topics.
 class RigReader {
  public:
   RigReader(RigFile* result, const RigRequirements& requirements, Diagnostics* diagnostics)
@@ -48,7 +48,7 @@ class RigReader {
   }
 
  private:
-  /// In the order of their numbers, which cam10 does not have among names.
+  /// Camera numbers in numeric order; by name, cam10 would precede cam2.
   std::vector<int> cameraNumbers() const {
     std::vector<int> numbers;
     for (const auto& [sensor, section] : result_->sections) {
@@ -98,7 +98,8 @@ class RigReader {
       result_->imu_correction = kalibr.correction;
       body_from_kalibr_body_ = kalibr.imu_from_kalibr_body;
       if (map->has("rate_hz") && !(imu.rate_hz > 0.0)) imu.rate_hz = map->number("rate_hz");
-      // Where a recording's own file says how its body lies to the IMU, its other sensors go by that.
+      // If the IMU's file states the pose of its body, the extrinsics of the other sensors refer to that
+      // body.
       if (map->has("T_BS")) body_from_euroc_body_ = map->transform("T_BS").inverse();
     } else {
       const EurocImu euroc = readEurocImu(map);
@@ -120,7 +121,7 @@ class RigReader {
     const std::string name = fmt::format("cam{}", number);
     std::vector<CameraCalibration>& cameras = result_->rig.cameras;
     if (keys == SectionKeys::Kalibr) {
-      // Kalibr knows neither rates nor masks; they may stand beside its keys.
+      // Kalibr has no keys for rates and masks; they may be given beside its keys.
       const EurocCameraExtras extras = readEurocCameraExtras(map);
       const bool has_before = before_ && before_number_ == number - 1;
       CameraCalibration camera = readKalibrCamera(number, has_before ? &*before_ : nullptr, map);
@@ -154,7 +155,7 @@ class RigReader {
   RigRequirements requirements_;
   Diagnostics* diagnostics_;
   Rigid3 body_from_euroc_body_, body_from_kalibr_body_;
-  std::optional<CameraCalibration> before_;  ///< the last of Kalibr's cameras, in Kalibr's body frame
+  std::optional<CameraCalibration> before_;  ///< the previous Kalibr camera, in Kalibr's body frame
   int before_number_ = 0;
 };
 

@@ -15,7 +15,7 @@
 namespace lodeline {
 namespace {
 
-/// Keys that Kalibr does not write, but that may stand beside its own.
+/// Keys that Kalibr does not write but that may be given beside its own.
 constexpr std::array kBesideKalibr = {"rate_hz", "mask", "topic"};
 
 void refuseUnknownSensor(const std::filesystem::path& file, const std::string& key, int line) {
@@ -121,7 +121,7 @@ class SectionCollector {
                          fmt::format("{}: read as {}: {}", file.string(), describe(kind), sensors));
   }
 
-  /// The number of a camera that has a file of its own.
+  /// The name (number) of a camera with a file of its own.
   std::string cameraName(const std::filesystem::path& file, const YAML::Node& root) {
     const int place = single_cameras_++;
     std::vector<std::string> hints;

@@ -10,30 +10,30 @@
 
 namespace lodeline {
 
-/// In whose keys a sensor is described.
+/// Set of keys that describes a sensor.
 enum class SectionKeys {
-  Rig,     ///< ours: an unknown key is an error
-  Euroc,   ///< a sensor.yaml, the same keys: an unknown one is passed over with a notice
-  Kalibr,  ///< Kalibr's and OpenVINS's: likewise
+  Rig,     ///< Lodeline's keys: an unknown key is an error
+  Euroc,   ///< a sensor.yaml with the same keys: an unknown key is ignored with a notice
+  Kalibr,  ///< Kalibr's and OpenVINS's keys: an unknown key is ignored with a notice
 };
 
-/// What a file says of one sensor.
+/// Description of one sensor in one file.
 struct RigSection {
   YAML::Node node;
   std::filesystem::path file;
   SectionKeys keys = SectionKeys::Rig;
-  std::string prefix;  ///< the section's own key in the file; empty where the whole file is the section
+  std::string prefix;  ///< key of the section in the file; empty where the whole file is the section
 };
 
-/// By sensor: cam0, cam1, …, imu0, mag0, pressure0, sonar0.
+/// Sections by sensor: cam0, cam1, …, imu0, mag0, pressure0, sonar0.
 using RigSections = std::map<std::string, RigSection>;
 
-/// Collects what one or several files say of a rig's sensors. Whose calibrations they are is told by their
-/// keys (see CalibrationKind); those of other programs come translated into our keys, which is reported as
-/// `calibration_translated`. Files of a single camera get the number that their name has (cam1.yaml, left,
-/// right), or that of their place among them, which is reported as `calibration_order`. Two files may
-/// describe the same sensor where they name different keys. Throws InputError, naming file and line, for a
-/// file of another kind, for an unknown sensor and for a key that is described twice.
+/// Collects the sensor descriptions of one or several files. The keys of a file determine its format (see
+/// CalibrationKind). Files of other programs are translated to Lodeline's keys and reported as
+/// `calibration_translated`. A single-camera file gets the number in its name (cam1.yaml, left, right).
+/// Otherwise it gets the number of its position in the list, which is reported as `calibration_order`. Two
+/// files may describe the same sensor with different keys. Throws InputError, naming file and line, for a
+/// file of another kind, for an unknown sensor and for a key described twice.
 RigSections collectRigSections(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -6,13 +6,11 @@
 
 namespace lodeline {
 
-/// A rig file (see readRigFiles) that says what `rig` holds, numbers with all their digits, and comments on
-/// the keys. Cameras without extrinsics get a line to fill in instead of `T_BS`, without which the file is
-/// refused.
+/// Text of a rig file (see readRigFiles) for `rig`, with all digits of the numbers and comments on the keys.
+/// A camera without extrinsics gets a line to fill in instead of `T_BS`; readers refuse the file until then.
 std::string rigText(const RigFile& rig);
 
-/// A rig file to fill in: one camera pair, an IMU and the sensors that may be there, with what each key
-/// means.
+/// Template of a rig file: two cameras, an IMU and the optional sensors, with the meaning of each key.
 std::string rigTemplate();
 
 }  // namespace lodeline

@@ -9,7 +9,7 @@ namespace lodeline {
 namespace {
 
 constexpr double kAssumedRate_hz = 200.0;
-/// Below these no small IMU's density is (m/s^2/sqrt(Hz), rad/s/sqrt(Hz)): a tenth of an ADIS16448's.
+/// Minimum densities of small IMUs (m/s^2/sqrt(Hz), rad/s/sqrt(Hz)): a tenth of an ADIS16448's.
 constexpr double kLeastAccelerometerDensity = 2e-4;
 constexpr double kLeastGyroscopeDensity = 1.7e-5;
 
@@ -20,8 +20,8 @@ double positiveFigure(const std::string& key, CalibrationMap* map) {
   return value;
 }
 
-/// VINS adds acc_n^2 dt^2 to the variance of a velocity with every reading, hence acc_n is the deviation of a
-/// reading, and acc_w^2 dt^2 to that of a bias.
+/// Translates the noise. For every reading, VINS adds acc_n^2 dt^2 to the variance of the velocity and
+/// acc_w^2 dt^2 to that of the bias. acc_n is therefore the standard deviation of a reading.
 YAML::Node vinsImu(CalibrationMap* root, Diagnostics* diagnostics) {
   const double acc_n = positiveFigure("acc_n", root), gyr_n = positiveFigure("gyr_n", root);
   const double acc_w = positiveFigure("acc_w", root), gyr_w = positiveFigure("gyr_w", root);
@@ -49,7 +49,7 @@ YAML::Node vinsImu(CalibrationMap* root, Diagnostics* diagnostics) {
   return imu;
 }
 
-/// VINS-Mono's two keys instead of one.
+/// Reads VINS-Mono's two extrinsics keys, which replace a single one.
 YAML::Node monoExtrinsics(CalibrationMap* root) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = root->matrix3("extrinsicRotation");

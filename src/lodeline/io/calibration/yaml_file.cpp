@@ -25,7 +25,7 @@ std::vector<double> flatten(const YAML::Node& node) {
   return numbers;
 }
 
-/// OpenCV takes `key:value`, where YAML asks for a blank after the colon.
+/// Inserts a blank after the colon: OpenCV accepts `key:value`, YAML does not.
 std::string withBlankAfterKey(const std::string& line) {
   const size_t start = line.find_first_not_of(' ');
   const size_t colon = line.find(':');
@@ -49,8 +49,8 @@ YAML::Node loadYamlFile(const std::filesystem::path& file) {
   std::string text;
   bool is_opencv = false;
   for (std::string line; std::getline(stream, line);) {
-    // OpenCV's directive lacks the blank that YAML asks for; directives say nothing we need. The empty line
-    // keeps the line numbers of messages.
+    // OpenCV's directive lacks the blank that YAML requires. Directives are not needed; an empty line keeps
+    // the line numbers of messages.
     const bool is_directive = line.starts_with('%');
     is_opencv = is_opencv || is_directive;
     text += (is_directive ? std::string() : is_opencv ? withBlankAfterKey(line) : line) + '\n';
@@ -123,7 +123,7 @@ std::vector<double> CalibrationMap::numbers(const std::string& key) {
     if (node.IsSequence()) return flatten(node);
     if (node.IsMap() && node["data"].IsSequence()) return flatten(node["data"]);
   } catch (const YAML::Exception&) {
-    // Reported below, together with nodes of another shape.
+    // Reported below, together with nodes of another type.
   }
   throw InputError(fmt::format("{} (line {}) is not a list of numbers", at(key), node.Mark().line + 1));
 }

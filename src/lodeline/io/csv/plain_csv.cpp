@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// Rows that decide on units and on the column of times.
+/// Number of rows from which the units and the time column are determined.
 constexpr std::size_t kFirstRows = 100;
 constexpr int64_t kMadeUpInterval_ns = 10'000'000;
 
@@ -33,7 +33,7 @@ double medianOf(std::vector<double> values) {
 
 }  // namespace
 
-// The field is 20 to 70 uT; raw readings are up to twice as much or half.
+// The field is 20 to 70 uT; raw readings are up to a factor of two larger or smaller.
 const std::array<PlainCsv::UnitGuess, 3> PlainCsv::kForceGuesses = {
     {{"m/s^2", 1.0, 4.9, 19.7},
      {"g", kStandardGravity, 0.5, 2.0},
@@ -108,7 +108,7 @@ void PlainCsv::assumeColumns() {
   };
   const std::size_t count = table_.columnCount();
   if (count == 9 && (table_.label() == "Raw" || table_.label() == "Uni")) {
-    // Accelerometer and gyroscope stand before it; without times they are of no use.
+    // Accelerometer and gyroscope precede it, but they are not usable without times.
     magnetometer_ = at(6);
     diagnostics_->report(
         Severity::Notice, "csv_columns",
@@ -156,8 +156,8 @@ bool PlainCsv::nextRow() {
   return false;
 }
 
-/// Of the columns that name a time, the first whose numbers change as often as any other's: a date or a
-/// constant is none.
+/// Selects the first time column with the maximum number of distinct values; a date or a constant is not a
+/// time.
 void PlainCsv::settleTime() {
   std::size_t most = 0;
   for (const TimeColumn& candidate : times_) {
@@ -186,7 +186,8 @@ void PlainCsv::settleTime() {
   settleTimeUnit();
 }
 
-/// As stated, or else the usual one, unless only another gives a rate that a sensor can have.
+/// Sets the stated time unit or, without one, the usual unit, unless only another unit gives a plausible
+/// sensor rate.
 void PlainCsv::settleTimeUnit() {
   std::vector<double> stamps;
   bool has_decimals = false;
@@ -203,7 +204,7 @@ void PlainCsv::settleTimeUnit() {
   const PlausibleRate rate = gyroscope_ || accelerometer_ ? kInertialRate : kMagnetometerRate;
   const std::optional<TimeUnit> by_rate = timeUnitOfStamps(stamps, rate);
   const double usual_hz = stampsPerUnit(stamps) / secondsPer(usual);
-  // Slow logs are honest where the unit is stated.
+  // Low rates are accepted where the unit is stated.
   const double least_hz = is_stated ? 1e-3 : 0.8 * rate.least_hz;
   if (!by_rate || time_->second || (usual_hz > least_hz && usual_hz < 1.25 * rate.most_hz)) return;
   time_->unit = by_rate;
@@ -220,7 +221,7 @@ void PlainCsv::settleUnits() {
   if (gyroscope_) gyroscope_->to_si = gyroscope_->unit.factor.value_or(1.0);
   if (accelerometer_) guessUnit(kForceGuesses, "accelerometer", &*accelerometer_);
   if (!magnetometer_) return;
-  // A calibration looks at all readings before it decides.
+  // A calibration determines the unit from all readings.
   if (options_.is_magnetometer && !magnetometer_->unit.factor) return;
   guessUnit(kFieldGuesses, "magnetometer", &*magnetometer_);
 }
@@ -279,8 +280,7 @@ std::string PlainCsv::parseRow(PlainReading* reading) const {
   const bool has_rate = read(gyroscope_, &reading->angular_velocity);
   const bool has_force = read(accelerometer_, &reading->specific_force);
   const bool has_field = read(magnetometer_, &reading->field);
-  // A magnetometer slower than the rest, or one that fails, must not cost the row's other readings; nor they
-  // it.
+  // A magnetometer that is slower or fails must not invalidate the other readings of a row, nor the reverse.
   if (options_.is_magnetometer && has_field) return {};
   const bool is_good = has_rate && has_force && (has_field || gyroscope_ || accelerometer_);
   return is_good ? std::string() : "a column does not hold a finite number";

@@ -14,62 +14,62 @@
 
 namespace lodeline {
 
-/// One row, in SI units; sensors that the file does not have are empty.
+/// One row in SI units; sensors that the file does not have are empty.
 struct PlainReading {
   Time time;
   std::optional<Vec3> angular_velocity;  ///< rad/s
   std::optional<Vec3> specific_force;    ///< m/s^2
-  std::optional<Vec3> field;             ///< T; also missing where only this row has none
+  std::optional<Vec3> field;             ///< T; also empty where only this row has no value
 };
 
-/// What the caller of PlainCsv makes of what a table leaves open.
+/// Caller's choices for properties that a table does not define.
 struct PlainCsvOptions {
-  /// The table is a magnetometer's: columns x, y, z that tell no sensor are its, the field keeps its numbers
-  /// where no unit is stated, and times may be missing.
+  /// The table belongs to a magnetometer. Columns x, y, z without a sensor name then hold the field, the
+  /// field keeps its numbers where no unit is stated, and times may be missing.
   bool is_magnetometer = false;
 };
 
-/// Reads a single table (TableReader) with a time and the readings of gyroscope, accelerometer, magnetometer,
-/// all at one rate, row by row.
+/// Reads a single table (TableReader) row by row. It has a time and readings of gyroscope, accelerometer and
+/// magnetometer, all at one rate.
 ///
 /// The header names the columns (SensorColumns) and may state units: `t [s], wx [deg/s], …, MagX (µT)`.
-/// Without a header there must be a time and 3 (magnetometer), 6 (gyroscope, accelerometer) or 9 numbers
-/// (all), or rows `Raw:ax,ay,az,gx,gy,gz,mx,my,mz` as calibration programs send them (the magnetometer is
-/// used).
+/// Without a header, each row must have a time and 3 (magnetometer), 6 (gyroscope, accelerometer) or 9
+/// numbers (all). Rows `Raw:ax,ay,az,gx,gy,gz,mx,my,mz` of calibration programs are also accepted; only their
+/// magnetometer is used.
 ///
 /// Without a unit, a time with a decimal point is in seconds and a whole number in nanoseconds, unless only
-/// another unit gives a rate that a sensor can have; the gyroscope is in rad/s; accelerometer and
-/// magnetometer are in the unit that makes the median of the first readings plausible on Earth. What is not
-/// the SI unit is reported.
+/// another unit gives a plausible sensor rate. The gyroscope is in rad/s. Accelerometer and magnetometer have
+/// the unit for which the median of the first readings is plausible on Earth. Units other than SI are
+/// reported.
 class PlainCsv {
  public:
   /// Throws InputError where the file cannot be opened, has no usable row, or has a header that cannot be
-  /// understood. `diagnostics` must outlive the reader.
+  /// interpreted. `diagnostics` must outlive the reader.
   PlainCsv(const std::filesystem::path& file, Diagnostics* diagnostics, const PlainCsvOptions& options = {});
   PlainCsv(std::unique_ptr<ByteSource> bytes, std::string name, Diagnostics* diagnostics,
            const PlainCsvOptions& options = {});
 
-  /// The next usable row; false at the end. Rows with missing, odd or non-finite numbers are reported with
-  /// file and line, and passed over.
+  /// Reads the next usable row; returns false at the end. Rows with missing, additional or non-finite numbers
+  /// are reported with file and line and skipped.
   bool next(PlainReading* reading);
 
   bool hasGyroscope() const { return gyroscope_.has_value(); }
   bool hasAccelerometer() const { return accelerometer_.has_value(); }
   bool hasMagnetometer() const { return magnetometer_.has_value(); }
-  bool hasTimes() const { return time_.has_value(); }  ///< else one reading each 10 ms
+  bool hasTimes() const { return time_.has_value(); }  ///< false: readings get stamps 10 ms apart
   bool statesFieldUnit() const { return magnetometer_ && magnetometer_->unit.factor.has_value(); }
 
  private:
-  /// The columns of one sensor.
+  /// Columns of one three-axis sensor.
   struct Triad : TriadColumns {
     double to_si = 1.0;
   };
-  /// A row that was read to decide on units.
+  /// A row read in advance to determine the units.
   struct Row {
     std::vector<std::string> cells;
     int line = 0;
   };
-  /// A unit, and the sizes of a reading on Earth in it.
+  /// A unit, and the plausible magnitudes of a reading on Earth in this unit.
   struct UnitGuess {
     const char* name;
     double to_si;
@@ -95,12 +95,12 @@ class PlainCsv {
   PlainCsvOptions options_;
   Diagnostics* diagnostics_;
   TableReader table_;
-  std::vector<TimeColumn> times_;  ///< those that the header names
+  std::vector<TimeColumn> times_;  ///< time columns named in the header
   std::optional<TimeColumn> time_;
   std::optional<Triad> gyroscope_, accelerometer_, magnetometer_;
   std::optional<std::size_t> instance_column_;
-  std::string instance_;   ///< whose rows are used
-  std::deque<Row> first_;  ///< read already, yet to be given out
+  std::string instance_;   ///< instance of the sensor whose rows are used
+  std::deque<Row> first_;  ///< rows read in advance, not yet returned
   Row row_;
   int64_t row_count_ = 0;
 };

@@ -52,7 +52,7 @@ std::optional<ImuSample> PlainSource::nextRecordedImu() {
 }
 
 std::optional<MagnetometerSample> PlainSource::nextMagnetometer() {
-  // Rows may lack their field.
+  // Rows may have no field.
   while (magnetometer_.empty() && csv_.hasMagnetometer() && readRow()) {
   }
   return takeFirst(&magnetometer_);

@@ -7,11 +7,11 @@
 
 namespace lodeline {
 
-/// A PlainCsv file as a recording without cameras: gyroscope and accelerometer, and a magnetometer where the
-/// file has one, in body axes, uncalibrated.
+/// A PlainCsv file as a recording without cameras. It has an uncalibrated gyroscope, accelerometer and, where
+/// the file contains one, magnetometer, all in body axes.
 class PlainSource : public RecordedSource {
  public:
-  /// Throws InputError as PlainCsv does, and where gyroscope or accelerometer is missing. `diagnostics` must
+  /// Throws InputError like PlainCsv, and where gyroscope or accelerometer is missing. `diagnostics` must
   /// outlive the source.
   PlainSource(const std::filesystem::path& file, Diagnostics* diagnostics);
 
@@ -24,7 +24,7 @@ class PlainSource : public RecordedSource {
   void measureRate();
 
   PlainCsv csv_;
-  /// Read for one of the sensors, not yet asked for by the other.
+  /// Readings parsed for one sensor while the other one was requested.
   std::deque<ImuSample> imu_;
   std::deque<MagnetometerSample> magnetometer_;
 };

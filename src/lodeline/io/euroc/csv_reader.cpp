@@ -61,14 +61,15 @@ bool namesTime(const ColumnName& column) {
   return column.hasWord({"t"}) || column.hasStem({"time", "stamp"});
 }
 
-/// A header names a time and at least what is needed; others are prose.
+/// Options that accept as header only a line with a time and at least the required columns; other lines are
+/// prose.
 TableOptions optionsFor(std::size_t number_count) {
   TableOptions options;
   options.is_header = [number_count](const std::vector<ColumnName>& columns) {
     return columns.size() > number_count && std::any_of(columns.begin(), columns.end(), namesTime);
   };
-  // Lists of images may or may not have the column of names, whatever the header says.
-  options.needs_rows = false;  // the caller knows whether it can do without
+  // Image lists may or may not have the column of names, independent of the header.
+  options.needs_rows = false;  // the caller decides whether rows are required
   options.least_columns = number_count == 0 ? 2 : 1 + number_count;
   options.optional_columns = number_count == 0 ? 1 : 0;
   return options;

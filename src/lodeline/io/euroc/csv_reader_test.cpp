@@ -24,7 +24,7 @@ class CsvReaderTest : public testing::Test {
     return rows;
   }
 
-  /// The only finding's message after reading rows of two numbers.
+  /// The message of the only finding after reading rows of two numbers.
   std::string findingOf(const std::string& text) {
     readAll(text, 2);
     const std::vector<Finding> findings = diagnostics_.ranked();
@@ -168,7 +168,7 @@ std::string rowsEvery(double first, double step, const char* format, int count =
 
 class StampUnitTest : public CsvReaderTest {
  protected:
-  /// Seconds from the first to the last row of 60 in which an IMU of 200 Hz was written.
+  /// Seconds from the first to the last of 60 rows of a 200 Hz IMU.
   double seconds(const std::string& text) {
     recording_.write("some.csv", text);
     CsvReader reader(recording_.path("some.csv"), 2, &diagnostics_, kInertialRate);

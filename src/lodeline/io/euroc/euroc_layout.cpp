@@ -28,7 +28,7 @@ std::filesystem::path findMav0(const std::filesystem::path& data) {
                   data.string(), recognized.what));
 }
 
-/// Why a folder camN gives no images, or nothing where it does or is not there.
+/// Reason why a folder camN has no images; nothing where it has some or does not exist.
 std::string whyNoImages(const std::filesystem::path& camera) {
   if (!std::filesystem::is_directory(camera)) return {};
   try {

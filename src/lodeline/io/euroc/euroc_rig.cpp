@@ -15,7 +15,7 @@ namespace {
 
 struct StreamStart {
   std::vector<Time> stamps;
-  std::string why_empty;  ///< where there is no stamp
+  std::string why_empty;  ///< reason why there is no stamp
 };
 
 StreamStart readStart(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate) {
@@ -24,7 +24,7 @@ StreamStart readStart(const std::filesystem::path& csv, CsvContent content, Plau
   StreamStart start;
   CsvRow row, before;
   while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
-    // Rows that are written twice say nothing of the rate.
+    // Rows that are written twice are left out of the rate measurement.
     const bool is_repeat = !start.stamps.empty() && row.time == before.time && row.numbers == before.numbers;
     if (!is_repeat) start.stamps.push_back(row.time);
     before = row;
@@ -36,7 +36,7 @@ StreamStart readStart(const std::filesystem::path& csv, CsvContent content, Plau
   return start;
 }
 
-/// For sensors that cannot be done without.
+/// Stamps of a required sensor; throws InputError with `advice` where there is none.
 std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate,
                                 const char* advice) {
   StreamStart start = readStart(csv, content, rate);
@@ -44,7 +44,8 @@ std::vector<Time> requireStamps(const std::filesystem::path& csv, CsvContent con
   return std::move(start.stamps);
 }
 
-/// The rate that a file states, held against the stamps; a usual one where neither tells.
+/// Sets the rate from the stated one and the stamps (settleRate), or to a usual value where neither
+/// determines it.
 void settle(const std::filesystem::path& csv, const std::vector<Time>& stamps, double usual_hz,
             double* rate_hz, Diagnostics* diagnostics) {
   *rate_hz = settleRate(csv.string(), stamps, *rate_hz, diagnostics);
@@ -69,7 +70,7 @@ double settleImageRate(const EurocLayout& layout, const std::string& camera, dou
   return settleRate(list.origin().string(), stamps, stated_hz, diagnostics);
 }
 
-/// Says which cameras have no list of images. Where others have one, something is missing.
+/// Reports cameras without an image list. Where other cameras have one, something is missing.
 void reportLists(const EurocLayout& layout, Diagnostics* diagnostics) {
   const auto has_list = [&](int i) { return std::filesystem::exists(layout.csv(fmt::format("cam{}", i))); };
   const bool is_missing = std::any_of(layout.camera_indices.begin(), layout.camera_indices.end(), has_list);
@@ -105,7 +106,7 @@ std::vector<CameraCalibration> settledCameras(const EurocLayout& layout, const R
   return cameras;
 }
 
-/// A sensor that a recording may or may not have.
+/// Reads a sensor that a recording may lack.
 template <typename Calibration>
 std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, CsvContent content,
                                            const std::optional<Calibration>& described,

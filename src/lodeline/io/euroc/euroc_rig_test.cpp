@@ -110,7 +110,7 @@ TEST_F(EurocRigTest, CamerasCanBeLeftOut) {
 }
 
 TEST_F(EurocRigTest, BodyBecomesTheImuFrame) {
-  // EuRoC's body lies 1 m along x from the IMU, which is turned by 90 degrees about z.
+  // EuRoC's body is 1 m along x from the IMU, which is rotated by 90 degrees about z.
   recording_.replace("imu0/sensor.yaml", "[1, 0, 0, 0, 0, 1, 0, 0,", "[0, -1, 0, 1, 1, 0, 0, 0,");
   recording_.replace("mag0/sensor.yaml", "[1, 0, 0, 0, 0, 1, 0, 0,", "[1, 0, 0, 3, 0, 1, 0, 0,");
   const Rig rig = read();

@@ -9,7 +9,8 @@
 namespace lodeline {
 namespace {
 
-/// The Earth's field is 20 to 70 µT. Readings beyond these bounds are in µT, nT or gauss, or raw counts.
+/// Bounds of plausible readings: the Earth's field is 20 to 70 µT. Readings outside are in µT, nT or gauss,
+/// or are raw counts.
 constexpr double kLeastField_T = 1e-6;
 constexpr double kGreatestField_T = 2e-3;
 
@@ -67,7 +68,7 @@ GreyRange EurocSource::measureGreyRange(size_t camera) {
   const auto pixels = [&](size_t i) { return decodeStoredPixels(loadStoredImage(files[i]).file); };
   while (const std::optional<ListedImage> image = list.next()) {
     files.push_back(image->file);
-    // The rest of the list is of no interest where the images have 8 bits.
+    // Where the images have 8 bits, the rest of the list is not read.
     constexpr size_t kFirst = 8;
     if (files.size() == kFirst && !lodeline::measureGreyRange(kFirst, pixels)) return {};
   }

@@ -11,7 +11,7 @@
 
 namespace lodeline {
 
-/// A recording in the EuRoC ASL layout, read as a stream: whatever its length, only a few rows are in memory.
+/// A recording in the EuRoC ASL layout, read as a stream: memory holds only a few rows at any length.
 ///
 ///     mav0/camN/data.csv       #timestamp [ns],filename      (the name may be missing: STAMP.png then;
 ///                                                            without the file see ImageList)
@@ -20,11 +20,11 @@ namespace lodeline {
 ///     mav0/pressure0/data.csv  #timestamp [ns],depth [m]     (positive down)
 ///     mav0/sonar0/data.csv     #timestamp [ns],range [m],angle [rad]
 ///
-/// each with its sensor.yaml (see readEurocRig).
+/// Each folder has its sensor.yaml (see readEurocRig).
 class EurocSource : public RecordedSource {
  public:
   /// `data`: the folder that contains mav0, or mav0 itself. `diagnostics` must outlive the source. Throws
-  /// InputError as findEurocLayout() and readEurocRig() do.
+  /// InputError like findEurocLayout() and readEurocRig().
   EurocSource(const std::filesystem::path& data, const EurocOptions& options, Diagnostics* diagnostics);
 
   std::optional<ImuSample> nextRecordedImu() override;
@@ -43,12 +43,12 @@ class EurocSource : public RecordedSource {
   Diagnostics* diagnostics_;
   std::optional<CsvReader> imu_;
   std::vector<ImageList> cameras_;
-  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< of each camera, once its first image is asked for
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< per camera, measured at its first image
   std::optional<CsvReader> magnetometer_;
   std::optional<CsvReader> pressure_;
   std::optional<CsvReader> sonar_;
-  bool is_magnetic_unit_doubted_ = false;  ///< once said, a whole column is meant
-  CsvRow row_;                             ///< reused, so that reading does not allocate
+  bool is_magnetic_unit_doubted_ = false;  ///< already reported for the whole column
+  CsvRow row_;                             ///< reused to avoid allocation
 };
 
 }  // namespace lodeline

@@ -60,7 +60,7 @@ std::optional<fs::path> findNamed(const fs::path& folder, bool (*matches)(const 
   return found[0];
 }
 
-/// Beside the recording, in it, and in the folders beside mav0, as TUM-VI's `dso`.
+/// Files beside the recording, in it, and in the folders beside mav0, such as TUM-VI's `dso`.
 std::vector<fs::path> filesAround(const EurocLayout& layout) {
   std::vector<fs::path> folders = {folderOf(layout), layout.mav0};
   std::error_code error;
@@ -80,7 +80,7 @@ std::vector<fs::path> filesAround(const EurocLayout& layout) {
   return files;
 }
 
-/// The sensors that a file describes in full; none where it is no calibration.
+/// The sensors that a file describes completely; none where it is not a calibration.
 RigFile describedBy(const fs::path& file) {
   try {
     Diagnostics ignored;
@@ -123,7 +123,7 @@ class FolderCalibration {
     return files;
   }
 
-  /// Takes the sensor's own file, as a whole or for what Kalibr does not write.
+  /// Adds the sensor's own file, either completely or only the keys that Kalibr does not write.
   void addOwnFile(const std::string& sensor) {
     const fs::path file = layout_.sensor(sensor) / "sensor.yaml";
     const auto known = sections_.find(sensor);
@@ -148,7 +148,8 @@ class FolderCalibration {
     if (known->second.keys != SectionKeys::Kalibr) return;
     YAML::Node section = YAML::Clone(known->second.node);
     const YAML::Node own = loadYamlFile(file);
-    // A camera's T_BS is what Kalibr's chain replaces; an IMU's says where the other sensors' body lies.
+    // Kalibr's chain replaces the T_BS of a camera. The T_BS of an IMU gives the pose of the other sensors'
+    // body.
     for (const std::string key : {"rate_hz", "mask", sensor == "imu0" ? "T_BS" : "rate_hz"}) {
       if (!own[key].IsDefined() || section[key].IsDefined()) continue;
       if (key == "mask") {
@@ -160,7 +161,7 @@ class FolderCalibration {
     known->second.node.reset(section);
   }
 
-  /// Looks among the files around the recording for the one that describes the sensors that lack a
+  /// Searches the files around the recording for the only one that describes the sensors without a
   /// calibration.
   template <typename IsWanted>
   void searchFor(const IsWanted& is_wanted) {
@@ -203,7 +204,7 @@ class FolderCalibration {
           fmt::format("{}: calibration file missing; {} is taken as it is, in body axes", file, sensor));
       return;
     }
-    if (!isCameraName(sensor) && sensor != "imu0") return;  // which readings decide, that may not be there
+    if (!isCameraName(sensor) && sensor != "imu0") return;  // optional sensors, whose readings decide
     std::string seen;
     for (const fs::path& around : filesAround(layout_)) {
       seen += fmt::format("{} {}", seen.empty() ? "; passed over, as they do not describe it:" : ",",

@@ -6,21 +6,19 @@
 
 namespace lodeline {
 
-/// Reads the calibration of a recording's sensors (those that have a `data.csv`). Of several places the first
-/// that describes a sensor counts:
+/// Reads the calibration of a recording's sensors (those that have a `data.csv`). The first of these places
+/// that describes a sensor has priority:
 ///
 /// 1. `layout.rig_files`;
 /// 2. Kalibr's or OpenVINS's files by their names (`camchain-imucam.yaml`, `kalibr_imucam_chain.yaml`,
-/// `imu.yaml`,
-///    `kalibr_imu_chain.yaml`, a recording's name before or after), beside mav0 or in it (`kalibr_used`,
-///    where a sensor.yaml is there too);
+///    `imu.yaml`, `kalibr_imu_chain.yaml`, with a recording's name before or after), beside mav0 or in it
+///    (`kalibr_used`, where a sensor.yaml exists too);
 /// 3. the sensor's `sensor.yaml`;
-/// 4. for cameras or an IMU that still lack one: any calibration beside mav0, in it, or in a folder beside
-/// it, told
-///    by its content, where there is one only (`calibration_found`).
+/// 4. for cameras or an IMU that still lack one: the only calibration file beside mav0, in it, or in a folder
+///    beside it, identified by its content (`calibration_found`).
 ///
-/// Throws InputError, naming the files that were looked at and what to give, where a camera or the IMU has
-/// none and `layout.needs_calibration`; otherwise such sensors are left out and reported
+/// Where a camera or the IMU has no calibration and `layout.needs_calibration` is set, it throws InputError
+/// naming the examined files and the remedy. Otherwise it leaves such sensors out and reports them
 /// (`imu0_uncalibrated`, …).
 RigFile readFolderCalibration(const EurocLayout& layout, Diagnostics* diagnostics);
 

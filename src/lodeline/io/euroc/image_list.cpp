@@ -34,8 +34,8 @@ std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& folde
   return files;
 }
 
-/// The times that texts name, all of them in one unit: that in which a camera has a rate that it can have;
-/// else nanoseconds, decimals seconds. Nothing where one of them is no number.
+/// Parses texts as times in one common unit: the one that gives a plausible camera rate, otherwise
+/// nanoseconds, and seconds for decimals. Returns nothing where one of them is not a number.
 std::optional<std::vector<Time>> timesOf(const std::vector<std::string>& texts) {
   std::vector<double> numbers;
   bool has_decimals = false;
@@ -56,7 +56,7 @@ std::optional<std::vector<Time>> timesOf(const std::vector<std::string>& texts) 
   return times;
 }
 
-/// "frame9" before "frame10": by the number at the end, then by name.
+/// Orders by the number at the end, then by name: "frame9" before "frame10".
 bool comesBefore(const std::filesystem::path& a, const std::filesystem::path& b) {
   const std::string first = a.stem().string(), second = b.stem().string();
   const auto digits = [](const std::string& name) {
@@ -69,7 +69,7 @@ bool comesBefore(const std::filesystem::path& a, const std::filesystem::path& b)
   return i.size() != j.size() ? i.size() < j.size() : i != j ? i < j : first < second;
 }
 
-/// Whether the names count images instead of telling times.
+/// Whether the names are image counts instead of times.
 bool areCounts(const std::vector<std::string>& names) {
   int64_t least = std::numeric_limits<int64_t>::max(), greatest = 0;
   for (const std::string& name : names) {

@@ -15,10 +15,10 @@ struct ListedImage {
   std::filesystem::path file;
 };
 
-/// The images of one camera folder (camN): those that its data.csv lists, in the order of the file. Without
-/// data.csv the list is made from the image files in camN/data, in order of time: where their names are
-/// stamps (an integer as data.csv would have it, or seconds with decimals), these; else the rows of a times
-/// file (timestamps.txt, times.txt) in the folder, beside it or above it, if it has one row an image.
+/// The images of one camera folder (camN) in the order of its data.csv. Without data.csv, the list is made
+/// from the image files in camN/data in order of time. File names that are stamps give the times (an integer
+/// as in data.csv, or seconds with decimals). Otherwise, the rows of a times file (timestamps.txt, times.txt)
+/// in the folder, beside it or above it give the times, if it has one row per image.
 class ImageList {
  public:
   /// Throws InputError where there is no list and none can be made. `diagnostics` must outlive the list.
@@ -27,9 +27,9 @@ class ImageList {
   /// The next image; nothing at the end.
   std::optional<ListedImage> next();
 
-  /// Whether there is data.csv, or image files from which a list may be made.
+  /// Whether data.csv exists, or image files from which a list may be made.
   static bool hasImages(const std::filesystem::path& camera);
-  /// The file that was read for the stamps, or the folder whose names were.
+  /// The file with the stamps, or the folder whose file names are the stamps.
   const std::filesystem::path& origin() const { return origin_; }
   bool isMade() const { return !csv_; }
 

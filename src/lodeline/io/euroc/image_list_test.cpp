@@ -26,7 +26,7 @@ class ImageListTest : public testing::Test {
     return all;
   }
 
-  /// Takes the list away and gives the images names by number.
+  /// Removes the list and renames the images by number.
   void rename(const std::string& camera, const std::function<std::string(int)>& name) {
     std::filesystem::remove(recording_.path(camera + "/data.csv"));
     for (int i = 0; i <= 20; ++i) {

@@ -51,7 +51,7 @@ TEST_F(Mh01, GivesOnePacketPerLeftImage) {
   EXPECT_EQ(right_images, 287);
   EXPECT_EQ(diagnostics_.count("image_missing"), 1);
   EXPECT_EQ(diagnostics_.ranked().size(), 1u);
-  // The recording holds 5 s of inertial data before the first image.
+  // The recording has 5 s of inertial data before the first image.
   EXPECT_NEAR((packets[0].time - packets[0].imu.front().time).seconds(), 5.0, 0.01);
 }
 

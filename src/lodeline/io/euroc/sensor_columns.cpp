@@ -9,7 +9,7 @@ namespace {
 /// One axis of one triad.
 struct Axis {
   int axis = 0;
-  std::string group;   ///< the same for the three axes of a triad
+  std::string group;   ///< equal for the three axes of a triad
   std::string sensor;  ///< the letters before the axis in the same word: "mag" of "magx"
 };
 
@@ -55,12 +55,12 @@ bool isNoReading(const ColumnName& column) {
                       "orient", "quat",   "euler",    "heading", "jerk",    "scale"})) {
     return true;
   }
-  // Accelerations that a telephone or an attitude filter has freed of gravity.
+  // Accelerations without gravity from a telephone or an attitude filter.
   if (column.hasWord({"user", "free"})) return true;
   return column.hasWord({"b"}) && column.hasWord({"w", "a", "g"});  // EuRoC's biases: b_w_RS_S_x
 }
 
-/// The sensors that the words of a name tell; more than one where they contradict each other.
+/// The sensor identified by the words of a name; nothing where they contradict each other.
 std::optional<Quantity> quantityByWords(const ColumnName& column, const std::string& joined) {
   const auto has = [&](std::initializer_list<std::string_view> words,
                        std::initializer_list<std::string_view> stems) {
@@ -88,7 +88,7 @@ std::optional<Quantity> quantityByWords(const ColumnName& column, const std::str
   return is_rate ? Quantity::AngularRate : is_force ? Quantity::SpecificForce : Quantity::MagneticField;
 }
 
-/// By a unit that only one of the sensors has.
+/// The sensor identified by a unit that no other sensor has.
 std::optional<Quantity> quantityByUnit(const ColumnName& column) {
   std::optional<Quantity> found;
   if (column.unit.empty()) return found;
@@ -104,7 +104,7 @@ std::optional<Quantity> quantityOf(const ColumnName& column, const std::string& 
   const std::optional<Quantity> by_words = quantityByWords(column, joined);
   const std::optional<Quantity> by_unit = quantityByUnit(column);
   if (!by_words) return by_unit;
-  // "Rotation x (deg)" is an angle; only words that name the sensor itself outweigh the unit.
+  // "Rotation x (deg)" is an angle; only words for the sensor itself have priority over the unit.
   const bool names_sensor = column.hasStem({"gyr", "acc", "mag"}) || !joined.empty() ||
                             column.hasWord({"w", "g", "a", "f", "m", "b"});
   const bool contradicts = !column.unit.empty() && !statedUnit(column, *by_words).factor;
@@ -112,7 +112,7 @@ std::optional<Quantity> quantityOf(const ColumnName& column, const std::string& 
   return by_words;
 }
 
-/// Axes that belong together, complete or not yet.
+/// Axes of one triad, possibly incomplete.
 struct Group {
   std::optional<Quantity> quantity;
   std::array<std::optional<std::size_t>, 3> column;
@@ -131,7 +131,7 @@ std::vector<Group> groupsOf(const std::vector<ColumnName>& columns) {
     const auto [at, is_new] = index.emplace(key, groups.size());
     if (is_new) groups.push_back({quantity, {}, {}});
     Group& group = groups[at->second];
-    if (group.column[static_cast<std::size_t>(axis->axis)]) continue;  // the first of a name counts
+    if (group.column[static_cast<std::size_t>(axis->axis)]) continue;  // the first column of a name is used
     group.column[static_cast<std::size_t>(axis->axis)] = i;
     group.name += (group.name.empty() ? "" : ", ") + columns[i].text;
   }

@@ -10,29 +10,29 @@
 
 namespace lodeline {
 
-/// The columns of one sensor's three axes.
+/// Columns of the three axes of one sensor.
 struct TriadColumns {
   std::array<std::size_t, 3> column = {};  ///< of x, y, z
   StatedUnit unit;
-  std::string name;  ///< the three names as the header writes them, for messages
+  std::string name;  ///< the three names as written in the header, for messages
 };
 
-/// What the columns of a table of sensor readings hold, by their names.
+/// Content of the columns of a table of sensor readings, determined from their names.
 struct SensorColumns {
-  std::vector<TimeColumn> times;  ///< all that name a time, best first
+  std::vector<TimeColumn> times;  ///< all time columns, best first
   std::optional<TriadColumns> angular_rate, specific_force, field;
-  /// x, y and z whose names and units tell no sensor.
+  /// Columns x, y and z whose names and units identify no sensor.
   std::optional<TriadColumns> unnamed;
-  /// The number of the sensor, in tables that hold the rows of several.
+  /// Column with the number of the sensor, in tables with rows of several sensors.
   std::optional<std::size_t> instance;
-  /// Triads of a quantity that has another one, by their names.
+  /// Names of redundant triads, whose quantity is already in another triad.
   std::vector<std::string> unused;
 };
 
-/// Matches names by their meaning. An axis is a word x, y or z, the last letter (`gx`, `MagY`), or an index
-/// (`[0]`). The sensor is told by a word (`gyro`, `acc`, `mag`, `angular velocity`, ...), by a letter (w, g;
-/// a, f; m, b), or by the unit (`X (µT)`). Biases, offsets, covariances, gravity and accelerations without
-/// gravity are no readings.
+/// Identifies columns by the meaning of their names. An axis is a word x, y or z, the last letter (`gx`,
+/// `MagY`), or an index (`[0]`). A word (`gyro`, `acc`, `mag`, `angular velocity`, ...), a letter (w, g; a,
+/// f; m, b) or the unit (`X (µT)`) identifies the sensor. Biases, offsets, covariances, gravity and
+/// accelerations without gravity do not count as readings.
 SensorColumns findSensorColumns(const std::vector<ColumnName>& columns);
 
 }  // namespace lodeline

@@ -12,8 +12,8 @@
 namespace lodeline {
 namespace {
 
-/// Half an hour at 200 Hz (IMU) and 15 Hz (images of 2 x 2 px), made up as it is pulled; counts what was
-/// pulled ahead.
+/// Half an hour at 200 Hz (IMU) and 15 Hz (images of 2 x 2 px), generated on demand. Counts the readings
+/// pulled in advance.
 class LongSource : public MeasurementSource {
  public:
   LongSource() {
@@ -29,7 +29,7 @@ class LongSource : public MeasurementSource {
   std::optional<ImuSample> nextImu() override {
     if (imu_count >= 1800 * 200) return std::nullopt;
     ImuSample sample;
-    // A sensor that repeats itself would be taken for a dead one.
+    // Changing values, because a sensor with constant readings would be rejected as stuck.
     const double phase = 0.05 * static_cast<double>(imu_count);
     sample.angular_velocity_B = Vec3(0.1 * std::sin(phase), 0.1 * std::cos(phase), 0.02);
     sample.specific_force_B = Vec3(0.2 * std::cos(phase), 0.1, 9.8 + 0.1 * std::sin(phase));
@@ -40,7 +40,7 @@ class LongSource : public MeasurementSource {
     if (magnetometer_count >= 1800 * 100) return std::nullopt;
     return MagnetometerSample{Time::fromNanoseconds(magnetometer_count++ * 10'000'000), Vec3(2e-5, 0, 0)};
   }
-  /// An image that no other moment has: equal images would be left out as repeats.
+  /// A different image for each moment, because equal images would be left out as repeats.
   static cv::Mat pattern(int64_t moment) {
     cv::Mat image(2, 2, CV_8UC1);
     for (int i = 0; i < 4; ++i) {
@@ -50,9 +50,9 @@ class LongSource : public MeasurementSource {
   }
   std::optional<PendingImage> nextImage(size_t camera) override {
     int64_t& count = image_count[camera];
-    // The images begin after a minute, so that a history has to be kept and cut.
+    // The images start after a minute, so that a history must be kept and cut.
     const Time time = Time::fromNanoseconds(60'000'000'000 + count * 66'666'667);
-    // At the end of the images the rest of the readings is read at once.
+    // At the end of the images, the remaining readings are read at once.
     if (time.seconds() > 1799.95) return std::nullopt;
     ++count;
     return PendingImage{time, "made up", [count] { return LoadedImage{pattern(count), ""}; }};
@@ -66,7 +66,7 @@ class LongSource : public MeasurementSource {
   Rig rig_;
 };
 
-/// Resident memory of this process, as Linux counts it.
+/// Resident memory of this process as reported by Linux.
 double residentMegabytes() {
   std::ifstream statm("/proc/self/statm");
   double total_pages = 0.0, resident_pages = 0.0;
@@ -105,13 +105,13 @@ TEST_P(StreamingBounds, HalfAnHourNeedsNoMoreMemoryThanAMinute) {
   LongSource source;
   Diagnostics diagnostics;
   Synchronizer synchronizer(&source, options, &diagnostics);
-  // Prefetching runs one packet ahead: a fifteenth of a second.
+  // Prefetching is one packet ahead: a fifteenth of a second.
   const int64_t packets_ahead = options.prefetch ? 1 : 0;
   int64_t packets = 0;
   size_t most_held = 0;
   while (const std::optional<FramePacket> packet = synchronizer.next()) {
     ++packets;
-    // Readings pulled and not yet given out: those past the image time, seen but not passed on.
+    // Readings pulled and not yet returned: those after the image time.
     const int64_t imu_due = packet->time.nanoseconds() / 5'000'000 + 1;
     const int64_t magnetometer_due = packet->time.nanoseconds() / 10'000'000 + 1;
     EXPECT_LE(source.imu_count - imu_due, 3 + 14 * packets_ahead);

@@ -5,8 +5,8 @@
 #include <array>
 #include <string>
 
-/// The calibration of EuRoC's rig (machine hall) as sections of a rig file, and its numbers for the files of
-/// other programs.
+/// The calibration of EuRoC's rig (machine hall) as sections of a rig file, and its numbers for files in
+/// other programs' formats.
 namespace lodeline::test {
 
 inline constexpr const char* kLeftPose =
@@ -17,7 +17,7 @@ inline constexpr const char* kRightPose =
     "0.0125552670891, -0.999755099723, 0.0182237714554, -0.0198435579556, 0.999598781151, 0.0130119051815, "
     "0.0251588363115, 0.0453689425024, -0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038, "
     "0.0, 0.0, 0.0, 1.0";
-/// The same from the IMU to the cameras, and from the right camera to the left one.
+/// Transformations from the IMU to the cameras, and from the right camera to the left one.
 inline constexpr const char* kLeftFromImu =
     "0.0148655429818, 0.999557249008, -0.0257744366974, 0.0652229095355, -0.999880929699, 0.0149672133247, "
     "0.00375618835797, -0.0207063854927, 0.00414029679422, 0.025715529948, 0.999660727178, "
@@ -38,7 +38,7 @@ inline constexpr const char* kEurocImu =
     "imu0:\n  rate_hz: 200\n  gyroscope_noise_density: 1.6968e-04\n  gyroscope_random_walk: 1.9393e-05\n"
     "  accelerometer_noise_density: 2.0000e-3\n  accelerometer_random_walk: 3.0000e-3\n";
 
-/// Our own rig file.
+/// Text of a Lodeline rig file.
 inline std::string eurocRig() {
   std::string text = kEurocImu;
   for (size_t i = 0; i < 2; ++i) {
@@ -50,7 +50,7 @@ inline std::string eurocRig() {
   return text;
 }
 
-/// Kalibr's camchain (`key` T_cam_imu) or OpenVINS's (T_imu_cam), with the pose of cam0 under the key.
+/// Text of Kalibr's camchain (`key` T_cam_imu) or OpenVINS's (T_imu_cam), with the pose of cam0 under `key`.
 inline std::string eurocChain(const std::string& key, const std::string& left_pose,
                               const std::string& right_key, const std::string& right_pose) {
   std::string text;
@@ -69,7 +69,7 @@ inline constexpr const char* kKalibrImu =
     "accelerometer_random_walk: 3.0e-03\ngyroscope_noise_density: 1.6968e-04\ngyroscope_random_walk: "
     "1.9393e-05\n";
 
-/// VINS-Fusion's main file (`noise`: its four figures) and the file of a camera.
+/// Text of VINS-Fusion's main file (`noise`: its four values) and of a camera file.
 inline std::string eurocVins(const std::string& noise) {
   return fmt::format(
       "%YAML:1.0\nimu: 1\nnum_of_cam: 2\nimu_topic: \"/imu0\"\nimage0_topic: \"/cam0/image_raw\"\n"

@@ -71,7 +71,7 @@ void TestRecording::writeImu() const {
   std::string csv = "#timestamp [ns],w_x,w_y,w_z [rad s^-1],a_x,a_y,a_z [m s^-2]\n";
   for (int i = 0; i <= 400; ++i) {
     const double time_s = 0.5 + 0.005 * i;
-    // An accelerometer that always says the same would hang.
+    // Changing values, because an accelerometer with constant readings would be rejected as stuck.
     csv += fmt::format("{},{:.3f},0,0,{:.3f},0.2,9.8\n", testStamp(time_s), time_s, 0.1 + 0.001 * (i % 3));
   }
   write("imu0/data.csv", csv);

@@ -8,9 +8,9 @@
 
 namespace lodeline {
 
-/// A small EuRoC recording for tests, in a folder of its own that goes away with the object: two cameras of
-/// 16 x 12 px at 20 Hz from 1.0 to 2.0 s, an IMU at 200 Hz from 0.5 to 2.5 s and a magnetometer at 50 Hz. The
-/// gyroscope reads the time in seconds on its first axis. Tests then spoil what they are about.
+/// A small EuRoC recording for tests, in a temporary folder that the destructor removes. It has two cameras
+/// of 16 x 12 px at 20 Hz from 1.0 to 2.0 s, an IMU at 200 Hz from 0.5 to 2.5 s and a magnetometer at 50 Hz.
+/// The gyroscope's first axis reads the time in seconds. Each test damages the part that it examines.
 class TestRecording {
  public:
   TestRecording();
@@ -25,7 +25,7 @@ class TestRecording {
 
   void write(const std::string& below, const std::string& text) const;
   std::string read(const std::string& below) const;
-  /// Replaces the one occurrence of a text; throws where there is none.
+  /// Replaces the only occurrence of a text; throws where there is none.
   void replace(const std::string& below, const std::string& from, const std::string& to) const;
 
  private:
@@ -36,9 +36,9 @@ class TestRecording {
   std::filesystem::path folder_;
 };
 
-/// Stamps of the test recordings: an epoch of which doubles lose nanoseconds, plus so many seconds.
+/// Stamps of the test recordings: `seconds` after an epoch so large that doubles lose nanoseconds.
 Time testTime(double seconds);
-/// The stamp as a CSV file writes it.
+/// The stamp as written in a CSV file.
 std::string testStamp(double seconds);
 
 }  // namespace lodeline

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr size_t kHeaderBytes = 13;
-/// Deflate cannot compress further than 1032 to 1, so a header that promises more is damaged.
+/// Maximum compression ratio of Deflate, 1032 to 1; a header with a larger ratio is damaged.
 constexpr size_t kGreatestRatio = 1032;
 
 uint32_t bigEndian(const uint8_t* bytes) {
@@ -27,7 +27,7 @@ struct Chunk {
   std::span<const uint8_t> data;
 };
 
-/// Takes the chunk at the front of `rest`; false where it is cut off or its checksum is wrong.
+/// Takes the chunk at the front of `rest`; returns false where it is truncated or its checksum is wrong.
 bool takeChunk(std::span<const uint8_t>* rest, Chunk* chunk) {
   constexpr size_t kFrameBytes = 12;
   if (rest->size() < kFrameBytes) return false;

@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// Smooth shading with noise, so that encoders choose every filter.
+/// Smooth shading with noise, for which encoders choose every filter.
 cv::Mat greyPicture(int width_px, int height_px) {
   cv::Mat image(height_px, width_px, CV_8UC1);
   uint32_t state = 1;
@@ -61,7 +61,7 @@ TEST(GreyPng, UndoesEachFilterByHand) {
   EXPECT_FALSE(png::unfilter(unknown.data(), 2, 1, pixels.data()));
 }
 
-/// What the filters' definitions make of rows of a filter type and `width` bytes each.
+/// Reference implementation of the filters for rows of a filter type and `width` bytes each.
 std::vector<uint8_t> unfilteredByDefinition(const std::vector<uint8_t>& filtered, int width) {
   const int height = static_cast<int>(filtered.size()) / (width + 1);
   std::vector<uint8_t> pixels(static_cast<size_t>(width * height));
@@ -79,14 +79,14 @@ std::vector<uint8_t> unfilteredByDefinition(const std::vector<uint8_t>& filtered
   return pixels;
 }
 
-// Mostly Paeth or Average, as adaptive encoders write photographs; the rows of every height and mixture.
+// Mostly Paeth or Average, as adaptive encoders choose for photographs; all heights and mixtures of filters.
 TEST(GreyPng, UndoesFiltersRowByRowAndAbreastAlike) {
   std::mt19937 random(1);
   for (const int width : {1, 13, 16, 45}) {
     for (int height = 1; height < 40; ++height) {
       std::vector<uint8_t> filtered(static_cast<size_t>((width + 1) * height));
       for (uint8_t& byte : filtered) byte = static_cast<uint8_t>(random());
-      const auto kinds = static_cast<uint8_t>(height % 2 == 0 ? 5 : 4);  // with Paeth or without
+      const auto kinds = static_cast<uint8_t>(height % 2 == 0 ? 5 : 4);  // with Paeth or without it
       for (int y = 0; y < height; ++y) {
         filtered[static_cast<size_t>(y * (width + 1))] =
             static_cast<uint8_t>(random() % 3 > 0 ? kinds - 1 : random() % kinds);

@@ -33,7 +33,7 @@ std::optional<GreyRange> measureGreyRange(const std::vector<cv::Mat>& images) {
     const int from = std::max(0, low - margin);
     return GreyRange{static_cast<uint16_t>(from), shiftFor(high + margin - from)};
   }
-  // Cameras have 8, 10, 12, 14 or 16 bits; what was dark so far may use the rest later.
+  // Cameras have 8, 10, 12, 14 or 16 bits; dark images may use the remaining bits later.
   const int shift = shiftFor(high);
   return GreyRange{0, shift + shift % 2};
 }

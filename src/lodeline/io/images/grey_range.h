@@ -11,8 +11,8 @@
 
 namespace lodeline {
 
-/// How the 16-bit pixels of a camera become 8-bit grey: (value - low) / 2^shift, cut off at 0 and 255. One
-/// range for all images of a camera, so that their grey values stay comparable.
+/// Conversion of a camera's 16-bit pixels to 8-bit grey: (value - low) / 2^shift, clipped to 0 and 255. All
+/// images of a camera use one range, so that their grey values stay comparable.
 struct GreyRange {
   uint16_t low = 0;
   int shift = 8;
@@ -23,18 +23,18 @@ struct GreyRange {
   }
 };
 
-/// The range that 16-bit images use: the fewest of 8, 10, 12, 14 and 16 bits that hold all but a thousandth
-/// of the pixels (dead pixels). Where the pixels begin at three quarters of the greatest and higher, as those
-/// of thermal cameras do, the span between them and half of that on both sides. Images of other depths do not
-/// count; nothing where there is no 16-bit image.
+/// Measures the range used by 16-bit images: the fewest of 8, 10, 12, 14 and 16 bits that contain all but a
+/// thousandth of the pixels (dead pixels). The pixels of thermal cameras start at three quarters of the
+/// largest value or higher. The range then is their span, extended by half of it on both sides. Images of
+/// other depths are ignored. Returns nothing where there is no 16-bit image.
 std::optional<GreyRange> measureGreyRange(const std::vector<cv::Mat>& images);
 
-/// The same of the images of a recording, at most eight of them, spread over it. `image`: pixels as stored,
-/// by number, empty where there are none. No more than the first readable image is looked at where that has 8
-/// bits.
+/// Measures the range on at most eight images spread over a recording. `image` returns the stored pixels of
+/// an image by number, empty where there are none. Where the first readable image has 8 bits, no other is
+/// read.
 std::optional<GreyRange> measureGreyRange(size_t count, const std::function<cv::Mat(size_t)>& image);
 
-/// Says, as a notice, where a camera's 16-bit images use another range than all of the 16 bits.
+/// Reports a notice where a camera's 16-bit images use a range other than the full 16 bits.
 void reportGreyRange(const std::string& camera, const std::optional<GreyRange>& range,
                      Diagnostics* diagnostics);
 

@@ -37,7 +37,7 @@ bool hasEnd(std::span<const uint8_t> jpeg) {
   return std::search(tail.begin(), tail.end(), kJpegEnd.begin(), kJpegEnd.end()) != tail.end();
 }
 
-/// Whether the last rows of blocks are of one grey level, with which a decoder fills what is missing.
+/// Whether the last rows of blocks have one grey level, with which a decoder fills missing data.
 bool endsFilledUp(const cv::Mat& image) {
   constexpr int kRows = 8;
   if (image.rows <= kRows) return false;
@@ -45,8 +45,8 @@ bool endsFilledUp(const cv::Mat& image) {
   return cv::countNonZero(rows != image.at<uint8_t>(image.rows - 1, image.cols - 1)) == 0;
 }
 
-/// A JPEG file without its end marker: some cameras leave it out of whole images, and it is missing where a
-/// file was cut off.
+/// Decodes a JPEG file without its end marker. Some cameras omit it from complete images, and truncated files
+/// lack it.
 LoadedImage decodeUnendedJpeg(std::span<const uint8_t> bytes, const std::string& name) {
   std::vector<uint8_t> ended(bytes.begin(), bytes.end());
   ended.insert(ended.end(), kJpegEnd.begin(), kJpegEnd.end());
@@ -97,7 +97,8 @@ LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& n
     if (isJpeg(bytes) && !hasEnd(bytes)) return decodeUnendedJpeg(bytes, name);
     result.image = decodeGreyPng(bytes);
     if (result.image.empty() && !isJpeg(bytes)) {
-      // Not by the decoder's own conversion: the same pixels must give the same grey in a bag.
+      // The decoder's own grey conversion is not used, because the same pixels must give the same grey in a
+      // bag.
       const cv::Mat pixels = cv::imdecode(input, cv::IMREAD_UNCHANGED);
       if (pixels.depth() == CV_8U || pixels.depth() == CV_16U) result.image = greyFrom(pixels, range);
     }

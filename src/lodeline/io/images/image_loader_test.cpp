@@ -62,7 +62,7 @@ TEST_F(ImageLoaderTest, RefusesAJpegFileThatWasCutOff) {
   std::filesystem::resize_file(file("cut.jpg"), size / 2);
   EXPECT_TRUE(loadGreyImage(file("cut.jpg")).image.empty());
   EXPECT_THAT(loadGreyImage(file("cut.jpg")).problem, HasSubstr("cut.jpg: image damaged"));
-  // Without its end marker alone an image is whole.
+  // An image that lacks only its end marker is complete.
   std::filesystem::copy_file(file("whole.jpg"), file("unmarked.jpg"));
   std::filesystem::resize_file(file("unmarked.jpg"), size - 2);
   EXPECT_FALSE(loadGreyImage(file("unmarked.jpg")).image.empty());

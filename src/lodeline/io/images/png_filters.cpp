@@ -40,7 +40,7 @@ void unfilterRow(uint8_t filter, const uint8_t* filtered, const uint8_t* above, 
   }
 }
 
-/// Whether rows are quicker abreast than one by one: Average and Paeth alone are slow enough.
+/// Whether parallel rows are faster than single rows; only Average and Paeth are slow enough.
 bool payAbreast(const uint8_t* filtered, int width, int rows) {
   constexpr int kFewest = 3;
   int slow = 0;
@@ -63,10 +63,10 @@ inline __attribute__((always_inline)) void transpose(Block* block) {
   }
 }
 
-/// By filter: all bits set in the lanes that have it.
+/// Lane masks by filter: all bits are set in the lanes with that filter.
 using Masks = std::array<Bytes, kPaeth + 1>;
 
-/// What each lane's filter makes of its neighbours.
+/// Prediction of each lane's filter from its neighbours.
 template <bool kAnyPaeth>
 inline __attribute__((always_inline)) Bytes predicted(const Masks& is, Bytes left, Bytes up, Bytes up_left) {
   const Bytes average = (left & up) + ((left ^ up) >> 1);
@@ -75,7 +75,7 @@ inline __attribute__((always_inline)) Bytes predicted(const Masks& is, Bytes lef
   return sum;
 }
 
-/// One step a byte of `above`, which are as many as fill `blocks` blocks. Lane r begins at rows[r].
+/// Processes one byte of `above` per step, for `blocks` blocks of bytes. Lane r begins at rows[r].
 template <bool kAnyPaeth>
 inline __attribute__((always_inline)) void stepAbreast(const Masks& is, const uint8_t* above, size_t blocks,
                                                        const std::array<uint8_t*, kLanes>& rows) {
@@ -108,8 +108,8 @@ void stepWithoutPaeth(const Masks& is, const uint8_t* above, size_t blocks,
   stepAbreast<false>(is, above, blocks, rows);
 }
 
-/// A pixel waits for its left neighbour, so a row alone leaves the processor idle. Here sixteen rows go
-/// abreast, one to a lane, each a pixel behind the row above it.
+/// Unfilters sixteen rows in parallel, one per lane, each lane one pixel behind the row above it. A pixel
+/// depends on its left neighbour, so a single row would leave the processor mostly idle.
 class RowsAbreast {
  public:
   explicit RowsAbreast(int width)
@@ -118,9 +118,9 @@ class RowsAbreast {
         above_(blocks_ * kLanes),
         bytes_(kLanes * stride()) {}
 
-  /// Any filters; `rows` may be fewer than lanes.
+  /// Handles any filters; `rows` may be fewer than the lanes.
   void unfilter(const uint8_t* filtered, const uint8_t* above, size_t rows, uint8_t* pixels) {
-    // Lanes that have not come to their row yet see zeros all around and stay zero.
+    // Lanes before the start of their row have zeros as neighbours and stay zero.
     std::fill(bytes_.begin(), bytes_.end(), uint8_t{0});
     std::copy_n(above, width_, above_.begin());
     Masks is{};
@@ -143,7 +143,7 @@ class RowsAbreast {
 
   size_t width_, blocks_;
   std::vector<uint8_t> above_;
-  std::vector<uint8_t> bytes_;  ///< of every lane, zeros before its row: first filtered, then pixels
+  std::vector<uint8_t> bytes_;  ///< per lane, with zeros before its row: filtered bytes first, then pixels
 };
 
 }  // namespace

@@ -4,10 +4,11 @@
 
 namespace lodeline::png {
 
-/// The Paeth predictor: whichever of left, up and up-left is nearest to left + up - up_left, in this order
-/// among equals; of unsigned bytes, or of vectors of them element by element. That point is as far from left
-/// as up is from up-left, and the other way round; up-left can only be nearer where it lies between the two.
-/// The test compares this with the definition for all arguments.
+/// The Paeth predictor: the value among left, up and up-left that is nearest to left + up - up_left, in this
+/// order for equal distances. Arguments are unsigned bytes or vectors of them, element by element. The
+/// distance to left is |up - up_left|, and the distance to up is |left - up_left|. Up-left can be the nearest
+/// only where its value is between the other two. The test compares this with the definition for all
+/// arguments.
 template <typename T>
 T paeth(T left, T up, T up_left) {
   const T to_left = up < up_left ? up_left - up : up - up_left;
@@ -19,8 +20,9 @@ T paeth(T left, T up, T up_left) {
   return (is_between & (more - less < less)) ? up_left : nearer;
 }
 
-/// Undoes the filters of an image of one byte per pixel. `filtered` holds `height` rows of a filter type and
-/// `width` bytes each; `pixels` receives height x width bytes without padding. False for an unknown filter.
+/// Undoes the filters of an image with one byte per pixel. `filtered` holds `height` rows, each with a filter
+/// type and `width` bytes. `pixels` receives height x width bytes without padding. Returns false for an
+/// unknown filter.
 bool unfilter(const uint8_t* filtered, int width, int height, uint8_t* pixels);
 
 }  // namespace lodeline::png

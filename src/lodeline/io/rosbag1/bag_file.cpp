@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Holds the whole of every message but images.
+/// Size of the first read; includes every complete message except images.
 constexpr size_t kMessageAtOnce = 1024;
 
 std::vector<BagTopic> collectTopics(BagContents contents) {

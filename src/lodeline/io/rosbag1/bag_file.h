@@ -12,30 +12,30 @@
 
 namespace lodeline {
 
-/// All messages of one topic and type, in the order in which they were received.
+/// All messages of one topic and type in the order of reception.
 struct BagTopic {
   BagConnection connection;
   std::vector<BagEntry> entries;
 };
 
-/// A ROS 1 bag (format 2.0), opened for reading: which messages it holds, and the bytes of each. Memory: 16
-/// bytes a message and a few unpacked chunks.
+/// A ROS 1 bag (format 2.0) opened for reading: the index of its messages, and the bytes of each. Memory use
+/// is 16 bytes per message and a few unpacked chunks.
 ///
-/// Reads by itself rather than through librosbag, because that refuses bags that were not closed or were cut
-/// off, and keeps a single chunk unpacked, so that reading several topics side by side would unpack every
-/// compressed chunk many times over.
+/// Lodeline does not use librosbag for reading. That library refuses bags that were not closed or are
+/// truncated. It also keeps a single unpacked chunk, so that parallel reading of several topics would unpack
+/// every compressed chunk many times.
 class BagFile {
  public:
-  /// Throws InputError where the file cannot be opened, is no bag of format 2.0, is encrypted, or holds no
-  /// message. What is damaged or missing is reported as `bag_unindexed`, `bag_truncated`, `bag_damaged` and
+  /// Throws InputError where the file cannot be opened, is not a bag of format 2.0, is encrypted, or contains
+  /// no message. Reports damaged or missing parts as `bag_unindexed`, `bag_truncated`, `bag_damaged` and
   /// `bag_chunk`. `diagnostics` must outlive the object.
   BagFile(const std::filesystem::path& file, Diagnostics* diagnostics);
 
   const std::filesystem::path& file() const { return chunks_.file(); }
-  /// Sorted by name, then type.
+  /// Topics sorted by name, then by type.
   const std::vector<BagTopic>& topics() const { return topics_; }
 
-  /// The bytes of a message; nothing where they are damaged, which is reported.
+  /// The bytes of a message. Damaged messages are reported, and the result is then empty.
   std::optional<wire::Bytes> read(const BagEntry& entry);
 
  private:

@@ -107,7 +107,7 @@ TEST_F(BagFileTest, RecoversATruncatedBagAtAnyLength) {
       EXPECT_LE(messages, all);
       before = messages;
     }
-    // Only the summary at the end is missing in the last.
+    // In the last case, only the summary at the end is missing.
     EXPECT_GT(before, all * 8 / 10) << compression;
   }
 }
@@ -126,7 +126,7 @@ TEST_F(BagFileTest, GoesOnPastDamagedBytes) {
     const size_t messages = readable(&bag);
     EXPECT_GT(messages, all / 4) << compression;
     EXPECT_GT(bag.topics()[0].entries.back().received, testTime(2.4)) << compression;
-    // Uncompressed, damage may have met nothing but pixels.
+    // Without compression, the damage may affect only pixels.
     EXPECT_LE(messages, compression == std::string("none") ? all : all - 1) << compression;
     EXPECT_FALSE(diagnostics.ranked().empty()) << compression;
   }

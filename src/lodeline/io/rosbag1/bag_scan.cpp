@@ -15,14 +15,14 @@ namespace lodeline {
 namespace {
 
 constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
-/// Enough for the fields of every record but unusual connections', which are read again.
+/// Includes the fields of every record except unusual connections, which are read again.
 constexpr size_t kFieldsAtOnce = 512;
 constexpr size_t kLongestFields = 1 << 20;
-/// A chunk that promises more than this is believed only where its packed size makes that likely.
+/// Maximum unpacked size of a chunk without a check against its packed size.
 constexpr uint64_t kLargeChunk = uint64_t{1} << 30;
 constexpr uint64_t kGreatestRatio = 256;
 
-/// The field that marks the record of a chunk, with its size before it.
+/// The field that identifies the record of a chunk, preceded by its size.
 constexpr std::array<uint8_t, 8> kChunkMark = {4, 0, 0, 0, 'o', 'p', '=', 5};
 
 std::optional<RecordView> recordIn(const RandomAccessFile& file, uint64_t position) {
@@ -37,7 +37,7 @@ std::optional<RecordView> recordIn(const RandomAccessFile& file, uint64_t positi
 /// Position of the next record of a chunk at or after `from`.
 std::optional<uint64_t> findChunk(const RandomAccessFile& file, uint64_t from) {
   constexpr size_t kBlock = size_t{4} << 20;
-  constexpr uint64_t kFieldsBefore = 64;  // the other fields of a chunk's record, and the sizes
+  constexpr uint64_t kFieldsBefore = 64;  // size of the record's other fields and lengths
   for (uint64_t start = from; start < file.size(); start += kBlock) {
     const wire::Bytes block = file.read(start, kBlock + kChunkMark.size());
     for (auto mark = block.begin();; ++mark) {
@@ -108,7 +108,7 @@ class Scan {
         takeConnection(record.fields, file_.read(data, record.data_size));
         break;
       default:
-        break;  // the summary at the end says nothing new
+        break;  // the summary at the end has no further information
     }
     return data + record.data_size;
   }
@@ -159,7 +159,8 @@ class Scan {
                                       description->text("md5sum")};
   }
 
-  /// `record` may have been recognized without being all there. Returns the position to go on at.
+  /// Skips damaged bytes. `record` may be recognized but incomplete. Returns the position at which to
+  /// continue.
   uint64_t passDamage(uint64_t position, const std::optional<RecordView>& record) {
     const std::optional<uint64_t> next = findChunk(file_, position + 1);
     const uint64_t end = next.value_or(file_.size());
@@ -180,7 +181,7 @@ class Scan {
     return end;
   }
 
-  /// Keeps what the index says of the chunk, or looks for itself.
+  /// Stores the entries of the chunk's index, or scans the chunk without one.
   void finishChunk() {
     if (!current_) return;
     if (pending_.empty() || index_is_damaged_) {
@@ -221,13 +222,14 @@ class Scan {
                     pending_.size()));
   }
 
-  /// A field of 64 bits that holds seconds and nanoseconds as messages do.
+  /// Converts a 64-bit field of seconds and nanoseconds, as in messages.
   static Time received(uint64_t seconds_and_nanoseconds) {
     return Time::fromNanoseconds(static_cast<int64_t>(seconds_and_nanoseconds & 0xffffffff) * 1'000'000'000 +
                                  static_cast<int64_t>(seconds_and_nanoseconds >> 32));
   }
 
-  /// Bags that were not closed describe a connection only in the chunk in which it first appears.
+  /// Finds connections in bags that were not closed: there, only the chunk of the first message describes
+  /// one.
   void findConnections() {
     for (const auto& [connection, entries] : contents_.entries) {
       if (contents_.connections.contains(connection) || entries.empty()) continue;
@@ -270,7 +272,7 @@ class Scan {
   const RandomAccessFile& file_;
   Diagnostics* diagnostics_;
   BagContents contents_;
-  std::optional<uint32_t> current_;  ///< the chunk last seen, whose index records follow
+  std::optional<uint32_t> current_;  ///< last chunk, whose index records follow
   Entries pending_;                  ///< of the current chunk
   bool index_is_damaged_ = false;
   bool was_closed_ = false;

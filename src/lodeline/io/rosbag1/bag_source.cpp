@@ -24,7 +24,7 @@ RigFile readRig(const std::filesystem::path& bag, const BagOptions& options, Dia
                   bag.string(), beside.string()));
 }
 
-/// Gives every sensor that the bag has a calibration, be it a meaningless one.
+/// Gives every sensor in the bag a calibration, even a meaningless one.
 void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
   Rig& rig = rig_file->rig;
   rig_file->has_imu = true;
@@ -39,7 +39,7 @@ void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
   const auto add = [&](const char* name, auto* sensor) {
     if (*sensor || topicsFor(bag, name).empty()) return;
     sensor->emplace();
-    (*sensor)->rate_hz = 0.0;  // nobody stated one
+    (*sensor)->rate_hz = 0.0;  // no stated rate
   };
   add("mag0", &rig.magnetometer);
   add("pressure0", &rig.pressure);
@@ -70,7 +70,7 @@ constexpr const char* kStampAdvice =
     "messages were recorded: milliseconds late and uneven, so that one camera may not start and poses are "
     "worse";
 
-/// Header stamps that pass much faster or slower than the time does in which the messages were recorded.
+/// Throws for header stamps that advance much faster or slower than the recording times.
 void refuseOtherClock(const std::string& name, const std::vector<Time>& stamps,
                       const std::vector<Time>& received) {
   constexpr double kOtherUnit = 100.0;
@@ -167,7 +167,7 @@ std::vector<Time> BagSource::firstStamps(Cursor cursor, const std::string& name)
   while (stamps.size() < kStampsForRate) {
     std::optional<wire::Bytes> message = nextMessage(&cursor);
     if (!message) break;
-    // Messages that were recorded twice say nothing of the rate.
+    // Messages that were recorded twice are left out of the rate measurement.
     if (*message == before) continue;
     std::string reported_when_read_in_earnest;
     const auto stamp = messages::checkedReading(*message, messages::stampOf, &reported_when_read_in_earnest);

@@ -18,27 +18,27 @@
 namespace lodeline {
 
 struct BagOptions {
-  /// Files that describe the rig (see readRigFiles). None: NAME.rig.yaml beside NAME.bag.
+  /// Files that describe the rig (see readRigFiles). Empty: NAME.rig.yaml beside NAME.bag.
   std::vector<std::filesystem::path> rig_files;
-  /// Topics by sensor ("cam0", "imu0", …), before what the rig files name; two for the halves of an IMU, with
-  /// a comma between them.
+  /// Topics by sensor ("cam0", "imu0", …), with priority over those in the rig files. The two topics of a
+  /// divided IMU are separated by a comma.
   std::map<std::string, std::string> topics;
-  /// N of the camN to use, as in EurocOptions.
+  /// Numbers N of the camN to use, as in EurocOptions.
   std::vector<int> camera_indices;
   bool with_cameras = true;
-  /// False for what needs readings only, as converting: sensors without a calibration get the default one.
+  /// False for conversions, which use only readings: sensors without a calibration get the default one.
   bool needs_calibration = true;
-  /// Stamps readings with the times at which they were recorded, not with those of their headers: for drivers
-  /// that write none. Transport and its jitter are in these times.
+  /// Stamps readings with their recording times instead of the times in their headers, for drivers that write
+  /// no stamps. The recording times include the transport delay and its jitter.
   bool use_received_times = false;
 };
 
-/// A ROS 1 bag as a recording, streamed: one message of each topic at a time.
+/// A ROS 1 bag as a recording, read as a stream: one message of each topic at a time.
 class BagSource : public RecordedSource {
  public:
-  /// Throws InputError as BagFile, readRigFiles and chooseTopics do, and for a rig that has no camera or IMU
-  /// or a bag that has none of its readings; UsageError for a topic of a sensor that the rig does not have.
-  /// `diagnostics` must outlive the source.
+  /// Throws InputError like BagFile, readRigFiles and chooseTopics. Also throws it for a rig without camera
+  /// or IMU, and for a bag without their readings. Throws UsageError for a topic of a sensor that the rig
+  /// does not have. `diagnostics` must outlive the source.
   BagSource(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics);
 
   std::optional<ImuSample> nextRecordedImu() override;
@@ -51,7 +51,7 @@ class BagSource : public RecordedSource {
   const RigFile& rigFile() const { return rig_file_; }
 
  private:
-  /// How far a topic has been read.
+  /// Read position in a topic.
   struct Cursor {
     const BagTopic* topic = nullptr;
     size_t next = 0;
@@ -65,7 +65,7 @@ class BagSource : public RecordedSource {
   std::optional<wire::Bytes> nextMessage(Cursor* cursor);
   void reportMessage(const Cursor& cursor, const std::string& problem);
   std::vector<Time> firstStamps(Cursor cursor, const std::string& name);
-  /// Gives a reading of the message that was read last its time.
+  /// Assigns a reading the time of the message that was read last.
   template <typename Reading>
   void restamp(const Cursor& cursor, Reading* reading) const;
   std::optional<ImuSample> nextOf(Cursor* imu);
@@ -79,13 +79,13 @@ class BagSource : public RecordedSource {
   bool use_received_times_;
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
-  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< of each camera, once its first image is asked for
+  std::vector<std::optional<GreyRange>> grey_ranges_;  ///< per camera, measured at its first image
   Cursor imu_, accelerometer_, magnetometer_, pressure_, sonar_;
-  ImuHalves halves_;                ///< of an IMU in two topics
-  std::deque<SonarSample> echoes_;  ///< of the scan last read
+  ImuHalves halves_;                ///< state for an IMU in two topics
+  std::deque<SonarSample> echoes_;  ///< echoes of the scan that was read last
 };
 
-/// NAME.rig.yaml for NAME.bag.
+/// Path of NAME.rig.yaml for NAME.bag.
 std::filesystem::path rigFileBeside(const std::filesystem::path& bag);
 
 }  // namespace lodeline

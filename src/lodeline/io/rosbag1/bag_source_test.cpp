@@ -101,7 +101,7 @@ TEST_F(BagSourceTest, MakesEveryEncodingGrey) {
   EXPECT_EQ(padded.size(), cv::Size(3, 2));
   EXPECT_EQ(padded.at<uint8_t>(1, 0), 4);
   for (const char* topic : {"/i/bayer_rggb8", "/i/bayer_bggr8", "/i/bayer_grbg8", "/i/bayer_gbrg8"}) {
-    // 0.299 * 200 + 0.587 * 100 + 0.114 * 50; wrong order of colours would give 117 or 88.
+    // 0.299 * 200 + 0.587 * 100 + 0.114 * 50; a wrong colour order would give 117 or 88.
     EXPECT_NEAR(image(topic).at<uint8_t>(4, 4), 124, 1) << topic;
   }
 }
@@ -134,7 +134,7 @@ TEST_F(BagSourceTest, CamerasThatAreLeftOutNeedNoTopic) {
 }
 
 TEST_F(BagSourceTest, ADamagedHeaderCostsOneMessage) {
-  // The length of a frame's name, which stands behind sequence number and stamp, becomes 2 GB.
+  // Sets the length of the frame name, which follows the sequence number and the stamp, to 2 GB.
   test::runRosbag(fmt::format("damaged '{}'", bag_.string()));
   BagSource source = open(std::string(kRig) + "cam0: " + fmt::format(kCamera, "/i/grey"));
   int images = 0, readings = 0;

@@ -14,7 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Bags whose header stamps are not what they should be. The IMU was recorded at 200 Hz from 1000 s on.
+/// Bags with wrong header stamps. The IMU was recorded at 200 Hz from 1000 s on.
 class BagStampsTest : public testing::Test {
  protected:
   static Time received(int i) { return Time::fromNanoseconds(1'000'000'000'000 + int64_t{5'000'000} * i); }

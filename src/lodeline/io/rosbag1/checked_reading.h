@@ -20,10 +20,10 @@ inline bool isFinite(const StampedPosition& s) {
 }
 inline bool isFinite(Time) { return true; }
 inline bool isFinite(const DepthSample& s) { return std::isfinite(s.depth_m); }
-inline bool isFinite(const std::vector<SonarSample>&) { return true; }  // parsing leaves odd echoes out
+inline bool isFinite(const std::vector<SonarSample>&) { return true; }  // parsing drops invalid echoes
 
-/// What `parse`, one of the functions of messages.h, makes of a message; nothing where that cannot be used,
-/// and then `problem` says why.
+/// Parses a message with `parse`, one of the functions of messages.h. Returns nothing where the message
+/// cannot be used; `problem` then gives the reason.
 template <typename Parse>
 auto checkedReading(std::span<const uint8_t> message, const Parse& parse, std::string* problem)
     -> std::optional<decltype(parse(message))> {

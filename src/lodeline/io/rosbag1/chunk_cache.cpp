@@ -15,9 +15,9 @@
 namespace lodeline {
 namespace {
 
-/// Two cameras, the IMU and three slower sensors, each perhaps in a chunk of its own.
+/// Two cameras, the IMU and three slower sensors, which may all be in different chunks.
 constexpr size_t kKeptChunks = 8;
-/// That unpack ahead; each holds a chunk.
+/// Number of threads that unpack in advance; each holds a chunk.
 constexpr uint32_t kMostThreads = 4;
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace lodeline {
 
-/// A file read at any place. Throws InputError where it cannot be opened.
+/// A file with random access. Throws InputError where it cannot be opened.
 class RandomAccessFile {
  public:
   explicit RandomAccessFile(std::filesystem::path path);
@@ -22,7 +22,7 @@ class RandomAccessFile {
   RandomAccessFile(const RandomAccessFile&) = delete;
   RandomAccessFile& operator=(const RandomAccessFile&) = delete;
 
-  /// Up to `size` bytes from `position` on; fewer where the file ends or cannot be read.
+  /// Reads up to `size` bytes from `position`; fewer where the file ends or cannot be read.
   wire::Bytes read(uint64_t position, size_t size) const;
   uint64_t size() const { return size_; }
   const std::filesystem::path& path() const { return path_; }
@@ -33,33 +33,32 @@ class RandomAccessFile {
   uint64_t size_ = 0;
 };
 
-/// Where a chunk of messages lies in a bag.
+/// Position and size of a chunk of messages in a bag.
 struct BagChunk {
-  uint64_t position = 0;       ///< of its data in the file
-  uint32_t packed_size = 0;    ///< bytes in the file, as far as the file goes
-  uint32_t unpacked_size = 0;  ///< as the chunk says
+  uint64_t position = 0;       ///< position of its data in the file
+  uint32_t packed_size = 0;    ///< number of bytes available in the file
+  uint32_t unpacked_size = 0;  ///< as stated in the chunk
   std::string compression;
-  bool is_cut_off = false;  ///< by the end of the file
+  bool is_cut_off = false;  ///< whether the end of the file truncates it
 };
 
-/// The chunks of a bag; those unpacked last are kept, as several topics are read side by side. While chunks
-/// are read one after the other, the next ones that bzip2 packed, which takes a processor most of a second
-/// for 10 MB, are unpacked ahead on threads of their own.
+/// Cache of a bag's chunks. It keeps the chunks unpacked last, because several topics are read in parallel.
+/// In sequential reading, it unpacks the next bzip2 chunks in advance on separate threads: 10 MB take most of
+/// a second of processor time.
 class ChunkCache {
  public:
   explicit ChunkCache(const std::filesystem::path& file) : file_(file) {}
 
   const std::filesystem::path& file() const { return file_.path(); }
   const RandomAccessFile& bytes() const { return file_; }
-  /// Returns the number of the chunk.
+  /// Adds a chunk and returns its number.
   uint32_t add(const BagChunk& chunk);
   const BagChunk& chunk(uint32_t number) const { return chunks_[number]; }
   size_t count() const { return chunks_.size(); }
 
   std::shared_ptr<const Unpacked> unpack(uint32_t number);
 
-  /// Bytes of a chunk from `offset` on, at most `size`, without unpacking the whole of it where it is not
-  /// compressed.
+  /// Reads at most `size` bytes of a chunk from `offset`. An uncompressed chunk is not loaded as a whole.
   wire::Bytes read(uint32_t number, uint32_t offset, size_t size);
 
  private:
@@ -70,8 +69,8 @@ class ChunkCache {
 
   RandomAccessFile file_;
   std::vector<BagChunk> chunks_;
-  std::deque<std::pair<uint32_t, Unpacking>> unpacked_;  ///< used last in front
-  std::optional<uint32_t> newest_;                       ///< unpacked last
+  std::deque<std::pair<uint32_t, Unpacking>> unpacked_;  ///< most recently used first
+  std::optional<uint32_t> newest_;                       ///< chunk unpacked last
   std::map<uint32_t, std::future<Unpacking>> ahead_;
 };
 

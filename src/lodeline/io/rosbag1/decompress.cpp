@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// bzip2 takes counts of 32 bits, and so do bags.
+/// Unpacks bzip2; its interface and bags both use 32-bit sizes.
 Unpacked unpackBz2(std::span<const uint8_t> packed, size_t size) {
   Unpacked result;
   result.bytes.resize(size);
@@ -17,7 +17,7 @@ Unpacked unpackBz2(std::span<const uint8_t> packed, size_t size) {
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
     return {{}, "not enough memory for bzip2"};
   }
-  // bzip2's interface has no const; it only reads here.
+  // bzip2's interface lacks const; the data is only read.
   stream.next_in = reinterpret_cast<char*>(const_cast<uint8_t*>(packed.data()));
   stream.avail_in = static_cast<unsigned>(packed.size());
   stream.next_out = reinterpret_cast<char*>(result.bytes.data());

@@ -7,14 +7,14 @@
 
 namespace lodeline {
 
-/// A chunk's messages, as far as they could be unpacked.
+/// Unpacked messages of a chunk, possibly incomplete.
 struct Unpacked {
   wire::Bytes bytes;
-  std::string problem;  ///< why `bytes` are not all; empty where they are
+  std::string problem;  ///< reason why `bytes` are incomplete; empty where they are complete
 };
 
-/// Unpacks a chunk of a bag. `compression`: "none", "bz2" or "lz4" (LZ4's frame format). `size`: of the
-/// unpacked bytes, as the chunk says. Of damaged or cut-off data what comes before the damage is returned.
+/// Unpacks a chunk of a bag. `compression`: "none", "bz2" or "lz4" (LZ4's frame format). `size`: number of
+/// unpacked bytes stated in the chunk. Of damaged or truncated data, the part before the damage is returned.
 Unpacked unpackChunk(const std::string& compression, std::span<const uint8_t> packed, size_t size);
 
 }  // namespace lodeline

@@ -16,8 +16,8 @@ namespace {
 constexpr int kAsItIs = -1;
 constexpr uint32_t kGreatestSide_px = 1 << 15;
 
-/// How the pixels of an encoding lie, and OpenCV's way from them to those that are given out. OpenCV names a
-/// Bayer mosaic by the second and third pixel of its second row, ROS by its first two.
+/// Pixel layout of an encoding, and OpenCV's conversion to the pixels returned. OpenCV names a Bayer mosaic
+/// by the second and third pixel of its second row, ROS by its first two pixels.
 struct Encoding {
   std::string_view name;
   int type;
@@ -81,7 +81,7 @@ void swapBytes(cv::Mat* pixels) {
 }
 
 cv::Mat convert(const Parsed& image, const Encoding& encoding) {
-  // OpenCV's interface has no const; the pixels are only read.
+  // OpenCV's interface lacks const; the pixels are only read.
   const cv::Mat lent(static_cast<int>(image.height), static_cast<int>(image.width), encoding.type,
                      const_cast<uint8_t*>(image.data.data()), image.step);
   cv::Mat pixels = lent;
@@ -165,7 +165,7 @@ StoredImage compressedImageFile(std::span<const uint8_t> message, const std::str
     reader.take<uint32_t>();
     reader.takeTime();
     reader.takeText();
-    reader.takeText();  // the format in words; the bytes tell it better
+    reader.takeText();  // the format as text; the bytes identify it more reliably
     const std::span<const uint8_t> file = reader.takeSized();
     result.file.assign(file.begin(), file.end());
     if (file.empty()) result.problem = name + ": holds no image";

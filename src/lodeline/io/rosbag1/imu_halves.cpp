@@ -29,7 +29,7 @@ ImuContent contentOf(const BagTopic& topic, BagFile* bag) {
 
 bool ImuHalves::advance(const Next& accelerometer) {
   std::optional<ImuSample> reading = accelerometer();
-  // What goes back in time can stand between no two readings.
+  // Readings that go back in time cannot bracket another reading.
   while (reading && after_ && reading->time <= after_->time) reading = accelerometer();
   before_ = after_;
   after_ = reading;

@@ -8,8 +8,8 @@
 
 namespace lodeline {
 
-/// What the messages of an Imu topic hold. Drivers of RealSense cameras publish gyroscope and accelerometer
-/// apart, each with zeros for the other.
+/// Content of the messages of an Imu topic. Drivers of RealSense cameras publish gyroscope and accelerometer
+/// in separate topics, each with zeros for the other sensor.
 struct ImuContent {
   bool has_gyroscope = false;
   bool has_accelerometer = false;
@@ -17,24 +17,24 @@ struct ImuContent {
   bool isWhole() const { return has_gyroscope && has_accelerometer; }
 };
 
-/// Looks through a topic until both are seen to be other than zero; a whole IMU takes a few messages.
+/// Reads a topic until both vectors were non-zero once; a complete IMU takes a few messages.
 ImuContent contentOf(const BagTopic& topic, BagFile* bag);
 
-/// Unites the halves of an IMU: one reading for each of the gyroscope's, with the specific force interpolated
-/// linearly between the accelerometer's readings before and after. The gyroscope's readings before the first
-/// of the accelerometer, after its last one, and in its gaps (more than four of its usual steps) are left
-/// out.
+/// Merges the topics of a gyroscope and an accelerometer into one IMU. It gives one reading per gyroscope
+/// reading, with the specific force interpolated linearly between the accelerometer's readings before and
+/// after. It leaves out gyroscope readings before the first accelerometer reading, after the last one, and in
+/// gaps of the accelerometer longer than four of its usual steps.
 class ImuHalves {
  public:
   using Next = std::function<std::optional<ImuSample>()>;
 
-  /// The next united reading, from the next ones of either half.
+  /// The next merged reading, from the next readings of both topics.
   std::optional<ImuSample> next(const Next& gyroscope, const Next& accelerometer);
 
  private:
   bool advance(const Next& accelerometer);
 
-  std::optional<ImuSample> before_, after_;  ///< of the accelerometer
+  std::optional<ImuSample> before_, after_;  ///< readings of the accelerometer
   std::optional<Duration> usual_step_;       ///< shortest seen so far
 };
 

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 class ImuHalvesTest : public testing::Test {
  protected:
-  /// Gyroscope at the times given, reading the time; specific force 9 + time about the vertical.
+  /// Gyroscope at the given times, whose readings are the time; vertical specific force 9 + time.
   std::vector<ImuSample> unite(const std::vector<double>& gyroscope_s,
                                const std::vector<double>& accelerometer_s) {
     std::deque<ImuSample> gyroscope, accelerometer;
@@ -63,7 +63,7 @@ TEST_F(ImuHalvesTest, PassesOverWhatGoesBackInTime) {
   EXPECT_EQ(unite({0.005, 0.015}, {0.0, 0.01, 0.01, 0.004, 0.02}).size(), 2u);
 }
 
-/// Bags of a RealSense camera: gyroscope and accelerometer on topics of their own.
+/// Bags of a RealSense camera: gyroscope and accelerometer on separate topics.
 class SplitBagTest : public testing::Test {
  protected:
   void SetUp() override {

@@ -34,13 +34,13 @@ void putVector(const Vec3& vector, wire::Writer* writer) {
   for (const double value : {vector.x(), vector.y(), vector.z()}) writer->put(value);
 }
 
-/// All zero, which says that it is not known; `first` -1 says that the quantity itself is not there.
+/// Writes an all-zero covariance, which means unknown; `first` -1 means that the quantity is missing.
 void putCovariance(double first, wire::Writer* writer) {
   writer->put(first);
   for (int i = 1; i < 9; ++i) writer->put(0.0);
 }
 
-/// The number in as few decimals as tell it from its neighbours: 3.1 where 32 bits hold 3.0999999.
+/// The shortest decimal number that identifies a float: 3.1 where 32 bits store 3.0999999.
 double decimal(float value) {
   if (!std::isfinite(value)) return value;
   const std::string text = fmt::format("{}", value);

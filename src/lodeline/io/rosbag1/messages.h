@@ -11,11 +11,11 @@
 #include "lodeline/io/synchronizer/measurement_source.h"
 #include "lodeline/sensors/measurements.h"
 
-/// The messages of ROS 1 that a rig's sensors publish (packages sensor_msgs 1.13, geometry_msgs 1.13), to and
-/// from readings. Functions that parse throw wire::Reader::CutOff where the bytes are not all there.
+/// Functions that convert ROS 1 messages of a rig's sensors (packages sensor_msgs 1.13, geometry_msgs 1.13)
+/// to readings and back. Parsing functions throw wire::Reader::CutOff where bytes are missing.
 namespace lodeline::messages {
 
-/// The name of a message's type and the sum over its definition, which changes when the definition does.
+/// Name of a message type and the checksum of its definition, which changes when the definition does.
 struct Type {
   const char* name;
   const char* md5sum;
@@ -30,21 +30,21 @@ inline constexpr Type kImage = {"sensor_msgs/Image", "060021388200f6f0f447d0fcd9
 inline constexpr Type kCompressedImage = {"sensor_msgs/CompressedImage", "8f7a12909da2c9d3332d540a0977563f"};
 inline constexpr Type kPoseStamped = {"geometry_msgs/PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5"};
 
-/// Those that a sensor may publish: imu0, mag0, pressure0, sonar0; any other one is a camera.
+/// Types that a sensor may publish: imu0, mag0, pressure0, sonar0; any other name is a camera.
 std::vector<Type> typesOf(const std::string& sensor);
 
-/// The stamp in the header that every one of these begins with.
+/// The stamp in the header with which each of these messages begins.
 Time stampOf(std::span<const uint8_t> message);
 
 ImuSample parseImu(std::span<const uint8_t> message);
 MagnetometerSample parseMagneticField(std::span<const uint8_t> message);
 DepthSample parseFluidPressure(std::span<const uint8_t> message, const WaterColumn& water);
-/// One echo, straight ahead (angle 0); none where the range is not a number within the sensor's limits.
+/// One echo straight ahead (angle 0); none where the range is not a number within the sensor's limits.
 std::vector<SonarSample> parseRange(std::span<const uint8_t> message);
-/// The echoes of a scan, each with the stamp and angle that its place in the scan has.
+/// The echoes of a scan, with stamps and angles computed from their positions in the scan.
 std::vector<SonarSample> parseLaserScan(std::span<const uint8_t> message);
 
-/// A pose with its stamp.
+/// A stamped pose.
 struct StampedPosition {
   Time time;
   Rigid3 world_from_body;
@@ -54,7 +54,7 @@ StampedPosition parsePoseStamped(std::span<const uint8_t> message);
 wire::Bytes imu(const ImuSample& sample, uint32_t sequence);
 wire::Bytes magneticField(const MagnetometerSample& sample, uint32_t sequence);
 wire::Bytes fluidPressure(const DepthSample& sample, const WaterColumn& water, uint32_t sequence);
-/// A scan of a single beam. Ranges and angles have 32 bits in ROS.
+/// A LaserScan with a single beam. Ranges and angles have 32 bits in ROS.
 wire::Bytes laserScan(const SonarSample& sample, uint32_t sequence);
 wire::Bytes poseStamped(const StampedPosition& pose, uint32_t sequence);
 

@@ -20,17 +20,17 @@ enum class RecordKind : uint8_t {
   Connection = 0x07,
 };
 
-/// Named values, as they stand at the head of a record and in the data of a connection's record.
+/// Named values, as in the header of a record and in the data of a connection's record.
 class RecordFields {
  public:
-  /// Nothing where the bytes are no list of named values.
+  /// Returns nothing where the bytes are not a list of named values.
   static std::optional<RecordFields> parse(std::span<const uint8_t> bytes);
 
-  /// Nothing where there is no such field, or one of another size.
+  /// Value of a field; nothing where the field is missing or has another size.
   std::optional<RecordKind> kind() const;
   std::optional<uint32_t> number32(const std::string& name) const;
   std::optional<uint64_t> number64(const std::string& name) const;
-  /// Empty where there is no such field.
+  /// Value of a field; empty where the field is missing.
   std::string text(const std::string& name) const;
 
  private:
@@ -40,16 +40,16 @@ class RecordFields {
   std::map<std::string, wire::Bytes> fields_;
 };
 
-/// A record among bytes in memory: `header_size` bytes of fields, then `data`, after the sizes of both.
+/// A record in memory: the sizes of both parts, `header_size` bytes of fields, then `data`.
 struct RecordView {
   RecordFields fields;
   RecordKind kind = RecordKind::Message;
-  uint32_t data_size = 0;  ///< as the record says, whether all of it is there or not
-  size_t data_offset = 0;  ///< of the data from the record's first byte on
+  uint32_t data_size = 0;  ///< as stated in the record, even where the data is incomplete
+  size_t data_offset = 0;  ///< offset of the data from the first byte of the record
 };
 
-/// The record that starts at the first of `bytes`; nothing where there is none, or where its fields are not
-/// all there. Its data may lie beyond them.
+/// Parses the record that starts at the first of `bytes`. Its data may exceed them. Returns nothing where
+/// there is no record, or where its fields are incomplete.
 std::optional<RecordView> recordAt(std::span<const uint8_t> bytes);
 
 }  // namespace lodeline

@@ -12,7 +12,7 @@
 
 #include "lodeline/util/files/test_data.h"
 
-/// Bags made and read by ROS's own rosbag (Debian's python3-rosbag, hence Debian's Python).
+/// Functions that write and read bags with ROS's own rosbag (Debian's python3-rosbag, hence Debian's Python).
 namespace lodeline::test {
 
 inline constexpr const char* kRosbagMissing =
@@ -24,7 +24,7 @@ inline bool hasRosbag() {
   return has;
 }
 
-/// Runs test_bag.py with arguments in the shell's spelling; returns what it prints.
+/// Runs test_bag.py with arguments in shell syntax and returns its output.
 inline std::string runRosbag(const std::string& arguments) {
   const std::string command = "/usr/bin/python3 '" + testSourceDir().string() +
                               "/src/lodeline/bags/test_bag.py' " + arguments + " 2>&1";
@@ -37,7 +37,7 @@ inline std::string runRosbag(const std::string& arguments) {
   return output;
 }
 
-/// Puts a PGM beside every PNG of a recording, which Python can read without further packages.
+/// Writes a PGM beside every PNG of a recording; Python can read PGM without further packages.
 inline void addPgmImages(const std::filesystem::path& mav0) {
   for (const char* camera : {"cam0", "cam1"}) {
     std::vector<std::filesystem::path> images;

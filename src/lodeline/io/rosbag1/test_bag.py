@@ -77,7 +77,7 @@ def messages(mav0, images):
 def fill(bag, mav0, images):
     for ns, topic, message in sorted(messages(mav0, images), key=lambda entry: entry[0]):
         message.header.stamp = stamp(ns)
-        # Received a little after it was measured, as on a real rig.
+        # Reception time a little after the measurement, as on a real rig.
         bag.write(topic, message, stamp(ns + 2_000_000))
 
 

@@ -48,7 +48,7 @@ const BagTopic* findNamed(const BagFile& bag, const std::string& sensor, const s
                                other->connection.md5sum, sensor));
 }
 
-/// "/cam0/image_raw/compressed" is "/cam0/image_raw" in another form.
+/// The camera of a topic: "/cam0/image_raw/compressed" is another form of "/cam0/image_raw".
 std::string cameraOf(const BagTopic& topic) {
   const std::string& name = topic.connection.topic;
   constexpr std::string_view kSuffix = "/compressed";
@@ -121,7 +121,7 @@ class Chooser {
     if (without(wish_.cameras).empty()) return;
     std::vector<const BagTopic*> free = imageTopics(bag_);
     std::erase_if(free, [&](const BagTopic* topic) { return isChosen(topic); });
-    // A bag holds the images of all cameras, or of those to be used.
+    // A bag has the images of all cameras, or only of those to be used.
     std::vector<std::string> missing = without(wish_.rig_cameras);
     if (free.size() != missing.size()) missing = without(wish_.cameras);
     if (free.size() != missing.size()) {
@@ -149,7 +149,7 @@ class Chooser {
     if (choice_.of(sensor) == nullptr) take(sensor, found.front());
   }
 
-  /// Of several IMUs those that are whole; where none is and there are two halves, these are taken.
+  /// The complete ones among several IMUs; if there is none, the two topics of a divided IMU.
   std::vector<const BagTopic*> wholeOrHalves(const std::vector<const BagTopic*>& found) {
     std::vector<const BagTopic*> whole, gyroscopes, accelerometers;
     for (const BagTopic* topic : found) {

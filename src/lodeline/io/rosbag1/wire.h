@@ -13,15 +13,14 @@
 
 #include "lodeline/util/time/time.h"
 
-/// ROS 1's way of writing values: little endian, no padding; strings and lists of variable length have their
-/// length as a 32-bit number before them
-/// (wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes). The machine is little endian too,
-/// which every platform of Debian with Embree is.
+/// Functions for ROS 1's serialization: little endian, no padding; a 32-bit length precedes each string and
+/// each list of variable length (wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes). The
+/// code assumes a little-endian machine, as every platform of Debian with Embree is.
 namespace lodeline::wire {
 
 using Bytes = std::vector<uint8_t>;
 
-/// Takes values from the front of a message. Throws CutOff where the bytes end before the value does.
+/// Reads values from the front of a message. Throws CutOff where the bytes end within a value.
 class Reader {
  public:
   class CutOff : public std::runtime_error {
@@ -46,7 +45,7 @@ class Reader {
     return front;
   }
 
-  /// A string or a list of bytes.
+  /// Reads a string or a list of bytes.
   std::span<const uint8_t> takeSized() { return takeBytes(take<uint32_t>()); }
 
   std::string_view takeText() {
@@ -54,7 +53,7 @@ class Reader {
     return {reinterpret_cast<const char*>(text.data()), text.size()};
   }
 
-  /// Seconds and nanoseconds, 32 bits each.
+  /// Reads a time: seconds and nanoseconds, 32 bits each.
   Time takeTime() {
     const int64_t seconds = take<uint32_t>();
     return Time::fromNanoseconds(seconds * 1'000'000'000 + take<uint32_t>());
@@ -84,7 +83,7 @@ class Writer {
     putSized({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
   }
 
-  /// `time` must not be negative nor past 2106 (see isWritable()).
+  /// `time` must not be negative or after 2106 (see isWritable()).
   void putTime(Time time) {
     put(static_cast<uint32_t>(time.nanoseconds() / 1'000'000'000));
     put(static_cast<uint32_t>(time.nanoseconds() % 1'000'000'000));
@@ -102,7 +101,7 @@ class Writer {
   Bytes bytes_;
 };
 
-/// Whether ROS can hold the time: whole seconds since its epoch in 32 bits without sign.
+/// Whether ROS can represent the time: whole seconds since its epoch as an unsigned 32-bit number.
 inline bool isWritable(Time time) {
   return time.nanoseconds() >= 0 && time.nanoseconds() / 1'000'000'000 <= int64_t{UINT32_MAX};
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lodeline/io/streams/inertial_limits.h"
-#include "lodeline/io/streams/spike_test.h"
+#include "lodeline/io/streams/spike_detector.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline {
@@ -29,7 +29,7 @@ std::string valuesOf(const ImuSample& sample) {
                      f.x(), f.y(), f.z());
 }
 
-/// What is wrong with a reading, in words.
+/// Description of the reason for rejecting a reading.
 std::string reasonOf(const std::string& kind) {
   if (kind == kImpossible) return "beyond what any inertial sensor can measure";
   if (kind == kZero) return "zero in every axis, where gravity alone gives 9.8 m/s^2";
@@ -146,11 +146,11 @@ std::string InertialScreen::jumpObjection() {
 }
 
 std::string InertialScreen::repetition(const ImuSample& sample) {
-  const RepeatTest::Verdict verdict = repeats_.judge(sample);
-  const bool is_saturated = verdict == RepeatTest::Verdict::Fresh && saturation_.isSaturated(sample);
+  const RepeatDetector::Verdict verdict = repeats_.judge(sample);
+  const bool is_saturated = verdict == RepeatDetector::Verdict::Fresh && saturation_.isSaturated(sample);
   if (!options_.drops_repeats) return {};
-  if (verdict == RepeatTest::Verdict::Held) return kHeld;
-  if (verdict == RepeatTest::Verdict::Stuck) return kStuck;
+  if (verdict == RepeatDetector::Verdict::Held) return kHeld;
+  if (verdict == RepeatDetector::Verdict::Stuck) return kStuck;
   return is_saturated ? kSaturated : std::string();
 }
 
@@ -159,7 +159,7 @@ void InertialScreen::leaveOut(const std::string& kind, const ImuSample& sample) 
   ++stretch_.readings;
   stretch_.last = sample.time;
   if (kind == kHeld) {
-    // A single repetition is worth no word; many mean that the sensor measures more slowly than it says.
+    // Single repetitions are not reported; many mean that the sensor measures more slowly than stated.
     constexpr double kWorthSaying = 0.05;
     constexpr int64_t kLeast = 50;
     ++held_;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lodeline/io/streams/reading_history.h"
-#include "lodeline/io/streams/repeat_test.h"
-#include "lodeline/io/streams/saturation_test.h"
+#include "lodeline/io/streams/repeat_detector.h"
+#include "lodeline/io/streams/saturation_detector.h"
 #include "lodeline/io/streams/unit_change.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/util/diagnostics.h"
@@ -16,25 +16,24 @@
 namespace lodeline {
 
 struct InertialScreenOptions {
-  /// Takes the gyroscope's readings to rad/s, where their unit is known to be another.
+  /// Factor from the gyroscope's unit to rad/s.
   double rate_to_SI = 1.0;
-  /// Whether the gyroscope's readings may be held to what sensors can measure in rad/s.
+  /// Whether the limits in rad/s apply to the gyroscope's readings.
   bool knows_rate_unit = true;
-  /// Leaves out what repeats the reading before. Off for those who count repetitions themselves.
+  /// Leaves out readings that repeat the one before. False for callers that count repetitions themselves.
   bool drops_repeats = true;
 };
 
-/// Judges inertial readings where they enter, the same for every source, before anything is computed from
-/// them. Left out are readings that no sensor can give (not finite, beyond every range, rows of zeros),
-/// spikes against the readings before and after, readings that repeat the one before, those of a gyroscope or
-/// accelerometer that hangs while the other moves, and readings at the end of a sensor's range. Whoever uses
-/// the stream interpolates over what is missing, and takes longer stretches for gaps, in which the motion is
-/// unknown. Converted are accelerometers in g or mg, gyroscopes in deg/s as far as `rate_to_SI` says so, and
-/// units and signs of axes that change in mid-stream. Every such reading is reported with its stamp and
-/// values.
+/// Rejects and converts inertial readings at the input of every source, before any computation. It rejects:
+/// readings that no sensor can give (not finite, beyond every range, all zeros); spikes against the readings
+/// before and after; repetitions of the reading before; readings of a gyroscope or accelerometer that is
+/// stuck while the other one moves; and readings at the end of a sensor's range. Users of the stream
+/// interpolate over missing readings and treat longer stretches as gaps with unknown motion. It converts
+/// accelerometers in g or mg, gyroscopes in deg/s where `rate_to_SI` says so, and units and signs of axes
+/// that change within the stream. It reports every such reading with its stamp and values.
 ///
-/// A reading passes at once unless it jumps against those before; then up to kUnitReadings further ones are
-/// waited for. Memory is constant.
+/// A reading passes immediately unless it jumps against those before; the screen then waits for up to
+/// kUnitReadings further ones. Memory use is constant.
 class InertialScreen {
  public:
   using Pull = std::function<std::optional<ImuSample>()>;
@@ -43,13 +42,13 @@ class InertialScreen {
   InertialScreen(Pull pull, const InertialScreenOptions& options, Diagnostics* diagnostics)
       : pull_(std::move(pull)), options_(options), diagnostics_(diagnostics) {}
 
-  /// The next reading, left in the stream; null at the end.
+  /// The next reading without removal from the stream; null at the end.
   const ImuSample* peek();
-  /// Takes the next reading out; only after peek() has shown that there is one.
+  /// Removes and returns the next reading; valid only after peek() has returned one.
   ImuSample pop();
 
  private:
-  /// Readings left out for one reason, since the last that was not.
+  /// Consecutive readings that were rejected for one reason.
   struct Stretch {
     std::string kind;
     Time first, last;
@@ -59,7 +58,7 @@ class InertialScreen {
   bool fetch(size_t readings);
   bool isPossible(const ImuSample& sample) const;
   void settleUnit();
-  /// Why the front reading must not be used: a finding's kind; empty where it may be.
+  /// Reason to reject the front reading, as the kind of a finding; empty where it is accepted.
   std::string objection();
   std::string jumpObjection();
   std::string repetition(const ImuSample& sample);
@@ -70,20 +69,20 @@ class InertialScreen {
   Pull pull_;
   InertialScreenOptions options_;
   Diagnostics* diagnostics_;
-  ReadingFactors factors_;  ///< of readings to come
+  ReadingFactors factors_;  ///< factors for later readings
   bool is_unit_settled_ = false;
   bool has_ended_ = false;
-  std::deque<ImuSample> pending_;  ///< converted, not yet judged
-  size_t spikes_ahead_ = 0;        ///< of these, known to be spikes
+  std::deque<ImuSample> pending_;  ///< converted, not screened yet
+  size_t spikes_ahead_ = 0;        ///< number of these known to be spikes
   std::optional<ImuSample> head_;
   ReadingHistory history_;
-  RepeatTest repeats_;
-  SaturationTest saturation_;
+  RepeatDetector repeats_;
+  SaturationDetector saturation_;
   Stretch stretch_;
   int64_t readings_ = 0, held_ = 0;
 };
 
-/// The same for readings that are at hand, in order of time.
+/// Screens a complete list of readings in order of time.
 std::vector<ImuSample> screened(const std::vector<ImuSample>& samples, const InertialScreenOptions& options,
                                 Diagnostics* diagnostics);
 

@@ -21,7 +21,7 @@ Time at(int i) { return Time::fromNanoseconds(1'700'000'000'000'000'000 + i * 5'
 
 double rounded(double value, double resolution) { return std::round(value / resolution) * resolution; }
 
-/// A rig that sways by tenths of rad/s and m/s^2, with a common sensor's noise and resolution.
+/// A rig that sways by tenths of rad/s and m/s^2, with the noise and resolution of a common sensor.
 std::vector<ImuSample> swaying(int readings, double resolution = 1e-3) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -56,7 +56,7 @@ class InertialScreenTest : public ::testing::Test {
     return "";
   }
 
-  /// Expects every reading of `result` to be that of `truth` of the same time.
+  /// Expects every reading of `result` to equal that of `truth` at the same time.
   static void expectSame(const std::vector<ImuSample>& result, const std::vector<ImuSample>& truth,
                          double error) {
     size_t next = 0;
@@ -75,7 +75,7 @@ TEST_F(InertialScreenTest, LetsGoodReadingsPass) {
   for (const double resolution : {1e-9, 1e-3, 2e-2}) {
     const std::vector<ImuSample> samples = swaying(4000, resolution);
     const std::vector<ImuSample> result = screen(samples);
-    // The sensor with the coarsest resolution may lose a few while it is not known as such.
+    // The sensor with the coarsest resolution may lose a few readings until its resolution is known.
     EXPECT_GE(result.size() + (resolution > 1e-2 ? 8 : 0), samples.size()) << resolution;
     expectSame(result, samples, 0.0);
   }
@@ -84,7 +84,8 @@ TEST_F(InertialScreenTest, LetsGoodReadingsPass) {
 
 TEST_F(InertialScreenTest, LetsKnocksAndFastTurnsPass) {
   std::vector<ImuSample> samples = swaying(2000);
-  // A knock rings within the sensor's bandwidth and dies off within 30 ms; a kick turns the rig at once.
+  // A mechanical shock oscillates within the sensor's bandwidth and decays within 30 ms; a kick rotates the
+  // rig suddenly.
   for (int i = 0; i < 20; ++i) {
     const double t = i / kRate_hz, ring = std::exp(-t / 0.01) * std::sin(2.0 * M_PI * 35.0 * t);
     samples[static_cast<size_t>(700 + i)].specific_force_B.x() += 60.0 * ring;
@@ -121,7 +122,7 @@ TEST_F(InertialScreenTest, LeavesOutSpikesAgainstTheNeighbours) {
   for (size_t i = 100; i < 1900; i += 90) samples[i].angular_velocity_B.x() += i % 180 == 100 ? 5.0 : -50.0;
   for (size_t i = 150; i < 1900; i += 90) samples[i].specific_force_B.z() += 50.0;
   samples[1901].specific_force_B.z() -= 30.0;
-  samples[1902].specific_force_B.z() += 30.0;  // two on end
+  samples[1902].specific_force_B.z() += 30.0;  // two consecutive ones
   const std::vector<ImuSample> result = screen(samples);
   EXPECT_EQ(result.size(), truth.size() - 42);
   expectSame(result, truth, 0.0);
@@ -185,7 +186,7 @@ TEST_F(InertialScreenTest, KeepsRepetitionsOfACoarseSensorAtRest) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (int i = 400; i < 2000; ++i) {
-    // Motion dies away; then noise of a fifth of the resolution is left.
+    // Motion decays; then noise of a fifth of the resolution remains.
     const double motion = std::exp(-(i - 400) / 40.0);
     ImuSample sample = samples[static_cast<size_t>(i % 400)];
     sample.time = at(i);

@@ -11,9 +11,9 @@
 namespace lodeline {
 namespace {
 
-/// A step of more periods than this may hide a missing reading.
+/// A step of more periods may contain a missing reading.
 constexpr double kHolePeriods = 1.5;
-/// Readings closer than this share of a period were not measured by one sensor one after the other.
+/// Minimum step between consecutive readings of one sensor, as a fraction of a period.
 constexpr double kTooClose = 0.6;
 
 uint64_t keyOf(std::initializer_list<double> values) {

@@ -18,21 +18,21 @@
 
 namespace lodeline {
 
-/// What a stream of one sensor is expected to look like.
+/// Expected properties of one sensor's stream.
 struct StreamExpectation {
   std::string kind;  ///< prefix of the findings, e.g. "imu" for "imu_gap"
   std::string name;  ///< for messages, e.g. "cam1"
   double rate_hz = 0.0;
-  double max_gap_s = 0.0;        ///< longer silence is reported
+  double max_gap_s = 0.0;        ///< a longer pause is reported
   Duration offset_to_imu_clock;  ///< added to every stamp
-  /// Readings that are read ahead where some are missing or time goes backwards, to put late ones in their
-  /// places. 1 for a sensor at work, whose readings cannot be waited for.
+  /// Number of readings read in advance where some are missing or time goes backwards, to sort in late ones.
+  /// 1 for a live sensor, where reading in advance would mean waiting.
   size_t look_ahead = 32;
-  /// Whether readings that come in bursts get times of their own.
+  /// Whether readings that arrive in bursts get evenly spread times.
   bool spreads_bursts = false;
 };
 
-/// Judges the stamps of one stream and reports what is wrong with them.
+/// Checks the stamps of one stream and reports problems.
 class StampMonitor {
  public:
   StampMonitor(StreamExpectation expectation, Diagnostics* diagnostics)
@@ -40,15 +40,15 @@ class StampMonitor {
 
   const StreamExpectation& expectation() const { return expectation_; }
 
-  /// Notes the stamp as passed on; reports a gap before it.
+  /// Records an accepted stamp and reports a gap before it.
   void accept(Time time);
   std::optional<Time> last() const { return last_; }
-  /// The stated period, or the last step where no rate is stated; zero where neither is known.
+  /// The stated period; without a stated rate, the last step; zero where neither is known.
   Duration period() const;
-  /// Whether readings may be missing between the last one passed on and one at `time`.
+  /// Whether readings may be missing between the last accepted one and one at `time`.
   bool isHole(Time time) const;
-  /// Whether readings lie between others instead of filling holes: half of them are much closer than a period
-  /// to one of `others`.
+  /// Whether the readings of `batch` are between `others` instead of filling holes: half of them are much
+  /// closer than a period to one of `others`.
   bool overlaps(const std::vector<Time>& batch, const std::vector<Time>& others) const;
 
   void reportDuplicate(Time time) const;
@@ -56,7 +56,7 @@ class StampMonitor {
   void reportDisorder(Time former, Time latter, Fate fate) const;
   void reportJumpBack(Time former, Time latter) const;
   void reportBursts(Duration period, Time first) const;
-  /// Throws InputError.
+  /// Throws InputError for a stream that runs backwards.
   [[noreturn]] void refuseReversal(Time former, Time latter) const;
 
  private:
@@ -66,17 +66,17 @@ class StampMonitor {
   Duration last_step_;
 };
 
-/// A number that is the same for readings that say the same, whatever their stamps.
+/// Hash of a reading's values without its stamp.
 uint64_t contentKey(const ImuSample& sample);
 uint64_t contentKey(const MagnetometerSample& sample);
 uint64_t contentKey(const DepthSample& sample);
 uint64_t contentKey(const SonarSample& sample);
 
-/// One sensor's readings with strictly increasing stamps on the IMU's clock. Late readings are put in their
-/// places as far as they come within the look-ahead; duplicates and later ones are dropped. Where the clock
-/// was set back, the readings from there on follow without a pause. Readings that come in bursts are spread
-/// out. All of this is reported with stamps, gaps too. Holds two readings, and the look-ahead where it is
-/// needed. Throws InputError where the stream runs backwards.
+/// One sensor's readings with strictly increasing stamps on the IMU's clock. Late readings within the
+/// look-ahead are sorted in; duplicates and later readings are dropped. Where the clock was set back, the
+/// following readings continue without a pause. Readings in bursts are spread evenly. All this, and gaps, are
+/// reported with stamps. Memory holds two readings, and the look-ahead where it is needed. Throws InputError
+/// where the stream runs backwards.
 template <typename Reading>
 class OrderedStream {
  public:
@@ -85,7 +85,7 @@ class OrderedStream {
   OrderedStream(StreamExpectation expectation, Pull pull, Diagnostics* diagnostics)
       : pull_(std::move(pull)), monitor_(std::move(expectation), diagnostics) {}
 
-  /// The next reading, left in the stream; null at the end.
+  /// The next reading without removal from the stream; null at the end.
   const Reading* peek() {
     if (is_ready_) return &ahead_.front();
     fill();
@@ -94,10 +94,10 @@ class OrderedStream {
     return is_ready_ ? &ahead_.front() : nullptr;
   }
 
-  /// The reading after the one that peek() shows, as far as it is known; null at the end.
+  /// The reading after that of peek(), if it is already known; null at the end.
   const Reading* following() const { return ahead_.size() > 1 ? &ahead_[1] : nullptr; }
 
-  /// Moves all readings that were not taken out yet.
+  /// Shifts all readings that were not taken out yet.
   void shift(Duration by) {
     correction_ = correction_ + by;
     for (std::deque<Reading>* readings : {&ahead_, &unsorted_, &burst_}) {
@@ -105,7 +105,7 @@ class OrderedStream {
     }
   }
 
-  /// Takes the next reading out; only after peek() has shown that there is one.
+  /// Removes and returns the next reading; valid only after peek() has returned one.
   Reading pop() {
     Reading reading = std::move(ahead_.front());
     recent_.emplace_back(reading.time, contentKey(reading));
@@ -115,7 +115,7 @@ class OrderedStream {
     return reading;
   }
 
-  /// Moves the readings from the first one at or after `from` on by so much: their clock jumped there.
+  /// Shifts all readings at or after `from`, where their clock jumped.
   void shiftFrom(Time from, Duration by) {
     if (pending_shift_ && is_past_jump_) correction_ = correction_ + pending_shift_->by;
     pending_shift_ = {from, by};
@@ -128,8 +128,8 @@ class OrderedStream {
     moveFrom(&burst_);
   }
 
-  /// How far the last of the next `count` readings reaches; fewer where the stream ends before. Reads ahead.
-  /// Nothing at the end.
+  /// Time of the last of the next `count` readings, or of the last reading before the end of the stream.
+  /// Reads in advance. Returns nothing at the end.
   std::optional<Time> reach(size_t count, bool* ends) {
     peek();
     while (ahead_.size() < count && take()) {
@@ -147,7 +147,7 @@ class OrderedStream {
     return reading;
   }
 
-  /// Moves the reading where it lies past a jump; from the first one on, all that follow.
+  /// Shifts a reading after a clock jump. All readings after the first shifted one are shifted too.
   void move(Reading* reading) {
     if (!pending_shift_) return;
     if (!is_past_jump_ && reading->time < pending_shift_->from) return;
@@ -155,7 +155,7 @@ class OrderedStream {
     reading->time = moved(reading->time, pending_shift_->by);
   }
 
-  /// The next reading as it was stored, bursts spread out.
+  /// The next reading in stored order, with bursts spread.
   std::optional<Reading> pull() {
     if (!unsorted_.empty()) {
       std::optional<Reading> reading = std::move(unsorted_.front());
@@ -173,7 +173,7 @@ class OrderedStream {
     return pullSpread();
   }
 
-  /// Judges by the first readings whether they come in bursts.
+  /// Determines from the first readings whether they arrive in bursts.
   void lookForBursts() {
     is_looked_at_ = true;
     std::vector<Time> stamps;
@@ -191,7 +191,7 @@ class OrderedStream {
     monitor_.reportBursts(*period, stamps.front());
   }
 
-  /// The first reading of the next burst; the rest of it goes before what is not sorted in.
+  /// The first reading of the next burst; its other readings are placed before the unsorted ones.
   std::optional<Reading> pullSpread() {
     constexpr size_t kLargestBurst = 200;
     size_t size = burst_.empty() ? 0 : 1;
@@ -217,7 +217,7 @@ class OrderedStream {
     return first;
   }
 
-  /// Reads as far ahead as the front needs to be known to be the next one.
+  /// Reads in advance until the front is certain to be the next reading.
   void fill() {
     while (ahead_.size() < 2 && take()) {
     }
@@ -226,7 +226,7 @@ class OrderedStream {
     }
   }
 
-  /// Reads one more reading and sorts it in; false at the end.
+  /// Reads one more reading and sorts it in; returns false at the end.
   bool take() {
     std::optional<Reading> reading = pull();
     if (!reading) return false;
@@ -243,8 +243,8 @@ class OrderedStream {
     return true;
   }
 
-  /// A few readings that leapt ahead by more than a second, which their successor at `time` did not, have
-  /// damaged stamps, which must not silence the rest.
+  /// Drops up to kMostWild last readings that jumped ahead by more than a second while their successor at
+  /// `time` did not. Their stamps are damaged; without this, all later readings would be rejected as late.
   bool dropWildStamps(Time time) {
     constexpr size_t kMostWild = 3;
     constexpr Duration kWildLeap = Duration::fromNanoseconds(1'000'000'000);
@@ -260,7 +260,7 @@ class OrderedStream {
     return true;
   }
 
-  /// Time went back from `newest`: late readings, or a clock that was set back.
+  /// Handles a time that is before `newest`: late readings, or a clock that was set back.
   void sortOut(Reading reading, Time newest) {
     std::vector<Reading> batch;
     batch.push_back(std::move(reading));
@@ -293,7 +293,7 @@ class OrderedStream {
     for (Reading& late : batch) putInPlace(std::move(late), newest);
   }
 
-  /// Whether most of a batch was read before, word for word.
+  /// Whether most readings of a batch repeat earlier readings exactly.
   bool repeats(const std::vector<Reading>& batch) const {
     size_t count = 0;
     for (const Reading& reading : batch) {
@@ -350,17 +350,17 @@ class OrderedStream {
 
   Pull pull_;
   StampMonitor monitor_;
-  std::deque<Reading> ahead_;     ///< in order, later than what was taken out
-  bool is_ready_ = false;         ///< the front is accepted
-  std::deque<Reading> unsorted_;  ///< pulled, before what is still in the recording
-  Duration correction_;           ///< added to what is still in the recording
-  Duration set_back_by_;          ///< of the jump found last
+  std::deque<Reading> ahead_;     ///< in order, later than the readings already removed
+  bool is_ready_ = false;         ///< whether the front is accepted
+  std::deque<Reading> unsorted_;  ///< pulled; they precede the unread part of the recording
+  Duration correction_;           ///< added to the stamps of the unread part
+  Duration set_back_by_;          ///< size of the jump found last
   std::optional<Shift> pending_shift_;
   bool is_past_jump_ = false;
-  bool is_looked_at_ = false;  ///< for bursts
-  std::deque<Reading> burst_;  ///< read and not yet spread out
+  bool is_looked_at_ = false;  ///< whether burst detection is done
+  std::deque<Reading> burst_;  ///< readings of a burst, not spread yet
   std::optional<BurstSpreader> spreader_;
-  std::deque<std::pair<Time, uint64_t>> recent_;  ///< stamps and contents taken out last
+  std::deque<std::pair<Time, uint64_t>> recent_;  ///< stamps and contents of the readings removed last
 };
 
 }  // namespace lodeline

@@ -16,8 +16,8 @@ using testing::HasSubstr;
 
 class OrderedStreamTest : public testing::Test {
  protected:
-  /// Stamps, in ms, that come out of a 100 Hz stream when these go in.
-  /// `repeats`: the same stamp says the same depth; else every reading says another one.
+  /// Output stamps, in ms, of a 100 Hz stream for the given input stamps. `repeats`: equal stamps have equal
+  /// depths; otherwise every reading has another depth.
   std::vector<int64_t> filter(const std::vector<int64_t>& stamps_ms, double offset_s = 0.0,
                               bool repeats = false) {
     OrderedStream<DepthSample> stream = streamOf(stamps_ms, offset_s, repeats);
@@ -61,7 +61,7 @@ TEST_F(OrderedStreamTest, PutsLateReadingsInTheirPlaces) {
   EXPECT_THAT(diagnostics_.ranked()[0].first_message,
               HasSubstr("from stamp 60000000 ns to 50000000 ns; the latter is put in its place"));
   EXPECT_THAT(filter({30, 10, 20, 40}), ElementsAre(10, 20, 30, 40));
-  // Eight readings of one packet came late.
+  // Eight readings of one packet arrived late.
   EXPECT_THAT(filter({10, 20, 60, 70, 80, 30, 40, 50, 90}), ElementsAre(10, 20, 30, 40, 50, 60, 70, 80, 90));
 }
 

@@ -7,21 +7,21 @@
 
 namespace lodeline {
 
-/// How much readings change from one to the next: the median change, which a few wild readings do not move.
+/// Median change between consecutive readings, which a few outliers do not affect.
 struct ReadingScale {
   double rate_rad_per_s = 0.0;
   double force_m_per_s2 = 0.0;
 };
 
-/// Of readings in order of time; zero for fewer than two.
+/// Median change of readings in order of time; zero for fewer than two.
 ReadingScale scaleOf(std::span<const ImuSample> samples);
 
-/// The last readings that were accepted, in constant memory.
+/// The last accepted readings, in constant memory.
 class ReadingHistory {
  public:
   void add(const ImuSample& sample);
   bool empty() const { return samples_.empty(); }
-  /// Whether there are enough readings for a scale.
+  /// Whether there are enough readings to compute a scale.
   bool isFull() const { return samples_.size() == kReadings; }
   const ImuSample& last() const { return samples_.back(); }
   ReadingScale scale() const { return scaleOf(samples_); }

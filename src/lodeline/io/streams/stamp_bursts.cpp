@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-/// Steps shorter than this share of the mean lie within a burst, longer than the other one between bursts.
+/// Thresholds as fractions of the mean step: shorter steps are within a burst, longer ones between bursts.
 constexpr double kWithin = 0.5;
 constexpr double kBetween = 1.5;
 constexpr double kLeastShareWithin = 0.4;
@@ -24,13 +24,13 @@ std::optional<Duration> burstPeriod(const std::vector<Time>& stamps) {
   int within = 0, between = 0;
   for (size_t i = 1; i < stamps.size(); ++i) {
     const double step_ns = since_first_ns[i] - since_first_ns[i - 1];
-    if (step_ns < 0.0) return std::nullopt;  // disorder, which is another matter
+    if (step_ns < 0.0) return std::nullopt;  // unordered stamps are handled elsewhere
     within += step_ns < kWithin * period_ns ? 1 : 0;
     between += step_ns > kBetween * period_ns ? 1 : 0;
   }
   const double share = static_cast<double>(within) / static_cast<double>(stamps.size() - 1);
   if (between < kFewestBursts || share < kLeastShareWithin) return std::nullopt;
-  // The steps between whole bursts are exact; a part of a burst at either end is not.
+  // The mean step is computed between complete bursts, because bursts at both ends may be incomplete.
   size_t first = 1, last = stamps.size() - 1;
   const auto isBetween = [&](size_t i) {
     return since_first_ns[i] - since_first_ns[i - 1] > kBetween * period_ns;
@@ -48,7 +48,7 @@ bool BurstSpreader::separates(Time previous, Time next) const {
 std::vector<Time> BurstSpreader::spread(const std::vector<Time>& burst) {
   const auto count = static_cast<int64_t>(burst.size());
   int64_t span_ns = count * period_.nanoseconds();
-  // A silence much longer than the burst is lost data, not a longer period.
+  // A pause much longer than the burst is lost data, not a longer period.
   if (last_ && burst.back() > *last_ && span(burst.back(), *last_).nanoseconds() < span_ns + span_ns / 2)
     span_ns = span(burst.back(), *last_).nanoseconds();
   std::vector<Time> times;

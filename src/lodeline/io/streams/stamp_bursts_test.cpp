@@ -11,7 +11,7 @@ std::vector<Time> times(const std::vector<double>& seconds) {
   return result;
 }
 
-/// 200 Hz, sent so many at a time; stamps within a burst are so far apart.
+/// Stamps of a 200 Hz sensor that sends bursts of `size` readings; `within_s` is the step within a burst.
 std::vector<Time> bursts(int size, double within_s, int count = 50, int first = 0) {
   std::vector<double> seconds;
   for (int i = first; i < first + count; ++i)
@@ -51,7 +51,7 @@ TEST(StampBursts, AreSpreadOutSinceTheBurstBefore) {
   EXPECT_EQ(spreader.spread(times({0.07, 0.07, 0.07, 0.07})), times({0.055, 0.06, 0.065, 0.07}));
   EXPECT_TRUE(spreader.separates(times({0.07})[0], times({0.09})[0]));
   EXPECT_FALSE(spreader.separates(times({0.07})[0], times({0.0701})[0]));
-  // After half a second of silence, readings keep their period.
+  // After a pause of half a second, readings keep their period.
   EXPECT_EQ(spreader.spread(times({0.6, 0.6})), times({0.595, 0.6}));
 }
 

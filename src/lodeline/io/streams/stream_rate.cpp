@@ -11,9 +11,9 @@
 namespace lodeline {
 namespace {
 
-/// A stated rate further than this factor from the measured one is wrong.
+/// Factor between the stated and the measured rate beyond which the stated one is wrong.
 constexpr double kRateFactor = 1.5;
-/// Fewer equal stamps may be an accident.
+/// Minimum number of equal stamps that is treated as an error.
 constexpr size_t kFewestEqualStamps = 10;
 
 void refuseStandingClock(const std::string& name, const std::vector<Time>& stamps,

@@ -52,7 +52,7 @@ TEST(StreamRate, StampsCountNanosecondsUnlessNoSensorIsThatFast) {
   EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e15, 5e3), kInertialRate), TimeUnit::Microseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e12, 5.0), kInertialRate), TimeUnit::Milliseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e15, 5e4), kCameraRate), TimeUnit::Microseconds);
-  // Slow, fast and unknown streams of nanoseconds stay what they say.
+  // Slow, fast and unknown streams of nanoseconds keep their unit.
   EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 1e9), kInertialRate), TimeUnit::Nanoseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 1e5), kInertialRate), TimeUnit::Nanoseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 0.0), kInertialRate), TimeUnit::Nanoseconds);

@@ -7,20 +7,20 @@
 
 namespace lodeline {
 
-/// From the first to the last reading of a stream.
+/// Times of the first and last reading of a stream.
 struct TimeSpan {
   Time first, last;
 };
 
-/// Kind of the finding that two streams have no time in common.
+/// Kind of the finding that two streams do not overlap in time.
 inline constexpr const char* kClocksApart = "clocks_apart";
 
-/// Says of two streams that have no time in common when each was, and what to do. Nothing where they overlap.
-/// `offset`: how to state the difference of the clocks, for example a key of the calibration.
+/// Message for two streams that do not overlap in time: both spans and the remedy. Returns nothing where they
+/// overlap. `offset`: how to state the difference of the clocks, for example a key of the calibration.
 std::optional<std::string> apart(const std::string& name, const TimeSpan& span, const std::string& other_name,
                                  const TimeSpan& other, const std::string& offset);
 
-/// Gathers the span of a stream reading by reading.
+/// Accumulates the span of a stream reading by reading.
 class SpanOfStream {
  public:
   void add(Time time) {

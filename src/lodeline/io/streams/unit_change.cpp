@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGravity_m_per_s2 = 9.80665;
 
-/// Size of the specific force that a share of the readings does not exceed.
+/// Quantile of the magnitude of the specific force for a fraction of the readings.
 double forceQuantile(std::span<const ImuSample> samples, double share) {
   std::vector<double> sizes;
   for (const ImuSample& sample : samples) sizes.push_back(sample.specific_force_B.norm());
@@ -27,8 +27,8 @@ double medianForce(std::span<const ImuSample> samples) { return forceQuantile(sa
 
 bool isBetween(double value, double least, double greatest) { return value > least && value < greatest; }
 
-/// Whether readings changed by `factors` go on where those before ended, and change as much from one to the
-/// next. Gravity's size must be the same before and after.
+/// Whether readings multiplied by `factors` continue the earlier ones and have similar changes between
+/// neighbours. The magnitude of gravity must be equal before and after.
 bool explains(const ReadingFactors& factors, const ReadingHistory& before,
               std::span<const ImuSample> following) {
   constexpr double kChanges = 6.0, kLeastRate_rad_per_s = 0.03, kLeastForce_m_per_s2 = 0.3;
@@ -89,7 +89,7 @@ std::optional<ReadingFactors> changeOfUnit(const ReadingHistory& before,
       if (!factors.words.empty() && explains(factors, before, following)) return factors;
     }
   }
-  // What is near zero looks the same with either sign.
+  // A value near zero does not show its sign.
   constexpr double kPlain = 5.0;
   const ReadingScale scale = before.scale();
   for (const bool is_gyroscope : {true, false}) {
@@ -105,7 +105,7 @@ std::optional<ReadingFactors> changeOfUnit(const ReadingHistory& before,
 }
 
 double forceToSI(std::span<const ImuSample> samples) {
-  // An accelerometer that has gravity taken off may read 1 m/s^2 as well, but not steadily.
+  // An accelerometer with gravity removed may also read 1 m/s^2, but not constantly.
   constexpr double kSteady = 1.6;
   if (forceQuantile(samples, 0.8) > kSteady * forceQuantile(samples, 0.2)) return 1.0;
   const double size = medianForce(samples);

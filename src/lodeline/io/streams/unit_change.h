@@ -8,11 +8,11 @@
 
 namespace lodeline {
 
-/// What a stream of readings must be multiplied with, from some reading on, to go on as before.
+/// Factors that convert later readings of a stream to the unit and sign of the earlier ones.
 struct ReadingFactors {
-  Vec3 rate = Vec3::Ones();   ///< axis by axis
-  Vec3 force = Vec3::Ones();  ///< likewise
-  std::string words;          ///< what happened: "the accelerometer's readings are now in g"
+  Vec3 rate = Vec3::Ones();   ///< per axis
+  Vec3 force = Vec3::Ones();  ///< per axis
+  std::string words;          ///< description of the change: "the accelerometer's readings are now in g"
 
   ImuSample apply(ImuSample sample) const {
     sample.angular_velocity_B = sample.angular_velocity_B.cwiseProduct(rate);
@@ -21,17 +21,17 @@ struct ReadingFactors {
   }
 };
 
-/// Readings that kUnitReadings are enough of to tell a change of the unit.
+/// Number of readings that suffice to identify a change of unit.
 inline constexpr size_t kUnitReadings = 40;
 
 /// The change of unit (rad/s and deg/s; m/s^2, g and mg) or of one axis' sign between `before` and
-/// `following`, where one explains a jump between the two and the size of the changes within both; nothing
-/// else does both.
+/// `following`. It must explain both a jump between the two and the magnitude of the changes within each.
+/// Returns nothing otherwise.
 std::optional<ReadingFactors> changeOfUnit(const ReadingHistory& before,
                                            std::span<const ImuSample> following);
 
-/// The factor that takes an accelerometer's first readings to m/s^2, by gravity's size: those in g or mg. 1
-/// where they are in m/s^2 or fit nothing.
+/// Factor from an accelerometer's first readings (in g or mg) to m/s^2, determined from the magnitude of
+/// gravity. Returns 1 where they are in m/s^2 or fit no unit.
 double forceToSI(std::span<const ImuSample> samples);
 
 }  // namespace lodeline

@@ -16,7 +16,7 @@ void putBefore(std::vector<Reading> before, std::vector<Reading>* readings) {
 }  // namespace
 
 void FramePacket::prepend(FramePacket before) {
-  // The reading at the common border is in both.
+  // Both packets have the reading at their common border.
   if (!before.imu.empty() && !imu.empty() && before.imu.back().time == imu.front().time)
     before.imu.pop_back();
   putBefore(std::move(before.imu), &imu);

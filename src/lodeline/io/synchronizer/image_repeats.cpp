@@ -12,10 +12,11 @@ namespace lodeline {
 namespace {
 
 constexpr double kShortestRest_s = 0.3;
-/// Longer silence of the first camera is worth poses of its own, and a finding of its own.
+/// Pause of the first camera after which poses without images are computed and a finding is reported.
 constexpr double kFrozen_s = 0.25;
 
-/// Readings may stray from their means by five sigmas of white noise on top of a rig's own vibration.
+/// Options of the stationary detector: deviations of five sigmas of white noise in addition to a rig's own
+/// vibration.
 RestDetectorOptions restOptions(const ImuCalibration& imu) {
   constexpr double kSigmas = 5.0;
   const double per_density = kSigmas * std::sqrt(imu.rate_hz);
@@ -49,7 +50,7 @@ double medianOf(std::deque<double> values) {
   return *middle;
 }
 
-/// "1:02.350" after the first image.
+/// Time after the first image, formatted as "1:02.350".
 std::string clockTime(Duration since_start) {
   const int64_t ms = (since_start.nanoseconds() + 500'000) / 1'000'000;
   return fmt::format("{}:{:02}.{:03}", ms / 60'000, ms / 1000 % 60, ms % 1000);
@@ -106,8 +107,8 @@ bool ImageRepeats::isResting(const View& view) const {
   constexpr double kBefore_s = 0.7, kAfter_s = 0.5;
   if (!rests_since_) return false;
   if (!view.ever_changed) return true;
-  // A camera that freezes while the rig glides has readings at rest before, one that freezes in a turn has
-  // none for a while after.
+  // If a camera freezes while the rig glides, the readings are at rest before; if it freezes during a
+  // rotation, they are not at rest for a while after.
   const double earlier_s = (view.newest_time - *rests_since_).seconds();
   return earlier_s < kBefore_s && earlier_s > -kAfter_s;
 }
@@ -140,7 +141,7 @@ ImageRepeats::Reference ImageRepeats::screen(FramePacket* packet) {
       view.run.is_blank = isBlank(image);
     }
     view.run.last = packet->time;
-    // Nothing can be followed in a blank image, and the moment deserves its pose.
+    // A blank image has no features to track, but its moment still gets a pose.
     if (view.run.is_blank) continue;
     image.release();
     if (i > 0) continue;

@@ -13,19 +13,17 @@
 
 namespace lodeline {
 
-/// Finds images that repeat the last new image of their camera: drivers and converters fill up a frame rate
-/// with them, and a camera that hangs delivers nothing else. A repeat carries a stamp of its own but shows an
-/// earlier moment, so it is taken out of its packet.
+/// Detects images that repeat the last new image of their camera and removes them from their packets. Drivers
+/// and converters fill up a frame rate with repeats, and a frozen camera delivers nothing else. A repeat has
+/// its own stamp but shows an earlier moment.
 ///
-/// A repeat has the same pixels, which noise makes impossible for a camera that works. Repeats that were
-/// encoded once more differ by a little: at most a fifth of what new images of this camera differ by,
-/// although the gyroscope turned the camera by more than 2.5 px. Once three such repeats were found, the
-/// fifth alone decides. Only rows 16 apart are compared, as long as they are equal or the difference is
-/// small.
+/// A repeat has the same pixels, which noise excludes for a working camera. Repeats that were encoded again
+/// differ slightly: by at most a fifth of the difference between new images of this camera, although the
+/// gyroscope measured a rotation of more than 2.5 px. After three such repeats, the fifth alone is the
+/// criterion. Only every 16th row is compared while the rows are equal or the difference is small.
 ///
-/// A rendered camera without noise gives equal images at rest. Where the inertial readings are at rest as
-/// well, and were not before the images became equal, equal images are observations of a rig that rests: they
-/// stay.
+/// A rendered camera without noise gives equal images at rest. Where the inertial readings are also at rest,
+/// and were not before the images became equal, equal images are observations of a resting rig and are kept.
 class ImageRepeats {
  public:
   /// `diagnostics` must outlive the object.
@@ -33,15 +31,15 @@ class ImageRepeats {
 
   enum class Reference { New, Repeat, Frozen };
 
-  /// Takes repeats out of a packet; packets in order of time. Frozen: the first camera has given nothing but
-  /// repeats for more than a quarter of a second.
+  /// Removes repeats from a packet; call it in order of time. Returns Frozen where the first camera has
+  /// delivered only repeats for more than a quarter of a second.
   Reference screen(FramePacket* packet);
 
   /// Reports repeats up to the end of the recording.
   void finish();
 
  private:
-  /// Equal images in a row.
+  /// Consecutive equal images.
   struct Run {
     int images = 0;
     Time first, last;
@@ -54,10 +52,10 @@ class ImageRepeats {
     double focal_px = 0.0;
     cv::Mat newest;  ///< last new image
     Time newest_time;
-    bool ever_changed = false;       ///< a second new image was seen
-    Vec3 turn_B = Vec3::Zero();      ///< since `newest_time`, by the gyroscope, rad
-    std::deque<double> differences;  ///< of the latest new images from the ones before, grey levels
-    int near_repeats = 0;            ///< found by the gyroscope
+    bool ever_changed = false;       ///< whether a second new image arrived
+    Vec3 turn_B = Vec3::Zero();      ///< rotation since `newest_time` from the gyroscope, rad
+    std::deque<double> differences;  ///< differences between consecutive new images, grey levels
+    int near_repeats = 0;            ///< repeats found with the gyroscope
     Run run;
   };
 

@@ -24,7 +24,7 @@ Rig rigOf(size_t cameras) {
   return rig;
 }
 
-/// A picture that drifts by two pixels an image, with `noise_grey` of its own each time.
+/// An image that moves by two pixels per image, each with `noise_grey` of its own noise.
 cv::Mat picture(int number, int noise_grey = 0, int seed = 0) {
   cv::Mat image(64, 96, CV_8UC1);
   cv::RNG random(static_cast<uint64_t>(1000 * seed + number) + 1);
@@ -41,8 +41,8 @@ cv::Mat picture(int number, int noise_grey = 0, int seed = 0) {
 
 class ImageRepeatsTest : public testing::Test {
  protected:
-  /// Images one after the other, with the readings of a rig that turns by `rate_rad_per_s` and shakes, or
-  /// rests. Says which packets keep their first image, and in `references_` what became of them.
+  /// Screens consecutive images together with the readings of a rig that rotates by `rate_rad_per_s` and
+  /// vibrates, or rests. Returns which packets keep their first image; `references_` gets the state of each.
   std::vector<bool> kept(const std::vector<cv::Mat>& first, const std::vector<cv::Mat>& second,
                          const std::function<double(double)>& rate_rad_per_s, bool shakes = true) {
     ImageRepeats repeats(rigOf(second.empty() ? 1 : 2), &diagnostics_);
@@ -125,7 +125,7 @@ TEST_F(ImageRepeatsTest, KeepsEqualImagesOfARigAtRest) {
   for (int i = 0; i < 30; ++i) images.push_back(picture(i + 1));
   const auto rate = [](double t_s) { return t_s < 101.46 ? 0.0 : swaying(t_s); };
   const std::vector<bool> kept_images = kept(images, {}, rate, false);
-  // The detector of rests takes a moment to trust the readings.
+  // The stationary detector needs some time.
   for (size_t i = 8; i < images.size(); ++i) EXPECT_TRUE(kept_images[i]) << i;
   EXPECT_EQ(diagnostics_.ranked().size(), 0u);
 }
@@ -148,7 +148,7 @@ TEST_F(ImageRepeatsTest, RecognizesRepeatsThatWereEncodedOnceMore) {
 TEST_F(ImageRepeatsTest, ATurningPointIsNoRepeat) {
   std::vector<cv::Mat> images;
   for (int i = 0; i < 40; ++i) images.push_back(picture(i == 20 ? 19 : i, 1, i));
-  // The gyroscope stands still at that moment as well.
+  // The gyroscope is also at rest at that moment.
   const auto rate = [](double t_s) { return std::abs(t_s - 101.0) < 0.06 ? 0.0 : 0.9; };
   const std::vector<bool> kept_images = kept(images, {}, rate);
   EXPECT_THAT(kept_images, testing::Each(true));

@@ -25,7 +25,7 @@ ImuIntervals::Coverage ImuIntervals::readUntil(Time time) {
     last_ = buffer_.back().time;
     span_.add(*last_);
     if (cut_before_) continue;
-    // Until the first cut, old history goes, but never the last reading at or before `time`.
+    // Until the first cut, old history is removed, except the last reading at or before `time`.
     const Time oldest = std::min(time, buffer_.back().time) - history;
     while (buffer_.size() > 1 && buffer_[0].time < oldest && buffer_[1].time <= time) buffer_.pop_front();
   }

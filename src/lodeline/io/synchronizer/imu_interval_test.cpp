@@ -11,7 +11,7 @@ namespace {
 
 Time ms(int64_t value) { return Time::fromNanoseconds(value * 1'000'000); }
 
-/// Readings at the given times; the gyroscope's first axis reads the time in seconds.
+/// Readings at the given times; the first gyroscope axis reads the time in seconds.
 ImuIntervals intervalsOf(std::vector<int64_t> stamps_ms, double history_s, Diagnostics* diagnostics) {
   StreamExpectation expected;
   expected.kind = "imu";
@@ -89,7 +89,7 @@ TEST(ImuIntervals, CutsTwiceBetweenTwoReadings) {
   const std::vector<ImuSample> inside = intervals.cut(ms(60), &gap_s);
   ASSERT_EQ(inside.size(), 2u);
   EXPECT_NEAR(inside[1].angular_velocity_B.x(), 0.06, 1e-15);
-  // The gap is that between the true readings, though the interval is shorter.
+  // The gap is that between the real readings, although the interval is shorter.
   EXPECT_DOUBLE_EQ(gap_s, 0.1);
 }
 

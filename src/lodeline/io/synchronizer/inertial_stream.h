@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// Inertial readings as everything that computes with them takes them: in order of time, and screened.
+/// The inertial stream for all computations: in order of time, and screened.
 inline InertialScreen inertialStream(OrderedStream<ImuSample> stream, const InertialScreenOptions& options,
                                      Diagnostics* diagnostics) {
   const auto ordered = std::make_shared<OrderedStream<ImuSample>>(std::move(stream));

@@ -48,7 +48,7 @@ void LiveSource::put(Inbox<Reading>* inbox, Reading reading) {
   }
   inbox->waiting.push_back(std::move(reading));
   if (inbox->waiting.size() > inbox->limit) {
-    // Before the first image nothing is lost that would have been used.
+    // Before the first image, dropped readings are not needed and not counted.
     if (newest_image_) lose(inbox->waiting.front().time, &inbox->overflow);
     inbox->waiting.pop_front();
   }

@@ -14,24 +14,25 @@
 namespace lodeline {
 
 struct LiveSourceOptions {
-  /// Images that may wait, per camera. When the estimator does not keep up, the oldest goes. Not below 20,
-  /// which rates are measured on.
+  /// Capacity of the image queue per camera. When the estimator is too slow, the oldest image is dropped. At
+  /// least 20, because rates are measured on the queued images.
   size_t max_images = 40;
-  /// Readings of every other sensor that may wait.
+  /// Capacity of the queue of every other sensor, in readings.
   size_t max_readings = 100'000;
-  /// How much later than inertial readings of the same time the others may come; waiting for them delays a
-  /// pose at most so long.
+  /// Maximum delay of other sensors relative to inertial readings of the same time, s. Waiting for them
+  /// delays a pose by at most this time.
   double patience_s = 0.1;
   /// See RigFile::imu_correction.
   std::optional<ImuCorrection> imu_correction = std::nullopt;
 };
 
-/// Sensors at work as a source: whoever hears them pushes readings, from any thread and without ever waiting;
-/// the synchronizer pulls, on one other thread, and waits. Readings pushed in time make the same packets as a
-/// recording of them would. Where a camera or a slower sensor is silent longer than the patience, the source
-/// gives nothing (as at a stream's end) and the packet goes without; what comes after that is dropped and
-/// reported as `image_late`, `magnetometer_late`, `depth_late`, what finds no room as `image_dropped`,
-/// `imu_dropped` and so on. Without inertial readings and images of the first camera it waits on.
+/// Live sensors as a source. Any thread can push readings without waiting; one other thread, the
+/// synchronizer's, pulls and waits. Readings pushed in time give the same packets as a recording of them.
+/// Where a camera or a slower sensor is silent longer than `patience_s`, the source returns nothing (as at a
+/// stream's end), and the packet has no reading of it. Later readings of that time are dropped and reported
+/// as `image_late`, `magnetometer_late`, `depth_late`. Readings that exceed the capacity are reported as
+/// `image_dropped`, `imu_dropped` and so on. For inertial readings and images of the first camera, it waits
+/// without limit.
 class LiveSource : public RecordedSource {
  public:
   /// `diagnostics`, used while pulling, must outlive the source.
@@ -40,17 +41,18 @@ class LiveSource : public RecordedSource {
   void push(const ImuSample& sample);
   void push(const MagnetometerSample& sample);
   void push(const DepthSample& sample);
-  /// `camera`: its place in the rig.
+  /// `camera`: index in the rig.
   void push(size_t camera, PendingImage image);
-  /// No more is to come: what waits is still given, then nothing.
+  /// Ends the streams: queued readings are still returned, then nothing.
   void close();
 
-  /// Waits for some readings of the IMU and of every camera, and settles the rig's rates by them as
-  /// settleRate() does. To be called before a synchronizer is made. False where it was closed before that.
+  /// Waits for some readings of the IMU and of every camera, and sets the rig's rates from them with
+  /// settleRate(). Call it before creating a synchronizer. Returns false where the source was closed before
+  /// that.
   bool settleRates();
-  /// Sensors that settleRates() is still waiting for, by name.
+  /// Names of the sensors for which settleRates() is still waiting.
   std::vector<std::string> unheard() const;
-  /// Images of the first camera that wait.
+  /// Number of queued images of the first camera.
   size_t backlog() const;
 
   bool isLive() const override { return true; }
@@ -60,7 +62,7 @@ class LiveSource : public RecordedSource {
   std::optional<DepthSample> nextDepth() override;
 
  private:
-  /// Readings that could not be used.
+  /// Count of readings that could not be used.
   struct Loss {
     int count = 0;
     Time first;
@@ -70,16 +72,16 @@ class LiveSource : public RecordedSource {
     std::string kind, name;  ///< as in StreamExpectation
     size_t limit = 0;
     Duration offset_to_imu_clock;
-    size_t heard = 0;  ///< since the beginning
+    size_t heard = 0;  ///< number of readings since the start
     std::deque<Reading> waiting;
-    std::optional<Time> given;    ///< last one
-    std::optional<Time> settled;  ///< packets up to here go without what was not there, IMU clock
+    std::optional<Time> given;    ///< time of the last reading returned
+    std::optional<Time> settled;  ///< end of the completed packets, IMU clock
     Loss overflow, late;
   };
 
   template <typename Reading>
   void put(Inbox<Reading>* inbox, Reading reading);
-  /// `waits_on`: however long it takes.
+  /// `waits_on`: wait without limit.
   template <typename Reading>
   std::optional<Reading> take(Inbox<Reading>* inbox, bool waits_on);
   template <typename Reading>
@@ -99,8 +101,8 @@ class LiveSource : public RecordedSource {
   Inbox<MagnetometerSample> magnetometer_;
   Inbox<DepthSample> depth_;
   std::optional<Time> newest_imu_;
-  std::optional<Time> newest_image_;  ///< given out of the first camera's, on the IMU's clock
-  bool image_follows_ = false;        ///< a further image is asked for only to see what follows
+  std::optional<Time> newest_image_;  ///< latest image of the first camera that was returned, IMU clock
+  bool image_follows_ = false;        ///< whether the next image is requested only to look ahead
 };
 
 }  // namespace lodeline

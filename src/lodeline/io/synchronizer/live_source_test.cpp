@@ -14,7 +14,7 @@
 namespace lodeline {
 namespace {
 
-/// IMU at 200 Hz, cameras at 20 Hz of 2 x 2 px that show their number, no calibration that matters.
+/// IMU at 200 Hz, cameras at 20 Hz with images of 2 x 2 px that contain their number, arbitrary calibration.
 class LiveSourceTest : public testing::Test {
  protected:
   static Rig rigOf(size_t cameras, bool with_magnetometer) {
@@ -36,7 +36,7 @@ class LiveSourceTest : public testing::Test {
       ImuSample sample;
       const double time_s = 1e-3 * static_cast<double>(ms);
       sample.time = at(time_s);
-      // A sensor that repeats itself would be taken for a dead one.
+      // Changing values, because a sensor with constant readings would be rejected as stuck.
       sample.angular_velocity_B = 0.1 * Vec3(std::sin(5.0 * time_s), std::cos(5.0 * time_s), 0.3);
       sample.specific_force_B = Vec3(0.2 * std::sin(3.0 * time_s), 0.0, 9.8 + 0.1 * std::cos(3.0 * time_s));
       source_->push(sample);
@@ -60,7 +60,7 @@ class LiveSourceTest : public testing::Test {
   std::optional<Synchronizer> synchronizer_;
 };
 
-/// Pushes a recording's readings in the order of their stamps, as sensors at work would.
+/// Pushes a recording's readings in the order of their stamps, like live sensors.
 void play(MeasurementSource* recording, LiveSource* live) {
   std::optional<ImuSample> imu = recording->nextImu();
   std::optional<MagnetometerSample> magnetometer = recording->nextMagnetometer();
@@ -116,7 +116,7 @@ TEST_F(LiveSourceTest, MakesThePacketsOfARecording) {
 TEST_F(LiveSourceTest, DoesNotWaitForSilentSensors) {
   start(2, true);
   for (const double time_s : {0.5, 0.55, 0.6}) pushImage(0, time_s);
-  pushImu(0.0, 0.8);  // beyond the last image by more than the patience
+  pushImu(0.0, 0.8);  // later than the last image by more than the patience
   EXPECT_EQ(next().time, at(0.5));
   EXPECT_EQ(next().time, at(0.55));
   const FramePacket last = next();
@@ -132,9 +132,9 @@ TEST_F(LiveSourceTest, DropsAndReportsWhatComesTooLate) {
   pushImu(0.0, 0.7);
   source_->push(MagnetometerSample{at(0.45), Vec3::UnitX()});
   EXPECT_EQ(next().magnetometer.size(), 1U);
-  source_->push(MagnetometerSample{at(0.48), Vec3::UnitX()});  // belongs to the packet that is out
+  source_->push(MagnetometerSample{at(0.48), Vec3::UnitX()});  // belongs to a returned packet
   source_->push(MagnetometerSample{at(0.52), Vec3::UnitX()});
-  pushImage(0, 0.5);  // once more
+  pushImage(0, 0.5);  // a duplicate
   pushImage(0, 0.55);
   const FramePacket packet = next();
   EXPECT_EQ(packet.time, at(0.55));

@@ -14,45 +14,45 @@
 
 namespace lodeline {
 
-/// What became of an attempt to decode an image.
+/// Result of decoding an image.
 struct LoadedImage {
   cv::Mat image;        ///< 8-bit grey; empty where there was none
-  std::string problem;  ///< why `image` is empty, naming the file; empty where all is well
+  std::string problem;  ///< reason why `image` is empty, naming the file; empty on success
 };
 
-/// An image as the recording holds it, for copying without loss.
+/// An image as stored in the recording, for copying without loss.
 struct StoredImage {
-  std::vector<uint8_t> file;  ///< bytes of an image file; empty where the recording holds bare pixels
-  cv::Mat pixels;             ///< those: 8 or 16-bit grey, or 8-bit BGR, BGRA
-  std::string problem;        ///< why there is neither
+  std::vector<uint8_t> file;  ///< bytes of an image file; empty where the recording stores raw pixels
+  cv::Mat pixels;             ///< raw pixels: 8 or 16-bit grey, or 8-bit BGR, BGRA
+  std::string problem;        ///< reason why both are missing
 };
 
-/// An image that exists but is decoded only when somebody wants its pixels.
+/// An image that is decoded on demand.
 struct PendingImage {
   Time time;         ///< mid-exposure, on the camera's clock
   std::string name;  ///< for messages: the file, or topic and stamp
-  /// Decodes. May run on another thread, at the same time as calls to the source; must not throw for damaged
-  /// images.
+  /// Decodes the image. May run on another thread in parallel with calls to the source; must not throw for
+  /// damaged images.
   std::function<LoadedImage()> load;
-  /// The same image as it is stored; sources that no recording stands behind have none.
+  /// Returns the image as stored; empty for sources without a recording.
   std::function<StoredImage()> stored = {};
-  Time recorded = {};  ///< the stamp as it was stored, whatever is done to `time`; set by the synchronizer
+  Time recorded = {};  ///< the stored stamp, unaffected by changes of `time`; set by the synchronizer
 };
 
-/// The same for images that are stored under the same name.
+/// Hash that is equal for images stored under the same name.
 inline uint64_t contentKey(const PendingImage& image) { return std::hash<std::string>()(image.name); }
 
-/// A recording (or a live or simulated rig) as one stream per sensor, each pulled one reading at a time in
-/// the order in which it was stored; nothing at a stream's end. Streams of sensors that the rig does not have
-/// are empty. Sources neither sort nor repair: the Synchronizer does that, the same for all of them.
+/// A recording (or a live or simulated rig) as one stream per sensor. Each call returns one reading in stored
+/// order, and nothing at the end of a stream. Streams of missing sensors are empty. Sources neither sort nor
+/// repair; the Synchronizer does that for all of them.
 class MeasurementSource {
  public:
   virtual ~MeasurementSource() = default;
 
-  /// The sensors, with the cameras in the order in which nextImage() counts them.
+  /// The sensors, with the cameras in the order of the index of nextImage().
   virtual const Rig& rig() const = 0;
 
-  /// Whether readings come as they are measured, so that to read ahead is to wait.
+  /// Whether readings arrive as they are measured, so that reading in advance means waiting.
   virtual bool isLive() const { return false; }
 
   virtual std::optional<ImuSample> nextImu() = 0;
@@ -62,21 +62,21 @@ class MeasurementSource {
   virtual std::optional<SonarSample> nextSonar() { return std::nullopt; }
 };
 
-/// A source whose rig was read from files, and may be known better.
+/// A source whose rig was read from files and can be replaced in parts.
 class RecordedSource : public MeasurementSource {
  public:
   const Rig& rig() const override { return rig_; }
-  /// The next reading, freed from what the calibration says of the IMU's axes.
+  /// The next reading, corrected with the calibration of the IMU's axes.
   std::optional<ImuSample> nextImu() final {
     std::optional<ImuSample> sample = nextRecordedImu();
     if (sample && imu_correction_) sample = imu_correction_->applied(*sample);
     return sample;
   }
-  /// The next reading as it was stored.
+  /// The next reading as stored.
   virtual std::optional<ImuSample> nextRecordedImu() = 0;
-  /// Replaces what the recording's own files say about the magnetometer, before a synchronizer is made.
+  /// Replaces the recording's own magnetometer calibration; call it before creating a synchronizer.
   void setMagnetometer(const MagnetometerCalibration& magnetometer) { rig_.magnetometer = magnetometer; }
-  /// The same of the IMU's noise.
+  /// Replaces the recording's own IMU noise; call it before creating a synchronizer.
   void setImuNoise(const ImuNoise& noise) { rig_.imu.noise = noise; }
 
  protected:
@@ -84,7 +84,7 @@ class RecordedSource : public MeasurementSource {
       : rig_(std::move(rig)), imu_correction_(imu_correction) {}
 
   Rig rig_;
-  /// Nothing where no calibration states it.
+  /// Correction of the IMU's axes; nothing where no calibration states it.
   std::optional<ImuCorrection> imu_correction_;
 };
 

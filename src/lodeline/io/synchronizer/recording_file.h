@@ -6,13 +6,12 @@
 
 namespace lodeline {
 
-/// A text file that is being written, its folder created. Throws InputError, naming the path, where that
-/// fails.
+/// A text file opened for writing; the folder is created. Throws InputError naming the path on failure.
 class RecordingFile {
  public:
   explicit RecordingFile(const std::filesystem::path& path);
   void write(const std::string& text);
-  /// Throws where anything could not be written, e.g. on a full disk.
+  /// Throws where a write failed, e.g. on a full disk.
   void close();
 
  private:
@@ -20,7 +19,7 @@ class RecordingFile {
   std::ofstream stream_;
 };
 
-/// First lines of the lists of readings in the EuRoC ASL layout.
+/// Header lines of the data.csv files in the EuRoC ASL layout.
 inline constexpr const char* kImuColumns =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
     "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";

@@ -7,8 +7,8 @@
 
 namespace lodeline {
 
-/// Mean absolute difference of two 8-bit grey images of one size, grey levels, over every 16th row (of small
-/// images eight rows).
+/// Mean absolute difference of two 8-bit grey images of equal size, in grey levels, over every 16th row
+/// (eight rows of small images).
 inline double sparseDifference(const cv::Mat& a, const cv::Mat& b) {
   const int step = std::clamp(a.rows / 8, 1, 16);
   int64_t sum = 0, count = 0;

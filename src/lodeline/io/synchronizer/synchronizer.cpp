@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Readings up to `time`, less those older than `oldest`.
+/// Removes and returns readings up to `time`; drops those before `oldest`.
 template <typename Reading>
 std::vector<Reading> takeUntil(Time time, Time oldest, OrderedStream<Reading>* stream, SpanOfStream* span) {
   std::vector<Reading> taken;
@@ -58,7 +58,7 @@ OrderedStream<PendingImage> Synchronizer::imageStream(size_t camera) {
   expected.offset_to_imu_clock = Duration::fromSeconds(calibration.time_offset_to_imu_s + found_s);
   expected.spreads_bursts = false;
   expected.look_ahead = std::min(expected.look_ahead, kImagesAhead);
-  // A gap of another camera shows, packet by packet, as a missing partner.
+  // A gap of another camera is reported per packet as a missing partner.
   expected.max_gap_s = camera == 0 ? options_.max_image_gap_periods / calibration.rate_hz : 0.0;
   const auto pull = [this, camera] {
     std::optional<PendingImage> image = source_->nextImage(camera);
@@ -196,7 +196,7 @@ std::optional<PendingImage> Synchronizer::partnerOf(const PendingImage& referenc
         stream.following() != nullptr && distance(*stream.following()) <= distance(*stream.peek());
     if (stream.peek()->time >= reference.time - tolerance && !is_next_nearer) break;
     const PendingImage orphan = stream.pop();
-    // Those from before the part of the recording that is used never had a chance of a partner.
+    // Images from before the used part of the recording cannot have a partner.
     if (!last_packet_time_) continue;
     diagnostics_->report(Severity::Notice, "image_without_partner",
                          fmt::format("{}: no image of {} within {:g} ms has it as the nearest; passed over",
@@ -211,7 +211,7 @@ std::optional<PendingImage> Synchronizer::partnerOf(const PendingImage& referenc
 }
 
 double Synchronizer::delay_s(const PendingImage& reference, const PendingImage& partner, size_t camera) {
-  // Stamps are written by software, and tremble; how two cameras are triggered does not.
+  // Software stamps have jitter, but the trigger delay between two cameras is constant.
   constexpr size_t kLatest = 31;
   constexpr double kTremble_s = 3e-3;
   const double by_stamps_s = (partner.time - reference.time).seconds();

@@ -16,58 +16,60 @@
 namespace lodeline {
 
 struct SynchronizerOptions {
-  /// An image of another camera belongs to the nearest one of the first camera, at most this far from it and
-  /// never more than half a frame period. Each image counts at its own time (FramePacket::image_delays_s).
+  /// Maximum time between an image of another camera and the nearest image of the first camera, s; never more
+  /// than half a frame period. Each image keeps its own time (FramePacket::image_delays_s).
   double match_tolerance_s = 0.05;
-  /// Silence of the IMU and the slower sensors is reported beyond this many nominal periods.
+  /// Pause of the IMU and the slower sensors that is reported, in nominal periods.
   double max_gap_periods = 4.0;
-  /// The same for images, where one lost frame is worth a word.
+  /// Pause of the images that is reported, in nominal periods; a single lost frame is reported too.
   double max_image_gap_periods = 1.5;
-  /// Readings kept from before the first image.
+  /// Length of the readings kept from before the first image, s.
   double history_s = 10.0;
-  /// Leaves out the images of the first so many seconds.
+  /// Leaves out the images of the first `skip_s` seconds.
   double skip_s = 0.0;
-  /// Ends so many seconds after the first image used; 0 for the whole recording.
+  /// Ends `duration_s` seconds after the first image used; 0 for the whole recording.
   double duration_s = 0.0;
-  /// Decodes the next packet's images on threads of their own while the caller works on this one. The
-  /// packets are the same either way.
+  /// Decodes the next packet's images on separate threads while the caller processes the current one. The
+  /// packets are the same with and without it.
   bool prefetch = true;
-  /// Added to the stamps of each camera's images besides what the calibration says; empty for none.
+  /// Added to the stamps of each camera's images in addition to the calibration; empty for none.
   std::vector<double> image_offset_s = {};
-  /// How inertial readings are screened.
+  /// Options of the inertial screen.
   InertialScreenOptions inertial;
 };
 
-/// Turns a source's separate streams into one packet per image of the first camera. A packet is given out
-/// only when inertial readings at or past the image time are there, and magnetometer readings past it (or
-/// their stream has ended). Reports into `diagnostics`, each with its stamp: images without inertial data
-/// (dropped), images without a partner, missing and damaged images (an empty cv::Mat in the packet), and
-/// gaps, duplicates and disorder of every stream. Images that repeat the one before (ImageRepeats) are left
-/// out; where the first camera's does, the packet's readings go to the packet after it, unless the camera is
-/// frozen. Memory does not grow with the length of the recording.
+/// Combines the separate streams of a source into one packet per image of the first camera. It returns a
+/// packet only when there are inertial readings at or after the image time and magnetometer readings after it
+/// (or their stream has ended).
+///
+/// It reports, each with a stamp: images without inertial data (dropped), images without a partner, missing
+/// and damaged images (an empty cv::Mat in the packet), and gaps, duplicates and disorder of every stream.
+/// Images that repeat the one before are left out (ImageRepeats). Where an image of the first camera is a
+/// repeat, the next packet gets the readings, unless the camera is frozen. Memory use does not depend on the
+/// length of the recording.
 class Synchronizer {
  public:
   /// `source` and `diagnostics` must outlive the synchronizer.
   Synchronizer(MeasurementSource* source, const SynchronizerOptions& options, Diagnostics* diagnostics);
 
-  /// The next packet; nothing at the end. Images of another size than the calibration says are left out and
-  /// reported; throws InputError where all of a camera's are.
+  /// The next packet; nothing at the end. Images whose size differs from the calibration are left out and
+  /// reported. Throws InputError where all images of a camera have another size.
   std::optional<FramePacket> next();
 
-  /// Images of the first camera that the recording holds within the part that is used, so far; also those
-  /// that could not be used.
+  /// Number of images of the first camera so far within the used part of the recording, including unusable
+  /// ones.
   int64_t recordedImages() const { return recorded_images_; }
 
-  /// Moves the images that are still to come by so much, as their clock was found to be off.
+  /// Shifts the images that follow, because their clock was found to have an offset.
   void moveImages(Duration by);
-  /// From the next images on, a secondary camera (1, 2, ...) counts as taking them so much later.
+  /// From the next images on, adds `by_s` to the delay of a secondary camera (1, 2, ...).
   void delayCamera(size_t camera, double by_s);
 
-  /// Readings and images held at present, for tests of its boundedness.
+  /// Number of readings and images held at present, for tests of the memory bound.
   size_t bufferedReadings() const;
 
  private:
-  /// A packet whose images are still to be decoded.
+  /// A packet whose images are not decoded yet.
   struct Draft {
     FramePacket packet;
     std::vector<std::optional<PendingImage>> pending;
@@ -92,7 +94,7 @@ class Synchronizer {
   void storeImage(size_t camera, const PendingImage& pending, LoadedImage loaded, FramePacket* packet);
   void checkSizes() const;
 
-  /// Images of one camera by their size, and how much later than the first camera's they came lately.
+  /// Per camera: counts of images by size, and recent delays relative to the first camera.
   struct CameraHistory {
     int right_size = 0, other_size = 0;
     std::string size_problem;

@@ -5,27 +5,28 @@
 
 #include "lodeline/io/synchronizer/synchronizer.h"
 
-/// What the synchronizer does where a clock jumped ahead in mid-recording. A clock that was set back shows in
-/// its own stream (OrderedStream); one that was set ahead looks like lost data until the streams are
-/// compared.
+/// Corrections of the synchronizer for a clock that jumped ahead within a recording. A clock that was set
+/// back is detected in its own stream (OrderedStream). A clock that was set ahead looks like lost data until
+/// the streams are compared.
 namespace lodeline {
 namespace {
 
-/// Shorter silence is taken for lost data or a pause: the uncertainty of the readings across it covers both.
+/// Minimum jump; a shorter pause counts as lost data or a break, whose uncertainty the readings across it
+/// include.
 constexpr double kLeastJump_s = 1.0;
-/// Longer silence of one sensor, while the other goes on, is no pause.
+/// Maximum break of one sensor while the other one continues.
 constexpr double kLongestPause_s = 10.0;
-/// What a pause of all sensors that is longer than that is shortened to.
+/// Length to which a longer pause of all sensors is shortened.
 constexpr double kBridgedPause_s = 1.0;
 
 Duration seconds(double s) { return Duration::fromSeconds(s); }
 
 }  // namespace
 
-/// Takes jumps of a clock between the image before and `reference` off the stamps from there on.
+/// Subtracts clock jumps between the previous image and `reference` from the later stamps.
 void Synchronizer::followClocks(PendingImage* reference) {
   const Duration step = span(reference->time, *last_image_time_);
-  // A stamp far ahead must not have the whole recording read into memory.
+  // A stamp far in the future must not cause the whole recording to be read into memory.
   constexpr double kHorizon_s = 3600.0;
   const Time horizon = std::min(reference->time, *last_image_time_ + seconds(kHorizon_s));
   imu_.readUntil(horizon);
@@ -37,11 +38,11 @@ void Synchronizer::followClocks(PendingImage* reference) {
   if (gap && gap->length().seconds() > kLeastJump_s) followImuClock(*gap, *reference);
 }
 
-/// All sensors were silent for the same long time: a clock set ahead, or a recording that was interrupted.
+/// Handles an equally long pause of all sensors: a clock set ahead, or an interrupted recording.
 bool Synchronizer::followCommonClock(const ImuIntervals::Gap& gap, Duration step, PendingImage* reference) {
   const double period_s = 1.0 / source_->rig().cameras[0].rate_hz;
   if (std::abs(gap.length().seconds() - step.seconds()) > 2.0 * period_s) return false;
-  if (gap.length().seconds() <= kLongestPause_s) return true;  // covered by the uncertainty across it
+  if (gap.length().seconds() <= kLongestPause_s) return true;  // included in the uncertainty across the pause
   const Duration by = seconds(kBridgedPause_s) - gap.length();
   const Time from = gap.begin + seconds(0.5 * gap.length().seconds());
   diagnostics_->report(
@@ -59,7 +60,7 @@ bool Synchronizer::followCommonClock(const ImuIntervals::Gap& gap, Duration step
   return true;
 }
 
-/// The images leap to a time beyond all inertial readings, or after more silence than a camera has.
+/// Handles images that jump to a time after all inertial readings, or by more than a camera's pause.
 bool Synchronizer::followImageClock(Duration step, PendingImage* reference) {
   constexpr double kLongestSilence_s = 3600.0;
   const bool is_covered = imu_.last() && *imu_.last() >= reference->time;
@@ -67,7 +68,7 @@ bool Synchronizer::followImageClock(Duration step, PendingImage* reference) {
   if (source_->isLive()) return false;
   const Duration period = seconds(1.0 / source_->rig().cameras[0].rate_hz);
   const Time expected = *last_image_time_ + period;
-  // Images that ended with the inertial readings would lie beyond them too.
+  // Images after the end of the inertial readings would also be later than all of them.
   if (imu_.last() && *imu_.last() < expected) return false;
   diagnostics_->report(
       Severity::Warning, "image_clock_jump",
@@ -78,7 +79,7 @@ bool Synchronizer::followImageClock(Duration step, PendingImage* reference) {
   const Time from = *last_image_time_ + seconds(0.5 * step.seconds());
   reference->time = expected;
   for (OrderedStream<PendingImage>& camera : cameras_) {
-    // Another camera may have a clock of its own.
+    // Another camera may have its own clock.
     const PendingImage* next = &camera == &cameras_[0] ? nullptr : camera.peek();
     if (next != nullptr && std::abs((next->time - expected).seconds()) < 0.5 * period.seconds()) continue;
     camera.shiftFrom(from, period - step);
@@ -86,7 +87,7 @@ bool Synchronizer::followImageClock(Duration step, PendingImage* reference) {
   return true;
 }
 
-/// The inertial readings leap ahead while the images go on.
+/// Handles inertial readings that jump ahead while the images continue.
 bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingImage& reference) {
   if (reference.time <= gap.begin || reference.time > gap.end || source_->isLive()) return false;
   if (gap.length().seconds() < kLongestPause_s) {
@@ -94,7 +95,7 @@ bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingIma
     const auto images = static_cast<size_t>(std::ceil(kLongestPause_s * rate_hz));
     bool ends = false;
     const std::optional<Time> last = cameras_[0].reach(images, &ends);
-    // Images within the silence and none after it: what the sensor says after it belongs to them.
+    // Images exist within the pause and none after it, so the readings after it belong to these images.
     if (!ends || (last && *last > gap.end)) return false;
   }
   const Duration by = seconds(1.0 / source_->rig().imu.rate_hz) - gap.length();
@@ -108,7 +109,7 @@ bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingIma
   return true;
 }
 
-/// Says which sensors have readings, but none at a time of the others'.
+/// Reports sensors whose readings do not overlap in time with those of the others.
 void Synchronizer::reportApart() {
   const bool may_read_on = !source_->isLive();
   if (may_read_on) imu_.drain();

@@ -14,8 +14,8 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Recordings whose clocks jump or do not meet. The gyroscope's first axis reads the true time in seconds,
-/// and the images' first pixel counts them, so that both show to which time they were put.
+/// Recordings whose clocks jump or do not overlap. The first gyroscope axis reads the true time in seconds,
+/// and the first pixel of the images counts them, so that both show their assigned times.
 class SynchronizerClocksTest : public testing::Test {
  protected:
   std::vector<FramePacket> readAll() {
@@ -27,7 +27,7 @@ class SynchronizerClocksTest : public testing::Test {
     return packets;
   }
 
-  /// Moves the stamps of the rows from `from_s` on, the names of images staying as they are.
+  /// Shifts the stamps of the rows from `from_s` on; the names of images are unchanged.
   void shift(const std::string& sensor, double from_s, double by_s) {
     std::istringstream text(recording_.read(sensor + "/data.csv"));
     std::string rows;
@@ -42,7 +42,7 @@ class SynchronizerClocksTest : public testing::Test {
     recording_.write(sensor + "/data.csv", rows);
   }
 
-  /// All images are there, in order, with the inertial readings of their true times.
+  /// Expects all images in order, with the inertial readings of their true times.
   void expectHealthy(const std::vector<FramePacket>& packets) {
     ASSERT_EQ(packets.size(), 21u);
     for (size_t i = 0; i < packets.size(); ++i) {
@@ -129,7 +129,7 @@ TEST_F(SynchronizerClocksTest, ClockOfAllSensorsSetAheadLeavesAShortPause) {
 }
 
 TEST_F(SynchronizerClocksTest, PausesAndLostDataAreNoJumps) {
-  // A second and a half without images, and half a second without inertial readings while images go on.
+  // A second and a half without images, and half a second without inertial readings while images continue.
   std::istringstream text(recording_.read("imu0/data.csv"));
   std::string rows;
   for (std::string line; std::getline(text, line);) {

@@ -34,7 +34,7 @@ class SynchronizerTest : public testing::Test {
     return "no finding of kind " + kind;
   }
 
-  /// Takes out the rows whose stamps lie in [from_s, to_s].
+  /// Removes the rows with stamps in [from_s, to_s].
   void removeRows(const std::string& csv, double from_s, double to_s) {
     std::istringstream text(recording_.read(csv));
     std::string kept;
@@ -267,7 +267,7 @@ TEST_F(SynchronizerTest, TimeGoingBackwardsIsReportedAndPutInOrder) {
   recording_.replace("imu0/data.csv", first + second, second + first + first);
   const std::vector<FramePacket> packets = readAll();
   ASSERT_EQ(packets.size(), 21u);
-  // The first of the late readings is put in its place; the second repeats it.
+  // The first of the late readings is sorted in; the second is a duplicate.
   EXPECT_EQ(diagnostics_.count("imu_disorder"), 1);
   EXPECT_EQ(diagnostics_.count("imu_duplicate"), 1);
   EXPECT_THAT(firstMessage("imu_disorder"), HasSubstr(testStamp(1.205)));

@@ -23,7 +23,7 @@ class FileBytes : public ByteSource {
   }
 
   std::size_t read(char* into, std::size_t size) override {
-    // zlib hands out files without its own header unchanged.
+    // zlib returns files without its own header unchanged.
     const int count = gzread(file_.get(), into, static_cast<unsigned>(std::min<std::size_t>(size, 1 << 20)));
     int status = Z_OK;
     const char* reason = gzerror(file_.get(), &status);
@@ -53,7 +53,7 @@ class MemoryBytes : public ByteSource {
   std::size_t position_ = 0;
 };
 
-/// Bytes that were read to recognize the encoding, then the rest.
+/// A stream of the bytes read to recognize the encoding, followed by the rest.
 class Rejoined : public ByteSource {
  public:
   Rejoined(std::string head, std::unique_ptr<ByteSource> rest)
@@ -143,8 +143,7 @@ class FromUtf16 : public ByteSource {
   std::size_t position_ = 0;
 };
 
-/// Whether nearly every pair of bytes has its zero at `zero_at` (0 or 1): the letters of western scripts in
-/// UTF-16.
+/// Whether nearly every pair of bytes has a zero at `zero_at` (0 or 1), as Latin letters in UTF-16 have.
 bool looksLikeUtf16(std::string_view head, std::size_t zero_at) {
   std::size_t zeros = 0, others = 0;
   const std::size_t pairs = head.size() / 2;
@@ -167,7 +166,8 @@ std::string readHead(ByteSource* bytes) {
   return head;
 }
 
-/// A log whose card lost power may end in zeros; what has one before its first line's end is no text.
+/// Throws InputError where a zero byte precedes the end of the first line. Later zeros are accepted, because
+/// a log may end in zeros after a power failure.
 void requireText(std::string_view head, const std::string& name) {
   if (head.starts_with("PK\x03\x04")) {
     throw InputError(

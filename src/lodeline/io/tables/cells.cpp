@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-constexpr std::string_view kMinusSign = "\u2212";  // of typographers
+constexpr std::string_view kMinusSign = "\u2212";  // typographic minus sign
 
 /// Calls `visit(position)` for each character outside of quotes, until it returns false.
 template <typename Visit>
@@ -20,7 +20,7 @@ void outsideQuotes(std::string_view line, Visit visit) {
   }
 }
 
-/// Whether each comma stands between digits of a word of its own, as in "0,25 12,812 -7,0".
+/// Whether each comma is a decimal comma within a word, as in "0,25 12,812 -7,0".
 bool hasDecimalCommasBetweenBlanks(std::string_view line) {
   int words = 0, with_comma = 0;
   for (std::size_t begin = line.find_first_not_of(' '); begin != std::string_view::npos;) {
@@ -57,7 +57,8 @@ bool hasNumbersBetweenBlanks(std::string_view line) {
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
 
-/// The end of a cell's quoted part that begins at `begin`; the size of the line where the quote stays open.
+/// The end of the quoted part of a cell that starts at `begin`; the size of the line where the quote is not
+/// closed.
 std::size_t endOfQuotes(std::string_view line, std::size_t begin) {
   for (std::size_t i = begin + 1; i < line.size(); ++i) {
     if (line[i] != '"') continue;
@@ -70,7 +71,7 @@ std::size_t endOfQuotes(std::string_view line, std::size_t begin) {
   return line.size();
 }
 
-/// The end of the run of blanks at `at`: at its last one, or at the mark behind it.
+/// The end of the run of blanks at `at`: its last blank, or the mark after it.
 std::size_t skipBlanksBeforeMark(std::string_view line, std::size_t at, char mark) {
   const std::size_t next = line.find_first_not_of(" \t", at);
   if (next == std::string_view::npos) return line.size();
@@ -99,8 +100,8 @@ std::string_view unquotedCell(std::string_view cell, std::vector<std::string>* u
   return trimmed(unquoted->back());
 }
 
-/// The decimal mark of a number with commas as a point, without groups of thousands; empty where the marks
-/// can be no number's.
+/// A number with commas, rewritten with a decimal point and without groups of thousands; empty where the
+/// marks do not form a number.
 std::string withoutCommas(std::string_view cell) {
   const std::size_t comma = cell.rfind(','), point = cell.rfind('.');
   std::string text(cell);
@@ -144,7 +145,7 @@ Separator separatorOf(std::string_view line) {
   outsideQuotes(line, [&](std::size_t i) {
     has_semicolon = has_semicolon || line[i] == ';';
     has_comma = has_comma || line[i] == ',';
-    // A tab after a comma only aligns.
+    // A tab after a comma is only alignment.
     has_tab = has_tab || (line[i] == '\t' && (i == 0 || line[i - 1] != ','));
     return !has_semicolon;
   });
@@ -158,7 +159,7 @@ void splitCells(std::string_view line, Separator separator, std::vector<std::str
                 std::vector<std::string>* unquoted) {
   cells->clear();
   unquoted->clear();
-  // Views into the strings must stay: there are never more of them than quotes.
+  // The views into the strings must stay valid; there are never more strings than quotes.
   unquoted->reserve(static_cast<std::size_t>(std::count(line.begin(), line.end(), '"')));
   const bool by_blanks = separator == Separator::Blanks;
   const bool ends_at_blank = separator == Separator::CommasAndBlanks;

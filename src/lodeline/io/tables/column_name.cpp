@@ -13,12 +13,12 @@ bool isLetter(char c) {
 }
 bool isUpper(char c) { return c >= 'A' && c <= 'Z'; }
 
-/// Letters of Latin scripts that Latin-1 has, as lower case ASCII; others as they are.
+/// Latin-1 letters as lower case ASCII; other characters unchanged.
 std::string lower(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (static_cast<unsigned char>(text[i]) == 0xC3 && i + 1 < text.size()) {
-      // U+00C0 to U+00FF: capital and small letters lie 0x20 apart.
+      // U+00C0 to U+00FF: capital and small letters differ by 0x20.
       const auto low = static_cast<unsigned char>(static_cast<unsigned char>(text[++i]) | 0x20);
       result += low == 0xA9 || low == 0xA8 || low == 0xAA || low == 0xAB ? 'e'
                 : low >= 0xA0 && low <= 0xA5                             ? 'a'
@@ -39,7 +39,7 @@ std::string lower(std::string_view text) {
 bool isWordBoundary(std::string_view text, std::size_t i) {
   const char before = text[i - 1], here = text[i];
   if (isUpper(here) && isLetter(before) && !isUpper(before)) return true;
-  // The last capital of several begins the next word: "IMUGyro" as "IMU|Gyro".
+  // The last of several capitals starts the next word: "IMUGyro" as "IMU|Gyro".
   if (isUpper(before) && isLetter(here) && !isUpper(here) && i >= 2 && isUpper(text[i - 2])) {
     return true;
   }
@@ -77,7 +77,7 @@ std::string takeUnit(std::string* name) {
   return is_channel ? std::string() : inside;
 }
 
-/// Without an index or a letter of an axis at the end: "gyro_rad[0]", "field_nT_x".
+/// The name without an index or axis letter at the end: "gyro_rad[0]", "field_nT_x".
 std::string_view withoutAxis(std::string_view name) {
   name = trimmed(name);
   if (name.ends_with(']')) name = name.substr(0, name.find_last_of('['));
@@ -89,7 +89,8 @@ std::string_view withoutAxis(std::string_view name) {
   return name;
 }
 
-/// "nT" and "uT" fall into two words by their case, "m_s2" by its digit and its separator.
+/// Possible unit suffixes of a name. "nT" and "uT" are split by their case, "m_s2" by its digit and
+/// separator.
 std::vector<std::string> suffixesOf(std::string_view name) {
   std::vector<std::string> words, suffixes;
   forEachWord(name, [&](std::size_t begin, std::size_t end) {

@@ -7,7 +7,7 @@
 
 namespace lodeline {
 
-/// The name of a column as the header writes it, taken apart.
+/// A column name of a header, split into words and unit.
 struct ColumnName {
   ColumnName() = default;
   /// `header`: one cell of a header, such as `"Magnetic field x (µT)"`, `gyro_rad[0]`,
@@ -22,7 +22,7 @@ struct ColumnName {
   std::string text;                   ///< as written
   std::vector<std::string> words;     ///< lower case, without the unit in brackets: "GyrX" has "gyr", "x"
   std::string unit;                   ///< in brackets, parentheses or after "in", as written; may be empty
-  std::vector<std::string> suffixes;  ///< what may be a unit at the end of the name, longest first
+  std::vector<std::string> suffixes;  ///< possible units at the end of the name, longest first
 };
 
 }  // namespace lodeline

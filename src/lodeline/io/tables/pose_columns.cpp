@@ -11,7 +11,7 @@ constexpr std::string_view kAxes = "xyzw";
 /// One component of a vector or quaternion.
 struct Component {
   std::size_t axis = 0;  ///< 0 to 3: x y z w
-  std::string group;     ///< the same for all of one vector
+  std::string group;     ///< equal for all components of one vector
   bool is_rotation = false;
   bool is_position = false;
   bool is_numbered = false;  ///< q0 to q3, axis 0 to 3 by the number
@@ -58,7 +58,7 @@ std::optional<Component> componentOf(const ColumnName& column) {
   return component;
 }
 
-/// The columns of a vector, as far as they were found.
+/// Columns of a vector found so far.
 struct PoseGroup {
   std::array<std::optional<std::size_t>, 4> column;
   bool is_rotation = false;

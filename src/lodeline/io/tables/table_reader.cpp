@@ -11,12 +11,12 @@
 namespace lodeline {
 namespace {
 
-/// Bounds of the search for a header: lines in all, lines after the first row, and bytes.
+/// Limits of the search for a header: number of lines, lines after the first row, and bytes.
 constexpr std::size_t kLinesBeforeHeader = 1000;
 constexpr std::size_t kRowsBeforeHeader = 50;
 constexpr std::size_t kBytesBeforeHeader = 4 << 20;
 
-/// The text of a comment without its mark; nothing where the line is no comment.
+/// The text of a comment without its mark; nothing where the line is not a comment.
 std::optional<std::string_view> commentOf(std::string_view text) {
   for (const std::string_view mark : {"#", "%", "//"}) {
     if (!text.starts_with(mark)) continue;
@@ -30,8 +30,8 @@ bool hasDigit(std::string_view cell) {
   return std::any_of(cell.begin(), cell.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// Whether the cells are values rather than names: the first that is not empty is a number or begins with a
-/// digit (a date, mm:ss).
+/// Whether the cells are values rather than names: the first non-empty one is a number or starts with a digit
+/// (a date, mm:ss).
 bool areValues(const std::vector<std::string_view>& cells) {
   for (const std::string_view cell : cells) {
     if (cell.empty()) continue;
@@ -40,7 +40,7 @@ bool areValues(const std::vector<std::string_view>& cells) {
   return false;
 }
 
-/// Names have letters; a header has no cell that is a number, but perhaps empty ones.
+/// Whether the cells can be names of columns: a header has letters, no numbers, and possibly empty cells.
 bool areNames(const std::vector<std::string_view>& cells) {
   return std::any_of(cells.begin(), cells.end(), [](std::string_view cell) { return !cell.empty(); }) &&
          std::none_of(cells.begin(), cells.end(),
@@ -90,7 +90,7 @@ std::string TableReader::where() const { return fmt::format("{}:{}", name_, line
 bool TableReader::takeLine(Line* line) {
   std::string_view text;
   if (!lines_.next(&text)) return false;
-  line->text.assign(text);  // keeps its memory from row to row
+  line->text.assign(text);  // reuses its memory from row to row
   line->number = lines_.number();
   line->was_too_long = lines_.wasTooLong();
   line->is_cut_off = lines_.hadNoEnd();
@@ -101,8 +101,8 @@ void TableReader::split(std::string_view text, Separator separator, std::vector<
   splitCells(text, separator, cells, &unquoted_);
 }
 
-/// Finds the header, or the first row of a table without one. Lines of values that stand before the header
-/// are rows of it where they have as many cells (a log that was rotated), else part of the preamble.
+/// Finds the header, or the first row of a table without one. Lines of values before the header are rows
+/// where they have as many cells (a rotated log); otherwise they belong to the preamble.
 void TableReader::readPreamble() {
   std::size_t bytes = 0, rows = 0, lines = 0;
   for (Line line; rows <= kRowsBeforeHeader && lines < kLinesBeforeHeader && bytes < kBytesBeforeHeader;) {
@@ -133,7 +133,7 @@ void TableReader::readPreamble() {
   }
   if (!hasHeader()) return;
   label_.clear();
-  // What stood before the header was read with no idea of its columns.
+  // Lines before the header were read without knowledge of its columns.
   std::erase_if(pending_, [&](const Line& line) {
     if (line.number > header_line_) return false;
     split(trimmed(line.text), separatorOf(line.text), &cells_);
@@ -145,7 +145,8 @@ void TableReader::readPreamble() {
 
 bool TableReader::readAsHeader(const Line& line, std::string_view text) {
   if (!options_.is_header || line.was_too_long) return false;
-  // Names may hold blanks, and prose commas: what the line suggests goes first.
+  // Names may contain blanks, and prose may contain commas; the separator suggested by the line is tried
+  // first.
   std::vector<ColumnName> names;
   for (const Separator separator : {separatorOf(text), Separator::Blanks}) {
     if (!splitNames(text, separator, &names)) return false;
@@ -200,7 +201,8 @@ void TableReader::readUnitsBelow() {
   }
 }
 
-/// Rows need not be separated as the header is: COLMAP has commas in its header and blanks in its rows.
+/// Determines the separator of the rows, which may differ from that of the header: COLMAP has commas in its
+/// header and blanks in its rows.
 void TableReader::settleSeparator() {
   column_count_ = hasHeader() ? column_count_ : options_.least_columns;
   for (const Line& line : pending_) {
@@ -235,7 +237,7 @@ void TableReader::settleSeparator() {
   }
 }
 
-/// A sentence may hold the words of a header: `# timestamp in seconds, then x y z and qx qy qz qw`.
+/// Treats a header as prose where it is a sentence: `# timestamp in seconds, then x y z and qx qy qz qw`.
 void TableReader::takeHeaderAsProse() {
   preamble_.push_back(std::move(header_text_));
   header_text_.clear();
@@ -243,7 +245,7 @@ void TableReader::takeHeaderAsProse() {
   columns_.clear();
 }
 
-/// A comment may name the first columns only; the others have no name then.
+/// Adds unnamed columns, because a comment may name only the first columns.
 void TableReader::nameFurtherColumns(std::size_t count) {
   diagnostics_->report(Severity::Notice, "csv_columns",
                        fmt::format("{}: the header in line {} names the first {} of {} columns", name_,

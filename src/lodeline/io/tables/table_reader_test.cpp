@@ -30,7 +30,7 @@ class TableReaderTest : public ::testing::Test {
     return TableReader(bytesInMemory(text), "table.csv", options, &diagnostics_);
   }
 
-  /// All rows as numbers, NaN where a cell is none.
+  /// All rows as numbers, NaN where a cell is not a number.
   std::vector<std::vector<double>> rowsOf(const std::string& text, bool with_header = true) {
     TableReader table = open(text, with_header);
     std::vector<std::vector<double>> rows;
@@ -70,7 +70,7 @@ TEST_F(TableReaderTest, FindsTheHeaderByItsWords) {
        {"# a log\n# time [s], depth [m]\n0,3.25\n10,-4.5\n",
         "// Start: 2026-11-21\n//\n// rate: 100\ntime,depth\n0,3.25\n10,-4.5\n",
         "%time,depth\n0,3.25\n10,-4.5\n",
-        // As dive computers do: a header and a row of the dive before those of its samples.
+        // Format of dive computers: a header and a row of the dive before those of its samples.
         "Dive Number,Max Time,Max Depth\n60,4,16.0\ntime,depth\n0,3.25\n10,-4.5\n",
         "Device;Diver\nSN 7;A;B\n\ntime;depth\n0;3.25\n10;-4.5\n", "time,depth\ns,m\n0,3.25\n10,-4.5\n",
         "time,depth\n0,3.25\ntime,depth\n10,-4.5\n", "0,3.25\ntime,depth\n10,-4.5\n"}) {

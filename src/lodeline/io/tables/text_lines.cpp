@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-/// The bytes of the character that begins `text`; 0 where it is no valid UTF-8.
+/// Number of bytes of the first character of `text`; 0 where it is not valid UTF-8.
 std::size_t characterSize(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -75,7 +75,7 @@ bool TextLines::next(std::string_view* line) {
   ++number_;
   if (!isAscii(line_) && !isUtf8(line_)) line_ = fromLatin1(line_);
   *line = line_;
-  // Where two files were put together, the mark of the second stands at the beginning of a line.
+  // In concatenated files, the mark of the second file is at the start of a line.
   if (line->starts_with("\xEF\xBB\xBF")) line->remove_prefix(3);
   return true;
 }

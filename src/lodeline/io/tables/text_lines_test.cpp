@@ -20,7 +20,7 @@ std::vector<std::string> linesOf(const std::string& bytes) {
   return result;
 }
 
-/// ASCII as UTF-16, `first` and `second` byte of each unit exchanged where high_first.
+/// ASCII text as UTF-16, with the high byte first where `high_first`.
 std::string utf16(const std::string& ascii, bool high_first) {
   std::string bytes;
   for (const char c : ascii) bytes += high_first ? std::string{'\0', c} : std::string{c, '\0'};
@@ -45,9 +45,9 @@ TEST(TextLines, AreUtf8WhateverTheEncoding) {
   EXPECT_THAT(linesOf("\xFE\xFF" + utf16("t [s]\n1", true)), ElementsAre("t [s]", "1"));
   EXPECT_THAT(linesOf(utf16("t [s]\n1 2 3", false)), ElementsAre("t [s]", "1 2 3"));
   EXPECT_THAT(linesOf(utf16("t [s]\n1 2 3", true)), ElementsAre("t [s]", "1 2 3"));
-  // Latin-1: a superscript 2 and the sign for micro; beside a line in UTF-8.
+  // Latin-1: a superscript 2 and the micro sign, beside a line in UTF-8.
   EXPECT_THAT(linesOf("m/s\xB2 \xB5T\nm/s\xC2\xB2"), ElementsAre("m/s\u00b2 \u00b5T", "m/s\u00b2"));
-  // A pair of surrogates and the same letter in UTF-8.
+  // A surrogate pair and the same character in UTF-8.
   EXPECT_THAT(linesOf(std::string("\xFF\xFE\x3D\xD8\x00\xDE", 6)), ElementsAre("\U0001F600"));
 }
 
@@ -55,7 +55,7 @@ TEST(TextLines, RefuseWhatIsNoText) {
   EXPECT_THROW(linesOf(std::string("\x7F\x45LF\0\0\0\0 and so on", 18)), InputError);
   EXPECT_THROW(linesOf("PK\x03\x04 a spreadsheet"), InputError);
   EXPECT_THROW(linesOf(std::string("\xFF\xFE\0\0t\0\0\0", 8)), InputError);
-  // The end of a log on a card that lost power.
+  // End of a log after a power failure.
   EXPECT_THAT(linesOf(std::string("1,2\n3,\0\0\0\0", 10)), ElementsAre("1,2", std::string("3,\0\0\0\0", 6)));
 }
 

@@ -19,7 +19,7 @@ bool isTime(const ColumnName& column) {
   return !column.unit.empty() && timeUnitOfName("t [" + column.unit + "]").has_value();
 }
 
-/// How good a column of times is: the sensor's own stamp before those that a recorder added.
+/// Rank of a time column: the sensor's own stamp has priority over those of a recorder.
 int rankOfTime(const ColumnName& column) {
   if (column.hasWord({"header"}) && column.hasStem({"stamp"})) return 0;
   if (column.hasWord({"date", "datetime"}) || column.hasStem({"sample", "relative"})) return 3;

@@ -91,7 +91,7 @@ struct Sign {
   std::string_view from, to;
 };
 
-/// In this order: UTF-8 that was taken for Latin-1 and encoded again, signs outside of ASCII, then exponents.
+/// Replacements in this order: UTF-8 misread as Latin-1 and encoded again, non-ASCII signs, exponents.
 constexpr Sign kSigns[] = {{"\u00ce\u00bc", "u"}, {"\u00c2", ""},    {"\u00b5", "u"},
                            {"\u03bc", "u"},       {"\u00b0", "deg"}, {"\u00ba", "deg"},
                            {"\u207b", "^-"},      {"\u00b9", "1"},   {"\u00b2", "^2"},
@@ -100,7 +100,7 @@ constexpr Sign kSigns[] = {{"\u00ce\u00bc", "u"}, {"\u00c2", ""},    {"\u00b5", 
                            {" per ", "/"},        {" s^-1", "/s"},   {" s-1", "/s"},
                            {" s^-2", "/s^2"},     {" s-2", "/s^2"},  {" ", ""}};
 
-/// Lower case without blanks; signs as ASCII.
+/// The unit in lower case without blanks, with signs as ASCII.
 std::string normalized(std::string_view unit) {
   std::string text;
   for (const char c : trimmed(unit)) text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -113,7 +113,7 @@ bool fits(std::string_view name, std::string_view pattern) {
                                                      [](char a, char b) { return b == '?' || a == b; });
 }
 
-/// The units, as people write them, that a text with lost characters may have been.
+/// The factor of the unit, in common spellings, that a text with lost characters may represent.
 std::optional<double> unitWithLostCharacters(Quantity quantity, std::string_view pattern) {
   std::optional<double> found;
   const auto consider = [&](std::string_view name, double to_si) {
@@ -167,7 +167,8 @@ std::string knownUnits(Quantity quantity) {
 
 StatedUnit statedUnit(const ColumnName& column, Quantity quantity) {
   if (!column.unit.empty()) return {unitFactor(quantity, column.unit), column.unit};
-  // The suffix of a name: one word, or two of a quotient. A single letter after a letter ("ts") is none.
+  // The suffix of a name: one word, or two for a quotient. A single letter after a letter ("ts") is not a
+  // unit.
   for (const std::string& suffix : column.suffixes) {
     // In brackets these are angles.
     if (quantity == Quantity::AngularRate && suffix == "rad") return {1.0, suffix};

@@ -19,7 +19,7 @@ namespace lodeline {
 namespace {
 
 constexpr double kAssumedDip_rad = 60.0 * kDegree;
-/// Below it the motion has not told how the magnetometer sits on the IMU.
+/// Minimum distinctness; below it, the motion does not determine the rotation of the magnetometer.
 constexpr double kLeastDistinctness = 4.0;
 constexpr double kGreatestRotationSigma_rad = 2.0 * kDegree;
 constexpr double kGreatestDipDifference_rad = 3.0 * kDegree;
@@ -34,14 +34,14 @@ double medianRate_hz(std::span<const MagnetometerSample> samples) {
   return *middle > 0.0 ? 1.0 / *middle : 0.0;
 }
 
-/// Readings that the fit of the ellipsoid used, in units of the field's size: as read, and corrected.
+/// Readings used by the ellipsoid fit, raw and corrected, in units of the field magnitude.
 struct UsedReadings {
   std::vector<NormalizedFieldSample> raw, corrected;
 };
 UsedReadings usedReadings(const std::vector<MagnetometerSample>& samples, const IronCalibration& iron) {
   UsedReadings used;
   const double strength_T = iron.fit.field_strength_T;
-  // Counts of any size become numbers of the order of one; A takes the factor.
+  // Scales counts of any size to order one; A contains the factor.
   const double unit = std::cbrt(iron.fit.iron_correction.determinant()) / strength_T;
   for (size_t i = 0; i < samples.size(); ++i) {
     if (!iron.used[i]) continue;
@@ -91,13 +91,13 @@ InertialCalibration withInertialSensors(const MagnetometerRecord& record, const 
   return result;
 }
 
-/// Puts what the likelihood says about S, h and the rotation into the fit, whose scale is settled anew.
+/// Copies S, h and the rotation of the likelihood solution to the fit and determines its scale again.
 void adopt(const InertialCalibration& inertial, std::optional<double> field_strength_T, double rate_hz,
            MagnetometerFit* fit) {
   using namespace inertial_parameter;
   const InertialParameters& p = inertial.parameters;
   const double shape = std::cbrt(fit->iron_correction.determinant());
-  const double per_unit = fit->field_strength_T / shape;  // readings per unit of the likelihood's readings
+  const double per_unit = fit->field_strength_T / shape;  // readings per unit of the likelihood solution
   const Mat3 a = p.soft_iron.inverse();
   // dA = -A dS A, entry by entry.
   Eigen::Matrix<double, fit_parameter::kSize, kSize> change =
@@ -124,7 +124,7 @@ void adopt(const InertialCalibration& inertial, std::optional<double> field_stre
   fit->time_offset_to_imu_s = inertial.time_offset_significant ? p.time_offset_s : 0.0;
 }
 
-/// RMS of the corrected readings' distance from the sphere.
+/// RMS distance of the corrected readings from the sphere.
 double normResidual_T(const MagnetometerCalibrationResult& result) {
   double square = 0.0;
   int count = 0;
@@ -136,7 +136,7 @@ double normResidual_T(const MagnetometerCalibrationResult& result) {
   return std::sqrt(square / std::max(1, count));
 }
 
-/// From the differences of neighbouring residuals, which slow errors of the model do not touch.
+/// Noise density from the differences of neighbouring residuals, which slow model errors do not affect.
 std::optional<double> noiseFromResiduals(const MagnetometerCalibrationResult& result, double rate_hz) {
   if (!(rate_hz > 0.0)) return std::nullopt;
   double square = 0.0;
@@ -171,7 +171,7 @@ void checkAgainstSite(const MagnetometerFit& fit, double own_strength_T, const V
   }
 }
 
-/// Widens the hard iron's covariance by how much it changed during the record, and reports a step.
+/// Inflates the covariance of the hard iron by its change during the record, and reports a step.
 void judgeSteadiness(const std::vector<MagnetometerSample>& samples, MagnetometerCalibrationResult* result,
                      Diagnostics* diagnostics) {
   MagnetometerFit& fit = result->fit;
@@ -279,7 +279,7 @@ MagnetometerCalibrationResult calibrateMagnetometer(const MagnetometerRecord& re
     const UsedReadings used = usedReadings(screen.usable, result.iron);
     result.inertial = withInertialSensors(record, used, result.iron, options.old.has_value(), diagnostics);
     adopt(*result.inertial, iron.field_strength_T, rate_hz, &result.fit);
-    // Of an error D of the axes, (D - D^T) / 2 turns them all.
+    // For an error D of the axes, (D - D^T) / 2 rotates all of them.
     result.fit.axes_sigma_rad = imu_axes::sigmaFor(record.imu_noise) / std::sqrt(2.0);
     result.fit.residual_T = normResidual_T(result);
     result.fit.rejected_share += (1.0 - result.fit.rejected_share) * result.inertial->rejected_share;

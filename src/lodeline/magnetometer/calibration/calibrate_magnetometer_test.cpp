@@ -11,7 +11,7 @@
 #include "lodeline/magnetometer/iron/test_cloud.h"
 #include "lodeline/util/error.h"
 
-// The whole way, with sensors that misbehave.
+// The complete calibration with imperfect sensors.
 
 namespace lodeline {
 namespace {
@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 constexpr double kField_T = 45e-6;
 
-/// TestMotion shows too little of the sphere; this one rolls over as well.
+/// A sensor with TestMotion and additional rolling, because TestMotion covers too little of the sphere.
 test::TurningSensor rollingSensor() {
   test::TurningSensor sensor;
   sensor.duration_s = 40.0;
@@ -40,7 +40,7 @@ MagnetometerRecord recordOf(const test::TurningSensor& sensor, bool with_imu = t
   return record;
 }
 
-/// Largest error of a corrected reading against the truth over all directions, in units of the field.
+/// Largest error of a corrected reading relative to the truth over all directions, in units of the field.
 double worstError(const MagnetometerFit& fit, const test::TurningSensor& sensor) {
   double worst = 0.0;
   test::CloudTruth every;
@@ -82,7 +82,8 @@ TEST(CalibrateMagnetometer, WithoutImuTheRotationStaysUnknown) {
   EXPECT_NEAR(*result.fit.noise_density_T_per_sqrtHz, kField_T * sensor.field_sigma / std::sqrt(50.0), 1e-9);
 }
 
-// No motion tells how the axes of the gyroscope, which the rotation leads to, are turned against the body.
+// No motion determines the rotation of the gyroscope's axes, to which the estimated rotation refers, relative
+// to the body.
 TEST(CalibrateMagnetometer, DoubtsTheRotationAsItDoubtsTheAxesOfTheImu) {
   const test::TurningSensor sensor = rollingSensor();
   const auto headingSigma_rad = [&](double gyroscope_density) {
@@ -154,7 +155,7 @@ TEST(CalibrateMagnetometer, RefusesAFrozenOrStillSensor) {
   EXPECT_THROW(calibrateMagnetometer(recordOf(still), {}, &diagnostics), EstimationError);
 }
 
-// Counts that flicker about one value lie on a small sphere, whatever the site's field is.
+// Counts that alternate about one value are on a small sphere, for any field at the site.
 TEST(CalibrateMagnetometer, RefusesTheFlickerOfASensorAtRest) {
   MagnetometerRecord record = recordOf(rollingSensor(), false);
   std::mt19937 random(1);

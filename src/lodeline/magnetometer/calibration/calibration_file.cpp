@@ -24,7 +24,7 @@ std::string rows(const Matrix& matrix) {
 
 std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]\n", v.x(), v.y(), v.z()); }
 
-/// One line, whatever a verdict says.
+/// A verdict as one quoted line.
 std::string quotedLine(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {

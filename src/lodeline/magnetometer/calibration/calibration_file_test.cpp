@@ -40,7 +40,7 @@ MagnetometerFit exampleFit() {
 
 class CalibrationFile : public ::testing::Test {
  protected:
-  /// The message with which reading `text` fails.
+  /// The error message of reading `text`.
   std::string errorOf(const std::string& text) {
     folder_.write("mag.yaml", text);
     try {
@@ -70,7 +70,7 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.dip_rad, fit.dip_rad);
   EXPECT_EQ(read.verdict, fit.verdict);
   EXPECT_TRUE(read.field_strength_known);
-  // What is derived from the file once more is the same text, so nothing was lost.
+  // Writing the read file again gives the same text, so no information was lost.
   EXPECT_EQ(calibrationYaml(read).substr(0, 400), calibrationYaml(fit).substr(0, 400));
 }
 
@@ -117,7 +117,7 @@ TEST_F(CalibrationFile, IsAppliedToTheRig) {
       fit.iron_correction.inverse() * (fit.body_from_magnetometer->conjugate() * field_B) + fit.hard_iron;
   EXPECT_LT((magnetometer.corrected_B(reading) - field_B).norm(), 1e-15);
 
-  // A file without a rotation leaves the recording's own.
+  // A file without a rotation keeps that of the recording.
   const Quat before = magnetometer.body_from_magnetometer.rotation;
   fit.body_from_magnetometer.reset();
   applyCalibration(fit, file_, &rig);

@@ -27,12 +27,12 @@ Cloud cloudOf(const MagnetometerCalibrationResult& result, const Transform& tran
 std::string block(const std::string& name, const std::vector<Vec3>& points) {
   std::vector<std::vector<double>> rows;
   for (const Vec3& p : points) rows.push_back({p.x(), p.y(), p.z()});
-  // gnuplot does not draw from a block without a row.
+  // gnuplot does not accept a data block without rows.
   if (rows.empty()) rows.push_back({NAN, NAN, NAN});
   return gnuplot::dataBlock(name, rows);
 }
 
-/// Half the side of a square about `middle` that holds all points, with a margin.
+/// Half the side of a square about `middle` that contains all points, with a margin.
 double reach(const Cloud& cloud, const Vec3& middle) {
   double reach = 0.0;
   for (const auto* points : {&cloud.used, &cloud.rejected}) {
@@ -41,7 +41,7 @@ double reach(const Cloud& cloud, const Vec3& middle) {
   return 1.08 * reach;
 }
 
-/// The greatest of 1, 2, 5, 10, 20, … that is not above `size`.
+/// The largest of 1, 2, 5, 10, 20, … that does not exceed `size`.
 double niceStep(double size) {
   const double power = std::pow(10.0, std::floor(std::log10(size)));
   const double factor = size / power;

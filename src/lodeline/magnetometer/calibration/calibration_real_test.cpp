@@ -39,7 +39,7 @@ class RealCloud : public ::testing::Test {
     }
   }
 
-  /// The magnetometer's columns of the flight, with its time.
+  /// The magnetometer columns of the flight, with their time.
   std::filesystem::path flight() {
     std::istringstream lines(readFileBytes(clouds_ / "magnav_Flt1002_1002.02_fluxgate_ins_igrf.txt.gz"));
     std::string rows;
@@ -60,7 +60,7 @@ TEST_F(RealCloud, AgreesWithAPublishedCalibration) {
   const auto result = calibrated(clouds_ / "jremington_mpu9250_mag3_raw.csv");
   EXPECT_EQ(result.fit.model, IronModel::Full);
   EXPECT_TRUE(result.fit.raw_readings);
-  // jremington_mpu9250_mag3_reference_result.txt, which scales to 1000.
+  // Values of jremington_mpu9250_mag3_reference_result.txt, which scales to 1000.
   const Vec3 bias(9955.151669, -7948.26463057, 8511.80447932);
   Mat3 matrix;
   matrix << 0.25060005, 0.02941951, -0.02954944, 0.02941951, 0.31691521, 0.00788726, -0.02954944, 0.00788726,
@@ -71,14 +71,14 @@ TEST_F(RealCloud, AgreesWithAPublishedCalibration) {
   EXPECT_LT((scaled - matrix / std::cbrt(matrix.determinant())).cwiseAbs().maxCoeff(), 2e-3);
   EXPECT_NEAR(result.fit.coverage_share, 0.99, 0.01);
   EXPECT_NEAR(result.fit.residual_T / result.fit.field_strength_T, 0.015, 0.001);
-  // The published bias lies well within what the scatter and its correlation allow.
+  // The published bias is well within the uncertainty from the scatter and its correlation.
   EXPECT_LT((result.fit.hard_iron - bias).cwiseAbs().maxCoeff(), result.fit.sigmas()[6]);
 }
 
 TEST_F(RealCloud, FitsACloudWithOutliers) {
   const auto result = calibrated(clouds_ / "aleksandrbazhin_hmc_mag_out.txt");
   EXPECT_EQ(result.fit.model, IronModel::Full);
-  EXPECT_EQ(diagnostics_.count("magnetometer_unit"), 1);  // taken for milligauss
+  EXPECT_EQ(diagnostics_.count("magnetometer_unit"), 1);  // read as milligauss
   EXPECT_LT((1e7 * result.fit.hard_iron - Vec3(-68.1, 82.8, -133.4)).norm(), 2.0);
   EXPECT_LT(result.fit.residual_T / result.fit.field_strength_T, 0.035);
 }
@@ -92,7 +92,7 @@ TEST_F(RealCloud, RefusesADegenerateCloud) {
 TEST_F(RealCloud, NeverFitsTheFullModelToAFlight) {
   const std::filesystem::path file = flight();
   EXPECT_THAT(refusalOf(file), HasSubstr("cannot calibrate"));
-  // With the field's size at hand the offset could be had, but far too poorly.
+  // With a known field magnitude, the offset alone could be estimated, but with a large uncertainty.
   CalibrationOptions options;
   options.site_field_ENU = 1e-9 * Vec3(-3975.99, 17751.13, -50750.94);
   EXPECT_THAT(refusalOf(file, options), HasSubstr("equivalent heading error would be"));
@@ -117,8 +117,8 @@ TEST_F(RealCloud, NeverFitsTheFullModelToARecordWithoutTurns) {
   }
 }
 
-// BROAD's magnetometer lags and repeats 29 % of its rows; its field has a size of 43 to 45 uT and dips by 69
-// degrees.
+// BROAD's magnetometer has a lag and repeats 29 % of its rows. Its field has a magnitude of 43 to 45 uT and a
+// dip of 69 degrees.
 TEST_F(RealCloud, FindsTheLagAndTheRotationOfARecordingWithGyroscope) {
   const auto broad = testData("broad");
   if (!broad) GTEST_SKIP() << missingTestData("broad");
@@ -138,7 +138,7 @@ TEST_F(RealCloud, FindsTheLagAndTheRotationOfARecordingWithGyroscope) {
   EXPECT_TRUE(result.inertial->time_offset_significant);
   EXPECT_LT(*result.fit.time_offset_to_imu_s, -0.009);
   EXPECT_GT(*result.fit.time_offset_to_imu_s, -0.017);
-  // Both sensors sit on one chip carrier, and it comes calibrated from the factory.
+  // Both sensors are in one package with a factory calibration.
   EXPECT_LT(result.fit.body_from_magnetometer->angularDistance(Quat::Identity()), 0.03);
   EXPECT_LT(result.fit.hard_iron.norm(), 1e-6);
   EXPECT_NEAR(*result.fit.dip_rad, 1.21, 0.05);

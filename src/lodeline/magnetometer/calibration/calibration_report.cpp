@@ -14,7 +14,7 @@ namespace {
 
 using Sigmas = Eigen::Matrix<double, fit_parameter::kSize, 1>;
 
-/// Readings' unit for people: uT, or counts.
+/// Unit of the readings in the report: uT, or counts.
 struct Shown {
   double factor;
   const char* unit;
@@ -24,7 +24,7 @@ Shown shownReadings(const MagnetometerFit& fit) {
 }
 
 std::string ironRows(const MagnetometerFit& fit) {
-  // Near one for readings in T; else in nT a count.
+  // Near one for readings in T; otherwise in nT per count.
   const double factor = fit.raw_readings ? 1e9 : 1.0;
   const Mat3 a = factor * fit.iron_correction;
   const Mat3 s = factor * symmetricMatrix(fit.sigmas().head<6>());

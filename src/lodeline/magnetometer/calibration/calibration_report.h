@@ -9,14 +9,14 @@
 
 namespace lodeline {
 
-/// What a person wants to know: verdict, parameters with standard deviations, figures of merit, and what was
-/// not possible and why.
+/// Report for the user: verdict, parameters with standard deviations, quality figures, and the steps that
+/// were impossible, with reasons.
 std::string calibrationText(const MagnetometerCalibrationResult& result);
 
-/// The same for programs; keys carry units.
+/// The same report as JSON; keys carry units.
 nlohmann::ordered_json calibrationJson(const MagnetometerCalibrationResult& result);
 
-/// How two calibrations differ and whether that matters, `dip_rad` as in compareCalibrations().
+/// Differences between two calibrations and their significance; `dip_rad` as in compareCalibrations().
 std::string comparisonText(const MagnetometerFit& first, const MagnetometerFit& second, double dip_rad);
 nlohmann::ordered_json comparisonJson(const MagnetometerFit& first, const MagnetometerFit& second,
                                       double dip_rad);

@@ -13,7 +13,7 @@ constexpr double kStretch_s = 20.0;
 constexpr int kStretches = 4;
 constexpr double kLeastStep_T = 0.15e-6;
 constexpr double kLeastStep_sigmas = 4.0;
-/// Least eigenvalue of the mean of u u^T: 1/3 where directions are spread evenly.
+/// Minimum of the smallest eigenvalue of the mean of u u^T; 1/3 for evenly distributed directions.
 constexpr double kLeastSpread = 0.05;
 constexpr size_t kFewestReadings = 30;
 
@@ -47,7 +47,7 @@ class Offsets {
       sums_.push_back(sum);
       series.push_back(residual_T);
     }
-    // Neighbours tell the noise that changes of the iron have no part in.
+    // Differences of neighbouring readings give the noise without changes of the iron.
     double squares = 0.0;
     for (size_t i = 1; i < series.size(); ++i) squares += std::pow(series[i] - series[i - 1], 2);
     const double white_T2 = squares / (2.0 * std::max<double>(1.0, static_cast<double>(series.size()) - 1.0));
@@ -64,7 +64,7 @@ class Offsets {
   double variance_T2() const { return variance_T2_; }
 
  private:
-  /// Residuals after each of the stretches has been given its own offset.
+  /// Residuals after an own offset was estimated for each stretch.
   std::vector<double> withoutOffsets(std::vector<double> series) const {
     for (int k = 0; k < 2 * kStretches; ++k) {
       const size_t begin = series.size() * static_cast<size_t>(k) / (2 * kStretches);
@@ -78,7 +78,7 @@ class Offsets {
   }
 
   std::span<const CorrectedReading> readings_;
-  std::vector<Stretch> sums_;  ///< over the readings before
+  std::vector<Stretch> sums_;  ///< sums over the readings before
   double variance_T2_ = 0.0;
 };
 
@@ -111,7 +111,7 @@ std::optional<HardIronChange::Step> greatestStep(std::span<const CorrectedReadin
   return greatest;
 }
 
-/// Nothing unless the stretches' offsets differ by three sigma (chi-square) of their noise.
+/// Returns zero unless the stretches' offsets differ by three sigma (chi-square) of their noise.
 double spreadOf(const Offsets& offsets, size_t count) {
   std::vector<Vec3> found;
   std::vector<Mat3> noise;

@@ -9,28 +9,29 @@
 
 namespace lodeline {
 
-/// A corrected reading of the record that a calibration was made from.
+/// A corrected reading of the calibration record.
 struct CorrectedReading {
   Time time;
   Vec3 field_M = Vec3::Zero();  ///< T
 };
 
-/// How the hard iron changed while a calibration was recorded: to first order an offset d of the corrected
-/// field changes its size by u . d, with u the field's direction, so that a stretch of readings along several
-/// directions tells the offset that it has on top of the calibration's.
+/// Change of the hard iron during a calibration record. To first order, an offset d of the corrected field
+/// changes its magnitude by u . d, with u the direction of the field. Readings of a stretch along several
+/// directions therefore determine its offset relative to the calibration.
 struct HardIronChange {
-  /// A step between two neighbouring stretches: a current that was switched, iron that came near.
+  /// A step between two neighbouring stretches, for example from a switched current or iron brought close.
   struct Step {
     Time time;
     double size_T = 0.0;
-    double sigma_T = 0.0;  ///< of its largest component
+    double sigma_T = 0.0;  ///< one sigma of the largest component
   };
   std::optional<Step> step;
-  double spread_T =
-      0.0;  ///< of four stretches' offsets, one sigma per axis, beyond their noise; 0 if not significant
+  double spread_T = 0.0;  ///< standard deviation per axis of the offsets of four stretches beyond their
+                          ///< noise; 0 if not significant
 };
 
-/// `field_strength_T`: that corrected readings should have. In order of time.
+/// Finds changes in readings sorted by time. `field_strength_T`: magnitude that corrected readings should
+/// have.
 HardIronChange findHardIronChange(std::span<const CorrectedReading> readings, double field_strength_T);
 
 }  // namespace lodeline

@@ -14,7 +14,7 @@ namespace {
 constexpr double kSteadyField_T = 45e-6;
 constexpr double kReadingNoise_T = 0.07e-6;
 
-// 90 s at 50 Hz of a rig that is turned through all directions every ten seconds or so.
+// 90 s at 50 Hz of a rig that rotates through all directions about every ten seconds.
 std::vector<CorrectedReading> turned(const std::function<Vec3(double)>& iron_T) {
   std::mt19937_64 engine(3);
   std::normal_distribution<double> normal(0.0, kReadingNoise_T);
@@ -53,7 +53,7 @@ TEST(HardIronChange, TakesASlowCreepForSpread) {
   EXPECT_NEAR(change.spread_T, 0.3e-6 / std::sqrt(12.0) / std::sqrt(3.0), 0.02e-6);
 }
 
-// The case: 12 of its own sigmas off, and not a word.
+// A hard iron change of 12 sigma of the calibration.
 TEST(HardIronChange, WidensWhatACalibrationClaims) {
   const Vec3 current_T(0.3e-6, 0.0, 0.2e-6);
   MagnetometerRecord record;

@@ -17,7 +17,7 @@
 namespace lodeline {
 namespace {
 
-/// What a reader knows about the unit: as written in the file, or the user's word, or nothing.
+/// A record with its unit: as stated in the file, given by the user, or unknown.
 struct Reading {
   MagnetometerRecord record;
   std::optional<FieldUnit> unit;
@@ -45,12 +45,12 @@ void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* 
   }
 }
 
-/// The calibration of a recording that may have none.
+/// The calibration of a recording, which may have none.
 RigFile readCalibration(const EurocLayout& layout, Diagnostics* diagnostics) {
   Diagnostics found;
   RigFile rig = readFolderCalibration(layout, &found);
   for (const Finding& finding : found.ranked()) {
-    if (finding.kind.ends_with("_uncalibrated")) continue;  // what that means here is said below
+    if (finding.kind.ends_with("_uncalibrated")) continue;  // reported below
     diagnostics->report(finding.severity, finding.kind, finding.first_message);
   }
   return rig;
@@ -112,7 +112,7 @@ void cut(const RecordOptions& options, MagnetometerRecord* record) {
                                 : record->magnetometer.back().time;
   std::erase_if(record->magnetometer,
                 [&](const auto& sample) { return sample.time < begin || sample.time > end; });
-  // The inertial readings reach a little further, for a magnetometer that lags.
+  // The inertial readings cover a little more time, for a magnetometer with a lag.
   const Duration margin = Duration::fromSeconds(0.5);
   std::erase_if(record->imu, [&](const auto& sample) {
     return sample.time < begin - margin || sample.time > end + margin;
@@ -120,7 +120,7 @@ void cut(const RecordOptions& options, MagnetometerRecord* record) {
   if (record->magnetometer.empty()) throw UsageError("--from and --to leave no magnetometer reading");
 }
 
-/// The unit in which the readings make sense, with a warning where that is not what was said.
+/// Determines the unit for which the readings are plausible; warns where it is not the stated one.
 void settleUnit(const std::string& data, const RecordOptions& options, std::optional<FieldUnit> stated,
                 MagnetometerRecord* record, Diagnostics* diagnostics) {
   std::vector<Vec3> finite;
@@ -177,7 +177,7 @@ Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostic
   return reading;
 }
 
-/// Without a time in common, the gyroscope says nothing of how the magnetometer turns.
+/// Reports streams without common times, for which the gyroscope does not help the calibration.
 void reportApart(const MagnetometerRecord& record, Diagnostics* diagnostics) {
   SpanOfStream imu, magnetometer;
   for (const ImuSample& sample : record.imu) imu.add(sample.time);

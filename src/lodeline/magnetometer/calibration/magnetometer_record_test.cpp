@@ -17,7 +17,7 @@ class MagnetometerRecordTest : public ::testing::Test {
     return readMagnetometerRecord(folder_.path() / name, options, &diagnostics_);
   }
 
-  /// Rows of readings of a 45 uT field, in a unit, with the row's beginning from `stamp`.
+  /// Rows of readings of a 45 uT field in a unit; `stamp` gives the start of each row.
   template <typename Stamp>
   static std::string rows(double factor, const Stamp& stamp) {
     std::string text;
@@ -131,8 +131,8 @@ TEST_F(MagnetometerRecordTest, ExplainsWhatItCannotRead) {
   EXPECT_EQ(diagnostics_.count("csv_row"), 3);
 }
 
-/// A table of readings of a 45 uT field: `header`, then `row` for each with the fields {s} {ms} {us} {ns} of
-/// the time, {x} {y} {z} in `per_uT` of the unit.
+/// A table of readings of a 45 uT field: `header`, then one `row` per reading with the fields {s} {ms} {us}
+/// {ns} of the time and {x} {y} {z} in `per_uT` of the unit.
 struct TableLayout {
   const char* what;
   const char* header;

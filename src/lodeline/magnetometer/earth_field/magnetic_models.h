@@ -13,7 +13,7 @@ struct GaussCoefficient {
 };
 
 constexpr int kMagneticModelDegree = 12;
-/// In order of degree, then order.
+/// Sorted by degree, then by order.
 using CoefficientTable = std::array<GaussCoefficient, 90>;
 
 /// World Magnetic Models 2015 (version 2 of 2018), 2020 and 2025 (NOAA National Centers for Environmental
@@ -27,7 +27,7 @@ extern const CoefficientTable kIgrf2000Coefficients, kIgrf2005Coefficients, kIgr
 /// A model and the five years for which it is used.
 struct MagneticModel {
   const char* name;
-  double epoch;  ///< decimal year, where the five years begin
+  double epoch;  ///< decimal year, start of the five years
   const CoefficientTable* coefficients;
 };
 constexpr double kMagneticModel_years = 5.0;

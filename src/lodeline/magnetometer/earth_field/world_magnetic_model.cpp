@@ -16,13 +16,14 @@
 namespace lodeline {
 namespace {
 
-/// Sums one set of Gauss coefficients (nT or nT/year) to a field.
+/// Evaluates the field of one set of Gauss coefficients (nT or nT/year).
 class HarmonicSum {
  public:
   HarmonicSum(const CoefficientTable& table, double GaussCoefficient::*g, double GaussCoefficient::*h)
       : c_(storage(false)), s_(storage(true)) {
     for (const GaussCoefficient& term : table) {
-      // GeographicLib wants columns of equal order, the sine terms without the column of order zero.
+      // GeographicLib stores coefficients by columns of equal order, the sine terms without the column of
+      // order zero.
       c_[column(term.order) + term.degree - term.order] = term.*g;
       if (term.order > 0) {
         s_[column(term.order) - (kMagneticModelDegree + 1) + term.degree - term.order] = term.*h;
@@ -32,11 +33,11 @@ class HarmonicSum {
                                             GeographicLib::SphericalHarmonic::SCHMIDT);
   }
 
-  // The sum refers to the coefficients by address.
+  // Not copyable because the sum stores the addresses of the coefficients.
   HarmonicSum(const HarmonicSum&) = delete;
   HarmonicSum& operator=(const HarmonicSum&) = delete;
 
-  /// In geocentric axes, the coefficients' unit.
+  /// Field in geocentric axes, in the unit of the coefficients.
   Vec3 at(const Vec3& geocentric_m) const {
     Vec3 gradient;
     sum_(geocentric_m.x(), geocentric_m.y(), geocentric_m.z(), gradient.x(), gradient.y(), gradient.z());
@@ -78,7 +79,7 @@ void check(const GeodeticPosition& p, double year) {
   }
 }
 
-/// The model for a year that check() has passed.
+/// The model for a year that check() has accepted.
 const MagneticModel& modelOf(double year) {
   const auto after = std::upper_bound(kMagneticModels.begin(), kMagneticModels.end(), year,
                                       [](double y, const MagneticModel& model) { return y < model.epoch; });

@@ -44,7 +44,7 @@ TEST(WorldMagneticModel, AgreesWithReferenceValuesOfEarlierModels) {
   }
 }
 
-// Where NOAA's table of the poles' wandering has the field upright by the IGRF.
+// Positions of NOAA's table of dip poles, where the field of the IGRF is vertical.
 TEST(WorldMagneticModel, IsUprightAtTheDipPolesOfTheReferenceField) {
   struct Pole {
     double year, latitude, longitude, sign;

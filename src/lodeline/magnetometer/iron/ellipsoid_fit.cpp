@@ -15,7 +15,7 @@ using Mat64 = Eigen::Matrix<double, 6, 4>;
 using Mat10 = Eigen::Matrix<double, 10, 10>;
 
 constexpr size_t kFewestPoints = 9;
-/// Relative to the largest; below it the points fill no space.
+/// Minimum eigenvalue relative to the largest; below it, the points are on a plane or line.
 constexpr double kFlat = 1e-12;
 
 Vec10 monomials(const Vec3& p) {
@@ -57,12 +57,12 @@ std::optional<Ellipsoid> fromCoefficients(const Vec6& quadratic, const Vec4& lin
   return ellipsoid;
 }
 
-/// Points moved to their mean and scaled to unit spread, for the numbers' sake.
+/// Points shifted to zero mean and scaled to unit spread for numerical accuracy.
 struct Normalized {
   Vec3 mean = Vec3::Zero();
   double scale = 0.0;
   std::vector<Vec3> points;
-  bool flat = true;  ///< they fill no space
+  bool flat = true;  ///< the points are on a plane or line
 };
 
 Normalized normalize(std::span<const Vec3> points) {

@@ -14,8 +14,8 @@ namespace {
 
 using fit_parameter::kSize;
 
-/// Of the corrected field in body axes (rotation left out: R_B_M = 1) by the parameters, at the reading
-/// whose corrected field is `field_M`.
+/// Derivative of the corrected field in body axes (without the rotation: R_B_M = 1) by the parameters, at the
+/// reading whose corrected field is `field_M`.
 Eigen::Matrix<double, 3, kSize> fieldJacobian(const MagnetometerFit& fit, const Vec3& field_M) {
   const Vec3 d = fit.iron_correction.ldlt().solve(field_M);
   Eigen::Matrix<double, 3, kSize> j;
@@ -23,7 +23,7 @@ Eigen::Matrix<double, 3, kSize> fieldJacobian(const MagnetometerFit& fit, const 
       0, d.y(), 0, d.x(), 0, d.z(),                 //
       0, 0, d.z(), 0, d.x(), d.y();
   j.middleCols<3>(fit_parameter::kHardIron) = -fit.iron_correction;
-  // exp(delta) R m = R m + delta x R m, in body axes; turned back into M with R^T.
+  // exp(delta) R m = R m + delta x R m, in body axes; rotated back into M with R^T.
   const Mat3 r = fit.body_from_magnetometer.value_or(Quat::Identity()).toRotationMatrix();
   j.rightCols<3>() = -so3::skew(field_M) * r.transpose();
   return j;
@@ -39,7 +39,8 @@ void forAllDirections(const Function& function) {
 }
 constexpr double kDirections = SphereCoverage::kZones * SphereCoverage::kSectors;
 
-/// Heading knows no scale, and one calibration may have it from a site where the other has its own.
+/// Scales A to unit determinant. Heading does not depend on scale, which may come from a site in one
+/// calibration and from the sensor in the other.
 MagnetometerFit withUnitDeterminant(MagnetometerFit fit) {
   const bool raw_readings = std::exchange(fit.raw_readings, false);
   settleScale(std::nullopt, &fit);
@@ -78,7 +79,7 @@ CalibrationDifference compareCalibrations(const MagnetometerFit& first_as_scaled
   Eigen::Matrix<double, kSize, 1> difference = Eigen::Matrix<double, kSize, 1>::Zero();
   difference << symmetricEntries(result.iron_correction), result.hard_iron, Vec3::Zero();
   MagnetometerFit::Covariance covariance = first.covariance + second.covariance;
-  Quat change = Quat::Identity();  // of the rotation, in magnetometer axes of the first
+  Quat change = Quat::Identity();  // rotation change, in magnetometer axes of the first
   if (first.body_from_magnetometer && second.body_from_magnetometer) {
     result.rotation_rad =
         so3::log(*second.body_from_magnetometer * first.body_from_magnetometer->conjugate());
@@ -87,7 +88,7 @@ CalibrationDifference compareCalibrations(const MagnetometerFit& first_as_scaled
   }
   result.sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 
-  // Scaled to a unit diagonal; a direction without variance (a scale fixed by convention) does not count.
+  // Scaled to a unit diagonal. A direction without variance (a scale fixed by convention) is left out.
   const Eigen::Matrix<double, kSize, 1> scale =
       result.sigmas.unaryExpr([](double sigma) { return sigma > 0.0 ? 1.0 / sigma : 0.0; });
   covariance = (scale.asDiagonal() * covariance * scale.asDiagonal()).eval();

@@ -28,7 +28,7 @@ TEST(HeadingSigma, CountsTheRotationAndNotTheScale) {
   fit.covariance.diagonal().tail<3>().setConstant(1e-4);  // 0.01 rad
   EXPECT_NEAR(headingSigma(fit, kDip_rad), 0.01 / std::cos(kDip_rad), 1e-9);
   fit.covariance.setZero();
-  fit.covariance.topLeftCorner<3, 3>().setConstant(1e-4);  // a common error of all scales
+  fit.covariance.topLeftCorner<3, 3>().setConstant(1e-4);  // a common error of all scale factors
   EXPECT_NEAR(headingSigma(fit, kDip_rad), 0.0, 1e-9);
   fit.axes_sigma_rad = 0.01;
   EXPECT_NEAR(headingSigma(fit, kDip_rad), 0.01 / std::cos(kDip_rad), 1e-9);
@@ -52,7 +52,7 @@ TEST(CompareCalibrations, JudgesAMovedHardIron) {
   EXPECT_TRUE(d.significant);
   EXPECT_EQ(d.degrees_of_freedom, 3);
   EXPECT_NEAR(d.chi_square, 100.0, 1e-6);
-  // 1 uT across 50 uT: a third of the directions' squares lie along the field; half of the rest east.
+  // 1 uT normal to 50 uT: a third of the squared components is along the field, and half of the rest is east.
   EXPECT_NEAR(d.heading_rms_rad, 0.02 * std::sqrt(1.0 / 3.0) / std::cos(kDip_rad), 2e-4);
   EXPECT_NEAR(d.heading_largest_rad, 0.02 / std::cos(kDip_rad), 1e-3);
 

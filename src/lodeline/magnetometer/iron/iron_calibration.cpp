@@ -17,13 +17,13 @@ namespace lodeline {
 namespace {
 
 constexpr double kNominalField_T = 50e-6;
-/// A sensor's own scale may be off, but noise about one value is no field.
+/// Plausible field magnitudes. A sensor's own scale may be wrong, but noise about one value is not a field.
 constexpr double kLeastField_T = 8e-6, kMostField_T = 200e-6;
 constexpr double kLeastRadius_counts = 20.0;
 
 using EllipsoidFit = std::optional<Ellipsoid> (*)(std::span<const Vec3>);
 
-/// An ellipsoid with the sum of squared distances of the three quarters of readings that lie nearest to it.
+/// An ellipsoid with the sum of squared distances of the nearest three quarters of the readings.
 struct TrimmedFit {
   Ellipsoid ellipsoid;
   double sum = 0.0;
@@ -45,7 +45,7 @@ TrimmedFit trimmed(const Ellipsoid& ellipsoid, std::span<const Vec3> readings) {
   return result;
 }
 
-/// Refits the ellipsoid a few times to the readings that it fits best.
+/// Refits the ellipsoid several times to the readings with the smallest residuals.
 std::optional<TrimmedFit> concentrated(EllipsoidFit fit, std::span<const Vec3> begin,
                                        std::span<const Vec3> readings, int rounds) {
   std::optional<Ellipsoid> ellipsoid = fit(begin);
@@ -59,11 +59,11 @@ std::optional<TrimmedFit> concentrated(EllipsoidFit fit, std::span<const Vec3> b
   return best;
 }
 
-/// Least trimmed squares: starts from all readings and from small random samples, of which most hold no wild
-/// reading (Rousseeuw & Van Driessen, "Computing LTS regression for large data sets", 2006). A wild reading
-/// among all of them can draw the first fit so far off that it is never left out. A sample counts where it
-/// more than halves the spread. `rounds` of refitting to the nearest readings follow. The samples are the
-/// same in every run.
+/// Least trimmed squares (Rousseeuw & Van Driessen, "Computing LTS regression for large data sets", 2006). It
+/// starts from all readings and from small random samples, most of which have no outlier. An outlier among
+/// all readings can shift the first fit so much that it is never rejected. A sample is used where it more
+/// than halves the spread. `rounds` of refitting to the nearest readings follow. The samples are the same in
+/// every run.
 std::optional<Ellipsoid> trimmedEllipsoid(EllipsoidFit fit, std::span<const Vec3> readings, int rounds) {
   constexpr int kSamples = 60;
   constexpr size_t kSampleSize = 14, kMostReadings = 1000;
@@ -86,7 +86,7 @@ std::optional<Ellipsoid> trimmedEllipsoid(EllipsoidFit fit, std::span<const Vec3
   return best ? std::optional(best->ellipsoid) : std::nullopt;
 }
 
-/// Where each model's refinement may start; the best result counts.
+/// Initial values for the refinement of each model; the best result is used.
 std::vector<IronParameters> startsOf(IronModel model, std::span<const Vec3> readings,
                                      const IronCalibrationOptions& options) {
   std::vector<IronParameters> starts;
@@ -95,7 +95,7 @@ std::vector<IronParameters> startsOf(IronModel model, std::span<const Vec3> read
       starts.push_back({ellipsoid->matrix, ellipsoid->centre});
     return starts;
   }
-  Mat3 shape = Mat3::Identity();  // of determinant 1
+  Mat3 shape = Mat3::Identity();  // with determinant 1
   if (options.old) {
     shape = options.old->iron_correction / std::cbrt(options.old->iron_correction.determinant());
   }
@@ -121,7 +121,7 @@ std::optional<IronFit> bestFit(IronModel model, std::span<const Vec3> readings,
       IronFit fit = fitIron(readings, start, fit_options);
       if (!best || fit.sigma < best->sigma) best = std::move(fit);
     } catch (const EstimationError&) {
-      // Another start, or a poorer model, may do.
+      // Another initial value or a simpler model may succeed.
     }
   }
   return best;
@@ -156,7 +156,7 @@ IronCalibration describe(IronModel model, std::span<const Vec3> readings, const 
   return result;
 }
 
-/// Why the result is not to be trusted; empty where it is.
+/// Reason to reject the result; empty where it is accepted.
 std::string objection(const IronCalibration& result, const ModelRequirement& requirement,
                       const IronCalibrationOptions& options) {
   const MagnetometerFit& fit = result.fit;
@@ -259,7 +259,7 @@ IronCalibration calibrateIron(std::span<const Vec3> readings, const IronCalibrat
 }
 
 std::string howToMove(const SphereCoverage& coverage) {
-  // A side counts as seen when a bin within 45 degrees of it was visited.
+  // A side counts as covered where a bin within 45 degrees of it was reached.
   std::vector<std::string> unseen;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {

@@ -10,19 +10,19 @@
 
 namespace lodeline {
 
-/// What a model must be given before it is trusted.
+/// Requirements of an iron model on the data.
 struct ModelRequirement {
   double coverage_share;
   double condition_number;
 };
 
 struct IronCalibrationOptions {
-  /// Size of the field where the sensor was turned, from a model of the Earth's field; without it the
-  /// sensor's own scale stands (A has determinant 1) and a fit of the offset alone is impossible.
+  /// Field magnitude at the place of the record, from a model of the Earth's field. Without it, A has
+  /// determinant 1 (the sensor's own scale), and the offset alone cannot be fitted.
   std::optional<double> field_strength_T;
-  double dip_rad = 1.047;  ///< for the equivalent heading error
-  /// An older calibration: its soft iron is used where the readings cannot tell theirs, and it is kept where
-  /// they tell nothing.
+  double dip_rad = 1.047;  ///< dip for the equivalent heading error
+  /// An older calibration. Its soft iron is used where the readings cannot determine it. All of it is kept
+  /// where the readings determine nothing.
   std::optional<MagnetometerFit> old;
   bool raw_readings = false;
 
@@ -31,31 +31,33 @@ struct IronCalibrationOptions {
   ModelRequirement diagonal = {0.4, 1e4};
   ModelRequirement scale = {0.3, 1e4};
   ModelRequirement offset = {0.05, 1e4};
-  double greatest_axis_ratio = 2.0;       ///< of the ellipsoid; beyond it is no soft iron of a usable sensor
-  double greatest_residual_share = 0.06;  ///< RMS of the residual by the field
+  double greatest_axis_ratio = 2.0;       ///< axis ratio of the ellipsoid; no usable sensor has a larger one
+  double greatest_residual_share = 0.06;  ///< RMS of the residual divided by the field magnitude
   double greatest_rejected_share = 0.25;
   double greatest_heading_error_rad = 0.087;
 };
 
 struct IronCalibration {
   MagnetometerFit fit;                ///< without rotation, time offset and noise
-  std::vector<bool> used;             ///< of the readings, false for outliers
-  SphereCoverage coverage;            ///< of the corrected readings that were used
-  std::vector<std::string> refusals;  ///< one sentence on each richer model that was passed over
+  std::vector<bool> used;             ///< per reading; false for outliers
+  SphereCoverage coverage;            ///< coverage of the used corrected readings
+  std::vector<std::string> refusals;  ///< one sentence for each richer model that was rejected
   double correlation_factor = 1.0;
 };
 
-/// Soft and hard iron from readings of a sensor that was turned about, in order of time and free of
-/// repetitions: Li & Griffiths' ellipsoid as the start, robust geometric refinement, and the richest model
-/// that coverage, condition number, residual and expected heading error allow, down to keeping the old
-/// calibration. Throws EstimationError, with the reasons and how to move the sensor, where nothing is left.
+/// Estimates soft and hard iron from readings of a rotated sensor, in order of time and without repetitions.
+/// The initial value is Li & Griffiths' ellipsoid; a robust geometric fit refines it. The result has the
+/// richest model that coverage, condition number, residual and expected heading error allow; the last resort
+/// is the old calibration. Throws EstimationError, with the reasons and how to move the sensor, where no
+/// model is possible.
 IronCalibration calibrateIron(std::span<const Vec3> readings, const IronCalibrationOptions& options);
 
-/// What to do about missing directions, e.g. "point the sensor's -z and +x sides into the field …".
+/// Instruction for missing directions, e.g. "point the sensor's -z and +x sides into the field …".
 std::string howToMove(const SphereCoverage& coverage);
 
-/// `fit` scaled so that corrected readings have the size `field_strength_T`, or, without one, so that A has
-/// determinant 1 (readings in T) or the size is 50 uT (raw readings). The covariance follows.
+/// Scales `fit` so that corrected readings have the magnitude `field_strength_T`. Without it, A gets
+/// determinant 1 (readings in T), or the magnitude becomes 50 uT (raw readings). The covariance is scaled
+/// too.
 void settleScale(std::optional<double> field_strength_T, MagnetometerFit* fit);
 
 }  // namespace lodeline

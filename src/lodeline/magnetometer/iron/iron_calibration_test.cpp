@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 constexpr double kField_T = 45e-6;
 
-/// Readings in T of a sensor whose A has determinant 1, over the sphere down to a cosine with its z axis.
+/// Readings in T of a sensor whose A has determinant 1, in directions down to a cosine with its z axis.
 std::vector<Vec3> readings_T(double least_cosine, CloudTruth truth = {}) {
   truth.correction /= std::cbrt(truth.correction.determinant());
   truth.sigma = 2e-3;
@@ -59,7 +59,7 @@ TEST(IronCalibration, ReducesTheModelWithTheCoverageAndSaysWhy) {
   EXPECT_EQ(half.fit.model, IronModel::Diagonal);
   ASSERT_EQ(half.refusals.size(), 1u);
   EXPECT_THAT(half.refusals[0], HasSubstr("60 %"));
-  // A part of the sphere says little, and the result knows it.
+  // A part of the sphere has little information, and the stated uncertainty is correspondingly large.
   EXPECT_GT(half.fit.heading_error_rad, 5e-3);
 }
 
@@ -128,7 +128,7 @@ TEST(SettleScale, CovarianceFollowsTheScale) {
   MagnetometerFit known = fit;
   settleScale(45e-6, &known);
   EXPECT_NEAR(known.sigmas()[0], 0.01 * known.iron_correction(0, 0), 1e-9);
-  // An error of the scale alone vanishes where the determinant is fixed.
+  // A pure scale error vanishes where the determinant is fixed.
   settleScale(std::nullopt, &fit);
   EXPECT_NEAR(fit.iron_correction.determinant(), 1.0, 1e-12);
   EXPECT_LT(fit.sigmas().head<6>().maxCoeff(), 1e-7);

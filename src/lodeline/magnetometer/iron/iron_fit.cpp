@@ -44,7 +44,7 @@ IronParameters moved(const IronParameters& from, const Vec9& step) {
 
 bool positiveDefinite(const Mat3& matrix) { return Eigen::LLT<Mat3>(matrix).info() == Eigen::Success; }
 
-/// Levenberg-Marquardt over the chosen readings.
+/// Levenberg-Marquardt over the selected readings.
 IronParameters minimize(std::span<const Vec3> readings, const std::vector<bool>& used, IronParameters at,
                         const IronFitOptions& options) {
   double damping = 1e-6;
@@ -79,8 +79,8 @@ std::vector<double> distances(std::span<const Vec3> readings, const IronParamete
   return result;
 }
 
-/// Readings that are no further off than so many robust standard deviations. A perfect record must not lose
-/// readings to the last bits of its arithmetic.
+/// Selects readings within this number of robust standard deviations. An exact record must not lose readings
+/// to rounding errors.
 std::vector<bool> within(double sigmas, const std::vector<double>& distances) {
   const double limit = sigmas * std::max(robustSigma(distances), 1e-9);
   std::vector<bool> used(distances.size());
@@ -140,7 +140,7 @@ Eigen::Matrix<double, 9, Eigen::Dynamic> activeDirections(IronModel model, const
 Eigen::MatrixXd consideredCovariance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& active,
                                      const Eigen::MatrixXd& left_out) {
   const Eigen::MatrixXd reduced = active.transpose() * information * active;
-  // Parameters of different units: scaled to a unit diagonal before the inversion.
+  // Parameters have different units, so the matrix is scaled to a unit diagonal before inversion.
   const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse =
       (scale.asDiagonal() * reduced * scale.asDiagonal()).completeOrthogonalDecomposition().pseudoInverse();
@@ -154,7 +154,7 @@ IronResidual ironResidual(const Vec3& reading, const IronParameters& parameters)
   const Vec3 z = parameters.correction * d;
   const double norm = std::max(z.norm(), 1e-300);
   const Vec3 u = z / norm;
-  const Vec3 gradient = parameters.correction.transpose() * u;  // of |z| by the reading
+  const Vec3 gradient = parameters.correction.transpose() * u;  // gradient of |z| by the reading
   const double weight = 1.0 / std::max(gradient.norm(), 1e-300);
   IronResidual result;
   result.distance = weight * (norm - 1.0);
@@ -166,7 +166,7 @@ IronResidual ironResidual(const Vec3& reading, const IronParameters& parameters)
 }
 
 IronFit fitIron(std::span<const Vec3> readings, const IronParameters& start, const IronFitOptions& options) {
-  // In units of the sphere's radius all parameters are of the order of one.
+  // In units of the sphere's radius, all parameters are of order one.
   const double radius = 1.0 / std::cbrt(start.correction.determinant());
   std::vector<Vec3> scaled;
   scaled.reserve(readings.size());
@@ -174,7 +174,7 @@ IronFit fitIron(std::span<const Vec3> readings, const IronParameters& start, con
 
   IronFit fit;
   fit.parameters.correction = start.correction * radius;
-  // What is far off at the start would draw the first round to itself.
+  // Large outliers at the start would dominate the first round.
   constexpr double kWild_sigmas = 20.0;
   fit.used = within(kWild_sigmas, distances(scaled, fit.parameters));
   constexpr int kMostRounds = 30;
@@ -210,7 +210,7 @@ double correlationFactor(std::span<const double> series) {
   for (size_t lag = 1; lag < n / 3; ++lag) {
     double sum = 0.0;
     for (size_t i = lag; i < n; ++i) sum += (series[i] - mean) * (series[i - lag] - mean);
-    // Below twice the scatter of an estimate from independent values it is as good as zero.
+    // Below twice the scatter of an estimate from independent values, it is not significant.
     if (sum / variance < 2.0 / std::sqrt(static_cast<double>(n))) break;
     factor += 2.0 * sum / variance;
   }

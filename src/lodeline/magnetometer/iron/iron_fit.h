@@ -7,17 +7,18 @@
 
 namespace lodeline {
 
-/// Parameters of the sphere that corrected readings lie on: |A (y - h)| = 1, with A in units of
-/// 1 / reading.
+/// Parameters of the ellipsoid of raw readings, whose corrected readings are on the unit sphere:
+/// |A (y - h)| = 1, with A in units of 1 / reading.
 struct IronParameters {
   Mat3 correction = Mat3::Identity();  ///< A
   Vec3 hard_iron = Vec3::Zero();       ///< h
 };
 
-/// How far a reading lies from the sphere, to first order in the unit of the readings:
+/// Signed distance of a reading from the surface, to first order, in the unit of the readings (Sampson's
+/// distance):
 ///   r = (|A (y - h)| - 1) / |A^T u|,  u = A (y - h) / |A (y - h)|
-/// (Sampson's distance: for white noise of sigma in each axis of y, r has that sigma). The derivative is by
-/// A (xx yy zz xy xz yz) and h, with the denominator held; it is what the fit iterates on.
+/// For white noise of sigma in each axis of y, r has that sigma. The derivative is by A (xx yy zz xy xz yz)
+/// and h, with the denominator held constant; the fit iterates with it.
 struct IronResidual {
   double distance = 0.0;
   Eigen::Matrix<double, 1, 9> jacobian;
@@ -26,48 +27,50 @@ IronResidual ironResidual(const Vec3& reading, const IronParameters& parameters)
 
 struct IronFitOptions {
   IronModel model = IronModel::Full;
-  /// Readings further off than so many robust standard deviations are left out of the fit.
+  /// Readings beyond this number of robust standard deviations are excluded from the fit.
   double rejection_sigmas = 4.0;
   int max_iterations = 50;
-  /// How far a sensor's soft iron may lie from `start` where the model leaves it out, one sigma of a diagonal
-  /// and of another entry of A, relative. It widens the covariance, of the left out and of the estimated
-  /// parameters alike (Schmidt's "consider" parameters).
+  /// Prior uncertainty of the soft-iron entries that a model does not estimate: one relative sigma of the
+  /// difference to `start`, for diagonal and off-diagonal entries of A. It increases the covariance of the
+  /// estimated and the other parameters (Schmidt's "consider" parameters).
   double left_out_scale_sigma = 0.03;
   double left_out_skew_sigma = 0.02;
 };
 
-/// The directions (columns, 9 rows: A's entries and h) in which a model lets the parameters move at A.
+/// Basis (9 rows: A's entries and h; one column per direction) of the parameter changes that a model allows
+/// at A.
 Eigen::Matrix<double, 9, Eigen::Dynamic> activeDirections(IronModel model, const Mat3& correction);
 
-/// Covariance of parameters p with information matrix H, of which `active` (columns) were estimated and the
-/// others held although they have the covariance `left_out`:
+/// Covariance P of parameters p with information matrix H, where the columns of `active` were estimated and
+/// the other directions were held fixed with the covariance `left_out` (Schmidt's consider covariance):
 ///   K = active (active^T H active)^-1 active^T,  P = K + (I - K H) left_out (I - K H)^T
 Eigen::MatrixXd consideredCovariance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& active,
                                      const Eigen::MatrixXd& left_out);
 
 struct IronFit {
   IronParameters parameters;
-  /// Of A and h, from the scatter of the residuals, widened for their correlation in time and for what the
-  /// model leaves out.
+  /// Covariance of A and h from the scatter of the residuals. It is increased for the correlation of
+  /// residuals in time and for the parameters that the model does not estimate.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
-  /// Of the model's normal equations with columns scaled to unit length: largest by smallest eigenvalue.
-  /// Infinite where they are singular.
+  /// Ratio of the largest to the smallest eigenvalue of the model's normal equations, with columns scaled to
+  /// unit length. Infinite where they are singular.
   double condition_number = 0.0;
-  std::vector<bool> used;  ///< of the readings, false for outliers
-  double sigma = 0.0;      ///< of a residual, unit of the readings
+  std::vector<bool> used;  ///< per reading; false for outliers
+  double sigma = 0.0;      ///< standard deviation of a residual, unit of the readings
   double correlation_factor = 1.0;
 };
 
-/// Robust least squares from `start`: Gauss-Newton with damping over the parameters of the model, outliers
-/// told by the median absolute deviation. What the model leaves out keeps the value of `start`. Readings in
-/// order of time. Throws EstimationError where it does not converge to a positive definite A.
+/// Robust least squares from `start`: damped Gauss-Newton over the parameters of the model, with outlier
+/// rejection by the median absolute deviation. Parameters outside the model keep the values of `start`.
+/// Readings must be in order of time. Throws EstimationError where it does not converge to a positive
+/// definite A.
 IronFit fitIron(std::span<const Vec3> readings, const IronParameters& start, const IronFitOptions& options);
 
-/// By how much a series' sum scatters more (in variance) than that of independent values of the same
-/// variance: 1 + 2 times the sum of autocorrelations up to the first that is not positive.
+/// Ratio of the variance of a correlated series' sum to that of independent values of the same variance: 1 +
+/// 2 times the sum of autocorrelations up to the first that is not positive.
 double correlationFactor(std::span<const double> series);
 
-/// Median of absolute values times 1.4826: the standard deviation of normal values, outliers or not.
+/// Median of absolute values times 1.4826: a robust estimate of the standard deviation of normal values.
 double robustSigma(std::vector<double> values);
 
 }  // namespace lodeline

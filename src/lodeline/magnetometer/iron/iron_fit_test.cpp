@@ -86,7 +86,7 @@ TEST(IronFit, LeavesOutliersOut) {
   const IronFit fit = fitIron(readings, startFrom(readings), {});
   int outliers_used = 0, others_used = 0;
   for (size_t i = 0; i < readings.size(); ++i) (i % 10 == 0 ? outliers_used : others_used) += fit.used[i];
-  EXPECT_LE(outliers_used, 8);  // those moved along the surface cannot be told
+  EXPECT_LE(outliers_used, 8);  // outliers moved along the surface cannot be detected
   EXPECT_GE(others_used, 355);
   EXPECT_LT((fit.parameters.hard_iron - truth.hard_iron).norm(), 0.01);
 }
@@ -100,7 +100,7 @@ TEST(IronFit, WidensTheCovarianceForWhatTheModelLeavesOut) {
   IronFitOptions options;
   options.model = IronModel::Scale;
   const IronFit fit = fitIron(readings, {Mat3::Identity(), truth.hard_iron}, options);
-  // 2 to 3 % of unknown soft iron act on the offset of a sensor that saw a part of the sphere.
+  // 2 to 3 % of unknown soft iron affect the offset of a sensor with partial coverage.
   EXPECT_GT(std::sqrt(fit.covariance(6, 6)), 0.01);
   options.left_out_scale_sigma = options.left_out_skew_sigma = 0.0;
   EXPECT_LT(std::sqrt(fitIron(readings, {Mat3::Identity(), truth.hard_iron}, options).covariance(6, 6)),

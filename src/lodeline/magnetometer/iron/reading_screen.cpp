@@ -8,20 +8,20 @@ namespace lodeline {
 namespace {
 
 constexpr double kFrozen_s = 2.0;
-/// At the end of its range an axis shows one value over and over: so often, and so many times more often than
-/// all the values within the next fiftieth of its extent together.
+/// Thresholds for saturation: minimum count of the extreme value, and its ratio to the count of all values
+/// within the next fiftieth of the extent.
 constexpr int kFewestSaturated = 10;
 constexpr double kSaturatedFactor = 3.0;
 constexpr double kNear = 0.02;
 
-/// Whether the greatest of the (sorted) values is the end of the range.
+/// Whether the largest of the sorted values is the end of the range.
 bool endsSaturated(const std::vector<double>& sorted) {
   const double greatest = sorted.back();
   const double near = greatest - kNear * (greatest - sorted.front());
   const auto first_near = std::lower_bound(sorted.begin(), sorted.end(), near);
   const auto first_greatest = std::lower_bound(sorted.begin(), sorted.end(), greatest);
   const auto at_end = sorted.end() - first_greatest;
-  // Coarse counts: compare with the next value where the last fiftieth holds no other.
+  // Coarse counts: compares with the next value where the last fiftieth has no other one.
   auto beside = first_greatest - first_near;
   if (beside == 0 && first_greatest != sorted.begin()) {
     const double next = *(first_greatest - 1);
@@ -32,7 +32,7 @@ bool endsSaturated(const std::vector<double>& sorted) {
              kSaturatedFactor * static_cast<double>(std::max<std::ptrdiff_t>(1, beside));
 }
 
-/// Removes readings at the ends of a saturated axis; returns how many.
+/// Removes readings at the ends of a saturated axis; returns their number.
 int removeSaturated(std::vector<MagnetometerSample>* samples) {
   std::vector<bool> bad(samples->size(), false);
   for (int axis = 0; axis < 3 && !samples->empty(); ++axis) {

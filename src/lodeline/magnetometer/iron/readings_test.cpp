@@ -5,7 +5,7 @@
 #include "lodeline/magnetometer/iron/sphere_coverage.h"
 #include "lodeline/magnetometer/iron/test_cloud.h"
 
-// What is done to readings before a calibration: screening, coverage.
+// Screening and coverage of readings before a calibration.
 
 namespace lodeline {
 namespace {
@@ -31,7 +31,7 @@ TEST(ReadingScreen, DropsRepetitionsNansAndDisorder) {
   const ReadingScreen screen = screenReadings(samples, &diagnostics);
   EXPECT_EQ(screen.not_finite, 1);
   EXPECT_EQ(screen.disordered, 1);
-  EXPECT_EQ(screen.repeated, 98);  // the partners of the two others are the only ones of their kind left
+  EXPECT_EQ(screen.repeated, 98);  // partners of the two others, without equal readings before them
   EXPECT_EQ(screen.usable.size(), 100u);
   EXPECT_EQ(diagnostics.count("magnetometer_repeated"), 1);
   EXPECT_EQ(diagnostics.count("magnetometer_frozen"), 0);

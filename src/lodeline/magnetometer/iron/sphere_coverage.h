@@ -7,8 +7,8 @@
 
 namespace lodeline {
 
-/// Which parts of the sphere of directions have been visited: 72 bins of equal area, six zones of equal
-/// height in z with twelve sectors each.
+/// Coverage of the sphere of directions by 72 bins of equal area: six zones of equal height in z with twelve
+/// sectors each.
 class SphereCoverage {
  public:
   static constexpr int kZones = 6;
@@ -19,10 +19,10 @@ class SphereCoverage {
 
   void add(const Vec3& direction);
   int count(int zone, int sector) const { return counts_[static_cast<size_t>(zone * kSectors + sector)]; }
-  /// Share of the bins with at least one direction.
+  /// Fraction of the bins with at least one direction.
   double share() const;
 
-  /// Unit vector to the middle of a bin.
+  /// Unit vector to the centre of a bin.
   static Vec3 middle(int zone, int sector);
 
  private:

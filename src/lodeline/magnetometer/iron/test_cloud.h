@@ -8,18 +8,18 @@
 
 namespace lodeline::test {
 
-/// A sensor of which everything is known: readings y with |A (y - h)| = 1 and white noise.
+/// True parameters of a simulated sensor: readings y with |A (y - h)| = 1 and white noise.
 struct CloudTruth {
   Mat3 correction = (Mat3() << 1.05, 0.04, -0.02, 0.04, 0.93, 0.05, -0.02, 0.05, 1.1).finished();  ///< A
   Vec3 hard_iron = Vec3(0.3, -0.2, 0.5);
   double sigma = 0.0;  ///< per axis
   unsigned seed = 1;
-  /// Only directions whose cosine with this axis is at least `least_cosine`.
+  /// Restricts directions to those whose cosine with this axis is at least `least_cosine`.
   Vec3 towards = Vec3::UnitZ();
   double least_cosine = -1.0;
 };
 
-/// `count` readings with directions spread over the (part of the) sphere as in a sunflower.
+/// `count` readings whose directions follow a sunflower pattern on the (part of the) sphere.
 inline std::vector<Vec3> cloud(const CloudTruth& truth, int count) {
   std::mt19937_64 engine(truth.seed);
   std::normal_distribution<double> normal(0.0, 1.0);

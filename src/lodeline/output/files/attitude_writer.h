@@ -14,7 +14,7 @@ namespace lodeline {
 double azimuth_deg(const Quat& world_from_body);
 
 /// Writes `attitude.csv` (orientation, heading, its sigma, status, bias) and `attitude.tum` (with position
-/// zero), one line an estimate, and keeps what a summary takes.
+/// zero), one line per estimate, and collects the values of the summary.
 class AttitudeWriter {
  public:
   /// Throws InputError where the folder cannot be written to.
@@ -25,7 +25,8 @@ class AttitudeWriter {
   void finish();
 
   int count() const { return count_; }
-  /// For people: length, shares of each status, last heading and bias. `north`: "magnetic north" or the like.
+  /// Summary for people: length, shares of each status, last heading and bias. `north`: "magnetic north" or
+  /// the like.
   std::string text(const std::string& north) const;
   nlohmann::ordered_json json(const std::string& north) const;
 

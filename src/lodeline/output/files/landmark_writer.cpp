@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// Padded so that what the finished header says takes the same room.
+/// Header before the count, padded so that the finished header has the same length.
 std::string beforeCount(const std::string& world) {
   return fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment landmarks, m, z up; {:<60}\nelement vertex ", world);
@@ -26,7 +26,7 @@ constexpr const char* kAfterCount =
 
 LandmarkWriter::LandmarkWriter(const std::filesystem::path& folder, const std::string& name)
     : file_(folder / name), stream_(openOutput(file_)) {
-  // Zero-padded so that the final count takes the same room.
+  // Zero-padded so that the final count has the same length.
   fmt::print(stream_, "{}{:012}{}", beforeCount("x, y as in trajectory.tum of a run not completed"), 0,
              kAfterCount);
   stream_.flush();
@@ -44,7 +44,7 @@ void LandmarkWriter::write(const std::vector<MapPoint>& points) {
     stream_.write(reinterpret_cast<const char*>(&observations), sizeof(observations));
     ++count_;
   }
-  // A run that is killed leaves what it has found.
+  // A killed run keeps its results.
   stream_.flush();
 }
 

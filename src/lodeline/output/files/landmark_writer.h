@@ -10,9 +10,9 @@
 
 namespace lodeline {
 
-/// Writes `landmarks.ply` (binary, positions in the world in metres and the number of observations),
-/// streaming: finish() fills in the header. Without it the header says that the run was not completed, and
-/// the destructor fills in the count alone.
+/// Writes `landmarks.ply` (binary, positions in the world in metres and the number of observations) during
+/// the run; finish() completes the header. Without it the header states that the run was not completed, and
+/// the destructor writes only the number.
 class LandmarkWriter {
  public:
   /// Throws InputError where the folder cannot be written to.
@@ -22,8 +22,8 @@ class LandmarkWriter {
   LandmarkWriter& operator=(const LandmarkWriter&) = delete;
 
   void write(const std::vector<MapPoint>& points);
-  /// Turns all points, where they have to be, and says in the header what x and y of their world are. Throws
-  /// InputError where not all could be written.
+  /// Rotates all points if necessary, and writes the meaning of the world's x and y to the header. Throws
+  /// InputError where writing has failed.
   void finish(HeadingReference reference, const std::optional<WorldTurn>& turn);
   int64_t count() const { return count_; }
 

@@ -8,8 +8,8 @@
 
 namespace lodeline {
 
-/// Writes `magnetometer.csv`: of each frame the newest reading, as read (magnetometer axes) and corrected by
-/// the calibration (body axes), T. Shows whether a calibration fits the recording.
+/// Writes `magnetometer.csv`: the newest reading of each frame, as read (magnetometer axes) and corrected by
+/// the calibration (body axes), T. It shows whether a calibration fits the recording.
 class MagnetometerWriter {
  public:
   /// Throws InputError where the folder cannot be written to.

@@ -14,27 +14,27 @@
 namespace lodeline {
 
 struct RunOutputOptions {
-  std::optional<double> draw_tracks_s;  ///< TrackPictures, one each so many seconds
+  std::optional<double> draw_tracks_s;  ///< interval of TrackPictures in seconds
   bool sample_pictures = false;         ///< SamplePictures, for report.html
 };
 
-/// All files of a run's output folder that grow while it goes on.
+/// All files in a run's output folder that are written during the run.
 class RunOutput {
  public:
   /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
   RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options);
 
-  /// To be called after each packet with what became of it; `estimate` is null where it has no stamp of its
-  /// own. Gives the landmarks that left the window and were written. Throws InputError where writing fails.
+  /// To be called after each packet with its results; `estimate` is null where it has no stamp of its own.
+  /// Returns the landmarks that left the window and were written. Throws InputError where writing fails.
   std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate* estimate,
                               const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
 
-  /// Adds the landmarks that are still in the window, completes the files and turns them to north where that
-  /// was found only after the first pose (WorldTurn); `last`: as after the last frame. Gives the number of
-  /// landmarks. The states' files are closed by it.
+  /// Adds the landmarks that are still in the window and completes the files. Rotates them to north where it
+  /// was found after the first pose (WorldTurn); `last`: as after the last frame. Returns the number of
+  /// landmarks. Closes the files of the states.
   int64_t finish(const Odometry& odometry, const MagnetometerEstimate& last);
 
-  /// Processor time that pictures have taken so far.
+  /// Processor time of the pictures so far.
   double picturesSeconds() const { return pictures_s_; }
 
  private:

@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::string_view kStampName = "#timestamp [ns]";
 
-/// Where the values of one column go; one of the two is set.
+/// Destination of one column's values; one of the two is set.
 struct Column {
   std::vector<double>* numbers = nullptr;
   std::vector<std::string>* words = nullptr;
 };
 
-/// Columns as the header names them and the first row shows their kind.
+/// Columns with the names of the header and the types of the first row.
 std::vector<Column> makeColumns(const std::vector<std::string>& names,
                                 const std::vector<std::string_view>& first_row, RunTable* table) {
   std::vector<Column> columns(names.size());
@@ -33,7 +33,7 @@ std::vector<Column> makeColumns(const std::vector<std::string>& names,
   return columns;
 }
 
-/// False where a field is not what its column holds; then nothing is added.
+/// Returns false, without adding anything, where a field does not have its column's type.
 bool addRow(const std::vector<std::string_view>& fields, const std::vector<Column>& columns,
             RunTable* table) {
   int64_t stamp_ns = 0;

@@ -10,18 +10,18 @@
 
 namespace lodeline {
 
-/// One of the CSV files of a run's output folder, column by column under the names of its header.
+/// A CSV file of a run's output folder, by columns under the names of its header.
 struct RunTable {
   std::vector<int64_t> stamp_ns;                       ///< the first column
-  std::map<std::string, std::vector<double>> numbers;  ///< nan where the file says so
+  std::map<std::string, std::vector<double>> numbers;  ///< nan where the file contains it
   std::map<std::string, std::vector<std::string>> words;
 
   size_t rows() const { return stamp_ns.size(); }
 };
 
-/// Reads a file that StateWriter, TimingWriter or MagnetometerWriter wrote. A column is words where its first
-/// row is no number. Throws InputError, naming file and line, where the file is missing or is none of these;
-/// a last line that was cut off by the end of a run is passed over with a warning.
+/// Reads a file of StateWriter, TimingWriter or MagnetometerWriter. A column contains words if its first row
+/// is not a number. Throws InputError with file and line where the file is missing or has another format. An
+/// incomplete last line of a run that was killed is skipped with a warning.
 RunTable readRunTable(const std::filesystem::path& file, Diagnostics* diagnostics);
 
 }  // namespace lodeline

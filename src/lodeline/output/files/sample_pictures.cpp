@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth_px = 640;
 constexpr int kJpegQuality = 65;
 
-/// Removes what has a name that this class gives; the folder may hold other things of the user's.
+/// Removes files with names of this class; the folder may contain other files of the user.
 void removePictures(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -61,7 +61,7 @@ void SamplePictures::thin() {
     if (i % 2 == 0) {
       kept.push_back(files_[i]);
     } else {
-      std::error_code ignored;  // a picture too many spoils nothing
+      std::error_code ignored;  // one picture too many does no harm
       std::filesystem::remove(files_[i], ignored);
     }
   }

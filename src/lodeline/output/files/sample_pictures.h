@@ -9,18 +9,18 @@
 
 namespace lodeline {
 
-/// The first camera's image with the points followed in it (drawTracks()) as a JPEG of at most
-/// `max_width_px`. Empty where the camera gave no image.
+/// The first camera's image with its tracks (drawTracks()) as a JPEG with a width of at most `max_width_px`.
+/// Empty where the camera gave no image.
 std::vector<uint8_t> trackPicture(const FramePacket& packet, const FrontEnd& front_end, int max_width_px);
 
-/// Small pictures of what the front end follows, evenly over a run of any length, for report.html:
-/// `pictures/STAMP.jpg` of the output folder, STAMP as in states.csv. They begin two seconds apart; whenever
-/// there are kMost of them, every second one is removed and the pause doubles.
+/// Writes small images with tracks, distributed evenly over a run of any length, for report.html:
+/// `pictures/STAMP.jpg` in the output folder, STAMP as in states.csv. The first interval is two seconds;
+/// whenever there are kMost images, every second one is removed and the interval doubles.
 class SamplePictures {
  public:
   static constexpr size_t kMost = 100;
 
-  /// Makes the folder, and removes pictures of an earlier run from it. Throws InputError where that fails.
+  /// Creates the folder, and removes images of an earlier run from it. Throws InputError where that fails.
   explicit SamplePictures(const std::filesystem::path& folder);
 
   /// To be called after each packet that the front end has processed. Throws InputError where the picture

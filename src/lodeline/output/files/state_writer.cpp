@@ -30,7 +30,8 @@ void append(fmt::memory_buffer& line, const Vec3& v) {
 constexpr const char* kAttitudeHeader =
     ",attitude_q_w,attitude_q_x,attitude_q_y,attitude_q_z,attitude_sigma_heading [rad],attitude_status";
 
-/// One sigma; of a variance that is none, the sigma that stands for "not known". nan stays nan.
+/// Standard deviation of a variance; for an invalid variance, the sigma that stands for "unknown". nan stays
+/// nan.
 double sigma(double variance) { return std::sqrt(variance <= 0.0 ? kUnknownVariance : variance); }
 
 constexpr const char* kMagnetometerHeader =
@@ -49,7 +50,7 @@ std::string covarianceHeader() {
   return header + ",cov_v_01";
 }
 
-/// What is not estimated is nan.
+/// Appends the magnetometer's columns; values that are not estimated are nan.
 void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& magnetometer) {
   const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   fmt::format_to(std::back_inserter(line), ",{:.9g},{}", magnetometer.heading_sigma_rad,
@@ -60,7 +61,7 @@ void appendMagnetometer(fmt::memory_buffer& line, const MagnetometerEstimate& ma
                  magnetometer.north_from_world_rad.value_or(unknown.x()));
 }
 
-/// What is not estimated is nan.
+/// Appends the gauge's columns; values that are not estimated are nan.
 void appendDepth(fmt::memory_buffer& line, const DepthEstimate& depth) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   DepthEstimate::Gauge unknown{kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
@@ -79,7 +80,7 @@ void appendAttitude(fmt::memory_buffer& line, const std::optional<AttitudeEstima
                  q.z(), attitude->heading_sigma_rad, toString(attitude->status));
 }
 
-/// A frame of which nothing is known but its attitude.
+/// A frame with an attitude and no other estimates.
 FrameEstimate withAttitudeOnly(const FrameEstimate& frame, const AttitudeEstimate& attitude) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   FrameEstimate known = frame;
@@ -93,7 +94,7 @@ FrameEstimate withAttitudeOnly(const FrameEstimate& frame, const AttitudeEstimat
   return known;
 }
 
-/// Everything that is the estimator's, as one line without its end.
+/// The estimator's values as one line without its end.
 fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) {
   const NavigationState& state = estimate.state;
   const Quat q = so3::canonical(state.world_from_body.rotation);

@@ -10,17 +10,17 @@
 
 namespace lodeline {
 
-/// Writes `trajectory.tum` (body in world) and `states.csv` (everything known of each frame), one line a
-/// frame, flushed as it goes so that an interrupted run keeps what it had.
+/// Writes `trajectory.tum` (body in world) and `states.csv` (all estimates of each frame), one line per
+/// frame, flushed after each so that an interrupted run keeps its results.
 class StateWriter {
  public:
-  /// `suffix` goes to the names of both files, before the dot. Throws InputError where the folder cannot be
-  /// written to.
+  /// `suffix` is added to the names of both files, before the dot. Throws InputError where the folder cannot
+  /// be written to.
   explicit StateWriter(const std::filesystem::path& folder, const std::string& suffix = "");
 
-  /// `attitude`: what the attitude filter knows at the same time, in its own columns. A frame without a pose
-  /// is no line of the trajectory; in the states it has the status `attitude` and nan for what is not known,
-  /// or, with no attitude either, no line. Throws InputError when the disk is full.
+  /// `attitude`: estimate of the attitude filter at the same time, for its own columns. A frame without a
+  /// pose has no line in the trajectory. In the states it has the status `attitude` and nan for unknown
+  /// values or, without an attitude too, no line. Throws InputError when the disk is full.
   void write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude = std::nullopt);
 
  private:

@@ -8,9 +8,8 @@
 
 namespace lodeline {
 
-/// Writes `timings.csv`: how long each frame took by the wall clock, from reading to writing, and how much of
-/// the processor front end, estimator and pictures used. A file of its own, because it differs from run to
-/// run.
+/// Writes `timings.csv`: wall time of each frame from reading to writing, and processor time of front end,
+/// estimator and pictures. It is a separate file because it differs from run to run.
 class TimingWriter {
  public:
   /// Throws InputError where the folder cannot be written to.

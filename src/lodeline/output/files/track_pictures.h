@@ -8,13 +8,13 @@
 
 namespace lodeline {
 
-/// Pictures of what the front end follows, now and then a frame, as `frames/STAMP.png` of a run's output
-/// folder with STAMP in nanoseconds as the recording writes it; see drawTracks() for what they show.
+/// Writes images with tracks for some frames, as `frames/STAMP.png` in a run's output folder with STAMP in
+/// nanoseconds as in the recording; see drawTracks() for their content.
 class TrackPictures {
  public:
-  /// Makes the folder. `period_s`: one frame each so many seconds of the recording, the first frame included;
-  /// 0 for every frame. Throws UsageError for a period that is none, InputError where the folder cannot be
-  /// made.
+  /// Creates the folder. `period_s`: interval in seconds of the recording, starting with the first frame; 0
+  /// for every frame. Throws UsageError for an invalid interval, InputError where the folder cannot be
+  /// created.
   TrackPictures(const std::filesystem::path& folder, double period_s);
 
   /// To be called after each packet that the front end has processed. Throws InputError where the picture

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 Quat rotationOf(const WorldTurn& turn) { return so3::exp(turn.angle_rad * Vec3::UnitZ()); }
 
-/// One line of states.csv, by the names of its columns.
+/// One line of states.csv, accessed by the names of its columns.
 class StateRow {
  public:
   StateRow(const std::map<std::string, size_t>& columns, const std::vector<std::string_view>& fields)
@@ -83,7 +83,7 @@ void setPoseCovariance(const Matrix6& covariance, StateRow* row) {
   row->setVector(kRotationSigma, sigmas(covariance.diagonal().tail<3>()));
 }
 
-/// `north_variance_rad2`: of the turn, where the row's covariance has it not yet.
+/// `north_variance_rad2`: variance of the rotation, if the row's covariance does not contain it.
 void turnCovariances(const WorldTurn& turn, double north_variance_rad2, const Vec3& position_W,
                      const Vec3& velocity_W, StateRow* row) {
   const Mat3 rotation = rotationOf(turn).toRotationMatrix();
@@ -122,7 +122,7 @@ void turnState(const WorldTurn& turn, StateRow* row) {
   turnCovariances(turn, is_before_north ? turn.sigma_rad * turn.sigma_rad : 0.0, position_W, velocity_W, row);
 }
 
-/// Replaces a text file by what `change` makes of its lines.
+/// Replaces a text file by its lines after `change`.
 void rewrite(const fs::path& file, const std::function<std::string(const std::string&)>& change) {
   std::ifstream before(file);
   if (!before) throw InputError(file.string() + ": cannot be read");

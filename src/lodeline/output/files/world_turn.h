@@ -8,23 +8,23 @@
 
 namespace lodeline {
 
-/// Turn of a finished run's world about the vertical, to north that was found only after the first pose. The
-/// files of a run grow in the world of the first pose; when the run ends they are turned as a whole, so that
-/// y points to north from the first pose on.
+/// Rotation of a finished run's world about the vertical, to a north that was found after the first pose.
+/// During the run the files are in the world of the first pose. At its end they are rotated as a whole, so
+/// that y points north from the first pose on.
 struct WorldTurn {
   double angle_rad = 0.0;  ///< counter-clockwise seen from above
   double sigma_rad = 0.0;
-  /// Rows before that know nothing of north: the turn's sigma comes on top of theirs.
+  /// Rows before this time are independent of north: the rotation's sigma is added to theirs.
   std::optional<Time> north_found;
 
-  /// Nothing where the world of an estimate is the one in which files are to be.
+  /// Empty where the world of an estimate is already that of the files.
   static std::optional<WorldTurn> of(const MagnetometerEstimate& last);
 
   Vec3 apply(const Vec3& vector_W) const;
 };
 
-/// Turns `trajectory<suffix>.tum` and `states<suffix>.csv` of StateWriter. Either is replaced at once, by
-/// renaming. Throws InputError where a file cannot be read or written.
+/// Rotates `trajectory<suffix>.tum` and `states<suffix>.csv` of StateWriter. Each file is replaced atomically
+/// by renaming. Throws InputError where a file cannot be read or written.
 void turnStateFiles(const std::filesystem::path& folder, const std::string& suffix, const WorldTurn& turn);
 
 }  // namespace lodeline

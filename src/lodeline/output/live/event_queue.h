@@ -8,16 +8,16 @@
 
 namespace lodeline {
 
-/// What one browser has yet to be told. Holds a bounded number of texts: a browser that does not keep up
-/// loses the oldest, and whoever tells it never waits.
+/// Pending messages for one browser. The number of texts is bounded: a slow browser loses the oldest, and the
+/// sender never waits.
 class EventQueue {
  public:
   explicit EventQueue(size_t capacity) : capacity_(capacity) {}
 
   void push(std::string text);
-  /// The oldest text; waits for one. Nothing once the queue is closed and empty.
+  /// The oldest text; waits for one. Empty once the queue is closed and has no more texts.
   std::optional<std::string> pop();
-  /// No more will be pushed.
+  /// Ends the queue: there will be no further push().
   void close();
 
  private:

@@ -6,13 +6,14 @@
 #include "lodeline/output/live/live_view.h"
 #include "lodeline/output/report/page/test_browser.h"
 
-// The page in headless Chromium while a run goes on; web/test/live.mjs says what it should show.
+// Tests of the page in headless Chromium during a run; web/test/live.mjs contains the checks.
 
 namespace lodeline {
 namespace {
 
-/// Swims east at 1 m/s, half a metre below the start, by inertial readings at the end. North is found after
-/// six seconds: the estimator's world, that of the first pose, has it along its x axis.
+/// Estimate of a swim to the east at 1 m/s, half a metre below the start, at the end by inertial readings.
+/// North is found after six seconds: in the estimator's world, that of the first pose, it is along the x
+/// axis.
 FrameEstimate estimateAt(int second) {
   FrameEstimate estimate;
   estimate.time = Time::fromSeconds(second);

@@ -20,15 +20,15 @@ namespace {
 
 constexpr size_t kQueueLength = 64;
 constexpr size_t kMostKept = 4000;
-/// A browser that takes nothing for so long is taken for gone.
+/// A browser that does not read for this time counts as disconnected.
 constexpr int kWriteTimeout_s = 2;
-/// A request whose next byte does not come within this time is dropped.
+/// A request is dropped if its next byte does not arrive within this time.
 constexpr int kReadTimeout_s = 2;
-/// Connections that are served at a time. Incomplete requests occupy one each until they are dropped.
+/// Maximum number of simultaneous connections. Incomplete requests occupy one each until they are dropped.
 constexpr size_t kMostConnections = 32;
 constexpr size_t kPieceBytes = 1 << 14;
 
-/// Scripts and styles of the page are inline; it loads nothing and talks to nobody but this server.
+/// Scripts and styles of the page are inline; it loads no resources and connects only to this server.
 constexpr const char* kSecurityPolicy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -37,14 +37,14 @@ std::string eventText(const std::string& event, const std::string& data) {
   return fmt::format("event: {}\ndata: {}\n\n", event, data);
 }
 
-/// httplib's own choice, SO_REUSEPORT, would let a second program share the port without a word.
+/// Sets SO_REUSEADDR. With httplib's default, SO_REUSEPORT, a second program could share the port unnoticed.
 void reuseAddress(socket_t socket) {
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
 }
 
 /// Closes every connection of this process on `port`, so that a client which sends its request byte by byte
-/// cannot delay the end. httplib keeps its sockets to itself.
+/// cannot delay the end. httplib does not expose its sockets.
 void shutConnections(int port) {
   const int most = static_cast<int>(sysconf(_SC_OPEN_MAX));
   for (int file = 3; file < std::min(most, 4096); ++file) {
@@ -59,7 +59,7 @@ void shutConnections(int port) {
   }
 }
 
-/// Answers 403 to requests that no browser makes which was sent to this server on purpose.
+/// Answers 403 to requests that a browser would not send to this server deliberately.
 httplib::Server::HandlerResponse refuseForeign(const std::string& bound_address,
                                                const httplib::Request& request, httplib::Response& response) {
   response.set_header("Content-Security-Policy", kSecurityPolicy);
@@ -98,7 +98,7 @@ struct LiveServer::State {
   void answerEvents(httplib::Response& response);
 };
 
-/// With what was kept as the first of its texts; nothing where there are enough watchers.
+/// Adds a browser whose queue starts with the kept events; null at the maximum number of browsers.
 std::shared_ptr<EventQueue> LiveServer::State::addWatcher() {
   const std::lock_guard lock(mutex);
   if (closed || watchers.size() >= kMostWatchers) return nullptr;
@@ -122,7 +122,7 @@ void LiveServer::State::tell(const std::string& text) {
   for (const auto& queue : watchers) queue->push(text);
 }
 
-/// The whole page whatever ranges the request names, piece by piece: httplib would copy it once a range.
+/// Sends the whole page in pieces, whatever ranges the request names: httplib would copy it once per range.
 void LiveServer::State::answerPage(httplib::Response& response) {
   response.status = 200;
   response.set_chunked_content_provider(
@@ -189,11 +189,11 @@ LiveServer::~LiveServer() {
     std::unique_lock lock(state_->mutex);
     state_->closed = true;
     for (const auto& queue : state_->watchers) queue->close();
-    // A server that is stopped drops what is still to be sent.
+    // A stopped server drops pending data.
     state_->left.wait_for(lock, std::chrono::seconds(kWriteTimeout_s),
                           [this] { return state_->watchers.empty(); });
   }
-  // Stopping a server that does not run yet would be forgotten.
+  // Stopping a server that does not run yet has no effect.
   while (!state_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   state_->server.stop();
   shutConnections(state_->port);

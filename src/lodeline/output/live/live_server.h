@@ -6,16 +6,16 @@
 
 namespace lodeline {
 
-/// Gives browsers a page at `/` and a stream of server-sent events at `/events`. All of it happens on threads
-/// of its own; whoever sends never waits for a browser, however slow or gone.
+/// Serves a page at `/` and a stream of server-sent events at `/events`. The server uses its own threads;
+/// senders never wait for a browser.
 class LiveServer {
  public:
-  /// Browsers that can watch at a time; another one is told to come back later.
+  /// Maximum number of simultaneous browsers; a further one is asked to retry later.
   static constexpr size_t kMostWatchers = 4;
 
-  /// `port` 0 takes any that is free. Throws UsageError where the port cannot be had.
+  /// `port` 0 selects any free port. Throws UsageError where the port is not available.
   LiveServer(const std::string& address, int port, std::string page);
-  /// Tells all watchers what is still to be told, then ends.
+  /// Sends all pending events to all browsers, then ends.
   ~LiveServer();
   LiveServer(const LiveServer&) = delete;
   LiveServer& operator=(const LiveServer&) = delete;
@@ -23,10 +23,10 @@ class LiveServer {
   std::string url() const;
   bool isWatched() const;
 
-  /// One event to every watcher. `data` has one line.
+  /// Sends one event to every browser. `data` has one line.
   void send(const std::string& event, const std::string& data);
-  /// An event that later watchers are told, too, when they come. When there are many of these, every second
-  /// one is forgotten.
+  /// Sends an event that later browsers also receive when they connect. When there are many of these, every
+  /// second one is dropped.
   void sendAndKeep(const std::string& event, const std::string& data);
 
  private:

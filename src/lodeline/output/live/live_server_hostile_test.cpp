@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// A connection that says what no HTTP library would.
+/// A connection for requests that no HTTP library would send.
 class RawClient {
  public:
   explicit RawClient(const LiveServer& server) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -38,7 +38,7 @@ class RawClient {
     return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
   }
 
-  /// Everything that comes until the server closes.
+  /// All data until the server closes the connection.
   std::string answer() const {
     std::string text;
     char piece[65536];
@@ -99,7 +99,7 @@ TEST(LiveServerHostile, HalfRequestsHoldUpNeitherThePageNorTheEnd) {
     ASSERT_TRUE(slow.back()->send("GET / HTTP/1.1\r\n"));
   }
   std::atomic<bool> ended = false;
-  // One more byte before each read times out.
+  // Sends one more byte before each read times out.
   std::thread dripping([&] {
     while (!ended) {
       for (const auto& client : slow) client->send("a");

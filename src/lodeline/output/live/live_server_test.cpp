@@ -28,7 +28,7 @@ void waitFor(const std::function<bool()>& condition) {
   ASSERT_TRUE(condition());
 }
 
-/// Takes events on a thread of its own until `enough` says so or the server ends.
+/// Receives events on its own thread until `enough` is true or the server ends.
 class Watcher {
  public:
   explicit Watcher(const LiveServer& server, std::function<bool(const std::string&)> enough = nullptr)
@@ -90,7 +90,7 @@ TEST(LiveServer, WhoeverVanishesIsForgotten) {
     Watcher watcher(server, [](const std::string& text) { return text.find("first") != std::string::npos; });
     server.send("pose", "first");
   }
-  // What is sent into the closed connection shows that nobody listens.
+  // Sending into the closed connection shows that no one listens.
   waitFor([&server] {
     server.send("pose", "second");
     return !server.isWatched();
@@ -107,7 +107,7 @@ TEST(LiveServer, WhoeverDoesNotListenHoldsNobodyUp) {
   const std::string large(100'000, 'x');
   const auto start = Clock::now();
   for (int i = 0; i < 1000; ++i) server.send("picture", large);
-  // 100 MB: more than any socket holds back, sent in the time that copying takes.
+  // 100 MB: more than any socket buffers, sent within the time of copying.
   EXPECT_LT(Clock::now() - start, std::chrono::milliseconds(1500));
   go_on = true;
 }

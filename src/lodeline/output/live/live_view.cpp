@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::chrono::milliseconds kStatePause(100);
 constexpr std::chrono::milliseconds kPicturePause(500);
-/// A picture that took long to make is followed by a pause so many times as long, which bounds what pictures
-/// take of a run on any machine.
+/// Ratio of the pause after a picture to the time of making it. It limits the picture's share of the
+/// computing time on any machine.
 constexpr int kPauseToWork = 120;
 constexpr int kPictureWidth_px = 480;
-/// Enough to show walls; a whole dive's are in the report.
+/// Enough to show walls; the report contains those of the whole dive.
 constexpr size_t kMostLandmarks = 40;
 
-/// Under the names of states.csv, so that the page can treat both alike.
+/// Values under the names of states.csv, so that the page can treat both alike.
 nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
   const Vec3& p = estimate.state.world_from_body.translation;
   const Quat& q = estimate.state.world_from_body.rotation;

@@ -13,28 +13,28 @@
 
 namespace lodeline {
 
-/// The page as it is before anything was told. `camera_axis_B`: where the first camera looks. Throws
+/// The page before any data arrives. `camera_axis_B`: viewing direction of the first camera. Throws
 /// UsageError where the program was built without the page.
 std::string livePage(const std::string& name, const std::string& data, const Vec3& camera_axis_B);
 
-/// What a browser is told of a frame, in JSON (`State` in web/src/live.ts). `landmarks_W`: new ones, m.
+/// Message to the browser on a frame, in JSON (`State` in web/src/live.ts). `landmarks_W`: new ones, m.
 std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s,
                       const std::vector<Eigen::Vector3f>& landmarks_W = {});
 
-/// Shows a run in the browser while it goes on: a few times a second what is known of the newest frame, less
-/// often its image with the tracks. Takes nothing from the run but some of its time, and gives it nothing.
+/// Shows a run in the browser while it is in progress: the state of the newest frame a few times per second,
+/// its image with the tracks less often. It does not influence the run, except for the computing time.
 class LiveView {
  public:
-  /// `name` of the run and `data` it reads, for the page. Throws UsageError where the port cannot be had or
-  /// the program was built without the page.
+  /// `name` of the run and `data` it reads, for the page. Throws UsageError where the port is not available
+  /// or the program was built without the page.
   LiveView(const std::string& address, int port, const std::string& name, const std::string& data,
            const Rig& rig);
-  /// Tells browsers that the run has ended.
+  /// Informs browsers that the run has ended.
   ~LiveView();
 
   std::string url() const { return server_.url(); }
 
-  /// To be called after each frame, with the landmarks that left the window; does nothing for most of them.
+  /// To be called after each frame, with the landmarks that left the window; does nothing for most frames.
   void show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
             const FrontEnd& front_end, const std::vector<MapPoint>& landmarks);
 
@@ -47,7 +47,7 @@ class LiveView {
   Clock::time_point next_state_ = Clock::now();
   Clock::time_point next_picture_ = Clock::now();
   std::optional<Time> first_time_;
-  std::vector<Eigen::Vector3f> landmarks_W_;  ///< not told yet
+  std::vector<Eigen::Vector3f> landmarks_W_;  ///< not yet sent
 };
 
 }  // namespace lodeline

@@ -6,7 +6,7 @@
 namespace lodeline {
 namespace {
 
-/// Without the port, and without the brackets of an IPv6 address.
+/// Host name without the port, and without the brackets of an IPv6 address.
 std::string nameOf(const std::string& host) {
   if (host.starts_with('[')) {
     const size_t end = host.find(']');

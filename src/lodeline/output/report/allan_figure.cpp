@@ -8,8 +8,8 @@
 namespace lodeline {
 namespace {
 
-/// Columns: tau; deviation of x, y, z; fit of all axes; its white noise, instability and walk. A noise that
-/// was not resolved leaves its column empty.
+/// Columns: tau; deviation of x, y, z; fit of all axes; its white noise, instability and walk. The column of
+/// an unresolved noise is empty.
 std::vector<std::vector<double>> rows(const SensorNoise& noise) {
   const NoiseFit& fit = noise.all;
   const auto line = [](const NoiseFigure& figure, double unit_variance) {

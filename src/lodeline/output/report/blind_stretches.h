@@ -8,16 +8,16 @@
 
 namespace lodeline {
 
-/// A time without usable images, which inertial readings alone carried the pose over.
+/// A time span without usable images, in which inertial readings alone propagated the pose.
 struct BlindStretch {
-  Time start, end;  ///< of its first frame; of the first frame with images after it, or its last one
+  Time start, end;  ///< of its first frame; of the first frame with images after it, or of its last frame
   double sigma_start_m = 0.0;  ///< of the position (root of the trace of its covariance), at the start
-  double sigma_end_m = 0.0;    ///< the largest within it
+  double sigma_end_m = 0.0;    ///< largest value in the span
 
   double seconds() const { return (end - start).seconds(); }
 };
 
-/// Finds the blind stretches among the frames of a run, fed in order.
+/// Finds the blind spans among the frames of a run, given in order.
 class BlindStretches {
  public:
   void add(const FrameEstimate& estimate);
@@ -25,8 +25,8 @@ class BlindStretches {
   const std::vector<BlindStretch>& stretches() const { return stretches_; }
   double total_s() const;
 
-  /// Reports those of at least `least_s` as one finding, `blind_stretch`, with the time span and the growth
-  /// of uncertainty of the longest. Times count from `origin`.
+  /// Reports the spans of at least `least_s` as one finding, `blind_stretch`, with the time span and the
+  /// growth of uncertainty of the longest. Times count from `origin`.
   void report(Time origin, double least_s, Diagnostics* diagnostics) const;
 
  private:

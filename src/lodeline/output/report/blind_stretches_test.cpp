@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Frames ten times a second, `status` a letter each: w(aiting), t(racking), i(nertial).
+/// Frames at 10 Hz with one letter of `status` each: w(aiting), t(racking), i(nertial).
 BlindStretches stretchesOf(const std::string& status) {
   BlindStretches stretches;
   double sigma_m = 0.1;

@@ -8,11 +8,10 @@
 
 namespace lodeline {
 
-/// One line a finding, worst first.
+/// One line per finding, most severe first.
 std::string findingsText(const Diagnostics& diagnostics);
 
-/// The same for programs: severity, kind, message, count. `readable`: changes each message, where it is
-/// given.
+/// The findings in JSON: severity, kind, message, count. `readable` converts each message, unless it is null.
 nlohmann::ordered_json findingsJson(const Diagnostics& diagnostics,
                                     const std::function<std::string(const std::string&)>& readable = nullptr);
 

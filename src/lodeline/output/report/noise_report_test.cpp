@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Three hours of a simulated IMU at rest. At 50 Hz instead of 200, which changes no density.
+/// Three hours of a simulated IMU at rest, at 50 Hz instead of 200, which does not change the densities.
 class ThreeHours {
  public:
   ThreeHours(std::string_view grade, uint64_t seed) {

@@ -72,7 +72,7 @@ HeadingBasis readBasis(const fs::path& file) {
 
 ReportedUncertainty readReportedUncertainty(const fs::path& run_folder, Diagnostics* diagnostics) {
   ReportedUncertainty claims;
-  // Of the trajectory that counts: the refined one where there is one.
+  // States of the refined trajectory, if there is one.
   const bool is_refined = fs::exists(run_folder / "trajectory_refined.tum");
   const fs::path states = run_folder / (is_refined ? "states_refined.csv" : "states.csv");
   if (!fs::exists(states)) return claims;

@@ -7,8 +7,8 @@
 
 namespace lodeline {
 
-/// What a run folder says of its errors: `states.csv`, and the heading's reference from `run.json`. No poses
-/// where it has none of the first. Throws InputError where either cannot be understood.
+/// Reads the reported uncertainty of a run folder: `states.csv`, and the heading's reference from `run.json`.
+/// There are no poses where `states.csv` is missing. Throws InputError where either is malformed.
 ReportedUncertainty readReportedUncertainty(const std::filesystem::path& run_folder,
                                             Diagnostics* diagnostics);
 

@@ -29,7 +29,7 @@ std::string withReadableTimes(const std::string& message, Time origin) {
     end = message.begin() + match->position() + match->length();
     int64_t stamp_ns = 0;
     const bool is_stamp = csv::parse(match->str(1), &stamp_ns);
-    // As doubles, whose difference cannot overflow.
+    // Doubles, because their difference cannot overflow.
     const double since_s = (static_cast<double>(stamp_ns) - static_cast<double>(origin.nanoseconds())) * 1e-9;
     text += is_stamp && std::abs(since_s) < kDay_s ? clockText(since_s, 3) : match->str();
   }

@@ -15,7 +15,7 @@
 namespace lodeline {
 namespace {
 
-/// Points that an image follows where there is something to see.
+/// Number of tracks in an image with sufficient texture.
 constexpr int kManyTracks = 30;
 
 nlohmann::ordered_json rigJson(const RunDescription& run) {

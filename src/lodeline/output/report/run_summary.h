@@ -15,7 +15,7 @@
 
 namespace lodeline {
 
-/// What a run was made from.
+/// Inputs of a run.
 struct RunDescription {
   std::string version;  ///< of the program
   std::string data;     ///< as the user gave it
@@ -24,16 +24,16 @@ struct RunDescription {
   std::vector<std::string> cameras;  ///< names, the reference first
   double camera_rate_hz = 0.0;
   double imu_rate_hz = 0.0;
-  Vec3 camera_axis_B = Vec3::UnitX();  ///< where the reference camera looks
+  Vec3 camera_axis_B = Vec3::UnitX();  ///< viewing direction of the reference camera
   std::vector<std::string> other_sensors;
-  std::optional<Vec3> site_field_W;  ///< of the Earth, T, where the run was told its site
+  std::optional<Vec3> site_field_W;  ///< of the Earth, T, if the run was given its site
   std::optional<MagnetometerCalibration> magnetometer;
   double observation_sigma_px = 0.0;
 };
 
 class SummaryLines;
 
-/// Gathers the figures of a run frame by frame.
+/// Collects the statistics of a run frame by frame.
 class RunSummary {
  public:
   explicit RunSummary(RunDescription description = {}) : description_(std::move(description)) {}
@@ -44,30 +44,30 @@ class RunSummary {
   int posed() const { return posed_; }
   const FrameEstimate& last() const { return last_; }
 
-  // Filled in by whoever runs the stages; processor seconds.
+  // Set by the caller that runs the stages; processor seconds.
   double front_end_s = 0.0;
   double estimator_s = 0.0;
   double pictures_s = 0.0;  ///< for the report page
   double process_s = 0.0;   ///< of the whole process, all threads
   double wall_s = 0.0;
   double peak_memory_MB = 0.0;  ///< of the whole process
-  int64_t images = 0;           ///< that could be read
-  int64_t recorded_images = 0;  ///< of the first camera, also those that could not be used
+  int64_t images = 0;           ///< readable ones
+  int64_t recorded_images = 0;  ///< of the first camera, including unusable ones
   int64_t map_points = 0;
-  bool interrupted = false;                     ///< ended by the user before the recording did
-  std::optional<RefinementSummary> refinement;  ///< of a run that was refined
+  bool interrupted = false;                     ///< the user ended the run before the end of the recording
+  std::optional<RefinementSummary> refinement;  ///< if the run was refined
 
   double recordingSeconds() const;
-  /// Images of the first camera that were recorded; those that could not be used are no frames.
+  /// Number of recorded images of the first camera; unusable ones are not frames.
   int64_t recorded() const { return std::max<int64_t>(recorded_images, frames_); }
-  /// Share of the recorded images from which a pose was estimated; frames that inertial readings alone carry,
-  /// or that contradict these, do not count.
+  /// Share of the recorded images with an estimated pose. Frames that are propagated by inertial readings
+  /// alone, or that contradict these, do not count.
   double completion() const {
     const int seen = posed_ - inertial_ - degraded_;
     return recorded() > 0 ? static_cast<double>(seen) / static_cast<double>(recorded()) : 0.0;
   }
-  /// Why the result is not to be trusted: images and inertial readings contradicted each other in most frames
-  /// or at the end. Empty otherwise.
+  /// Reason not to trust the result: images and inertial readings contradicted each other in most frames or
+  /// at the end. Empty otherwise.
   std::string distrust() const;
   double realTimeFactor() const { return wall_s > 0.0 ? recordingSeconds() / wall_s : 0.0; }
   double pathLength_m() const { return path_m_; }
@@ -75,11 +75,11 @@ class RunSummary {
   double meanLandmarks() const;
   double meanReprojection_sigmas() const;
 
-  /// Reports stretches of at least half a second without usable images as the finding `blind_stretch`.
+  /// Reports spans of at least half a second without usable images as the finding `blind_stretch`.
   void reportBlindStretches(Diagnostics* diagnostics) const;
-  /// A few lines for people, then the findings; `with_details`: all figures. `value_width`: of SummaryLines.
+  /// A few lines for people, then the findings; `with_details`: all values. `value_width`: of SummaryLines.
   std::string text(const Diagnostics& diagnostics, bool with_details = false, size_t value_width = 0) const;
-  /// run.json: the same and more for programs.
+  /// run.json: the same values and more in machine-readable form.
   std::string json(const Diagnostics& diagnostics) const;
 
  private:
@@ -90,14 +90,14 @@ class RunSummary {
   std::string completionText() const;
   std::string uncertaintyText() const;
   void addDetails(SummaryLines* lines) const;
-  /// With stamps as times since the first frame.
+  /// Replaces time stamps in a message by times since the first frame.
   std::string readable(const std::string& message) const;
   std::string headingText() const;
   std::string magnetometerText() const;
   std::string depthText() const;
-  /// Mean over the frames of what carried the scale; nothing where nothing did.
+  /// Mean of the scale information over the frames; empty without any.
   std::optional<ScaleInformation> scaleInformation() const;
-  /// What the process spent outside of front end and estimator: reading, decoding, writing.
+  /// Processor time of the process outside front end, estimator and pictures: reading, decoding, writing.
   double filesSeconds() const { return process_s - front_end_s - estimator_s - pictures_s; }
 
   RunDescription description_;
@@ -110,7 +110,7 @@ class RunSummary {
   int posed_ = 0;
   int inertial_ = 0;
   int degraded_ = 0;
-  int disagreeing_ = 0;  ///< inertial although images had much to follow
+  int disagreeing_ = 0;  ///< inertial although the images had enough tracks
   int keyframes_ = 0;
   double path_m_ = 0.0;
   double tracks_ = 0.0;

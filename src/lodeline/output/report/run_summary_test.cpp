@@ -80,7 +80,7 @@ TEST(RunSummary, DistrustsARunThatEndsInAContradiction) {
 
 TEST(RunSummary, DistrustsARunThatIsContradictedInMostFrames) {
   EXPECT_NE(summaryOf({{Status::Degraded, 51}, {Status::Tracking, 49}}).distrust(), "");
-  // Images that show much and agree with nothing.
+  // Images with many tracks that are consistent with no motion.
   EXPECT_NE(summaryOf({{Status::Inertial, 51}, {Status::Tracking, 49}}).distrust(), "");
 }
 

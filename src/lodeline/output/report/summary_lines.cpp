@@ -14,7 +14,7 @@ void SummaryLines::add(const std::string& name, const std::string& value) {
     size_t end = std::min(begin + width, value.size());
     if (end < value.size()) {
       const size_t blank = value.rfind(' ', end);
-      // A word that is longer than a line stays whole.
+      // Words longer than a line are not split.
       end =
           blank != std::string::npos && blank > begin ? blank : std::min(value.find(' ', end), value.size());
     }

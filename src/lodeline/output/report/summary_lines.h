@@ -5,11 +5,11 @@
 
 namespace lodeline {
 
-/// Lines of "name  value" with all values in one column.
+/// Lines "name  value" with aligned values.
 class SummaryLines {
  public:
-  /// `value_width`: values are wrapped between words to so many characters; 0 for none, as programs want
-  /// them.
+  /// `value_width`: number of characters at which values are wrapped between words; 0 for no wrapping, for
+  /// programs.
   explicit SummaryLines(size_t value_width) : value_width_(value_width) {}
 
   void add(const std::string& name, const std::string& value);

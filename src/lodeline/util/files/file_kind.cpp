@@ -25,7 +25,7 @@ constexpr const char* kFilm =
     "bag, or a folder with mav0: docs/data.md)";
 constexpr const char* kUnpack = "unpack it and give the folder or the bag that it holds";
 
-/// The bytes at an offset by which a kind of file is known.
+/// Magic bytes at an offset that identify a kind of file.
 struct Signature {
   size_t offset;
   std::string_view bytes;
@@ -79,7 +79,8 @@ constexpr std::array kSignatures = {
               FileKind::Binary, "a program", ""},
 };
 
-/// Names of files that cannot be told by their first bytes, because they are empty, cut off or elsewhere.
+/// File name extensions for kinds that the first bytes do not identify: the file is empty or truncated, or
+/// its magic bytes are elsewhere.
 struct Extension {
   std::string_view name;
   FileKind kind;
@@ -113,7 +114,7 @@ bool isOneOf(const std::string& text, const Range& known) {
   return std::find(known.begin(), known.end(), text) != known.end();
 }
 
-/// Enough for tar's mark, and for the first rows of a text.
+/// Number of bytes read for recognition: includes tar's magic bytes and the first rows of a text.
 constexpr size_t kHeadBytes = 4096;
 
 std::string headOf(const fs::path& path) {
@@ -124,7 +125,7 @@ std::string headOf(const fs::path& path) {
   return head;
 }
 
-/// UTF-16 counts as text: readers of tables take it.
+/// UTF-16 counts as text because the table readers accept it.
 bool looksLikeText(std::string_view head) {
   if (head.starts_with("\xFF\xFE"sv) || head.starts_with("\xFE\xFF"sv)) return true;
   const auto odd = std::count_if(head.begin(), head.end(), [](unsigned char c) {
@@ -178,7 +179,7 @@ RecognizedFile recognizeRegular(const fs::path& path) {
   return {path, FileKind::Binary, "of an unknown kind (no text)", ""};
 }
 
-/// What the entries of a folder are, by their names.
+/// Counts of the entries of a folder by kind, determined from their names.
 struct Entries {
   size_t pictures = 0;
   size_t archives = 0;
@@ -256,7 +257,7 @@ RecognizedFile recognizeFile(const fs::path& path) {
         ""};
   }
   if (fs::is_directory(status)) return recognizeFolder(path);
-  // Pipes and devices can be read only once, so nothing of them may be read here.
+  // Pipes and devices can be read only once, so this function must not read from them.
   if (!fs::is_regular_file(status)) return {path, FileKind::Text, "no regular file", ""};
   if (!std::ifstream(path)) return {path, FileKind::Missing, "not readable (see its permissions)", ""};
   return recognizeRegular(path);

@@ -4,12 +4,12 @@
 
 namespace lodeline {
 
-/// Keeps a folder of results for one writer: two programs that write the same files make one result of two,
-/// and neither notices. Held until destroyed, and given back by the system if the program dies. A file system
-/// without locks goes unguarded.
+/// Locks a results folder for one writer (flock) until destruction. Two programs that write the same files
+/// would mix their results without an error. The system releases the lock if the program dies. On a file
+/// system without locks, the folder stays unprotected.
 class FolderLock {
  public:
-  /// Throws InputError naming the folder where another lock on it is held, by whatever program.
+  /// Throws InputError naming the folder where any program already holds the lock.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

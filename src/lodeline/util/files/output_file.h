@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Makes a folder for results where it is missing. Throws InputError naming it.
+/// Creates a results folder where it is missing. Throws InputError naming the folder on failure.
 inline void createOutputFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -19,7 +19,7 @@ inline void createOutputFolder(const std::filesystem::path& folder) {
   }
 }
 
-/// Opens a file of a run's output folder for writing, replacing what was there. Throws InputError naming it.
+/// Opens an output file for writing and replaces its content. Throws InputError naming the file.
 inline std::ofstream openOutput(const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   if (!stream) {
@@ -29,7 +29,7 @@ inline std::ofstream openOutput(const std::filesystem::path& file) {
   return stream;
 }
 
-/// Throws InputError naming the file where something of it could not be written.
+/// Closes an output file. Throws InputError naming the file where a write failed.
 inline void closeOutput(const std::filesystem::path& file, std::ofstream* stream) {
   stream->close();
   if (!*stream) throw InputError(file.string() + ": writing failed; is the disk full?");

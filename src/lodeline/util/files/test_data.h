@@ -6,15 +6,16 @@
 
 namespace lodeline {
 
-/// The checkout, for scripts that tests run.
+/// Root folder of the source tree, for scripts that tests run.
 std::filesystem::path testSourceDir();
 
-/// The folder with the recordings that tests marked REAL_TESTS read: environment LODELINE_DATA_DIR, otherwise
-/// `shared/data` beside the source tree. Nothing where that folder does not exist; such tests then skip.
+/// Folder with the recordings that tests marked REAL_TESTS read: environment variable LODELINE_DATA_DIR,
+/// otherwise `shared/data` beside the source tree. Returns nothing where that folder does not exist; the
+/// tests then skip.
 std::optional<std::filesystem::path> testDataDir();
 
-/// A file or folder in testDataDir(); nothing where it is missing, for which missingTestData() is the reason
-/// to skip.
+/// Path of a file or folder in testDataDir(). Returns nothing where it is missing; missingTestData() then
+/// gives the reason to skip.
 std::optional<std::filesystem::path> testData(const std::filesystem::path& name);
 
 std::string missingTestData(const std::filesystem::path& name);

@@ -10,49 +10,50 @@
 
 namespace lodeline {
 
-/// Ties the members of options structs to the keys of a YAML configuration. Keys are dotted paths whose last
-/// part carries the unit, "front_end.max_gap_s"; in a file the dots become nested maps.
+/// Binds the members of options structs to the keys of a YAML configuration. Keys are dotted paths whose last
+/// part carries the unit, for example "front_end.max_gap_s". In a file, the dots become nested maps.
 ///
 ///     Settings settings;
 ///     settings.bind("front_end.max_features", &options.max_features, "features kept per image");
-///     settings.bind("magnetometer.model", &options.model, {{"paper", Model::Paper}, {"off", Model::Off}},
-///     "…"); settings.load("config.yaml"); settings.set("front_end.max_features", "400");  // the command
-///     line goes last and wins settings.write(stream);                         // what is in effect, itself a
-///     valid configuration
+///     settings.bind("magnetometer.model", &options.model,
+///                   {{"paper", Model::Paper}, {"off", Model::Off}}, "…");
+///     settings.load("config.yaml");
+///     settings.set("front_end.max_features", "400");  // the command line is applied last and wins
+///     settings.write(stream);  // the values in effect, as a valid configuration
 ///
-/// Whatever the user writes wrong throws UsageError with the place (file and line, or command line), the key,
-/// and what would be right: the nearest known key, or the kind of value.
+/// A wrong key or value throws UsageError. The message has the place (file and line, or command line), the
+/// key and a correction: the nearest known key, or the expected kind of value.
 class Settings {
  public:
   enum class Sign { NotNegative, Positive };
 
-  /// `target` holds the default and must outlive the settings. Numbers must be finite.
+  /// `target` holds the default value and must outlive the settings. Numbers must be finite.
   void bind(const std::string& key, bool* target, const std::string& documentation);
-  /// Counts; `least` is the smallest that makes sense.
+  /// Binds a count; `least` is the smallest valid value.
   void bind(const std::string& key, int* target, const std::string& documentation, int least = 0);
-  /// Sizes, times and sigmas: none is negative.
+  /// Binds a size, time or sigma; none may be negative.
   void bind(const std::string& key, double* target, const std::string& documentation,
             Sign sign = Sign::NotNegative);
   void bind(const std::string& key, std::string* target, const std::string& documentation);
   void bind(const std::string& key, std::vector<double>* target, const std::string& documentation);
   void bind(const std::string& key, std::vector<int>* target, const std::string& documentation);
 
-  /// An enumeration by the names that a configuration uses; every value of `target` must have one.
+  /// Binds an enumeration by the names used in the configuration. Every value of `target` must have a name.
   template <typename Enum>
   void bind(const std::string& key, Enum* target, std::initializer_list<std::pair<const char*, Enum>> names,
             const std::string& documentation);
 
   void load(const std::filesystem::path& file);
 
-  /// `value` in YAML's spelling: "3", "true", "[1, 2]".
+  /// Sets one key. `value` has YAML syntax: "3", "true", "[1, 2]".
   void set(const std::string& key, const std::string& value);
 
-  /// All keys in the order of binding, sections together, with their documentation as comments. Doubles read
-  /// back to the same bits.
+  /// Writes all keys in the order of binding, grouped by section, with their documentation as comments.
+  /// Doubles keep all their bits when read back.
   void write(std::ostream& stream) const;
 
  private:
-  /// A value as written: one scalar, or a list of them.
+  /// A configured value as text: one scalar or a list of scalars.
   struct Text {
     bool is_list = false;
     std::vector<std::string> scalars;
@@ -60,8 +61,8 @@ class Settings {
   struct Entry {
     std::string key;
     std::string documentation;
-    std::string kind;                        ///< "a number", for errors
-    std::function<bool(const Text&)> parse;  ///< stores the value; false where the text is no such value
+    std::string kind;                        ///< expected kind of value for error messages, e.g. "a number"
+    std::function<bool(const Text&)> parse;  ///< stores the value; false for an invalid one
     std::function<std::string()> format;
   };
   struct Assignment {

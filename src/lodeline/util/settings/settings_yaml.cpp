@@ -33,7 +33,7 @@ void writeComment(const std::string& text, const std::string& indent, std::ostre
   }
 }
 
-/// An order of the keys in which every section stays together, at the place of its first member.
+/// Order of the keys in which the members of each section are adjacent, at the place of the first member.
 std::vector<size_t> sectionOrder(const std::vector<std::string>& keys) {
   std::map<std::string, size_t> first_use;
   std::vector<std::pair<std::vector<size_t>, size_t>> ranked;
@@ -53,7 +53,7 @@ std::vector<size_t> sectionOrder(const std::vector<std::string>& keys) {
 
 }  // namespace
 
-/// Walks a configuration file and applies each value.
+/// Reads a configuration file and applies each value.
 class Settings::FileReader {
  public:
   FileReader(Settings* settings, std::string source) : settings_(settings), source_(std::move(source)) {}
@@ -76,7 +76,8 @@ class Settings::FileReader {
     }
   }
 
-  /// Maps and nested lists, which no setting accepts, come out as lists with an empty scalar.
+  /// Converts a node to text. Maps and nested lists, which no setting accepts, become lists with an empty
+  /// scalar.
   static Text textOf(const YAML::Node& node) {
     Text text;
     text.is_list = !node.IsScalar() && !node.IsNull();

@@ -26,8 +26,8 @@ class Duration {
   int64_t ns_ = 0;
 };
 
-/// A point in time on the recording's clock, in nanoseconds since that clock's epoch. A double would lose
-/// microseconds at today's Unix times, so the integer is kept to the end.
+/// A point in time on the recording's clock: integer nanoseconds since the epoch of that clock. A double
+/// would lose microseconds at current Unix times, so all interfaces use the integer.
 class Time {
  public:
   constexpr Time() = default;

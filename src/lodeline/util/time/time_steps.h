@@ -6,11 +6,11 @@
 
 #include "lodeline/util/time/time.h"
 
-/// What the stamps of a recording need that has not been looked at yet: they may be anything that 64 bits
-/// hold.
+/// Time arithmetic for unchecked stamps, which may have any 64-bit value. The functions saturate instead of
+/// overflowing.
 namespace lodeline {
 
-/// `later` - `earlier`; the longest span of 64 bits where it does not fit.
+/// `later` - `earlier`, saturated to the longest 64-bit duration.
 constexpr Duration span(Time later, Time earlier) {
   int64_t ns = 0;
   if (!__builtin_sub_overflow(later.nanoseconds(), earlier.nanoseconds(), &ns))
@@ -19,7 +19,7 @@ constexpr Duration span(Time later, Time earlier) {
                                                    : std::numeric_limits<int64_t>::max());
 }
 
-/// `time` + `by`; the first or last time of 64 bits where it does not fit.
+/// `time` + `by`, saturated to the first or last 64-bit time.
 constexpr Time moved(Time time, Duration by) {
   int64_t ns = 0;
   if (!__builtin_add_overflow(time.nanoseconds(), by.nanoseconds(), &ns)) return Time::fromNanoseconds(ns);
@@ -27,8 +27,8 @@ constexpr Time moved(Time time, Duration by) {
                                                     : std::numeric_limits<int64_t>::max());
 }
 
-/// Seconds with nine decimals, from the integer so that no digit is lost; times before zero have one sign, in
-/// front: "-9.950000128".
+/// Seconds with nine decimals, formatted from the integer so that no digit is lost. Times before zero have
+/// one sign in front: "-9.950000128".
 std::string secondsText(Time time);
 
 }  // namespace lodeline

@@ -61,7 +61,7 @@ constexpr std::array kWords = {Word{"ns", TimeUnit::Nanoseconds},
 bool isLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool isUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 
-/// With both characters for micro as the letter u.
+/// `text` with both Unicode micro characters replaced by the letter u.
 std::string withLatinMicro(std::string_view text) {
   std::string result;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -73,7 +73,8 @@ std::string withLatinMicro(std::string_view text) {
   return result;
 }
 
-/// Runs of letters, also cut where a capital follows a small letter: "TimeUS" has "Time" and "US".
+/// Splits a name into runs of letters, also between a small letter and a capital: "TimeUS" has "Time" and
+/// "US".
 std::vector<std::string> wordsOf(std::string_view name) {
   std::vector<std::string> words;
   char before = ' ';
@@ -87,7 +88,8 @@ std::vector<std::string> wordsOf(std::string_view name) {
   return words;
 }
 
-/// "timems", "timestampus": a unit of two letters or more that is written together with the word for a time.
+/// The unit in a word that joins it to a word for time, as in "timems" or "timestampus". The unit must have
+/// two letters or more.
 std::optional<TimeUnit> unitWithin(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
   for (const std::string_view time : {"timestamp", "stamp", "time"}) {
@@ -97,7 +99,7 @@ std::optional<TimeUnit> unitWithin(std::string word) {
   return std::nullopt;
 }
 
-/// What a unit makes of a Unix time between 2001 and 2065.
+/// Whether `stamp` in `unit` is a Unix time between 2001 and 2065.
 bool isUnixTime(double stamp, TimeUnit unit) {
   const double seconds = std::abs(stamp) * secondsPer(unit);
   return seconds > 1e9 && seconds < 3e9;
@@ -162,7 +164,8 @@ std::optional<TimeUnit> timeUnitOfStamps(const std::vector<double>& stamps, Plau
   auto best_rank = std::pair(true, 0.0);
   for (const TimeUnit unit : kStampUnits) {
     const double rate_hz = per_unit / secondsPer(unit);
-    // Rates are met within a few per cent: a sensor of 10 Hz often has 9.9.
+    // Tolerance on the rate range, because real rates differ from nominal ones: a 10 Hz sensor often has 9.9
+    // Hz.
     if (rate_hz < 0.8 * rate.least_hz || rate_hz > 1.25 * rate.most_hz) continue;
     const auto rank = std::pair(!isUnixTime(stamps.front(), unit), std::abs(std::log(rate_hz) - middle));
     if (best && !(rank < best_rank)) continue;
@@ -182,16 +185,16 @@ std::optional<int64_t> parseTime_ns(std::string_view text, TimeUnit unit) {
     return std::all_of(part.begin(), part.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   };
   if (!areDigits(whole) || !areDigits(digits) || (whole.empty() && digits.empty())) {
-    double number = 0.0;  // with an exponent, perhaps
+    double number = 0.0;  // may have an exponent
     if (text.starts_with('-') || !csv::parse(text, &number)) return std::nullopt;
-    // A double resolves today's Unix times to 0.2 us only; a long double reaches below a nanosecond.
+    // A double resolves current Unix times to 0.2 us only; a long double resolves less than a nanosecond.
     const std::string digits_of_text(text);
     const long double ns =
         std::strtold(digits_of_text.c_str(), nullptr) * static_cast<long double>(nanosecondsPer(unit));
     if (!(std::abs(ns) < 9.2e18L)) return std::nullopt;
     return (is_negative ? -1 : 1) * std::llround(ns);
   }
-  // 64 bits of nanoseconds are a signed number: its least value has no positive counterpart.
+  // Nanoseconds are a signed 64-bit number whose minimum has no positive counterpart.
   __extension__ using Wide = __int128;
   Wide value = 0;
   constexpr Wide kMost = Wide{std::numeric_limits<int64_t>::max()} + 1;
@@ -201,7 +204,7 @@ std::optional<int64_t> parseTime_ns(std::string_view text, TimeUnit unit) {
   }
   value *= nanosecondsPer(unit);
   Wide place = nanosecondsPer(unit);
-  Wide scaled = 0;  // of the decimals, in 1e-18 units of a nanosecond at most
+  Wide scaled = 0;  // the first kMostDecimals decimals as an integer
   constexpr size_t kMostDecimals = 15;
   Wide denominator = 1;
   for (const char digit : digits.substr(0, kMostDecimals)) {

@@ -22,7 +22,7 @@ TEST(TimeUnit, IsReadFromTheNameOfAColumn) {
     is(name, TimeUnit::Seconds);
   is("Time (min)", TimeUnit::Minutes);
   is("hours", TimeUnit::Hours);
-  is("seconds_elapsed [ms]", TimeUnit::Milliseconds);  // brackets decide
+  is("seconds_elapsed [ms]", TimeUnit::Milliseconds);  // brackets have priority
 }
 
 TEST(TimeUnit, IsNotReadIntoNamesThatStateNone) {
@@ -66,7 +66,7 @@ TEST(TimeUnit, RateOfBurstsIsTheMeanRate) {
   for (int burst = 0; burst < 10; ++burst)
     for (int i = 0; i < 10; ++i) stamps.push_back(0.05 * burst + 1e-4 * i);
   EXPECT_NEAR(stampsPerUnit(stamps), 200.0, 30.0);
-  stamps[40] = 1e9;  // a wild one
+  stamps[40] = 1e9;  // an isolated wrong stamp
   EXPECT_NEAR(stampsPerUnit(stamps), 200.0, 30.0);
 }
 

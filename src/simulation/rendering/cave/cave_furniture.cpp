@@ -14,7 +14,7 @@ float uniform(Random& random, double low, double high) {
   return static_cast<float>(random.uniform(low, high));
 }
 
-/// Whether a thing of some radius at a point near ring i stays clear of the diver's corridor.
+/// Whether an object with a radius at a point near ring i stays outside the diver's corridor.
 bool isClear(const CaveWalls& walls, int i, const Vec3f& point, float margin_m, float radius_m) {
   const float spacing_m = std::max(0.01f, (walls.rings[1].center - walls.rings[0].center).norm());
   const int window = static_cast<int>((radius_m + 1.5f) / spacing_m) + 1;
@@ -55,7 +55,7 @@ void addBoulder(TriangleMesh& out, const Vec3f& position, float radius_m, const 
   out.append(block);
 }
 
-/// A spike from `root` over `length_m` along `down` (unit vertical), tapering, banded like grown calcite.
+/// Adds a tapering cone from `root` over `length_m` along `down` (unit vertical), banded like grown calcite.
 void addSpike(TriangleMesh& out, const Vec3f& root, const Vec3f& down, float length_m, float radius_m,
               float sharpness, float flare, const CaveStyle& style, uint64_t seed) {
   const int rows = std::clamp(static_cast<int>(length_m / 0.03f), 8, 60);
@@ -64,7 +64,7 @@ void addSpike(TriangleMesh& out, const Vec3f& root, const Vec3f& down, float len
   TriangleMesh spike;
   for (int i = 0; i < rows; ++i) {
     const float t = static_cast<float>(i) / (rows - 1);
-    // Flared where it grew from the rock.
+    // Wider at its root in the rock.
     const float taper =
         std::pow(std::max(0.0f, 1.0f - t), sharpness) + flare * std::exp(-t / 0.10f) * (1.0f - t);
     for (int j = 0; j < columns; ++j) {
@@ -91,7 +91,7 @@ void scatterBoulders(TriangleMesh& out, const CaveWalls& walls, const CaveStyle&
   const int count = static_cast<int>(style.boulders_per_m * length_m);
   for (int n = 0; n < count; ++n) {
     const int i = random.index(static_cast<int>(walls.rings.size()));
-    // Falls come in heaps: the floor under some stretches is clear.
+    // Blocks are in heaps; the floor of some stretches is free.
     const float heap = gradientNoise(walls.rings[i].center / 5.0f, static_cast<uint32_t>(seed) + 77);
     const float angle = uniform(random, -std::numbers::pi * 0.95, -std::numbers::pi * 0.05);
     const float size = style.largest_boulder_m * std::pow(uniform(random, 0.02, 1.0), 1.3f);

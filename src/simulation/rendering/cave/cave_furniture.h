@@ -4,8 +4,8 @@
 
 namespace lodeline {
 
-/// Breakdown blocks on the floor and, where the style has them, stalactites, stalagmites and columns. None
-/// comes within `clearance_m` of the diver's corridor. Normals included.
+/// Mesh of breakdown blocks on the floor and, depending on the style, stalactites, stalagmites and columns.
+/// All keep `clearance_m` from the diver's corridor. Normals are included.
 TriangleMesh makeCaveFurniture(const CaveWalls& walls, const CaveStyle& style, uint64_t seed,
                                double clearance_m);
 

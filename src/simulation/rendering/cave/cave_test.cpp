@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Least range over directions all around.
+/// Minimum range over directions all around.
 double clearanceAt(const TracedScene& scene, const Vec3& point, Random& random) {
   double least = 1e9;
   for (int k = 0; k < 60; ++k) {

@@ -12,10 +12,10 @@ namespace lodeline {
 namespace {
 
 constexpr float kFinestCell_m = 0.04f;
-constexpr float kWidening_m = 0.3f;  ///< room for the relief between wall and corridor
-constexpr float kEndCap_m = 3.0f;    ///< length over which the tube closes at either end
+constexpr float kWidening_m = 0.3f;  ///< space for the relief between wall and corridor
+constexpr float kEndCap_m = 3.0f;    ///< length over which each end of the tube closes
 
-/// Rings every `cell_m`, each with a frame that stays upright where the passage is not steep.
+/// Rings every `cell_m`; their frames are upright where the passage is not steep.
 std::vector<WallRing> makeRings(const Centerline& centerline, double cell_m) {
   const double begin = centerline.beginArcLength(), end = centerline.endArcLength();
   const int count = std::max(2, static_cast<int>(std::ceil((end - begin) / cell_m)) + 1);
@@ -28,7 +28,7 @@ std::vector<WallRing> makeRings(const Centerline& centerline, double cell_m) {
     ring.center = station.position_W.cast<float>();
     ring.forward = station.tangent_W.cast<float>();
     const Vec3f level = ring.forward.cross(Vec3f::UnitZ());
-    // In a shaft "right" has no meaning of its own: it is carried along instead.
+    // In a shaft, "right" is undefined, so the previous direction is kept.
     if (level.norm() > 0.2f) right = level.normalized();
     ring.right = (right - right.dot(ring.forward) * ring.forward).normalized();
     ring.up = ring.right.cross(ring.forward);
@@ -51,15 +51,15 @@ float corridorHalfHeight(const WallRing& ring) {
          static_cast<float>(kCorridorSway_m);
 }
 
-/// Radius of a superellipse of exponent 4 about the corridor with its clearance, wide enough to hold the
-/// corners of the corridor itself.
+/// Radius of a superellipse of exponent 4 around the corridor with its clearance; it includes the corners of
+/// the corridor.
 float clearRadius(const WallRing& ring, float cosine, float sine, float clearance_m) {
   const float x = cosine / (corridorHalfWidth(ring) + clearance_m);
   const float y = sine / (corridorHalfHeight(ring) + clearance_m);
   return 1.06f / std::pow(x * x * x * x + y * y * y * y, 0.25f);
 }
 
-/// `radius` where it lies well outside of `closest`, otherwise squeezed softly so that it stays outside.
+/// `radius` where it is well above `closest`, otherwise a smooth function of it that stays above.
 float keptOutside(float closest, float radius) {
   constexpr float kSoft_m = 0.25f;
   const float gap = radius - closest;
@@ -76,7 +76,8 @@ double meanPerimeter(const Centerline& centerline) {
   return sum / static_cast<double>(centerline.stations().size());
 }
 
-/// Rock broken along joints: blocks that stand out by random amounts (-0.5..0.5), grooves between them.
+/// Relief of rock broken along joints: blocks displaced by random amounts (-0.5..0.5), with grooves between
+/// them.
 float brokenRock(const Vec3f& q, uint32_t seed) {
   const CellDistances cell = cellNoise(q, seed);
   const float block = static_cast<float>(cell.nearest_id >> 8 & 255) / 255.0f - 0.5f;
@@ -84,7 +85,7 @@ float brokenRock(const Vec3f& q, uint32_t seed) {
   return block * joint + 0.35f * (1.0f - joint);
 }
 
-/// How far the rock stands back (positive) from the smooth section at a point of it, m.
+/// Displacement of the rock outwards from the smooth section at a point on it, m.
 float displacement(const Vec3f& q, float radius_m, const CaveStyle& style, uint32_t seed) {
   const float wavelength = std::max(2.0f, 1.6f * radius_m);
   const float alcove = fractalNoise(q / wavelength, 2, seed + 1);
@@ -101,12 +102,12 @@ float displacement(const Vec3f& q, float radius_m, const CaveStyle& style, uint3
          0.09f * brokenRock(warped / 0.30f, seed + 10);
 }
 
-/// Height (world z, m) of the silt at a place of the ring.
+/// Height (world z, m) of the silt at a point of the ring.
 float sedimentLevel(const WallRing& ring, const Vec3f& q, const CaveStyle& style, float clearance_m,
                     uint32_t seed) {
   const float dunes = fractalNoise(Vec3f(q.x(), q.y(), 0.0f) / 4.0f, 2, seed + 20);
   const float ripples = gradientNoise(Vec3f(q.x() / 0.35f, q.y() / 0.35f, 0.0f), seed + 21);
-  // Where the fill dwindles the floor is bare rock.
+  // Where there is little fill, the floor is bare rock.
   const float fill = style.sediment_fill + 0.22f * gradientNoise(ring.center / 9.0f, seed + 22);
   const float level = ring.half_height_m * (-1.0f + 2.0f * fill) + 0.22f * dunes;
   return ring.center.z() + std::min(level, -corridorHalfHeight(ring) - clearance_m) + 0.012f * ripples;
@@ -118,7 +119,7 @@ Material rockMaterial(const Vec3f& q, const CaveStyle& style, uint32_t seed) {
   // Dark mineral coating on part of the walls.
   const float coating = smoothStep(0.10f, 0.45f, patches);
   const float albedo = style.rock_albedo * (1.0f + 0.35f * bed + 0.3f * patches) * (1.0f - 0.45f * coating);
-  // The threshold on noise of RMS 0.3 leaves about the wanted share beyond it.
+  // For noise of RMS 0.3, this threshold gives about the wanted fraction.
   const float bare = fractalNoise(q / 3.1f, 2, seed + 32);
   const float threshold = 0.42f - 0.9f * style.bare_share;
   const float flowstone = style.bare_share > 0.0f ? smoothStep(threshold, threshold + 0.12f, bare) : 0.0f;
@@ -142,7 +143,7 @@ void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, float c
                                 -0.4f);
   const Vec3f outward = cosine * ring.right + sine * ring.up;
   const Vec3f base = ring.center + radius * outward;
-  // Near the closed ends the section is too small for the full relief.
+  // Near the closed ends, the section is too small for the full relief.
   const float relief = std::min(1.0f, radius);
   const float moved = radius + relief * (kWidening_m + displacement(base, radius, style, seed));
   const float closest = std::max(0.6f * radius, ring.taper * clearRadius(ring, cosine, sine, clearance_m));
@@ -150,7 +151,8 @@ void placeVertex(CaveWalls& walls, int i, int j, const CaveStyle& style, float c
   Vec3f position = ring.center + outer * outward;
   Material material = rockMaterial(position, style, seed);
   if (sine < 0.0f && position.z() < sedimentLevel(ring, position, style, clearance_m, seed)) {
-    // The line from the centre meets the silt before the rock. The level varies slowly: three steps suffice.
+    // The line from the centre intersects the silt before the rock. The level varies slowly, so three steps
+    // suffice.
     for (int step = 0; step < 3; ++step) {
       const float drop = ring.center.z() - sedimentLevel(ring, position, style, clearance_m, seed);
       const float reach = std::min(outer, drop / std::max(0.02f, -outward.z()));
@@ -175,7 +177,7 @@ CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, ui
                         double clearance_m, size_t max_triangles) {
   const double length = centerline.endArcLength() - centerline.beginArcLength();
   const double perimeter = meanPerimeter(centerline);
-  // Displacement stretches the rings by about a third.
+  // Displacement lengthens the rings by about a third.
   const double cell_m = std::max<double>(
       kFinestCell_m, std::sqrt(2.0 * 1.3 * length * perimeter / static_cast<double>(max_triangles)));
   CaveWalls walls;
@@ -189,7 +191,7 @@ CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, ui
       placeVertex(walls, i, j, style, static_cast<float>(clearance_m), static_cast<uint32_t>(seed));
     }
   });
-  // The end rings draw together into a point: no way out.
+  // The end rings shrink to a point and close the tube.
   for (int j = 0; j < walls.ring_size; ++j) {
     walls.mesh.positions[j] = walls.rings.front().center;
     walls.mesh.positions[walls.mesh.positions.size() - 1 - j] = walls.rings.back().center;

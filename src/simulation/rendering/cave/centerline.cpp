@@ -28,7 +28,7 @@ void check(const CenterlineOptions& o) {
   }
 }
 
-// Relative sections stay between a third and two and a half times the mean.
+// Section size relative to the mean, limited to a third to two and a half times.
 double section(double mean, double variation, double wave) {
   return mean * std::clamp(std::exp(variation * wave), 0.35, 2.5);
 }

@@ -9,21 +9,21 @@ namespace lodeline {
 
 /// One cross-section of a passage.
 struct PassageStation {
-  /// Along the centreline, m; 0 where the dive starts, negative towards the entrance.
+  /// Arc length along the centreline, m; 0 at the start of the dive, negative towards the entrance.
   double arc_length_m = 0.0;
   Vec3 position_W = Vec3::Zero();  ///< middle of the passage, m, ENU
-  Vec3 tangent_W = Vec3::UnitX();  ///< unit, into the cave
-  double width_m = 0.0;            ///< wall to wall, horizontal, across the tangent
-  double height_m = 0.0;           ///< floor to ceiling
+  Vec3 tangent_W = Vec3::UnitX();  ///< unit, towards the far end
+  double width_m = 0.0;            ///< horizontal, between the walls, normal to the tangent
+  double height_m = 0.0;           ///< from floor to ceiling
 };
 
-/// The diver keeps the origin of the diver frame within these shares of the half width and half height of the
-/// passage, plus kCorridorSway_m; walls and furniture keep out of it.
+/// Limits of the diver's corridor, as fractions of the passage's half width and half height, plus
+/// kCorridorSway_m. The origin of the diver frame stays inside it; walls and furniture stay outside.
 constexpr double kCorridorShareOfHalfWidth = 0.45;
 constexpr double kCorridorShareOfHalfHeight = 0.35;
 constexpr double kCorridorSway_m = 0.1;
 
-/// What a passage looks like at large. All lengths in m.
+/// Large-scale shape of a passage. All lengths in m.
 struct CenterlineOptions {
   uint64_t seed = 1;
   double length_m = 110.0;  ///< from the start of the dive to its far end
@@ -31,35 +31,33 @@ struct CenterlineOptions {
   double run_out_m = 15.0;  ///< passage beyond the far end
   double station_spacing_m = 0.25;
   double main_azimuth_rad = 0.6;  ///< mean direction, clockwise from north
-  double bend_rad = 0.6;          ///< RMS of the winding about the mean direction; never beyond 75 degrees
-  double shortest_bend_m = 22.0;  ///< wavelengths of the winding lie between this and six times this
-  double descent_m = 8.0;         ///< far end below the start
-  double undulation_m = 0.8;      ///< RMS rise and fall on top of it
+  double bend_rad = 0.6;          ///< RMS angle to the mean direction; never above 75 degrees
+  double shortest_bend_m = 22.0;  ///< wavelengths of the bends are between this and six times this
+  double descent_m = 8.0;         ///< depth of the far end below the start
+  double undulation_m = 0.8;      ///< RMS height variation in addition
   double mean_width_m = 4.5;
   double mean_height_m = 2.8;
   double section_variation = 0.3;  ///< RMS relative change of width and height
 };
 
-/// A seeded winding passage. It always makes way along its main azimuth, so it never meets itself.
+/// A random winding passage. It always advances along its main azimuth, so it never intersects itself.
 class Centerline {
  public:
-  /// Throws UsageError where an option makes no passage (not positive, not finite).
+  /// Throws UsageError where an option is not positive or not finite.
   static Centerline generate(const CenterlineOptions& options);
 
-  /// Evenly spaced in arc length.
+  /// Stations with even spacing in arc length.
   const std::vector<PassageStation>& stations() const { return stations_; }
   double beginArcLength() const { return stations_.front().arc_length_m; }
   double endArcLength() const { return stations_.back().arc_length_m; }
 
-  /// Interpolated station (cubic Hermite in position); beyond the ends the end station is carried on
-  /// straight.
+  /// Interpolated station (cubic Hermite in position); beyond the ends, straight extrapolation.
   PassageStation at(double arc_length_m) const;
 
-  /// Arc length of the station nearest to a point, found among those within `window_m` of
-  /// `near_arc_length_m`.
+  /// Arc length of the station nearest to a point, among those within `window_m` of `near_arc_length_m`.
   double nearestArcLength(const Vec3& point_W, double near_arc_length_m, double window_m) const;
 
-  /// The same passage moved by `offset_W`.
+  /// The same passage shifted by `offset_W`.
   Centerline translated(const Vec3& offset_W) const;
 
  private:

@@ -1,7 +1,6 @@
 #pragma once
 
-// Embree 4 where it is installed (Ubuntu 24.04), else Embree 3 (Debian 12), with one spelling for what the
-// two call differently.
+// Common interface to Embree 4 where installed (Ubuntu 24.04), otherwise Embree 3 (Debian 12).
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -10,7 +9,7 @@
 
 namespace lodeline::embree {
 
-// Packets are taken to hold rays that lie close together.
+// Marks the rays of a packet as coherent.
 #if RTC_VERSION_MAJOR >= 4
 inline void intersect16(const int* valid, RTCScene scene, RTCRayHit16* query) {
   RTCIntersectArguments arguments;

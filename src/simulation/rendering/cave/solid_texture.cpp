@@ -20,8 +20,8 @@ using Byte8 = int8_t __attribute__((vector_size(8)));
 using Short8 = int16_t __attribute__((vector_size(16)));
 using Int8 = int32_t __attribute__((vector_size(32)));
 
-/// sum += weight * voxels. The conversion goes step by step: compilers turn each widening into one or two
-/// instructions, but the whole at once into scalar code.
+/// sum += weight * voxels. The conversion is done in steps, because compilers translate each widening into
+/// one or two instructions, but the direct conversion into scalar code.
 inline void addWeighted(const Byte8& voxels, const Float8& weight, Float8& sum) {
   const Int8 wide = __builtin_convertvector(__builtin_convertvector(voxels, Short8), Int8);
   sum += __builtin_convertvector(wide, Float8) * weight;
@@ -36,7 +36,7 @@ struct RockValue {
   float height;  ///< in tile lengths
 };
 
-/// Stains, unevenness and cracks at a point of the unit tile.
+/// Stains, roughness and cracks at a point of the unit tile.
 RockValue rockValue(const Vec3f& p, uint32_t seed) {
   const Vec3f warp(gradientNoise(p * 6.0f, seed + 1, 6), gradientNoise(p * 6.0f, seed + 2, 6),
                    gradientNoise(p * 6.0f, seed + 3, 6));
@@ -47,11 +47,11 @@ RockValue rockValue(const Vec3f& p, uint32_t seed) {
   return {stains - 0.4f * crack, 0.020f * fractalNoise(q * 5.0f, 4, seed + 40, 0.6f, 5) - 0.010f * crack};
 }
 
-/// Balls strewn over the tile: pits that dissolved, bright grains of shell and calcite.
+/// Balls distributed over the tile: dissolved pits, bright grains of shell and calcite.
 struct Strewn {
   int count;
   float least_radius, greatest_radius;  ///< tile lengths
-  RockValue change;                     ///< at the middle of a ball
+  RockValue change;                     ///< at the centre of a ball
 };
 constexpr Strewn kPits = {1700, 0.013f, 0.030f, {-0.75f, -0.016f}};
 constexpr Strewn kGrains = {7400, 0.009f, 0.013f, {0.75f, 0.006f}};
@@ -140,23 +140,23 @@ void SolidTexture::addCoarserLevel() {
   levels_.push_back(std::move(coarse));
 }
 
-// The hottest function of all.
+// The function with the largest share of the rendering time.
 LODELINE_WIDE_VECTORS
 TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footprint_m) const {
   const float finest_m = tile_m / kSize;
   const float level = footprint_m <= finest_m ? 0.0f : std::max(0.0f, roughLog2(footprint_m / finest_m));
-  if (level >= kLevels) return {};  // finer than a pixel altogether: its mean
+  if (level >= kLevels) return {};  // all details are finer than a pixel: returns the mean
 
   const auto trilinear = [&](int which) {
     const Level& grid = levels_[which];
     const float scale = static_cast<float>(grid.size) / tile_m;
-    // Voxel centres of a coarser level lie between those of the finer one.
+    // Voxel centres of a coarser level are between those of the finer one.
     const float shift = 0.5f * (1.0f - static_cast<float>(grid.size) / kSize);
     const float x = point.x() * scale - shift, y = point.y() * scale - shift, z = point.z() * scale - shift;
     const int ix = floorToInt(x), iy = floorToInt(y), iz = floorToInt(z);
     const float fx = x - ix, fy = y - iy, fz = z - iz;
     const int mask = grid.size - 1;
-    // Two neighbours along x, four channels each, at once.
+    // Two neighbours along x with four channels each, computed together.
     const float gx = 1.0f - fx;
     const Float8 along_x = {gx, gx, gx, gx, fx, fx, fx, fx};
     Float8 sum = {0, 0, 0, 0, 0, 0, 0, 0};
@@ -171,13 +171,13 @@ TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footp
     return Float4{sum[0] + sum[4], sum[1] + sum[5], sum[2] + sum[6], sum[3] + sum[7]};
   };
 
-  // Passing from level to level takes the middle half of the way only: every other pixel needs one level, not
-  // two.
+  // Levels are blended only in the middle half of the interval between them, so half of the pixels need a
+  // single level.
   const int lower = static_cast<int>(level);
   const float blend = std::clamp(2.0f * (level - static_cast<float>(lower)) - 0.5f, 0.0f, 1.0f);
   Float4 value = {0, 0, 0, 0};
   if (blend < 1.0f) value = trilinear(lower) * (1.0f - blend);
-  // The coarsest level fades out into the mean.
+  // The coarsest level is blended with the mean.
   if (blend > 0.0f && lower + 1 < kLevels) value += trilinear(lower + 1) * blend;
   TextureSample sample;
   sample.reflectance = value[0] * (1.0f / 127.0f);

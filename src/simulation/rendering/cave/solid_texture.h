@@ -7,22 +7,22 @@
 
 namespace lodeline {
 
-/// The look of rock at one point: reflectance relative to its mean, and the slope of the small relief.
+/// Rock texture at one point: reflectance relative to its mean, and the slope of the small-scale relief.
 struct TextureSample {
   float reflectance = 0.0f;     ///< about -1..1, mean zero
   Vec3f slope = Vec3f::Zero();  ///< gradient of the relief (m/m), to be projected onto the surface
 };
 
-/// A cube of rock, precomputed once and repeated through space: pits, cracks, grains and stains over five
-/// octaves. Sampling it at several tile sizes gives detail from millimetres to metres at the cost of memory
-/// reads, an order of magnitude cheaper than evaluating noise for every pixel. A pyramid of box-filtered
-/// copies (L. Williams, "Pyramidal parametrics", SIGGRAPH 1983) removes whatever is finer than a pixel, so
-/// that the texture does not flicker and corners can be tracked.
+/// A precomputed cube of rock texture, repeated periodically in space: pits, cracks, grains and stains over
+/// five octaves. Sampling it at several tile sizes gives detail from millimetres to metres. This costs only
+/// memory reads, an order of magnitude less than evaluating noise for every pixel. A pyramid of box-filtered
+/// copies (L. Williams, "Pyramidal parametrics", SIGGRAPH 1983) removes details finer than a pixel. The
+/// texture thus does not flicker, and corners can be tracked.
 class SolidTexture {
  public:
   explicit SolidTexture(uint64_t seed);
 
-  /// Texture of a tile of edge `tile_m` at `point` (m), averaged over about `footprint_m`.
+  /// Texture at `point` (m) for tiles of edge `tile_m`, averaged over about `footprint_m`.
   TextureSample sample(const Vec3f& point, float tile_m, float footprint_m) const;
 
  private:

@@ -39,7 +39,7 @@ TracedScene::TracedScene(TriangleMesh mesh) : triangle_count_(mesh.triangles.siz
   device_ = rtcNewDevice(nullptr);
   if (device_ == nullptr) require(nullptr, "start");
   scene_ = rtcNewScene(device_);
-  // Robust: no ray slips through the edge between two triangles.
+  // Robust mode: no ray passes between two adjacent triangles.
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -57,7 +57,7 @@ TracedScene::TracedScene(TriangleMesh mesh) : triangle_count_(mesh.triangles.siz
     }
     vertices_[i].material = mesh.materials[i];
   }
-  mesh = {};  // before the hierarchy is built: peak memory
+  mesh = {};  // freed before the hierarchy is built, to reduce peak memory
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
@@ -91,7 +91,7 @@ uint32_t TracedScene::occluded(const RayPacket& rays) const {
   embree::occluded16(rays.active, scene_, &query);
   uint32_t bits = 0;
   for (int i = 0; i < kRayPacketSize; ++i) {
-    // Embree marks an occluded ray by a range of minus infinity.
+    // Embree sets the range of an occluded ray to minus infinity.
     if (rays.active[i] != 0 && query.tfar[i] < 0.0f) bits |= 1u << i;
   }
   return bits;

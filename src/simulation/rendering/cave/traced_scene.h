@@ -12,7 +12,8 @@ struct RTCDeviceTy;
 
 namespace lodeline {
 
-/// Rays traced together. Neighbouring pixels share most of their way through the hierarchy of boxes.
+/// Number of rays traced together. Neighbouring pixels traverse mostly the same nodes of the bounding
+/// hierarchy.
 inline constexpr int kRayPacketSize = 16;
 
 /// Sixteen rays, world coordinates (m); directions of unit length.
@@ -20,7 +21,7 @@ struct alignas(64) RayPacket {
   float origin[3][kRayPacketSize];
   float direction[3][kRayPacketSize];
   float max_range_m[kRayPacketSize];
-  alignas(64) int active[kRayPacketSize];  ///< -1 to trace, 0 to leave out
+  alignas(64) int active[kRayPacketSize];  ///< -1 to trace, 0 to skip
 
   Vec3f originOf(int i) const { return {origin[0][i], origin[1][i], origin[2][i]}; }
   Vec3f directionOf(int i) const { return {direction[0][i], direction[1][i], direction[2][i]}; }
@@ -38,15 +39,15 @@ struct alignas(64) RayPacket {
   }
 };
 
-/// Where the rays of a packet met the surface.
+/// Intersections of a packet's rays with the surface.
 struct alignas(64) HitPacket {
-  float range_m[kRayPacketSize];  ///< infinite where nothing was met
+  float range_m[kRayPacketSize];  ///< infinite without intersection
   float u[kRayPacketSize];        ///< barycentric weights of the triangle's second and third vertex
   float v[kRayPacketSize];
   uint32_t triangle[kRayPacketSize];
 };
 
-/// The surface at a hit.
+/// Surface properties at an intersection.
 struct SurfacePoint {
   Vec3f normal = Vec3f::UnitZ();  ///< interpolated between the vertices, unit
   float reflectance = 0.0f;       ///< 0..1
@@ -57,7 +58,7 @@ struct SurfacePoint {
 /// A triangle mesh in an Embree scene. Immutable after construction, safe to share between threads.
 class TracedScene {
  public:
-  /// Takes the mesh, whose normals must have been computed. Throws std::runtime_error where Embree refuses.
+  /// Takes a mesh with normals. Throws std::runtime_error where Embree fails.
   explicit TracedScene(TriangleMesh mesh);
   ~TracedScene();
   TracedScene(const TracedScene&) = delete;
@@ -65,12 +66,12 @@ class TracedScene {
 
   void intersect(const RayPacket& rays, HitPacket& hits) const;
 
-  /// Bit i is set where something stands within max_range_m of ray i.
+  /// Bit mask of occluded rays: bit i is set where a surface is within max_range_m along ray i.
   uint32_t occluded(const RayPacket& rays) const;
 
   SurfacePoint surfaceAt(const HitPacket& hits, int i) const;
 
-  /// Distance (m) to the first surface along a unit direction; nothing where the ray leaves the world.
+  /// Distance (m) to the first surface along a unit direction; nothing where the ray hits none.
   std::optional<double> range(const Vec3& origin_W, const Vec3& direction_W) const;
 
   size_t triangleCount() const { return triangle_count_; }

@@ -27,7 +27,7 @@ uint32_t TriangleMesh::addVertex(const Vec3f& position, const Material& material
 void TriangleMesh::computeNormals() {
   normals.assign(positions.size(), Vec3f::Zero());
   for (const auto& t : triangles) {
-    // The cross product's length is twice the area: the weighting comes for free.
+    // The length of the cross product is twice the area, which gives the weight.
     const Vec3f normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
     for (const uint32_t vertex : t) normals[vertex] += normal;
   }
@@ -57,7 +57,7 @@ void addGridTriangles(TriangleMesh& mesh, uint32_t first_vertex, int rows, int c
       const uint32_t b = first_vertex + static_cast<uint32_t>(i * columns + next);
       const uint32_t c = first_vertex + static_cast<uint32_t>((i + 1) * columns + j);
       const uint32_t d = first_vertex + static_cast<uint32_t>((i + 1) * columns + next);
-      // Alternating diagonals avoid a visible grain in one direction.
+      // Alternating diagonals avoid a visible pattern in one direction.
       if ((i + j) % 2 == 0) {
         mesh.triangles.push_back({a, b, c});
         mesh.triangles.push_back({b, d, c});

@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// How a surface reflects, at one vertex.
+/// Reflection properties of a surface at one vertex.
 struct Material {
   uint8_t reflectance = 115;  ///< mean diffuse albedo * 255
   uint8_t contrast = 255;  ///< strength of the solid texture and its relief * 255; low on silt and flowstone
@@ -17,17 +17,17 @@ struct Material {
   static Material of(float albedo, float contrast, float gloss = 0.0f);
 };
 
-/// A triangle surface in world coordinates (m). The lit side is the one the normals point to.
+/// A triangle mesh in world coordinates (m). The lit side is that of the normals.
 struct TriangleMesh {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;  ///< unit; see computeNormals
   std::vector<Material> materials;
-  std::vector<std::array<uint32_t, 3>> triangles;  ///< counter-clockwise seen from the lit side
+  std::vector<std::array<uint32_t, 3>> triangles;  ///< counter-clockwise as seen from the lit side
 
-  /// Adds a vertex and returns its index; its normal is still to be computed.
+  /// Adds a vertex without normal and returns its index.
   uint32_t addVertex(const Vec3f& position, const Material& material);
 
-  /// Area-weighted means of the adjoining triangles' normals.
+  /// Computes normals as area-weighted means of the adjacent triangles' normals.
   void computeNormals();
 
   void append(const TriangleMesh& other);

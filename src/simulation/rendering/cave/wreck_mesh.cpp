@@ -15,12 +15,12 @@ namespace {
 constexpr float kHalfLength_m = 12.0f;
 constexpr float kHalfBeam_m = 3.0f;
 constexpr float kHullDepth_m = 3.5f;
-constexpr float kSunk_m = 0.7f;  ///< keel below the sand
+constexpr float kSunk_m = 0.7f;  ///< depth of the keel below the sand
 
 using PointOn = std::function<Vec3f(float u, float v)>;
 using HoleAt = std::function<bool(float u, float v)>;
 
-/// Everything of the ship is rust under growth: lumps of centimetres, pale and dark patches.
+/// Material of the ship: rust under growth, with lumps of centimetres, pale and dark patches.
 Material rustMaterial(const Vec3f& p, uint32_t seed) {
   const float growth = fractalNoise(p / 0.9f, 3, seed + 1);
   return Material::of(0.30f * (1.0f + 0.7f * growth), 1.0f);
@@ -32,7 +32,7 @@ Vec3f overgrown(const Vec3f& p, uint32_t seed) {
                            fractalNoise(q, 4, seed + 4));
 }
 
-/// A sheet over u, v in 0..1 with cells of about `cell_m`, overgrown; cells in holes are left out.
+/// Adds an overgrown sheet over u, v in 0..1 with cells of about `cell_m`; cells in holes are left out.
 void addSheet(TriangleMesh& out, const PointOn& point, const HoleAt& hole, float length_u_m, float length_v_m,
               uint32_t seed, float cell_m = 0.07f) {
   const int rows = std::max(2, static_cast<int>(length_u_m / cell_m)) + 1;
@@ -61,7 +61,7 @@ Vec3f hullPoint(float u, float v) {
   const float angle = std::numbers::pi_v<float> * v;
   const float cosine = std::cos(angle);
   const float beam = kHalfBeam_m * (0.05f + 0.95f * fullness);
-  // Flat bottom, round bilge: a superellipse again.
+  // Flat bottom and round bilge as a superellipse.
   const float across = -beam * (cosine < 0.0f ? -1.0f : 1.0f) * std::pow(std::abs(cosine), 0.6f);
   const float sheer = 0.8f * along * along * (along > 0.0f ? 1.0f : 0.4f);
   const float depth = (kHullDepth_m + sheer) * (1.0f - std::pow(std::sin(angle), 0.5f)) - kSunk_m;
@@ -86,7 +86,7 @@ void addHull(TriangleMesh& ship, uint32_t seed) {
   addSheet(ship, deck, hatches, 2.0f * kHalfLength_m, 2.0f * kHalfBeam_m, seed + 20);
 }
 
-/// Four walls and a roof, windows cut out where asked.
+/// Adds four walls and a roof, optionally with windows.
 void addBox(TriangleMesh& ship, const Vec3f& low, const Vec3f& size, bool windows, uint32_t seed) {
   const Vec3f x(size.x(), 0, 0), y(0, size.y(), 0), z(0, 0, size.z());
   const HoleAt panes = [](float u, float v) {
@@ -187,7 +187,7 @@ TriangleMesh makeWreck(const WreckOptions& options) {
   TriangleMesh mesh;
   addHull(mesh, seed);
   addSuperstructure(mesh, seed);
-  // She leans over a little.
+  // The ship has a small list.
   const Mat3f list = Eigen::AngleAxisf(0.16f, Vec3f::UnitX()).toRotationMatrix();
   for (Vec3f& p : mesh.positions) p = list * p;
   for (Vec3f& n : mesh.normals) n = list * n;

@@ -8,16 +8,15 @@
 
 namespace lodeline {
 
-/// Light from the surface: everywhere in open water, or falling in through a cave's entrance and dying away
-/// from there.
+/// Light from the water surface: everywhere in open water, or from a cave's entrance with exponential decay.
 struct Daylight {
   double irradiance = 0.0;         ///< on a surface facing the light, W/m^2 in the lamps' units
-  std::optional<Vec3> entrance_W;  ///< where it enters; nothing for open water
-  double decay_m = 6.0;            ///< distance from the entrance over which it falls to 1/e
+  std::optional<Vec3> entrance_W;  ///< position of the entrance; nothing for open water
+  double decay_m = 6.0;            ///< distance from the entrance over which it decays to 1/e
 
   bool none() const { return irradiance <= 0.0; }
 
-  /// Diffuse light on a surface (W/m^2): strongest where it faces up (open water) or the entrance.
+  /// Diffuse light on a surface (W/m^2): strongest on surfaces that face up (open water) or the entrance.
   float onSurface(const Vec3f& point_W, const Vec3f& normal_W) const {
     if (none()) return 0.0f;
     Vec3f from = Vec3f::UnitZ();
@@ -31,7 +30,7 @@ struct Daylight {
     return strength * (0.55f + 0.45f * normal_W.dot(from));
   }
 
-  /// Mean light at a point of the water, W/m^2.
+  /// Mean light at a point in the water, W/m^2.
   float inWater(const Vec3f& point_W) const { return none() ? 0.0f : onSurface(point_W, Vec3f::Zero()); }
 };
 

@@ -9,26 +9,26 @@
 namespace lodeline {
 namespace {
 
-// Steps grow geometrically: most of the haze arises within a metre of the lamps.
+// Steps grow geometrically, because most of the haze is within a metre of the lamps.
 constexpr float kFirstStep_m = 0.08f;
 constexpr float kGrowth = 1.21f;
-constexpr float kOpaque = 7.0f;  // optical depth that leaves a thousandth
+constexpr float kOpaque = 7.0f;  // optical depth with a transmittance of a thousandth
 const float kPerLogGrowth = 1.0f / std::log2(kGrowth);
 
-/// Light scattered towards the camera per metre at a point, before it travels to the camera.
+/// Light scattered towards the camera per metre at a point, before attenuation on the way to the camera.
 float inScatter(const LightField& light, const Water::Coefficients& water, const Vec3f& point,
                 const Vec3f& view) {
   float sum = 0.0f;
   for (const PlacedLamp& lamp : light.lamps) {
     const Vec3f to_lamp = lamp.position() - point;
-    // A lamp's reflector has a width: no singularity at its centre.
+    // The reflector of a lamp has a width, so there is no singularity at its centre.
     const float distance = std::sqrt(to_lamp.squaredNorm() + 0.03f * 0.03f);
     const Vec3f towards = to_lamp / distance;
-    // The light travels along -towards and is scattered into -view.
+    // The light propagates along -towards and is scattered into -view.
     sum += light.water.phase(towards.dot(view), water.scattering) * lamp.irradiance(towards, distance) *
            fastExp(-water.diffuse_attenuation * distance);
   }
-  // Daylight comes from everywhere: isotropic.
+  // Daylight arrives from all directions: isotropic.
   sum += light.daylight.inWater(point) / (4.0f * std::numbers::pi_v<float>);
   return water.scattering * sum;
 }
@@ -77,10 +77,10 @@ HazeSample HazeVolume::at(float x_px, float y_px, float range_m) const {
 
   const float range = std::min(range_m, step_range_m_[kSteps - 1]);
   int step = 0;
-  float t = range / step_range_m_[0];  // within the first step everything grows from zero
+  float t = range / step_range_m_[0];  // within the first step, all values increase from zero
   if (t > 1.0f) {
     step = std::min(kSteps - 1, 1 + static_cast<int>(roughLog2(t) * kPerLogGrowth));
-    // The logarithm is rough: a range just over the border of its step continues that step's line.
+    // The logarithm is approximate: a range just beyond the border of its step is on the extrapolated line.
     t = (range - step_range_m_[step - 1]) / (step_range_m_[step] - step_range_m_[step - 1]);
   }
   Entry sum;

@@ -6,10 +6,10 @@
 
 namespace lodeline {
 
-/// What water does to the light between a surface and the camera.
+/// Effect of the water on the light between a surface and the camera.
 struct HazeSample {
-  float transmittance = 1.0f;  ///< share of the surface's radiance that arrives
-  float radiance = 0.0f;       ///< light of the lamps scattered into the ray on its way, W/m^2/sr
+  float transmittance = 1.0f;  ///< fraction of the surface's radiance that arrives
+  float radiance = 0.0f;       ///< light of the lamps scattered into the ray, W/m^2/sr
 };
 
 /// Light scattered into the rays of a coarse grid over the image, accumulated over distance:
@@ -21,11 +21,11 @@ class HazeVolume {
  public:
   static constexpr int kNodeSpacing_px = 16;
 
-  /// `directions_W` are unit rays of the nodes, row after row, from `origin_W`.
+  /// `directions_W` are unit rays of the nodes from `origin_W`, row by row.
   HazeVolume(const LightField& light, const Vec3f& origin_W, const std::vector<Vec3f>& directions_W,
              int columns);
 
-  /// At a pixel and a distance along its ray.
+  /// Haze at a pixel and a distance along its ray.
   HazeSample at(float x_px, float y_px, float range_m) const;
 
  private:
@@ -40,7 +40,7 @@ class HazeVolume {
   int columns_;
   int rows_;
   float step_range_m_[kSteps];
-  std::vector<Entry> entries_;  ///< node by node, kSteps each
+  std::vector<Entry> entries_;  ///< kSteps entries per node
 };
 
 }  // namespace lodeline

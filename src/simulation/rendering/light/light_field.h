@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// All light and the water it crosses, at one moment.
+/// All lamps, the daylight and the water at one moment.
 struct LightField {
   std::vector<PlacedLamp> lamps;
   Daylight daylight;

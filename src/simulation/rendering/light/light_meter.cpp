@@ -12,7 +12,7 @@ namespace lodeline {
 namespace {
 
 constexpr int kColumns = 20, kRows = 16;  // 20 packets of rays
-constexpr int kMeasurements = 6;          // of the past that still count
+constexpr int kMeasurements = 6;          // number of past measurements used
 constexpr size_t kMostRemembered = 4096;
 
 uint64_t hashOf(const Rigid3& pose, double time_s) {

@@ -15,26 +15,26 @@ namespace lodeline {
 /// True pose of the body at a time of the dive (s).
 using WorldFromBodyAt = std::function<Rigid3(double time_s)>;
 
-/// The automatic exposure: a few hundred rays measure the light, a first-order lag in its logarithm follows
-/// it. The lag is written out over the recent past instead of carried from image to image, so that any image
-/// can be made on its own, in any order. Measurements stand on a grid of time and are remembered, as
+/// Automatic exposure: a few hundred rays measure the light, and a first-order lag in its logarithm follows
+/// it. The lag is evaluated over the recent past instead of carried from image to image, so that images can
+/// be rendered separately and in any order. Measurements are made on a grid of times and cached, because
 /// neighbouring images share most of them. Safe to share between threads.
 class LightMeter {
  public:
   LightMeter(std::shared_ptr<const RenderWorld> world, const RenderSettings& settings)
       : world_(std::move(world)), settings_(settings) {}
 
-  /// What the exposure of a camera has settled on.
+  /// Exposure setting of a camera.
   ExposureSetting exposure(const CameraOptics& optics, const WorldFromBodyAt& motion, double time_s) const;
 
  private:
-  /// Exposure time at gain 1 for a pose, remembered.
+  /// Exposure time at gain 1 for a pose, cached.
   double wantedExposure(const CameraOptics& optics, const Rigid3& world_from_body, double time_s) const;
   std::vector<float> measure(const CameraOptics& optics, const Rigid3& world_from_body, double time_s) const;
 
   std::shared_ptr<const RenderWorld> world_;
   RenderSettings settings_;
-  /// By a hash of camera, pose and time: a memory of a pure function, which no result can depend on.
+  /// Cache by a hash of camera, pose and time. The function is pure, so the cache does not affect results.
   mutable std::map<uint64_t, double> remembered_;
   mutable std::mutex mutex_;
 };

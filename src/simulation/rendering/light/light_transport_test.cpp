@@ -1,4 +1,4 @@
-// Lamps, water and haze against closed forms and plain numeric integration.
+// Compares lamps, water and haze with closed forms and numeric integration.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -89,7 +89,7 @@ TEST(HazeVolume, MatchesNumericIntegration) {
     }
     const HazeSample sample = haze.at(7.0f, 3.0f, range);
     EXPECT_NEAR(sample.transmittance, std::exp(-0.3 * range), 2e-3) << range;
-    // Steps a fifth of their distance wide, and straight lines between them.
+    // Steps have a width of a fifth of their distance, with linear interpolation between them.
     EXPECT_NEAR(sample.radiance, expected, 0.04 * expected) << range;
   }
 }

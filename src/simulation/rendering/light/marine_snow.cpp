@@ -10,7 +10,7 @@ namespace lodeline {
 namespace {
 
 constexpr double kCell_m = 0.4;
-constexpr double kFarthest_m = 2.8;  // beyond, a flake is below the noise
+constexpr double kFarthest_m = 2.8;  // beyond this distance, a flake is below the noise
 constexpr double kNearest_m = 0.06;
 
 struct Flake {
@@ -29,13 +29,13 @@ struct Disc {
 Flake flakeOf(uint64_t hash, const Vec3& cell_origin, const SnowOptions& options) {
   const Vec3 inside(uniformFromHash(scrambleBits(hash + 1)), uniformFromHash(scrambleBits(hash + 2)),
                     uniformFromHash(scrambleBits(hash + 3)));
-  // Log-normal sizes: many small, few large flakes.
+  // Log-normal sizes: many small and few large flakes.
   const double size = std::exp(0.5 * roughNormalFromHash(scrambleBits(hash + 4)));
   return {cell_origin + kCell_m * inside, options.median_radius_m * size,
           0.5 + uniformFromHash(scrambleBits(hash + 5))};
 }
 
-/// Lamp light on a flake, W/m^2 (flakes are small and turn: no cosine).
+/// Lamp light on a flake, W/m^2. Flakes are small and rotate, so there is no cosine.
 float irradianceAt(const LightField& light, const Vec3f& point) {
   float sum = light.daylight.inWater(point);
   for (const PlacedLamp& lamp : light.lamps) {
@@ -115,7 +115,7 @@ void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics
       for (int k = low.z(); k <= high.z(); ++k) {
         const Vec3 origin = kCell_m * Vec3(i, j, k) + drift;
         const Vec3 to_centre = origin + Vec3::Constant(0.5 * kCell_m) - eye;
-        // Half a cell's diagonal is 0.35 m; views stay within 60 degrees of the axis.
+        // Half a cell's diagonal is 0.35 m; views are within 60 degrees of the axis.
         if (to_centre.dot(forward) < 0.5 * to_centre.norm() - 0.35) continue;
         const uint64_t cell =
             combineHash(seed, combineHash(static_cast<uint64_t>(i),

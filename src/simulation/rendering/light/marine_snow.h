@@ -8,19 +8,19 @@
 
 namespace lodeline {
 
-/// Flakes adrift in the water.
+/// Flakes drifting in the water.
 struct SnowOptions {
   double flakes_per_m3 = 150.0;
   double median_radius_m = 0.00016;
   double reflectance = 0.2;
   double drift_speed_m_per_s = 0.04;
-  double aperture_m = 0.003;  ///< of the lens: how fast flakes blur away from the focus
+  double aperture_m = 0.003;  ///< aperture of the lens; determines the blur of flakes out of focus
   double focus_m = 1.5;
 };
 
-/// Adds the light of all flakes in view to a radiance image (CV_32F). Flakes fill space endlessly and
-/// reproducibly: each cell of a drifting grid draws its own from a hash. Those behind the surface at
-/// `range_m` are hidden; those near the lens are wide, faint discs.
+/// Adds the light of all visible flakes to a radiance image (CV_32F). The flakes fill space without limit and
+/// reproducibly: each cell of a drifting grid draws its own from a hash. Flakes behind the surface at
+/// `range_m` are hidden; flakes near the lens are wide, faint discs.
 void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics& optics,
                    const Rigid3& world_from_body, const ExposureMotion& motion, const LightField& light,
                    const SnowOptions& options, double time_s, uint64_t seed);

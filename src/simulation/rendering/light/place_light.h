@@ -5,7 +5,7 @@
 
 namespace lodeline {
 
-/// The lamps that burn and the water they shine into at a time, for a true pose of the rig.
+/// The lamps that are on and the water at a time, for a true pose of the rig.
 LightField placeLight(const RenderSettings& settings, const CameraOptics& optics,
                       const Rigid3& world_from_body, double time_s);
 

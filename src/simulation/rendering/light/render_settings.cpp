@@ -3,7 +3,7 @@
 namespace lodeline {
 namespace {
 
-/// Two video lamps on arms, left and right above the cameras, turned a little outwards.
+/// Two video lamps on arms, left and right above the cameras, rotated a little outwards.
 std::vector<Lamp> twoVideoLamps() {
   std::vector<Lamp> lamps;
   for (const double side : {1.0, -1.0}) {
@@ -46,7 +46,7 @@ RenderSettings RenderSettings::field() {
   settings.sensor.longest_exposure_s = 0.022;
   settings.sensor.gain_flicker = 0.015;
   settings.sensor.read_noise_e = 8.0;
-  // Lamps do not match in the field: one burns low.
+  // Real lamps differ: one is darker.
   settings.lamps[1].spot_intensity *= 0.7;
   settings.lamps[1].flood_intensity *= 0.7;
   return settings;

@@ -14,7 +14,7 @@
 
 namespace lodeline {
 
-/// Everything between the world and the images of one dive.
+/// All settings of rendering for one dive, except the world.
 struct RenderSettings {
   uint64_t seed = 1;
   std::vector<Lamp> lamps;
@@ -26,22 +26,23 @@ struct RenderSettings {
   SensorOptions sensor;
   bool motion_blur = true;
 
-  /// Turns the lamps from the diver frame D (x forward, y left, z up), in which the presets give them, into
-  /// the body frame.
+  /// Transforms the lamps from the diver frame D (x forward, y left, z up), which the presets use, to the
+  /// body frame.
   void mountLamps(const Rigid3& diver_from_body);
 
-  /// Clear spring water, a good camera, every effect present but mild. The lamps stand in the diver
+  /// Preset: clear spring water, a good camera, every effect present but mild. The lamps are in the diver
   /// frame: see mountLamps.
   static RenderSettings clean();
 
-  /// What a diver gets: milky water, a companion's lamp, longer exposures, a flickering gain. Silt-outs and
-  /// the flat port are added by the scenario, which knows their times and the calibration.
+  /// Preset for a real dive: milky water, a second diver's lamp, longer exposures, a varying gain. The
+  /// scenario adds silt-outs and the flat port, because it knows their times and the calibration.
   static RenderSettings field();
 
-  /// Open water: daylight from above over lamps, clear sea.
+  /// Preset for open water: daylight from above over lamps, clear sea.
   static RenderSettings openWater();
 
-  /// Without blur, snow and noise, exposed once for all: for measuring geometry in the images.
+  /// Preset without blur, snow and noise, with one constant exposure, for geometric measurements in the
+  /// images.
   static RenderSettings ideal();
 };
 

@@ -11,10 +11,10 @@
 
 namespace lodeline {
 
-/// No lamp reaches farther than this and back, m.
+/// Maximum distance at which the light of a lamp is visible, m.
 inline constexpr float kSight_m = 60.0f;
 
-/// The place of a dive: what sonar and cameras see, and what it is made of. World frame W, m.
+/// The world of a dive for sonar and cameras: geometry and texture. World frame W, m.
 struct RenderWorld {
   RenderWorld(TriangleMesh mesh, uint64_t seed) : scene(std::move(mesh)), texture(seed) {}
 
@@ -25,9 +25,10 @@ struct RenderWorld {
 struct CaveOptions {
   CaveStyle style;
   uint64_t seed = 1;
-  /// Walls, silt, boulders and stalactites keep this far from the diver's corridor: room for lamps and arms.
+  /// Minimum distance of walls, silt, boulders and stalactites from the diver's corridor, as room for lamps
+  /// and arms.
   double clearance_m = 0.4;
-  size_t max_triangles = 2'500'000;  ///< of the walls; boulders and stalactites come on top
+  size_t max_triangles = 2'500'000;  ///< of the walls; boulders and stalactites are additional
 };
 
 /// Walls and furniture of a cave along a centreline, with normals.

@@ -13,7 +13,7 @@ std::optional<PlacedLamp> placeSecondDiver(const SecondDiver& diver, const Vec3&
   const auto wander = [&](double rate_hz, uint32_t channel) {
     return gradientNoise(Vec3f(static_cast<float>(time_s * rate_hz), 0.37f, 0.71f), noise_seed + channel);
   };
-  // Slow noise of about +-0.5, faded in and out over its last tenth: presence without a switch.
+  // Slow noise of about +-0.5, blended in and out over its last tenth, so that the presence has no step.
   const float margin = wander(1.0 / 25.0, 51) + static_cast<float>(diver.visible_share - 0.5);
   const double presence = smoothStep(-0.05f, 0.05f, margin);
   if (presence <= 0.0) return std::nullopt;

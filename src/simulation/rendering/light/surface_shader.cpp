@@ -7,19 +7,18 @@
 namespace lodeline {
 namespace {
 
-// Rock seen near and across the room; the sizes are incommensurate, so that no repetition lines up. What is
-// larger than these is in the vertices' materials.
+// Tile sizes for near rock and for the width of a passage. They are incommensurate, so that repetitions do
+// not coincide. Larger structures are in the vertices' materials.
 constexpr int kTiles = 2;
 constexpr float kTile_m[kTiles] = {0.43f, 2.1f};
 constexpr float kTileContrast[kTiles] = {0.62f, 0.60f};
 constexpr float kTileRelief[kTiles] = {0.75f, 0.55f};
 
-// Light that has met more than one wall, as a share of the direct light that reaches a place: it comes from
-// all around and knows no shadows. For walls of albedo 0.35 that fill half the view, 0.35 * 0.5 * 0.35 =
-// 0.06.
+// Light reflected by more than one wall, as a fraction of the direct light at a place. It arrives from all
+// directions and has no shadows. For walls of albedo 0.35 that fill half the view, 0.35 * 0.5 * 0.35 = 0.06.
 constexpr float kIndirectShare = 0.06f;
 
-/// The larger tile is turned against the smaller one, so that their lattices do not align.
+/// Rotates the larger tile relative to the smaller one, so that their lattices do not align.
 Vec3f turned(const Vec3f& p) {
   return {0.80f * p.x() + 0.60f * p.y(), -0.48f * p.x() + 0.64f * p.y() + 0.60f * p.z(),
           0.36f * p.x() - 0.48f * p.y() + 0.80f * p.z()};
@@ -41,15 +40,15 @@ void SurfaceShader::describe(const RayPacket& rays, const HitPacket& hits, int i
   Vec3f normal = facing < 0.0f ? Vec3f(-base.normal) : base.normal;
   float reflectance = base.reflectance;
   if (detail) {
-    // At grazing incidence a pixel covers a long strip; the geometric mean of its axes is a fair width.
-    // A third more than the pixel itself keeps what is left well sampled.
+    // At grazing incidence, a pixel covers a long strip, whose width is taken as the geometric mean of its
+    // axes. An additional third keeps the remaining texture well sampled.
     const float footprint =
         1.35f * hits.range_m[i] * pixel_angle_rad / std::sqrt(std::max(0.08f, std::abs(facing)));
     const TextureSample fine = texture_.sample(point, kTile_m[0], footprint);
     const TextureSample coarse = texture_.sample(turned(point), kTile_m[1], footprint);
     const float shade = kTileContrast[0] * fine.reflectance + kTileContrast[1] * coarse.reflectance;
     reflectance *= std::clamp(1.0f + base.contrast * shade, 0.12f, 2.4f);
-    // A relief h over the surface tilts its normal by minus the tangential part of h's gradient (J. Blinn,
+    // A relief h on the surface tilts its normal by minus the tangential part of h's gradient (J. Blinn,
     // "Simulation of wrinkled surfaces", SIGGRAPH 1978).
     const Vec3f slope =
         base.contrast * (kTileRelief[0] * fine.slope + kTileRelief[1] * turnedBack(coarse.slope));
@@ -91,12 +90,12 @@ void SurfaceShader::addLamp(const RayPacket& rays, const Lit& lit, const PlacedL
   }
   RayPacket shadow;
   for (int i = 0; i < kRayPacketSize; ++i) {
-    // A share that nobody would see needs no shadow.
+    // An invisible contribution needs no shadow.
     if (direct[i] <= 0.02f * radiance[i]) {
       shadow.disable(i);
       continue;
     }
-    // Shadow rays start a little off the surface, back towards camera and lamp.
+    // Shadow rays start a little off the surface, towards camera and lamp.
     const Vec3f to_lamp(towards[0][i], towards[1][i], towards[2][i]);
     const Vec3f point(lit.point[0][i], lit.point[1][i], lit.point[2][i]);
     shadow.set(i, point + 0.004f * (to_lamp - rays.directionOf(i)), to_lamp, distance[i] - 0.01f);

@@ -33,14 +33,14 @@ Water::Coefficients Water::at(const Vec3f& point_W) const {
   if (!uniform()) {
     const float cloud = fractalNoise((point_W - drift_m_) / 0.8f, 2, seed_ + 61, 0.6f);
     clear *= std::max(0.2f, 1.0f + patchiness_ * 1.8f * cloud);
-    // Billows: thick here, nearly clear there.
+    // Clouds: dense at some places, nearly clear at others.
     silt *= std::max(0.05f, 1.0f + 2.0f * cloud);
   }
   return coefficients(clear, silt);
 }
 
 Water::Coefficients Water::coefficients(float clear_per_m, float silt_per_m) const {
-  // Mineral silt hardly absorbs: nine tenths of what it takes from a ray it scatters.
+  // Mineral silt absorbs little: nine tenths of its attenuation is scattering.
   const float scattering = scattering_share_ * clear_per_m + 0.9f * silt_per_m;
   const float attenuation = clear_per_m + silt_per_m;
   return {attenuation, scattering, attenuation - asymmetry_ * scattering};

@@ -7,19 +7,19 @@
 
 namespace lodeline {
 
-/// A stretch of time in which stirred-up silt clouds the water.
+/// A time interval in which stirred-up silt increases the attenuation.
 struct SiltEpisode {
   double start_s = 0.0;
   double duration_s = 5.0;
-  double peak_attenuation_per_m = 2.0;  ///< added at its thickest
+  double peak_attenuation_per_m = 2.0;  ///< maximum increase
 };
 
-/// Optical properties of the water, in one band of grey.
+/// Optical properties of the water in one grey band.
 struct WaterOptions {
   double attenuation_per_m = 0.10;  ///< c in Beer-Lambert's exp(-c r), absorption and scattering together
   double scattering_share = 0.6;    ///< b / c, single-scattering albedo of the water itself
   double asymmetry = 0.88;          ///< Henyey-Greenstein's g, the mean cosine of scattering
-  double patchiness = 0.0;          ///< relative strength of clouds half a metre to metres wide
+  double patchiness = 0.0;          ///< relative strength of clouds half a metre to several metres wide
   double drift_speed_m_per_s = 0.03;
   std::vector<SiltEpisode> silt;
 };
@@ -35,18 +35,18 @@ class Water {
   struct Coefficients {
     float attenuation = 0.0f;
     float scattering = 0.0f;
-    /// Of light on its way through haze. What is scattered forwards goes on about where it went, so only the
-    /// share 1 - g of scattering takes it away: the similarity relation (H. C. van de Hulst, "Multiple Light
-    /// Scattering", 1980, chapter 14).
+    /// Attenuation of light in haze. Light scattered forwards continues in nearly the same direction, so only
+    /// the fraction 1 - g of scattering removes it: the similarity relation (H. C. van de Hulst, "Multiple
+    /// Light Scattering", 1980, chapter 14).
     float diffuse_attenuation = 0.0f;
   };
   Coefficients at(const Vec3f& point_W) const;
   Coefficients mean() const { return coefficients(clear_per_m_, silt_per_m_); }
 
-  /// Share of scattered light per steradian at an angle, given its cosine: L. Henyey and J. Greenstein,
-  /// "Diffuse radiation in the galaxy", Astrophysical Journal 93, 1941.
-  /// In thick silt light arrives after many turns, from everywhere: with the scattering coefficient the phase
-  /// function passes into an even one, by half at 1/m (a fit to the eye, not a law).
+  /// Phase function: fraction of scattered light per steradian at an angle, given its cosine. L. Henyey and
+  /// J. Greenstein, "Diffuse radiation in the galaxy", Astrophysical Journal 93, 1941. In thick silt, light
+  /// is scattered many times and arrives from all directions. With increasing scattering coefficient, the
+  /// phase function therefore becomes isotropic, by half at 1/m (fitted by eye, not a physical law).
   float phase(float cosine, float scattering_per_m) const;
 
  private:
@@ -58,7 +58,7 @@ class Water {
   uint32_t seed_;
 };
 
-/// How much an episode adds at a time, 1/m: quick to rise, slow to settle.
+/// Attenuation added by an episode at a time, 1/m: fast increase, slow decrease.
 double siltAttenuation(const SiltEpisode& episode, double time_s);
 
 }  // namespace lodeline

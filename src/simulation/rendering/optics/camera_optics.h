@@ -10,10 +10,10 @@
 
 namespace lodeline {
 
-/// What lies between the water and the image plane.
+/// Optical elements between the water and the image plane.
 struct IntrinsicsOptions {
-  std::optional<FlatPort> port;  ///< the calibration then describes the camera in air
-  double vignetting = 0.35;      ///< loss of light in the image's corners beyond the cosine law, 0..1
+  std::optional<FlatPort> port;  ///< with a port, the calibration describes the camera in air
+  double vignetting = 0.35;      ///< attenuation in the image's corners in addition to the cosine law, 0..1
   double blur_sigma_px = 0.55;   ///< point spread function of lens and pixel
 };
 
@@ -27,16 +27,16 @@ class CameraOptics {
   const Rigid3& bodyFromCamera() const { return body_from_camera_; }
   bool sees(int pixel) const { return light_[pixel] > 0.0f; }
 
-  /// Camera frame, unit; only where `sees`.
+  /// Direction of a pixel's ray in the camera frame, unit; valid only where `sees`.
   const Vec3f& direction(int pixel) const { return directions_[pixel]; }
-  /// Camera frame, m.
+  /// Origin of a pixel's ray in the camera frame, m.
   Vec3f origin(int pixel) const { return origins_.empty() ? Vec3f::Zero() : origins_[pixel]; }
 
-  /// The exact ray of any pixel position, double precision; nothing where the camera sees none.
+  /// The exact ray of any pixel position, double precision; nothing where there is none.
   std::optional<WaterRay> ray(const Vec2& pixel) const;
 
-  /// Share of light that reaches a pixel compared to the image's centre: natural vignetting, the fourth power
-  /// of the cosine to the axis, and the lens's own.
+  /// Relative illumination of a pixel compared to the image's centre: natural vignetting, the fourth power of
+  /// the cosine to the axis, multiplied by that of the lens.
   float light(int pixel) const { return light_[pixel]; }
 
   /// Angle between the rays of neighbouring pixels in the image's centre, rad.
@@ -44,7 +44,7 @@ class CameraOptics {
 
   /// Projects points in the water: exact without a port, the best radial-tangential fit with one.
   const Camera& projector() const { return *projector_; }
-  /// Camera frame of the projector, which a port shifts along the axis.
+  /// Pose of the projector's frame, which a port shifts along the axis.
   const Rigid3& bodyFromProjector() const { return projector_->calibration().body_from_camera; }
 
   double blurSigma() const { return blur_sigma_px_; }

@@ -17,7 +17,7 @@ struct Sight {
   Vec3 point_C;
 };
 
-/// OpenCV's radial-tangential model (Brown 1966) of a point, the centre moved by `shift` along z.
+/// OpenCV's radial-tangential projection (Brown 1966) of a point, with the centre shifted by `shift` along z.
 Vec2 projectBy(const Parameters& p, const Vec3& point_C) {
   const double z = point_C.z() - p[8];
   const double x = point_C.x() / z, y = point_C.y() / z;

@@ -64,7 +64,8 @@ TEST(FlatPort, FitComesNearButCannotReachTheRefraction) {
   const CameraCalibration air = airCameraFor(inWater(), port);
   EXPECT_NEAR(air.fx_px, 450.0 / 1.335, 1e-9);
   const PortFit fit = fitRadialTangential(air, port);
-  // Refraction narrows the view by the index: the focal length is back where it was, with pincushion.
+  // Refraction reduces the field of view by the index: the focal length returns to its original value, with
+  // pincushion distortion.
   EXPECT_NEAR(fit.calibration.fx_px, 450.0, 5.0);
   EXPECT_GT(fit.calibration.distortion[0], 0.05);
   EXPECT_LT(fit.rms_px, 0.5);

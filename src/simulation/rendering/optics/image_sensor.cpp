@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kToneSteps = 8192;
 
-/// Grey value for light of 0..1 of white. A square-rooted index resolves the steep foot of the curve.
+/// Table of grey values for light of 0..1 relative to white. The square root as index resolves the steep
+/// start of the curve.
 std::array<uint8_t, kToneSteps + 1> toneTable(double gamma) {
   std::array<uint8_t, kToneSteps + 1> table;
   for (int i = 0; i <= kToneSteps; ++i) {

@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Light whose signal is `electrons` in 10 ms.
+/// Uniform light with a signal of `electrons` in 10 ms.
 cv::Mat evenLight(const SensorOptions& sensor, double electrons) {
   return cv::Mat(200, 200, CV_32F, cv::Scalar(electrons / sensor.electrons_per_radiance_s / 0.01));
 }
@@ -24,7 +24,7 @@ TEST(ImageSensor, NoiseIsShotAndReadNoise) {
     cv::meanStdDev(image, mean, sigma);
     const double per_grey = sensor.full_well_e / 255.0;
     EXPECT_NEAR(mean[0] * per_grey, electrons, 0.01 * electrons + 2.0);
-    // Rounding to whole grey values adds a twelfth.
+    // Rounding to whole grey values adds a variance of a twelfth.
     const double expected =
         std::sqrt((electrons + sensor.read_noise_e * sensor.read_noise_e) / per_grey / per_grey + 1.0 / 12.0);
     EXPECT_NEAR(sigma[0], expected, 0.05 * expected);

@@ -39,14 +39,14 @@ void blurByMotion(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics&
       const int pixel = y * radiance.cols + x;
       const Vec3f& ray = optics.direction(pixel);
       const Vec3f point = std::min(ranges[x], kUnseenRange_m) * ray;
-      // Small motion: the pinhole's derivative at the ray serves; distortion changes the streak's length by
-      // per cents only.
+      // For small motion, the pinhole's derivative at the ray is sufficient; distortion changes the streak's
+      // length by only a few per cent.
       const Vec3f moved = delta_R * point + delta_t;
       const float per_z = focal_px / point.z();
       const float dx = per_z * (moved.x() - point.x() / point.z() * moved.z());
       const float dy = per_z * (moved.y() - point.y() / point.z() * moved.z());
       const float length = std::min(40.0f, std::sqrt(dx * dx + dy * dy));
-      if (length < 0.5f) continue;  // less than the lens blurs anyway
+      if (length < 0.5f) continue;  // less than the blur of the lens
       const int taps = std::min(17, 2 + static_cast<int>(length));
       float sum = 0.0f;
       for (int k = 0; k < taps; ++k) {

@@ -13,7 +13,7 @@
 namespace lodeline {
 namespace {
 
-constexpr double kLongestGap_s = 2.0;  // over which an average is continued
+constexpr double kLongestGap_s = 2.0;  // longest gap over which an average continues
 
 }  // namespace
 
@@ -70,7 +70,7 @@ Mat3 FieldInnovation::differenceCovariance(const Window& window, const JointCova
   noise.rotation_sigma_rad = newest_.rotation_sigma_rad;
   Mat3 covariance = fieldCovariance_W(states.field_W(), noise);
 
-  // What was known a frame ago; the gyroscope's error since then is small beside it.
+  // Covariances of the frame before; the gyroscope's error since then is negligible.
   const double* pose = window.frames()[window.frames().size() - 2]->pose.data();
   std::vector<std::pair<const double*, Mat3>> derivatives = {
       {pose, -so3::skew(world_from_body * newest_.field_B)},
@@ -80,7 +80,7 @@ Mat3 FieldInnovation::differenceCovariance(const Window& window, const JointCova
   for (const auto& [row, by_row] : derivatives) {
     for (const auto& [column, by_column] : derivatives) {
       if (!known.knows(row) || !known.knows(column)) continue;
-      // The rotation is the last part of a pose.
+      // The rotation is the last half of a pose's perturbation.
       covariance += by_row * known.between(row, column).bottomRightCorner<3, 3>() * by_column.transpose();
     }
   }

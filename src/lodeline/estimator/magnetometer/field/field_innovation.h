@@ -9,28 +9,29 @@
 
 namespace lodeline {
 
-/// Measured against expected field, for the gate. What a gate decides by has to be known better than its
-/// limits: the fields of a noisy sensor are averaged, in the world, over as many frames as bring its noise
-/// down to MagnetometerGateOptions::field_sigma_T. Otherwise chance alone would reject one frame of a few
-/// hundred, and never be quiet for long enough to be believed again.
+/// Innovation of the magnetometer for the gate: measured field compared with the expected one. The innovation
+/// has to be known better than the limits of the gate. Fields of a noisy sensor are therefore averaged in
+/// world axes over enough frames to reduce the noise to MagnetometerGateOptions::field_sigma_T. Otherwise
+/// noise alone would reject one frame in a few hundred, and the field would never stay within the limits long
+/// enough to be readmitted.
 class FieldInnovation {
  public:
   /// `options` must outlive it.
   explicit FieldInnovation(const MagnetometerOptions& options) : options_(options) {}
 
-  /// Forgets the average.
+  /// Discards the average.
   void restart() { measured_W_.reset(); }
 
-  /// The newest frame's mean, with noise of `white_variance_T2` per axis.
+  /// Adds the newest frame's mean, with white noise of `white_variance_T2` per axis.
   void add(const MagnetometerMean& mean, double white_variance_T2, const Window& window);
 
-  /// What was added last against the field that the window expects, with its disturbance or without.
-  /// `covariance`: of the frame before and the field's states. `correlated_noise_sigma_T`: lasting error of
-  /// the field.
+  /// Compares the average, after the last add(), with the field that the window expects, with or without its
+  /// disturbance. `covariance`: joint covariance of the frame before and the states of the field.
+  /// `correlated_noise_sigma_T`: time-correlated error of the field.
   FieldCheck check(const Window& window, const JointCovariance& covariance, double correlated_noise_sigma_T,
                    bool disturbed) const;
 
-  /// Of the average, T^2 per axis.
+  /// White noise of the average, T^2 per axis.
   double whiteVariance() const { return white_variance_T2_; }
 
  private:

@@ -25,7 +25,7 @@ class FieldInnovationTest : public testing::Test {
     for (int k = 0; k < 2; ++k) window_.add(std::make_unique<Frame>());
   }
 
-  /// A reading of `field_W` by a body that turns, with noise of `sigma_T` per axis.
+  /// Reads `field_W` by a body that turns, with noise of `sigma_T` per axis.
   FieldCheck see(double time_s, const Vec3& field_W, double sigma_T, bool disturbed = false) {
     NavigationState state;
     state.time = Time::fromSeconds(time_s);

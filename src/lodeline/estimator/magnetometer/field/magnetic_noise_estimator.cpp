@@ -18,7 +18,7 @@ constexpr double kEarthSigma_T = 1e-5;  // of size and dip at the start
 
 double logPrior(double size, double root_mean_square) {
   const double spread = std::log(MagneticNoiseEstimator::kPriorFactor);
-  // The root mean square of a log-normal lies above its median by exp(spread^2).
+  // The root mean square of a log-normal variable exceeds its median by exp(spread^2).
   return -0.5 * std::pow((std::log(size / root_mean_square) + spread * spread) / spread, 2);
 }
 

@@ -12,30 +12,30 @@
 
 namespace lodeline {
 
-/// How far an undisturbed field is from the expected one for reasons that last, learned from its size and
-/// dip, which show it without asking for a heading:
-/// - a floor: rock, currents, what calibration leaves; its correlation falls to 1/e in
-/// `correlated_noise_time_s`;
-/// - a walk: iron on board that creeps, in body axes.
+/// Estimates the time-correlated errors of an undisturbed field from its size and dip, which do not depend on
+/// the heading:
+/// - a floor: rock, currents, residual calibration errors; its correlation falls to 1/e within
+///   `correlated_noise_time_s`;
+/// - a walk: magnetization of iron on board that changes slowly, in body axes.
 ///
-/// Means over a fifth of `correlated_noise_time_s` go to a bank of Kalman filters, each with a floor and a
-/// walk of its own, whose state is the offset in body axes, the Earth's size and dip, and how far the floor
-/// is off them now, a Gauss-Markov process. The likelihoods of the filters' innovations, older ones fading
-/// with `correlated_noise_memory_s`, weigh the filters: multiple-model adaptive estimation (Magill, "Optimal
-/// adaptive estimation of sampled stochastic processes", 1965). What is answered is the root of the weighted
-/// mean of squares.
+/// A bank of Kalman filters processes means over a fifth of `correlated_noise_time_s`. Each filter has its
+/// own floor and walk. Its state contains the offset in body axes, the size and dip of the Earth's field, and
+/// the floor's current deviation from both, a Gauss-Markov process. The likelihoods of the filters'
+/// innovations weight the filters; older likelihoods fade with `correlated_noise_memory_s`. This is
+/// multiple-model adaptive estimation (Magill, "Optimal adaptive estimation of sampled stochastic processes",
+/// 1965). The result is the root of the weighted mean of squares.
 class MagneticNoiseEstimator {
  public:
-  /// What is believed before the first reading: floor and walk are log-normal, by this factor wide, with the
-  /// options' figures for root mean squares.
+  /// Width of the prior: floor and walk are log-normal with this factor, and the options' values are their
+  /// root mean squares.
   static constexpr double kPriorFactor = 2.0;
 
-  /// `offset_sigma_T`: of the offset before the first reading, per axis.
+  /// `offset_sigma_T`: sigma of the offset before the first reading, per axis.
   MagneticNoiseEstimator(const MagnetometerOptions& options, double offset_sigma_T);
 
-  /// A reading that was believed, of noise `white_variance_T2` per axis, and the window's orientation with
-  /// its roll and pitch. The size of a field is not linear in an offset: it is linearized at `offset_B`, the
-  /// window's.
+  /// Adds an accepted reading with white noise of `white_variance_T2` per axis. `world_from_body` and `tilt`:
+  /// the window's orientation and the error of its roll and pitch. The size of the field is not linear in the
+  /// offset; it is linearized at `offset_B`, the window's estimate.
   void add(const MagnetometerMean& mean, const Quat& world_from_body, const Vec3& offset_B,
            double white_variance_T2, const TimeCorrelatedError& tilt);
 
@@ -49,7 +49,7 @@ class MagneticNoiseEstimator {
   struct Model {
     double correlated_noise_sigma_T = 0.0, walk_T_per_sqrt_s = 0.0;
     double log_prior = 0.0, log_likelihood = 0.0;
-    /// Offset in body axes, size, size times dip, the floor's part in these two; T
+    /// Offset in body axes, size of the field, size times dip, deviations of both by the floor; T
     State state = State::Zero();
     Eigen::Matrix<double, kStates, kStates> covariance = Eigen::Matrix<double, kStates, kStates>::Zero();
   };
@@ -60,7 +60,7 @@ class MagneticNoiseEstimator {
     Vec2 measured_T = Vec2::Zero();
     Derivative derivative = Derivative::Zero();
     double white_variance_T2 = 0.0;
-    double tilt_variance_rad2 = 0.0;  ///< as of independent means over the interval
+    double tilt_variance_rad2 = 0.0;  ///< for means that count as independent over the interval
   };
 
   void learn(Time now);

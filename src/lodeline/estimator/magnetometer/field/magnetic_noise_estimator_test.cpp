@@ -16,12 +16,12 @@ struct Conditions {
   double correlated_noise_sigma_T = 0.0;  ///< size of an error whose correlation falls to 1/e in 5 s
   double walk_T_per_sqrt_s = 0.0;
   double white_sigma_T = 0.01e-6;
-  double tilt_sigma_rad = 0.0;  ///< of the orientation that is told, likewise
+  double tilt_sigma_rad = 0.0;  ///< of the orientation given to the estimator, with the same correlation time
   double minutes = 30.0;
-  Vec3 offset_B = Vec3::Zero();  ///< where the walk begins
+  Vec3 offset_B = Vec3::Zero();  ///< initial value of the walk
 };
 
-// A rig that looks about as a diver does, with a reading at 4 Hz.
+// A rig that looks around like a diver, with readings at 4 Hz.
 class MagneticNoiseEstimatorTest : public testing::Test {
  protected:
   MagneticNoiseEstimator errors_{MagnetometerOptions(), 0.15e-6};
@@ -96,7 +96,8 @@ TEST_F(MagneticNoiseEstimatorTest, TellAWalkFromAFloor) {
 }
 
 TEST_F(MagneticNoiseEstimatorTest, LearnLittleWhereTheTiltIsTheDoubt) {
-  // 1 degree is 0.8 uT across the field; its size, which does not depend on the tilt, still teaches.
+  // 1 degree is 0.8 uT across the field. The size of the field does not depend on the tilt and remains
+  // informative.
   dive({.correlated_noise_sigma_T = 0.05e-6, .tilt_sigma_rad = 0.0175}, 5);
   EXPECT_NEAR(errors_.correlated_noise_sigma_T(), 0.05e-6, 0.02e-6);
 }

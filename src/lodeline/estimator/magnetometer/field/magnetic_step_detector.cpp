@@ -20,7 +20,7 @@ struct Segment {
   double variance_T2() const { return variance_sum_T2 / (readings * readings); }
 };
 
-/// What of a vector is not along a unit vector.
+/// The part of a vector perpendicular to a unit vector.
 Vec3 besides(const Vec3& direction, const Vec3& vector) { return vector - direction * direction.dot(vector); }
 
 }  // namespace
@@ -48,7 +48,7 @@ std::optional<MagneticStepDetector::Candidate> MagneticStepDetector::candidate()
   const double before_T = along_B.dot(b.mean_B() - a.mean_B()),
                after_T = along_B.dot(d.mean_B() - c.mean_B());
   const double most_T = options_.max_slope * result.step_B.norm();
-  // Noise may hide the slope of what grows steadily on one side, hardly on both.
+  // Noise may hide the slope of a steady growth on one side of the step, but hardly on both.
   result.is_sharp = a.is_believed && b.is_believed && std::abs(before_T) <= most_T &&
                     std::abs(after_T) <= most_T && before_T + after_T <= most_T;
   return result;
@@ -75,7 +75,8 @@ std::optional<MagneticStepDetector::Change> MagneticStepDetector::add(const Read
     best_.reset();
     return std::nullopt;
   }
-  // The middle of the segments passes over a step in several frames; it is where the difference is largest.
+  // The middle of the segments passes over a step in several frames; the step is where the difference is
+  // largest.
   const bool is_step = isStep(*now);
   if (is_step && (!best_ || now->step_B.norm() > best_->step_B.norm())) {
     best_ = now;
@@ -91,7 +92,7 @@ std::optional<MagneticStepDetector::Change> MagneticStepDetector::add(const Read
 
 void MagneticStepDetector::learnUsual(const Candidate& candidate, double since_s) {
   if (since_s <= 0.0) return;
-  // What passes by for seconds may be a hundred times as large and is not usual.
+  // A passing disturbance of seconds may be a hundred times as large and must not count as usual.
   const double most_T2 = 4.0 * std::max(usual_square_T2_, 3.0 * candidate.variance_T2);
   usual_weight_s_ = std::min(usual_weight_s_ + since_s, options_.memory_s);
   usual_square_T2_ +=
@@ -103,7 +104,7 @@ std::optional<MagneticStepDetector::Change> MagneticStepDetector::settle(const C
   step_B_ += step.step_B;
   if (step_B_.norm() < options_.returned_share * step.step_B.norm()) step_B_.setZero();
   best_.reset();
-  readings_.clear();  // the same step shall not be found again
+  readings_.clear();  // so that the same step is not detected again
   returned_since_.reset();
   const double sigma_T =
       std::hypot(options_.relative_sigma * step.step_B.norm(), std::sqrt(step.variance_T2));
@@ -112,8 +113,8 @@ std::optional<MagneticStepDetector::Change> MagneticStepDetector::settle(const C
 
 std::optional<MagneticStepDetector::Change> MagneticStepDetector::dropIfReturned(Time time) {
   if (step_B_.isZero()) return std::nullopt;
-  // Where the beginning of a current went unnoticed, heading has followed it, and its end looks like a step
-  // away from that heading. Size and dip know better.
+  // If the start of a current was not detected, the heading has followed its field. Its end then looks like a
+  // step away from that heading. Size and dip of the field reveal the return.
   const Vec3& heading_B = readings_.back().heading_B;
   Vec3 sum_B = Vec3::Zero();
   for (const Reading& reading : readings_) sum_B += reading.difference_B;

@@ -9,44 +9,45 @@
 
 namespace lodeline {
 
-/// Finds currents on board that are switched - lamps, motors, a strobe's charger -, whose field at the sensor
-/// changes from one moment to the next and then stays. Nothing else on a dive does that: rock and tanks
-/// come near over seconds, iron that calibration left turns with the rig, heading drifts over minutes. So a
-/// change is known to the sensor's white noise, and what is measured after it can be corrected by it instead
-/// of being taken for a turn of the rig.
+/// Detects steps of the field from currents on board that are switched, such as lamps, motors or the charger
+/// of a strobe. The field at the sensor changes at once and then stays constant. Nothing else on a dive has
+/// this signature: rock and tanks approach over seconds, residual iron turns with the rig, heading drifts
+/// over minutes. The step is therefore measured with the accuracy of the sensor's white noise. Later readings
+/// are corrected by it, so that it does not count as a rotation of the rig.
 ///
-/// Works on the difference of measured and expected field in body axes, which a current on board keeps. A
-/// change that shows in heading alone is left to the estimator: it may be its own correction.
+/// The input is the difference of measured and expected field in body axes, in which the field of a current
+/// on board is constant. A change in heading alone does not count as a step, because it may be a correction
+/// of the estimator's heading.
 class MagneticStepDetector {
  public:
   explicit MagneticStepDetector(const MagneticStepDetectorOptions& options) : options_(options) {}
 
   struct Change {
-    Vec3 by_B = Vec3::Zero();  ///< T, from what step_B() was to what it is
+    Vec3 by_B = Vec3::Zero();  ///< T, from the previous to the present value of step_B()
     double sigma_T = 0.0;      ///< per axis
   };
-  /// What a frame's magnetometer saw.
+  /// Magnetometer reading of one frame.
   struct Reading {
     Time time;
-    Vec3 difference_B = Vec3::Zero();  ///< measured less expected field, T, with no step taken off
-    Vec3 heading_B = Vec3::UnitX();    ///< unit vector along which an error of heading shows in it
+    Vec3 difference_B = Vec3::Zero();  ///< measured minus expected field, T, without correction by steps
+    Vec3 heading_B = Vec3::UnitX();    ///< unit vector of the change of the difference by a heading error
     double white_variance_T2 = 0.0;    ///< per axis
-    /// Whether it counts as the Earth's, without which nothing can step from it.
+    /// Whether the reading counts as the Earth's field. A step can start from such a field only.
     bool is_believed = true;
   };
-  /// Says so where step_B() has changed.
+  /// Gives the change where step_B() has changed.
   std::optional<Change> add(const Reading& reading);
 
-  /// What switching has added to the field since the beginning, T, body axes.
+  /// Sum of all steps since the beginning, T, body axes.
   const Vec3& step_B() const { return step_B_; }
 
  private:
   /// A possible step in the middle of the last four segments.
   struct Candidate {
     Vec3 step_B = Vec3::Zero();
-    double besides_heading_T = 0.0;  ///< size of what is not along heading_B
+    double besides_heading_T = 0.0;  ///< size of the part that is not along heading_B
     double variance_T2 = 0.0;        ///< white, per axis
-    bool is_sharp = false;  ///< nearly nothing changes before and after, and the field before was believed
+    bool is_sharp = false;           ///< nearly constant before and after, and the field before was accepted
   };
   std::optional<Candidate> candidate() const;
   bool isStep(const Candidate& candidate) const;
@@ -56,7 +57,7 @@ class MagneticStepDetector {
 
   MagneticStepDetectorOptions options_;
   std::deque<Reading> readings_;   ///< of the last four segments
-  std::optional<Candidate> best_;  ///< of those around the step that is coming through
+  std::optional<Candidate> best_;  ///< best candidate near the step under examination
   Time best_time_;
   Vec3 step_B_ = Vec3::Zero();
   double usual_square_T2_ = 0.0;  ///< faded mean

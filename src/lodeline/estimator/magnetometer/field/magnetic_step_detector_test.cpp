@@ -8,10 +8,10 @@
 namespace lodeline {
 namespace {
 
-constexpr double kWhite_T = 0.04e-6;  // of a frame's mean
+constexpr double kWhite_T = 0.04e-6;  // noise of a frame's mean
 const Vec3 kLamp_B(0.06e-6, -0.15e-6, 0.1e-6);
 
-/// What is found in a field whose difference from the expected one follows `difference_B`, with white noise.
+/// Detector on a field whose difference from the expected one follows `difference_B`, with white noise.
 class MagneticStepDetectorTest : public testing::Test {
  protected:
   void follow(double duration_s, const std::function<Vec3(double t_s)>& difference_B, double rate_hz = 15.0) {
@@ -43,7 +43,7 @@ class MagneticStepDetectorTest : public testing::Test {
 };
 
 TEST_F(MagneticStepDetectorTest, FindsACurrentThatIsSwitchedOnAndOff) {
-  const Vec3 before_B(0.1e-6, 0.05e-6, -0.1e-6);  // iron that calibration left
+  const Vec3 before_B(0.1e-6, 0.05e-6, -0.1e-6);  // residual hard iron
   run(60.0, before_B);
   EXPECT_EQ(changes_, 0);
   run(60.0, before_B + kLamp_B);

@@ -54,8 +54,8 @@ MagnetometerStatus MagnetometerGate::verdict(const FieldCheck& check, double sha
 }
 
 double MagnetometerGate::varianceScale(const FieldCheck& check) const {
-  // Half way to the limit a disagreement begins to count against the reading: what enters slowly is met by a
-  // falling weight before it is rejected.
+  // From half the limit on, a disagreement increases the variance of the reading, so that a slowly growing
+  // error loses weight before it is rejected.
   const double doubtful = 0.5 * options_.max_sigmas * check.heading_sigma_rad;
   const double ratio = check.heading_error_rad / doubtful;
   return std::max(1.0, ratio * ratio);
@@ -102,7 +102,7 @@ void MagnetometerGate::keepAccount(MagnetometerStatus status, double since_s) {
   const double kept = std::exp(-since_s / options_.rejection_window_s);
   agreed_s_ *= kept;
   rejected_s_ *= kept;
-  // A readmitted field agrees with nothing but itself.
+  // A readmitted field is consistent with itself only, so it counts neither way.
   if (status == MagnetometerStatus::Readmitted) return;
   (status == MagnetometerStatus::Used ? agreed_s_ : rejected_s_) += since_s;
 }

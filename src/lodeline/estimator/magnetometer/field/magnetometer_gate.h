@@ -7,69 +7,70 @@
 
 namespace lodeline {
 
-/// What became of the magnetometer in one frame.
+/// Status of the magnetometer in one frame.
 enum class MagnetometerStatus {
-  Off,           ///< not asked for, or not on board
+  Off,           ///< not requested, or not on board
   NoData,        ///< no usable reading since the frame before
-  Used,          ///< taken for the Earth's field
-  Norm,          ///< rejected: field of another size
-  Dip,           ///< rejected: field of another inclination
-  Innovation,    ///< rejected: heading disagrees with gyroscope and images
-  Readmitted,    ///< rejected for so long that its field counts as a new one, whose disturbance is estimated
-  Inconsistent,  ///< rejected as a whole: it has disagreed for longer than it has agreed
-  Uncalibrated,  ///< not used because nobody knows its iron
+  Used,          ///< accepted as the Earth's field
+  Norm,          ///< rejected: the field has another size
+  Dip,           ///< rejected: the field has another inclination
+  Innovation,    ///< rejected: the heading disagrees with gyroscope and images
+  Readmitted,    ///< rejected for so long that the field is accepted again, with an estimated disturbance
+  Inconsistent,  ///< all readings rejected: the field has disagreed for longer than it has agreed
+  Uncalibrated,  ///< not used because its hard and soft iron are unknown
 };
 const char* toString(MagnetometerStatus status);
 
-/// A measured field against the expected one, with one sigma of each difference.
+/// Measured minus expected field, with one sigma of each difference.
 struct FieldCheck {
   double norm_error = 0.0, norm_sigma = 0.0;  ///< relative to the expected field
   double dip_error_rad = 0.0, dip_sigma_rad = 0.0;
   double heading_error_rad = 0.0, heading_sigma_rad = 0.0;
   double correlated_sigma_rad =
-      0.0;  ///< of a heading from this field, by what MagneticNoiseEstimator has learned
+      0.0;  ///< sigma of the heading from this field by its time-correlated error (MagneticNoiseEstimator)
 };
 
 struct GateDecision {
   MagnetometerStatus status = MagnetometerStatus::NoData;
   bool use = false;
-  bool begin_disturbance = false;  ///< from now on the field differs from the Earth's by an unknown vector
-  bool end_disturbance = false;    ///< the Earth's field is back
-  /// Factor on the variance of a reading that is used though it disagrees somewhat.
+  bool begin_disturbance = false;  ///< from now on an unknown vector is added to the Earth's field
+  bool end_disturbance = false;    ///< the Earth's field is undisturbed again
+  /// Factor on the variance of a reading that is used although it disagrees slightly.
   double variance_scale = 1.0;
 };
 
-/// Decides frame by frame whether a magnetometer sees the Earth's field:
-/// - beyond the limits in norm, dip or heading it is rejected;
-/// - it is believed again when it has stayed well within them for a while (hysteresis);
-/// - what it then says weighs the less the larger a share of the last minute it was rejected: a sensor whose
-///   calibration is wrong looks right now and then;
-/// - if that does not happen for `readmission_s`, its field is readmitted as one that is disturbed by a
-///   constant to be estimated, so that no wrong decision locks it out for good. The Earth's field is kept in
-///   mind, and as soon as it is seen again the disturbance is over;
-/// - it keeps account of how long the field agreed and how long it did not. What disagrees for longer than it
-///   agrees is no disturbance of a good sensor: its calibration is wrong, or a magnet is on board. Then
-///   nothing is used until agreement prevails, or until it is time for a new trial.
+/// Decides for each frame whether a magnetometer measures the Earth's field:
+/// - a field beyond the limits in norm, dip or heading is rejected;
+/// - it is accepted again when it has stayed well within the limits for a while (hysteresis);
+/// - the weight of accepted readings decreases with the share of the last minute in which the field was
+///   rejected: a sensor with a wrong calibration agrees now and then;
+/// - if the field is not accepted again within `readmission_s`, it is readmitted with a constant disturbance
+///   to be estimated. No wrong decision then excludes the sensor permanently. The Earth's field stays a
+///   state, and the disturbance ends as soon as the readings agree with the Earth's field again;
+/// - the gate sums the times of agreement and of rejection. A good sensor with disturbances agrees for longer
+///   than it disagrees. Otherwise its calibration is wrong, or a magnet is on board; then nothing is used
+///   until agreement prevails or a retry is due.
 class MagnetometerGate {
  public:
   explicit MagnetometerGate(const MagnetometerGateOptions& options) : options_(options) {}
 
-  /// `earth`: against the Earth's field alone; `disturbed`: with the disturbance added, where one was begun.
+  /// `earth`: compared with the Earth's field alone; `disturbed`: with the disturbance added, where there is
+  /// one.
   GateDecision decide(Time time, const FieldCheck& earth, const std::optional<FieldCheck>& disturbed);
 
  private:
   enum class State { Trusting, Rejecting, Disturbed };
 
-  /// What is wrong with the field when the limits are taken times `share`; Used for nothing.
+  /// The quantity that exceeds its limit times `share`; Used where none does.
   MagnetometerStatus verdict(const FieldCheck& check, double share) const;
   double varianceScale(const FieldCheck& check) const;
-  /// Whether `check` has been within the tighter limits for long enough.
+  /// Whether `check` has stayed within the tighter limits for long enough.
   bool released(Time time, const FieldCheck& check, std::optional<Time>* calm_since) const;
   GateDecision reject(Time time, MagnetometerStatus reason);
   GateDecision judge(Time time, const FieldCheck& earth, const std::optional<FieldCheck>& disturbed);
-  /// By its account.
+  /// Whether the sums of agreement and rejection, or the time-correlated error, show a wrong calibration.
   bool isInconsistent(const FieldCheck& earth) const;
-  /// While the sensor is not believed at all; whether that is over.
+  /// Whether a sensor that was Inconsistent may be used again.
   bool rehabilitated(Time time, const FieldCheck& earth);
   void keepAccount(MagnetometerStatus status, double since_s);
   /// Share of the recent past in which the magnetometer was rejected; readmission counts half.

@@ -33,8 +33,8 @@ FieldCheck dipOff(double error_rad) {
 
 class MagnetometerGateTest : public testing::Test {
  protected:
-  // Runs at 10 Hz and keeps the last decision; against the disturbance the field always fits, once it is
-  // begun.
+  // Runs the gate at 10 Hz and keeps the last decision. The comparison with a disturbance always fits once
+  // there is one.
   void run(double seconds, const FieldCheck& earth, const FieldCheck& disturbed = headingOff(0.0)) {
     for (int i = 0; i < static_cast<int>(10.0 * seconds); ++i) {
       time_s_ += 0.1;
@@ -107,7 +107,7 @@ TEST_F(MagnetometerGateTest, WeighsLittleWhatItRejectedForLong) {
 
 TEST_F(MagnetometerGateTest, ReleasesOnlyWhatStaysWellWithinTheLimits) {
   run(5.0, headingOff(0.1));
-  run(20.0, headingOff(0.025));  // within the limit, but not well within
+  run(20.0, headingOff(0.025));  // within the limit, but not within the share for release
   EXPECT_EQ(last_.status, Status::Innovation);
   run(3.8, headingOff(0.01));
   EXPECT_FALSE(last_.use) << "not yet";
@@ -135,7 +135,7 @@ TEST_F(MagnetometerGateTest, ReadmitsAfterAMinuteAsADisturbedField) {
 TEST_F(MagnetometerGateTest, EndsTheDisturbanceWhenTheEarthsFieldIsBack) {
   run(70.0, headingOff(0.1));
   ASSERT_EQ(last_.status, Status::Readmitted);
-  // It goes away: first neither field fits, then the Earth's.
+  // The disturbance ends: first neither field fits, then the Earth's does.
   run(2.0, headingOff(0.05), headingOff(-0.05));
   EXPECT_EQ(last_.status, Status::Innovation);
   run(5.0, headingOff(0.0), headingOff(-0.1));
@@ -150,7 +150,7 @@ TEST_F(MagnetometerGateTest, BeginsAnotherDisturbanceWhenTheFirstHasChanged) {
   for (int i = 0; i < 700 && begun_ < 2; ++i) run(0.1, normOff(0.1), normOff(0.1));
   EXPECT_EQ(last_.status, Status::Readmitted);
   EXPECT_EQ(begun_, 2);
-  // One that only paused is taken up again.
+  // A disturbance that only paused is used again.
   run(5.0, normOff(0.1), normOff(0.1));
   run(5.0, normOff(0.1), headingOff(0.0));
   EXPECT_EQ(last_.status, Status::Readmitted);
@@ -158,7 +158,8 @@ TEST_F(MagnetometerGateTest, BeginsAnotherDisturbanceWhenTheFirstHasChanged) {
 }
 
 TEST_F(MagnetometerGateTest, BelievesNothingOfWhatDisagreesForLongerThanItAgrees) {
-  // By turns a minute that fits and more than one that does not, as the rig turns with a wrong calibration.
+  // Alternately a minute of agreement and more than a minute of disagreement, as when a rig with a wrong
+  // calibration turns.
   run(30.0, headingOff(0.0));
   for (int i = 0; i < 6; ++i) {
     run(50.0, normOff(0.1), normOff(0.1));
@@ -194,7 +195,7 @@ TEST_F(MagnetometerGateTest, BelievesNothingOfAFieldThatNeverAgreesWell) {
   poor.correlated_sigma_rad = 0.03;
   run(10.0, poor);
   EXPECT_EQ(last_.status, Status::Inconsistent);
-  // It takes both agreement and a field that has become steady.
+  // The release needs both agreement and a small time-correlated error.
   run(200.0, poor);
   EXPECT_EQ(last_.status, Status::Inconsistent);
   run(5.0, headingOff(0.01));

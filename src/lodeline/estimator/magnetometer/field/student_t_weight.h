@@ -7,22 +7,22 @@
 
 namespace lodeline {
 
-/// How far size and dip of the field are from the expected ones at this moment. What errs much more than the
-/// floor usually does - a passing magnet below the limits of the gate - says so by them, and is given as
-/// much more variance as a Student distribution would: that of `student_dof` degrees, of which the two
-/// components are one draw, weighs a deviation d of variance sigma^2 per component like one of variance
-/// (freedom sigma^2 + d^T d) / (freedom + 2) (Lange, Little, Taylor, "Robust statistical modeling using the
-/// t distribution", JASA 1989).
+/// Variance of the field's time-correlated error at this moment, from the deviation of size and dip. A field
+/// that deviates much more than the floor, e.g. by a passing magnet below the limits of the gate, shows it in
+/// size and dip. It then gets the variance that a Student distribution of `student_dof` degrees would give,
+/// with both components as one draw. A deviation d with variance sigma^2 per component weighs like one of
+/// variance (freedom sigma^2 + d^T d) / (freedom + 2) (Lange, Little, Taylor, "Robust statistical modeling
+/// using the t distribution", JASA 1989).
 class StudentTWeight {
  public:
   explicit StudentTWeight(const MagnetometerOptions& options) : options_(options) {}
 
-  /// A reading: measured minus expected field along the field and across it in its vertical plane.
-  /// `state_variance_T2` of the expectation, `white_variance_T2` of the reading, per component.
+  /// Adds a reading: measured minus expected field, along the field and across it in its vertical plane.
+  /// `state_variance_T2`: variance of the expectation, `white_variance_T2`: of the reading, per component.
   void add(Time time, const Vec2& deviation_T, double state_variance_T2, double white_variance_T2);
 
-  /// One sigma per axis of a lasting error whose usual size is `correlated_noise_sigma_T`; not less than
-  /// that.
+  /// Sigma per axis of the time-correlated error, whose usual size is `correlated_noise_sigma_T`. The result
+  /// is not smaller than that.
   double sigma_T(double correlated_noise_sigma_T) const;
 
  private:
@@ -30,7 +30,7 @@ class StudentTWeight {
   std::optional<Time> last_;
   Vec2 mean_T_ = Vec2::Zero();      ///< over the last `deviation_s`
   double white_variance_T2_ = 0.0;  ///< of this mean
-  double excess_T2_ = 0.0;          ///< its square beyond what state and noise account for
+  double excess_T2_ = 0.0;          ///< squared mean beyond the variance of state and noise
 };
 
 }  // namespace lodeline

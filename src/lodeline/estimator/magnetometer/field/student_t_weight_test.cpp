@@ -33,7 +33,7 @@ TEST(StudentTWeight, GrowsWithTheDeviation) {
 
 TEST(StudentTWeight, LeavesToStateAndNoiseWhatTheyAccountFor) {
   EXPECT_DOUBLE_EQ(after(0.2e-6, 0.15e-6, 0.0).sigma_T(kFloor_T), kFloor_T);
-  // Chance of white noise is averaged, and what is left of it is allowed for.
+  // White noise is averaged, and the rest of it is part of the variance.
   StudentTWeight deviation{MagnetometerOptions()};
   std::mt19937 engine(1);
   std::normal_distribution<double> normal;

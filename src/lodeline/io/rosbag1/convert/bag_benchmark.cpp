@@ -9,8 +9,8 @@
 #include "lodeline/io/rosbag1/image_messages.h"
 #include "lodeline/io/rosbag1/messages.h"
 
-// Reading all messages of a bag that lies in the file cache, topic by topic side by side as the synchronizer
-// does.
+// Measures the reading of all messages of a bag in the file cache, with the topics in parallel as in the
+// synchronizer.
 
 namespace lodeline {
 namespace {

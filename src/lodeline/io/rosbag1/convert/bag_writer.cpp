@@ -15,7 +15,7 @@
 namespace lodeline {
 namespace {
 
-/// A type as rosbag wants to have it described.
+/// Description of a message type as rosbag requires it.
 struct TypeDescription {
   const char* name;
   const char* md5sum;
@@ -39,8 +39,8 @@ TypeDescription describe(const std::string& type) {
   throw std::logic_error("no definition of " + type);
 }
 
-/// Bytes in ROS's serialization with the description of their type. ROS's own message structs are not used:
-/// those of Debian 12 do not compile as C++20.
+/// Serialized bytes with the description of their type. ROS's own message structs are not used because those
+/// of Debian 12 do not compile as C++20.
 struct SerializedMessage {
   TypeDescription type;
   wire::Bytes bytes;
@@ -122,7 +122,7 @@ void BagWriter::write(const std::string& topic, const std::string& type, Time re
                     "and 2106",
                     implementation_->file.string(), received.nanoseconds(), topic));
   }
-  // ROS takes the time 0 for none; its least is 1 ns.
+  // ROS treats the time 0 as undefined; the smallest time is 1 ns.
   const int64_t ns = std::max<int64_t>(received.nanoseconds(), 1);
   const ros::Time time(static_cast<uint32_t>(ns / 1'000'000'000), static_cast<uint32_t>(ns % 1'000'000'000));
   implementation_->guarded([&] {

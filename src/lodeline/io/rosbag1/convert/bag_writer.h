@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Writes messages into a ROS 1 bag, through Debian's librosbag-storage.
+/// Writes messages to a ROS 1 bag with Debian's librosbag-storage.
 class BagWriter {
  public:
   /// `compression`: "none", "bz2" or "lz4". Throws InputError where the file cannot be written, and
@@ -19,10 +19,10 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// `type`: e.g. "sensor_msgs/Imu"; of those in messages.h. `message` in ROS's serialization. Throws
-  /// InputError for a time before 1970 or after 2106, which a bag cannot hold.
+  /// Writes one message. `type`: one of those in messages.h, e.g. "sensor_msgs/Imu". `message` has ROS's
+  /// serialization. Throws InputError for a time before 1970 or after 2106, which a bag cannot represent.
   void write(const std::string& topic, const std::string& type, Time received, wire::Bytes message);
-  /// Completes the file. Throws InputError where that fails.
+  /// Completes the file. Throws InputError on failure.
   void close();
 
  private:

@@ -1,7 +1,7 @@
 #include "lodeline/io/rosbag1/convert/bag_writer.h"
 #include "lodeline/util/error.h"
 
-// In place of bag_writer.cpp where librosbag-storage is not there when the program is built.
+// Replaces bag_writer.cpp in builds without librosbag-storage.
 
 namespace lodeline {
 

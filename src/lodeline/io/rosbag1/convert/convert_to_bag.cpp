@@ -18,14 +18,14 @@
 namespace lodeline {
 namespace {
 
-/// A reading that waits for its turn.
+/// A reading that is not written yet.
 struct Outgoing {
   Time time;
   std::function<void()> write;
 };
 using Pull = std::function<std::optional<Outgoing>()>;
 
-/// Writes the readings of several streams in the order of their stamps, each stream in its own order.
+/// Writes the readings of several streams in the order of their stamps; each stream keeps its own order.
 void merge(const std::vector<Pull>& streams) {
   std::vector<std::optional<Outgoing>> heads;
   for (const Pull& pull : streams) heads.push_back(pull());
@@ -40,7 +40,7 @@ void merge(const std::vector<Pull>& streams) {
   }
 }
 
-/// All that a folder has; inertial and magnetic readings alone are a recording too.
+/// Options for all parts of a folder; a recording may have only inertial and magnetic readings.
 EurocOptions optionsFor(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& rig_files) {
   EurocOptions options;
@@ -86,8 +86,8 @@ class FolderConversion {
   const std::map<std::string, std::string>& topics() const { return topics_; }
 
  private:
-  /// Numbers the messages of a sensor. A bag gives them back in the order in which they were received, so
-  /// that must not run backwards, whatever the stamps do.
+  /// Counts and writes a message of a sensor. A bag returns messages in the order of their reception times,
+  /// so these must not decrease even where the stamps do.
   void write(const std::string& sensor, const std::string& topic, const messages::Type& type, Time stamp,
              wire::Bytes message) {
     Time& received = received_.try_emplace(sensor, stamp).first->second;
@@ -157,7 +157,7 @@ class FolderConversion {
     return Outgoing{time, [this, camera, pending = std::move(*pending)] { writeImage(camera, pending); }};
   }
 
-  /// The first image of a camera decides on the type of its messages, which a topic has but one of.
+  /// The first image of a camera determines the type of its messages, because a topic has one type.
   void writeImage(size_t camera, const PendingImage& pending) {
     const std::string sensor = fmt::format("cam{}", camera);
     StoredImage stored = pending.stored();

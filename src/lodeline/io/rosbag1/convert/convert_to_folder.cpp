@@ -16,7 +16,7 @@
 namespace lodeline {
 namespace {
 
-/// The name's end by which image programs know a file; told by its first bytes.
+/// File name extension of an image file, determined from its first bytes.
 std::string extensionOf(const std::vector<uint8_t>& file) {
   if (isPng(file)) return "png";
   if (file.size() > 2 && file[0] == 0xff && file[1] == 0xd8) return "jpg";
@@ -96,7 +96,7 @@ class BagConversion {
     list.close();
   }
 
-  /// Returns the file's name; nothing where the image cannot be had, which is reported.
+  /// Writes an image and returns the name of its file; reports an unavailable image and returns nothing.
   std::optional<std::string> writeImage(const PendingImage& pending, const std::filesystem::path& folder,
                                         const std::string& stem) {
     StoredImage image = pending.stored();
@@ -104,7 +104,7 @@ class BagConversion {
       diagnostics_->report(Severity::Warning, "image_unreadable", image.problem + "; left out");
       return std::nullopt;
     }
-    // Fast rather than small: 1 of 9.
+    // Compression level 1 of 9, for speed.
     if (image.file.empty()) cv::imencode(".png", image.pixels, image.file, {cv::IMWRITE_PNG_COMPRESSION, 1});
     const std::string name = fmt::format("{}.{}", stem, extensionOf(image.file));
     writeBytes(image.file, folder / name);

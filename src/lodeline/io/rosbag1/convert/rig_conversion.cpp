@@ -12,9 +12,9 @@
 namespace lodeline {
 namespace {
 
-/// Keys that Kalibr does not write; in a folder they stand in sensor.yaml.
+/// Keys that Kalibr does not write; in a folder, they are in sensor.yaml.
 constexpr std::array kBesideKalibr = {"rate_hz", "mask"};
-/// Keys of a rig file that sensor.yaml does not know.
+/// Keys of a rig file that sensor.yaml does not have.
 constexpr std::array kOfRigFile = {"topic", "rostopic", "water_density_kg_per_m3", "surface_pressure_Pa"};
 
 template <typename Keys>
@@ -28,7 +28,7 @@ void writeYaml(const YAML::Node& node, const std::filesystem::path& file) {
   stream.close();
 }
 
-/// Copies the mask that `node` names and makes the key name the copy.
+/// Copies the mask named in `node` and sets the key to the copy.
 void copyMask(const std::filesystem::path& from_folder, const std::filesystem::path& copy, YAML::Node* node) {
   if (!(*node)["mask"].IsDefined()) return;
   const std::filesystem::path mask = from_folder / (*node)["mask"].Scalar();
@@ -67,7 +67,7 @@ void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::st
   }
   if (root["imu0"].IsDefined() && rig.sections.at("imu0").keys == SectionKeys::Kalibr &&
       !root["imu0"]["update_rate"].IsDefined()) {
-    root["imu0"]["update_rate"] = 0;  // marks the section as Kalibr's; 0 stands for unknown
+    root["imu0"]["update_rate"] = 0;  // marks the section as Kalibr's; 0 means unknown
   }
   writeYaml(root, file);
 }

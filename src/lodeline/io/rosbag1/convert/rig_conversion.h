@@ -10,13 +10,14 @@
 
 namespace lodeline {
 
-/// Writes the calibration of a recording in the EuRoC ASL layout, from its sensor.yaml or Kalibr files, as
-/// one rig file, numbers letter by letter. `topics`: by sensor. Masks are copied beside it.
+/// Writes the calibration of a recording in the EuRoC ASL layout (sensor.yaml or Kalibr files) as one rig
+/// file. Numbers are copied digit by digit. `topics`: by sensor. Masks are copied to the folder of the rig
+/// file.
 void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::string>& topics,
                   const std::filesystem::path& file);
 
-/// Writes a rig file's sections as sensor.yaml files into `folder`/mav0, those of Kalibr as his files into
-/// `folder`, numbers letter by letter. Masks are copied.
+/// Writes the sections of a rig file as sensor.yaml files in `folder`/mav0, and Kalibr's sections as Kalibr's
+/// files in `folder`. Numbers are copied digit by digit. Masks are copied.
 void writeFolderCalibration(const RigFile& rig_file, const std::filesystem::path& folder);
 
 }  // namespace lodeline

@@ -12,13 +12,14 @@
 namespace lodeline {
 namespace {
 
-/// Where readings of the wrong sign leave so many times more disagreement than the opposite ones.
+/// Ratio of the disagreements of readings and opposite readings that indicates a wrong sign.
 constexpr double kMuchBetter = 3.0;
 constexpr double kDistinct = 4.0;
-/// Gravity in the axes of a gyroscope whose signs are right is off by hand accelerations only.
+/// Maximum rotation between the axes of accelerometer and gyroscope. With correct signs, only hand
+/// accelerations cause a difference.
 constexpr double kGreatestGravityTurn_rad = 45.0 * kDegree;
 constexpr double kGreatestMountingError_rad = 20.0 * kDegree;
-/// Nearer to the magnetic equator the sign of the dip is no witness.
+/// Minimum dip; nearer to the magnetic equator, the sign of the dip is not significant.
 constexpr double kTellingDip_rad = 10.0 * kDegree;
 
 std::vector<ImuSample> turnedTheOtherWay(std::span<const ImuSample> imu) {

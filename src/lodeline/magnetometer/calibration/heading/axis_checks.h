@@ -11,24 +11,25 @@
 
 namespace lodeline {
 
-/// Whether gyroscope, accelerometer and field turn alike. The field (corrected, in units of its size) and
-/// gravity keep their direction in the world, so both must turn against the body as the gyroscope says, and
-/// gravity must do so in the gyroscope's own axes. Gives what is wrong in words; nothing where all agree or
-/// the motion does not tell. A sign or an order of axes that keeps the gyroscope's frame right-handed shows
-/// in gravity alone; one that mirrors it shows in the field as well.
+/// Tests whether gyroscope, accelerometer and field measure the same rotations. The field (corrected, in
+/// units of its magnitude) and gravity have constant directions in the world. Both must therefore rotate
+/// relative to the body as the gyroscope measures, and gravity must do so in the gyroscope's own axes.
+/// Returns a description of the problem; nothing where all agree or the motion is insufficient. Wrong signs
+/// or a wrong order of axes that keep the gyroscope's frame right-handed appear in gravity alone. Those that
+/// mirror it also appear in the field.
 std::optional<std::string> gyroscopeObjection(std::span<const NormalizedFieldSample> field,
                                               const FieldAlignment& alignment,
                                               std::span<const ImuSample> imu);
 
-/// Reports `magnetometer_reversed` for a measured dip (rad, below the horizon) that is clearly negative: to
-/// be called where no site tells the hemisphere.
+/// Reports `magnetometer_reversed` for a measured dip (rad, below the horizon) that is clearly negative. Call
+/// it where no site determines the hemisphere.
 void reportNegativeDip(double dip_rad, Diagnostics* diagnostics);
 
-/// Judges the sign of the measured dip and the rotation found. Mirrored axes (exchanged, or one or three
-/// signs reversed) come out as right-handed ones with the field reversed (alignField), so the dip has the
-/// sign of the other hemisphere. Throws EstimationError where the field at the site says that it is so;
-/// without a site, see reportNegativeDip(). Reports `magnetometer_rotation` where the rotation is far from
-/// the one that the recording states.
+/// Checks the sign of the measured dip and the estimated rotation. Mirrored axes (exchanged, or one or three
+/// signs reversed) appear as right-handed axes with the field reversed (alignField), so the dip has the sign
+/// of the other hemisphere. Throws EstimationError where the field at the site proves this; without a site,
+/// see reportNegativeDip(). Reports `magnetometer_rotation` where the rotation differs greatly from that
+/// stated in the recording.
 void checkAxes(const MagnetometerFit& fit, const std::optional<Vec3>& site_field_ENU,
                const std::optional<Quat>& stated_body_from_magnetometer, Diagnostics* diagnostics);
 

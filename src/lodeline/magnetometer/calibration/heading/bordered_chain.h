@@ -6,10 +6,10 @@
 
 namespace lodeline {
 
-/// Gauss-Newton normal equations of a chain of small states x_0 … x_n, each tied to the next, and of a few
-/// parameters p that touch all of them. Eliminating the states one after the other (forward sweep, then back
-/// substitution) is the batch form of a Kalman filter with Rauch-Tung-Striebel smoothing: what is left are
-/// the parameters' equations with the states marginalized.
+/// Gauss-Newton normal equations for a chain of small states x_0 … x_n and a few parameters p. Residuals
+/// connect each state with the next one and with p. Eliminating one state after the other (forward sweep,
+/// then back substitution) is the batch form of a Kalman filter with Rauch-Tung-Striebel smoothing. The
+/// remaining equations are those of the parameters with the states marginalized.
 template <int kParameters>
 class BorderedChain {
  public:
@@ -19,7 +19,7 @@ class BorderedChain {
 
   explicit BorderedChain(size_t states) : states_(states) {}
 
-  /// Whitened residual r + by_state x_k + by_parameters p.
+  /// Adds the whitened residual r + by_state x_k + by_parameters p.
   void addUnary(size_t k, const Vec3& r, const Mat3& by_state, const Border& by_parameters) {
     State& s = states_[k];
     s.diagonal.noalias() += by_state.transpose() * by_state;
@@ -28,7 +28,7 @@ class BorderedChain {
     addParameters(r, by_parameters);
   }
 
-  /// Whitened residual r + by_first x_k + by_second x_{k+1} + by_parameters p.
+  /// Adds the whitened residual r + by_first x_k + by_second x_{k+1} + by_parameters p.
   void addBinary(size_t k, const Vec3& r, const Mat3& by_first, const Mat3& by_second,
                  const Border& by_parameters) {
     addUnary(k, r, by_first, by_parameters);
@@ -39,23 +39,23 @@ class BorderedChain {
     states_[k].coupling.noalias() += by_first.transpose() * by_second;
   }
 
-  /// One whitened residual (value + offset of p[index]) / sigma.
+  /// Adds the whitened scalar residual (value + p[index]) / sigma.
   void addPrior(int index, double value, double sigma) {
     information_(index, index) += 1.0 / (sigma * sigma);
     gradient_[index] += value / (sigma * sigma);
     cost_ += 0.5 * value * value / (sigma * sigma);
   }
 
-  /// Half the sum of squares of everything added.
+  /// Half the sum of squares of all added residuals.
   double cost() const { return cost_; }
 
   struct Marginal {
-    Information information;  ///< of the parameters
+    Information information;  ///< information matrix of the parameters
     Parameters gradient;
-    double log_determinant = 0.0;  ///< of the states' block
-    double reduction = 0.0;        ///< of the cost by the states' best step with p = 0
+    double log_determinant = 0.0;  ///< log determinant of the states' block
+    double reduction = 0.0;        ///< decrease of the cost by the optimal step of the states for p = 0
   };
-  /// Once.
+  /// Marginalizes the states; call it only once.
   Marginal eliminate() {
     Marginal marginal{information_, gradient_, 0.0, 0.0};
     for (size_t k = 0; k < states_.size(); ++k) {
@@ -76,7 +76,7 @@ class BorderedChain {
     return marginal;
   }
 
-  /// The states' steps that belong to a step of the parameters, after eliminate().
+  /// Steps of the states for a step p of the parameters; call it after eliminate().
   std::vector<Vec3> statesFor(const Parameters& p) const {
     std::vector<Vec3> steps(states_.size());
     Vec3 following = Vec3::Zero();
@@ -91,7 +91,7 @@ class BorderedChain {
  private:
   struct State {
     Mat3 diagonal = Mat3::Zero();
-    Mat3 coupling = Mat3::Zero();  ///< with the next state
+    Mat3 coupling = Mat3::Zero();  ///< block with the next state
     Border border = Border::Zero();
     Vec3 gradient = Vec3::Zero();
     Mat3 inverse = Mat3::Zero();

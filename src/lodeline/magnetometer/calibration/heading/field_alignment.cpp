@@ -26,7 +26,7 @@ std::vector<Pair> makePairs(std::span<const NormalizedFieldSample> field,
   for (const NormalizedFieldSample& first : field) {
     while (last < field.size() && (field[last].time - first.time).seconds() < options.step_s) ++last;
     if (last == field.size()) break;
-    // Across a hole in the data the gyroscope's own errors would count.
+    // Across a gap in the data, the gyroscope's own errors would be significant.
     if ((field[last].time - first.time).seconds() > 5.0 * options.step_s) continue;
     pairs.push_back({first.time, field[last].time, first.field_M, field[last].field_M});
   }
@@ -38,7 +38,7 @@ std::vector<Pair> makePairs(std::span<const NormalizedFieldSample> field,
 
 struct Solution {
   Mat3 rotation = Mat3::Identity();
-  double mean_square = std::numeric_limits<double>::infinity();  ///< per axis, of the null vector
+  double mean_square = std::numeric_limits<double>::infinity();  ///< per axis, for the null vector
   double distinctness = 0.0;
   size_t pairs = 0;
 };
@@ -69,14 +69,14 @@ Solution solveRotation(const std::vector<Pair>& pairs, const GyroscopePath& path
   const Eigen::Matrix<double, 9, 1> null = solver.eigenvectors().col(0);
   const Mat3 matrix = Eigen::Map<const Mat3>(null.data());
   solution.rotation = nearestRotation(matrix.determinant() < 0.0 ? Mat3(-matrix) : matrix);
-  // The null vector has unit length where a rotation matrix has sqrt(3).
+  // The null vector has unit length, whereas a rotation matrix has norm sqrt(3).
   solution.mean_square = std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(solution.pairs);
   solution.distinctness = solver.eigenvalues()[1] / std::max(solver.eigenvalues()[0], 1e-300);
   return solution;
 }
 
 double bestTimeOffset(const std::vector<Pair>& pairs, const GyroscopePath& path, double greatest_s) {
-  constexpr int kSteps = 10;  // to either side
+  constexpr int kSteps = 10;  // in both directions
   double best_s = 0.0;
   double best = std::numeric_limits<double>::infinity();
   const auto look = [&](double offset_s) {

@@ -27,10 +27,10 @@ Basis activeBasis(const InertialCalibrationOptions& options, const Mat3& soft_ir
   return basis;
 }
 
-/// Solves the active parameters' equations, scaled to a unit diagonal.
+/// Solution of the active parameters' equations, scaled to a unit diagonal.
 struct Reduced {
   Step step = Step::Zero();
-  double reduction = 0.0;  ///< of the cost
+  double reduction = 0.0;  ///< decrease of the cost
   double log_determinant = 0.0;
 };
 Reduced solve(const InertialSmoother::Chain::Marginal& marginal, const Basis& active) {
@@ -84,7 +84,7 @@ class Calibrator {
   }
 
  private:
-  /// Gauss-Newton until the steps vanish.
+  /// Gauss-Newton iterations until the steps vanish.
   void iterate(bool with_time_offset) {
     for (int i = 0; i < options_.max_iterations; ++i) {
       smoother_.linearize();
@@ -103,7 +103,7 @@ class Calibrator {
     throw EstimationError("the estimate with gyroscope and accelerometer did not settle");
   }
 
-  /// Negative logarithm of the likelihood, orientations and parameters integrated out.
+  /// Negative logarithm of the likelihood with orientations and parameters integrated out.
   double negativeLogLikelihood(const SmootherNoise& noise, const Basis& active) const {
     InertialSmoother::Chain chain = smoother_.equations(noise);
     const double cost = chain.cost();
@@ -113,7 +113,7 @@ class Calibrator {
            0.5 * (marginal.log_determinant + reduced.log_determinant) + smoother_.logSigmas(noise);
   }
 
-  /// One coordinate's minimum by golden section in its logarithm.
+  /// Minimizes over one noise parameter by golden section search in its logarithm.
   void minimize(double SmootherNoise::*sigma, double least, double greatest, const Basis& active) {
     constexpr double kGolden = 0.618033988749895;
     double a = std::log(least), b = std::log(greatest);
@@ -153,7 +153,7 @@ class Calibrator {
     }
   }
 
-  /// Of one reading and axis.
+  /// RMS residual of one reading and axis.
   double residualRms() const {
     double square = 0.0;
     double count = 0.0;
@@ -172,7 +172,7 @@ class Calibrator {
     }
   }
 
-  /// Widened for residuals that are alike from moment to moment.
+  /// Covariance, increased for residuals that are correlated in time.
   Eigen::MatrixXd covarianceWith(bool with_time_offset, double correlation_factor = 1.0) const {
     InertialSmoother::Chain chain = smoother_.equations(noise_);
     Step left_out = Step::Zero();

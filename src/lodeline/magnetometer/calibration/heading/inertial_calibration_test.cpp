@@ -12,7 +12,7 @@ namespace {
 
 using namespace inertial_parameter;
 
-/// A start as the ellipsoid and the alignment give it, a little off.
+/// Initial values with small errors, as from the ellipsoid and the alignment.
 InertialParameters startFor(const test::TurningSensor& sensor) {
   InertialParameters start = sensor.truth;
   start.soft_iron += 0.005 * Mat3::Identity();
@@ -89,7 +89,7 @@ TEST(InertialCalibration, LeavesOutReadingsThatPointTheWrongWay) {
   const Quat turn = so3::exp(Vec3(0.2, 0.1, 0.0));
   const Mat3 correction = sensor.truth.soft_iron.inverse();
   for (size_t i = 100; i < 120; ++i) {
-    // Of the right size, so that the ellipsoid cannot tell.
+    // The magnitude is correct, so the ellipsoid fit cannot detect it.
     const Vec3 corrected = turn * (correction * (field[i].field_M - sensor.truth.hard_iron));
     field[i].field_M = sensor.truth.soft_iron * corrected + sensor.truth.hard_iron;
   }

@@ -44,7 +44,7 @@ InertialResidual fieldResidual(const Vec3& reading, const Mat3& mean_turn, const
   j.middleCols<3>(kHardIron) = -Mat3::Identity();
   j.middleCols<3>(kRotation) = -sensor_from_body * so3::skew(mean_B);
   j.col(kDip) = -sensor_from_body * mean_turn * body_from_world * by_dip_W;
-  // In body axes the field turns against the body: d field_B / dt = -rate x field_B.
+  // In body axes, the field rotates opposite to the body: d field_B / dt = -rate x field_B.
   j.col(kTimeOffset) = sensor_from_body * rate_B.cross(mean_B);
   return r;
 }

@@ -54,7 +54,7 @@ TEST(FieldResidual, JacobiansAgreeWithDifferences) {
         numeric([&](double d) { return value(kWorldFromBody, moved(p, d * Step::Unit(i))); });
     EXPECT_LT((r.by_parameters.col(i) - by_parameter).norm(), 1e-8) << i;
   }
-  // A reading sensed later sees a body that has turned on: C -> exp(-rate dt) C.
+  // At a later measurement, the body has rotated further: C -> exp(-rate dt) C.
   const Vec3 by_time = numeric([&](double d) {
     const Mat3 turned = so3::exp(-d * rate_B).toRotationMatrix() * kMeanTurn;
     return fieldResidual(reading, turned, rate_B, kWorldFromBody, p).value;
@@ -99,7 +99,7 @@ TEST(TurnResidual, JacobiansAgreeWithDifferences) {
   }
 }
 
-// The chain's elimination against the dense equations.
+// Compares the chain's elimination with the dense equations.
 TEST(BorderedChain, SolvesWhatTheDenseEquationsSolve) {
   constexpr int kStates = 6, kParameters = 2, kAll = 3 * kStates + kParameters;
   using Chain = BorderedChain<kParameters>;

@@ -9,11 +9,11 @@
 namespace lodeline {
 namespace {
 
-/// How fast a body may turn while nobody measures it, rad/s, one sigma.
+/// Angular rate of the body during gaps in the gyroscope's readings, rad/s, one sigma.
 constexpr double kUnmeasuredRate = 0.5;
 constexpr size_t kFewestMoments = 30;
 
-/// How the body of the first reading lies in the world, from the mean directions of up and field.
+/// Attitude of the body at the first reading, from the mean directions of up and field.
 Quat worldFromStart(const Vec3& up_S, const Vec3& field_S) {
   Mat3 start_from_world;
   const Vec3 east_S = field_S.cross(up_S).normalized();
@@ -36,7 +36,8 @@ InertialSmoother::InertialSmoother(std::span<const NormalizedFieldSample> field,
 }
 
 void InertialSmoother::makeMoments(std::span<const NormalizedFieldSample> field, const GyroscopePath& path) {
-  // The time offset still moves a little; readings at the very ends would leave the IMU's.
+  // The time offset still changes a little; without a margin, readings at the ends would exceed the IMU's
+  // time span.
   const Duration margin = Duration::fromSeconds(0.02);
   const Duration offset = Duration::fromSeconds(parameters_.time_offset_s);
   std::vector<NormalizedFieldSample> inside;
@@ -50,7 +51,7 @@ void InertialSmoother::makeMoments(std::span<const NormalizedFieldSample> field,
   const double group_s = std::max(options_.least_moment_s, length_s / options_.most_moments);
   size_t begin = 0;
   for (size_t end = 1; end <= inside.size(); ++end) {
-    // Half a microsecond: stamps of equal distance are rounded.
+    // Half a microsecond, because stamps with equal spacing are rounded.
     if (end < inside.size() && (inside[end].time - inside[begin].time).seconds() < group_s - 5e-7) continue;
     Moment moment;
     const double share = 1.0 / static_cast<double>(end - begin);
@@ -130,7 +131,7 @@ InertialSmoother::Chain InertialSmoother::equations(const SmootherNoise& noise) 
       chain.addUnary(k, w * t.field.value, w * t.field.by_rotation, w * t.field.by_parameters);
     }
     const double spacing_s = std::max(t.step_s, options_.least_moment_s);
-    // Moments closer together than accelerations change count for one.
+    // Moments with a spacing below the correlation time of the accelerations count as one.
     const double w = std::min(1.0, std::sqrt(spacing_s / (2.0 * options_.acceleration_correlation_s))) /
                      noise.acceleration_sigma;
     chain.addUnary(k, w * t.gravity.value, w * t.gravity.by_rotation, w * t.gravity.by_parameters);

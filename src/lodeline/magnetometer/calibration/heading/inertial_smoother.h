@@ -8,25 +8,25 @@
 
 namespace lodeline {
 
-/// Noise that the likelihood is evaluated at.
+/// Noise parameters of the likelihood.
 struct SmootherNoise {
-  double reading_sigma = 0.01;      ///< of one reading, units of the field's size
+  double reading_sigma = 0.01;      ///< of one reading, units of the field magnitude
   double gyroscope_density = 1e-4;  ///< rad/s/sqrt(Hz)
-  double acceleration_sigma = 1.0;  ///< m/s^2, of moments that are independent of each other
+  double acceleration_sigma = 1.0;  ///< m/s^2, for independent moments
 };
 
-/// The orientations at the moments of a record and everything that ties them to each other and to the
-/// parameters, linearized at one point.
+/// Orientations at the moments of a record, with all residuals between them and the parameters, linearized at
+/// one point.
 class InertialSmoother {
  public:
   using Chain = BorderedChain<inertial_parameter::kSize>;
 
-  /// Readings in a moment share one orientation.
+  /// A group of readings that share one orientation.
   struct Moment {
-    Time stamp;                   ///< mean of the readings' stamps
+    Time stamp;                   ///< mean of the stamps of the readings
     Vec3 reading = Vec3::Zero();  ///< mean
     std::vector<Time> stamps;
-    bool used = true;  ///< whether the field counts
+    bool used = true;  ///< whether the field residual is used
   };
 
   InertialSmoother(std::span<const NormalizedFieldSample> field, std::span<const ImuSample> imu,
@@ -35,20 +35,20 @@ class InertialSmoother {
   const std::vector<Moment>& moments() const { return moments_; }
   const InertialParameters& parameters() const { return parameters_; }
 
-  /// Takes all residuals and Jacobians anew at the present orientations and parameters.
+  /// Computes all residuals and Jacobians at the current orientations and parameters.
   void linearize();
-  /// The normal equations, half the sum of squares in them.
+  /// The normal equations with half the sum of squares.
   Chain equations(const SmootherNoise& noise) const;
-  /// Sum of the logarithms of the standard deviations of everything in equations().
+  /// Sum of the logarithms of the standard deviations of all residuals in equations().
   double logSigmas(const SmootherNoise& noise) const;
-  /// Moves parameters and orientations.
+  /// Updates parameters and orientations.
   void step(const Eigen::Matrix<double, inertial_parameter::kSize, 1>& parameters,
             const std::vector<Vec3>& rotations);
 
-  /// Field residuals at the last linearization, per moment.
+  /// Field residual of a moment at the last linearization.
   Vec3 fieldResidualAt(size_t moment) const { return terms_[moment].field.value; }
   size_t readingsAt(size_t moment) const { return moments_[moment].stamps.size(); }
-  /// RMS per axis of the specific force's distance from gravity, m/s^2.
+  /// RMS per axis of the difference between specific force and gravity, m/s^2.
   double accelerationRms() const;
   void setUsed(size_t moment, bool used) { moments_[moment].used = used; }
 
@@ -57,7 +57,7 @@ class InertialSmoother {
     InertialResidual field, gravity;
     TurnResidual turn;    ///< to the next moment
     double step_s = 0.0;  ///< to the next moment
-    double gap_s = 0.0;   ///< of it without gyroscope
+    double gap_s = 0.0;   ///< part of the step without gyroscope readings
   };
 
   void makeMoments(std::span<const NormalizedFieldSample> field, const GyroscopePath& path);

@@ -9,8 +9,8 @@
 
 namespace lodeline::test {
 
-/// A rig that is waved about as in TestMotion, with a magnetometer of which everything is known. Field in
-/// units of its size.
+/// A hand-held rig that moves like TestMotion, with a magnetometer whose true parameters are known. The field
+/// is in units of its magnitude.
 struct TurningSensor {
   double duration_s = 30.0;
   double field_rate_hz = 50.0;

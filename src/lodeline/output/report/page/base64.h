@@ -6,7 +6,7 @@
 
 namespace lodeline {
 
-/// RFC 4648 section 4, with padding.
+/// Base64 encoding by RFC 4648 section 4, with padding.
 std::string base64(std::span<const uint8_t> bytes);
 
 }  // namespace lodeline

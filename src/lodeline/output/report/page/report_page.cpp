@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::string_view kPlaceholder = "LODELINE_DATA";
 
-/// JSON that cannot end the script element it stands in.
+/// JSON text that cannot end the script element around it.
 std::string forScript(const nlohmann::ordered_json& data) {
-  // Paths and messages may hold bytes that are no UTF-8.
+  // Paths and messages may contain bytes that are not UTF-8.
   const std::string json = jsonText(data, -1);
   std::string text;
   text.reserve(json.size());

@@ -10,12 +10,12 @@
 
 namespace lodeline {
 
-/// The template with data (`PageData` in web/src/data.ts) put in. Throws UsageError where the program was
-/// built without the page.
+/// The template with data (`PageData` in web/src/data.ts). Throws UsageError where the program was built
+/// without the page.
 std::string fillPage(const nlohmann::ordered_json& data);
 
-/// One self-contained HTML page that shows runs, given their output folders; docs/report.md says what is on
-/// it. Throws as runPageJson() and fillPage().
+/// A self-contained HTML page of one or more runs from their output folders; docs/report.md describes its
+/// content. Throws as runPageJson() and fillPage().
 std::string reportPage(const std::vector<std::filesystem::path>& runs,
                        const std::optional<ReportReference>& reference, Diagnostics* diagnostics);
 

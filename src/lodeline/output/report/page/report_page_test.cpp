@@ -69,7 +69,7 @@ TEST(RunPage, ShowsTheRefinedResultFirst) {
   EXPECT_EQ(refined["landmarks"]["total"], 750);
 }
 
-// Calibrated at home, dived elsewhere.
+// The magnetometer was calibrated at another place.
 TEST(RunPage, TakesTheSphereFromTheRunsOwnField) {
   const TemporaryFolder folder;
   test::writeTestRun(folder.path() / "dive");

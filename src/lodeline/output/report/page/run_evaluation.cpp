@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// `attitudes`: the evaluation whose errors of attitude are shown.
+/// `attitudes`: the evaluation of which the attitude errors are shown.
 nlohmann::ordered_json errorsJson(const Evaluation& evaluation, const Evaluation& attitudes,
                                   int64_t origin_ns) {
   RunTable table;
@@ -24,9 +24,9 @@ nlohmann::ordered_json errorsJson(const Evaluation& evaluation, const Evaluation
   return tableJson(table, origin_ns);
 }
 
-/// After SE(3) alignment, the same by rotation about the vertical alone: positions on a nearly straight line
-/// leave the rotation about it free, which then is no error of the run. Nothing where the reference's world
-/// is not level.
+/// Evaluation after rotation about the vertical alone, if the alignment is SE(3). On a nearly straight line,
+/// positions do not determine the rotation about it, which is then not an error of the run. Empty where the
+/// reference's world is not level.
 std::optional<Evaluation> yawAligned(const Evaluation& evaluation, Diagnostics* remarks) {
   if (evaluation.options.alignment != AlignmentType::SE3) return std::nullopt;
   EvaluationOptions options = evaluation.options;
@@ -38,7 +38,7 @@ std::optional<Evaluation> yawAligned(const Evaluation& evaluation, Diagnostics* 
   return level;
 }
 
-/// The reference while the run lasted.
+/// The reference within the time of the run.
 nlohmann::ordered_json pathJson(const Evaluation& evaluation, int64_t origin_ns) {
   std::vector<int64_t> stamp_ns;
   std::vector<double> coordinates[3];

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty where there is no such file.
+/// Reads a file; empty where it does not exist.
 std::string readWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::stringstream text;
@@ -68,15 +68,15 @@ nlohmann::ordered_json picturesJson(const fs::path& folder, int64_t origin_ns) {
   return json;
 }
 
-/// null where the run has no such file, or was killed before it wrote any of it.
+/// null where the run does not have this file, or was killed before it wrote a row.
 nlohmann::ordered_json optionalTable(const fs::path& file, int64_t origin_ns, Diagnostics* diagnostics) {
   std::error_code error;
   if (fs::file_size(file, error) == 0 || error) return nullptr;
   return tableJson(readRunTable(file, diagnostics), origin_ns);
 }
 
-/// Size that corrected readings should have, T, and where that is from: of the field at the run's site, else
-/// as the run estimated it, else at the place of calibration.
+/// Expected norm of corrected readings, T, and its source: the field at the run's site, else the run's
+/// estimate, else the field at the place of calibration.
 std::pair<nlohmann::ordered_json, const char*> fieldStrength(const nlohmann::ordered_json& summary) {
   const auto calibration = summary.value("/rig/magnetometer"_json_pointer, nlohmann::ordered_json::object());
   if (calibration.contains("site_field_strength_T"))
@@ -117,7 +117,7 @@ nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<Repo
   json["is_refined"] = is_refined;
   json["summary"] = readSummary(run / "run.json");
   json["config"] = readWhole(run / "config.yaml");
-  // The page draws one sigma, not covariances, and the attitude filter has its own command.
+  // The page shows sigmas, not covariances, and the attitude filter has its own command.
   json["states"] = tableJson(states, origin_ns, {"cov_", "attitude_", "keyframe"});
   json["landmarks"] =
       landmarksJson(run / (is_refined ? "landmarks_refined.ply" : "landmarks.ply"), diagnostics);

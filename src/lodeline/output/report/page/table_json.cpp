@@ -15,7 +15,7 @@ double rounded(double value, double unit) { return std::round(value / unit) * un
 nlohmann::json shortNumber(double value) {
   if (!std::isfinite(value)) return nullptr;
   if (value == 0.0) return 0;
-  // Through powers of ten that are exact, so that the shortest decimal that reads back has six digits.
+  // Uses exact powers of ten, so that the shortest decimal of the result has six digits.
   const int digits_after_point = 5 - static_cast<int>(std::floor(std::log10(std::abs(value))));
   const double power = std::pow(10.0, std::abs(digits_after_point));
   return digits_after_point >= 0 ? std::round(value * power) / power : rounded(value, power);

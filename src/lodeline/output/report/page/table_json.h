@@ -8,10 +8,10 @@
 
 namespace lodeline {
 
-/// Poses, readings and the like that a page shows at most, a table.
+/// Maximum number of rows of a table on a page.
 inline constexpr size_t kMostRows = 8000;
 
-/// A number with six significant digits, enough for a picture; null for what is not finite.
+/// A number with six significant digits, enough for a figure; null for values that are not finite.
 nlohmann::json shortNumber(double value);
 nlohmann::json shortNumbers(const std::vector<double>& values, const std::vector<size_t>& rows);
 
@@ -19,8 +19,8 @@ nlohmann::json shortNumbers(const std::vector<double>& values, const std::vector
 nlohmann::json secondsSince(int64_t origin_ns, const std::vector<int64_t>& stamp_ns,
                             const std::vector<size_t>& rows);
 
-/// A table as the page reads it (`Table` in web/src/data.ts), thinned by chooseRows(). Columns whose names
-/// begin with one of `left_out` are not taken along.
+/// A table in the format of the page (`Table` in web/src/data.ts), with rows from chooseRows(). Columns whose
+/// names begin with one of `left_out` are omitted.
 nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns,
                                  const std::vector<std::string>& left_out = {});
 

@@ -12,12 +12,12 @@ struct TestRun {
   int picture_width_px = 64;
 };
 
-/// What `lodeline run` would leave in a folder for a swim along a spiral, written by the same writers: every
-/// 50th frame carried inertially, a magnetometer whose gate rejects every 20th, one warning that holds
+/// Writes an output folder as `lodeline run` would for a swim along a spiral, with the same writers: every
+/// 50th frame is inertial, the gate of the magnetometer rejects every 20th, and one warning contains
 /// `</script>`.
 void writeTestRun(const std::filesystem::path& folder, const TestRun& run = {});
 
-/// The same swim as a reference of 10 poses a second, 0.1 m further up, in the layout of TUM.
+/// Writes the same swim as a reference with 10 poses per second, 0.1 m higher, in the TUM layout.
 void writeTestReference(const std::filesystem::path& file, const TestRun& run = {});
 
 }  // namespace lodeline::test

@@ -29,8 +29,8 @@ std::vector<DepthReading> runDepths(const Trajectory& trajectory, size_t count) 
   return depths;
 }
 
-/// The profile between its readings, for times that increase from call to call; nothing outside, and in gaps
-/// longer than its own.
+/// Interpolates the profile between its readings, for times that increase from call to call; empty outside,
+/// and in gaps longer than its own limit.
 class ProfileReader {
  public:
   explicit ProfileReader(const DepthProfile& profile) : profile_(profile), after_(profile.readings.begin()) {}
@@ -38,7 +38,7 @@ class ProfileReader {
   std::optional<double> at(double time_s) {
     const auto end = profile_.readings.end();
     const auto isBefore = [](const DepthReading& r, double t) { return r.time_s < t; };
-    // Steps that double find what is near in few of them.
+    // Search with doubling steps, which finds a nearby reading quickly.
     std::ptrdiff_t step = 1;
     auto from = after_;
     while (end - from > step && from[step].time_s < time_s) {
@@ -70,7 +70,7 @@ class LagCost {
     fewest_ = static_cast<size_t>(0.8 * std::min(1.0, profile_s / run_s) * static_cast<double>(run_.size()));
   }
 
-  /// Profile less run where both are there.
+  /// Profile minus run in their common time.
   std::vector<double> differences(double lag_s) const {
     std::vector<double> result;
     ProfileReader profile(profile_);
@@ -82,7 +82,7 @@ class LagCost {
     return result;
   }
 
-  /// Mean absolute deviation from the median, the worst tenth left out; infinite with too little overlap.
+  /// Mean absolute deviation from the median, without the worst tenth; infinite with too little overlap.
   double operator()(double lag_s) const {
     std::vector<double> values = differences(lag_s);
     if (values.size() < std::max<size_t>(fewest_, 3)) return std::numeric_limits<double>::infinity();
@@ -110,11 +110,12 @@ class LagCost {
 struct LagSearch {
   double lag_s = 0.0;
   double cost = std::numeric_limits<double>::infinity();
-  /// Least cost at a lag that is another minimum: beyond the hill around the best.
+  /// Smallest cost of another minimum: at a lag beyond the maximum next to the best.
   double rival_cost = std::numeric_limits<double>::infinity();
 };
 
-/// The best of a row of lags, and the best beyond its valley (walked up both sides from it).
+/// The best of equally spaced lags, and the best outside its minimum (which extends to the next maximum on
+/// both sides).
 LagSearch searchLags(const LagCost& cost, double first_s, double last_s, double step_s) {
   std::vector<double> costs;
   const auto count = static_cast<size_t>(std::max(1.0, std::floor((last_s - first_s) / step_s) + 1.0));
@@ -174,8 +175,8 @@ std::string doubtOf(const LagSearch& search, const std::vector<DepthReading>& ru
   return "";
 }
 
-/// A lag that was found must be known well, and depths must change as the run's do; a lag that was stated
-/// stands, and only a ratio that is no scale error of a run is doubted.
+/// Reason for doubt. A lag from the search must be accurate, and depths must change like the run's. A stated
+/// lag is accepted, and only a ratio that cannot be a scale error of a run is doubtful.
 std::string doubtOfFit(const DepthAlignment& fit, double run_s, bool lag_is_known) {
   constexpr double kLeastLagSigma_s = 5.0, kLagSigmaShare = 0.02, kMostRatio = 1.33,
                    kMostRatioAtKnownLag = 2.0;
@@ -206,7 +207,7 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   if (known_lag_s) {
     result.lag_s = *known_lag_s;
   } else {
-    // Bounded work, however long the profile is.
+    // Limits the computing time for profiles of any length.
     constexpr double kMostLags = 1e5;
     const double range_s = coarse_cost.lastLag() - coarse_cost.firstLag();
     const double step_s =
@@ -230,7 +231,7 @@ DepthAlignment alignDepths(const DepthProfile& profile, const Trajectory& trajec
   result.common_s =
       fine_cost.runSeconds() * static_cast<double>(differences.size()) / static_cast<double>(fine.size());
   result.slope = slopeOf(compareDepths(profile, trajectory, result));
-  // Neighbouring differences are alike: so many of them are independent.
+  // Neighbouring differences are correlated; this is the number of independent ones.
   const double independent = static_cast<double>(deviations.size()) / correlationFactor(deviations);
   result.lag_sigma_s =
       result.rms_m / std::max(verticalSpeed(coarse), 1e-3) / std::sqrt(std::max(independent, 1.0));

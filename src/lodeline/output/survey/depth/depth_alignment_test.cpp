@@ -11,13 +11,13 @@
 namespace lodeline {
 namespace {
 
-/// Depth of a made-up dive, `t` in s: down, wandering about, up.
+/// Depth of a synthetic dive, `t` in s: descent, varying depth, ascent.
 double depthOfDive(double t) {
   const double ramp = std::clamp(t / 120.0, 0.0, 1.0) * std::clamp((1800.0 - t) / 200.0, 0.0, 1.0);
   return 15.0 * ramp + 3.0 * std::sin(t / 70.0) * ramp + 1.5 * std::sin(t / 23.0) * ramp;
 }
 
-/// What a run from `begin_s` to `end_s` of the dive says, with a drift of the vertical.
+/// A run from `begin_s` to `end_s` of the dive, with a drift of the vertical.
 RunFolder runOfDive(double begin_s, double end_s, double drift_m_per_s) {
   RunFolder run;
   for (double t = begin_s; t <= end_s; t += 0.1) {
@@ -31,7 +31,7 @@ RunFolder runOfDive(double begin_s, double end_s, double drift_m_per_s) {
   return run;
 }
 
-/// What a dive computer keeps: a reading each so many seconds, rounded, from its own zero of time.
+/// Profile of a dive computer: rounded readings at a constant interval, with its own time origin.
 DepthProfile computerProfile(double interval_s, double resolution_m, unsigned seed = 0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, seed == 0 ? 0.0 : 0.05);
@@ -78,7 +78,7 @@ TEST(DepthAlignment, SaysWhenTheLagCannotBeTold) {
   RunFolder level = runOfDive(300.0, 900.0, 0.0);
   for (StampedPose& pose : level.trajectory.poses) pose.world_from_body.translation.z() = 0.0;
   EXPECT_NE(alignDepths(computerProfile(10.0, 0.1), level.trajectory, std::nullopt).doubt, "");
-  // A course that repeats itself fits at many lags.
+  // A periodic profile fits at many lags.
   RunFolder waves = runOfDive(300.0, 900.0, 0.0);
   for (StampedPose& pose : waves.trajectory.poses) {
     pose.world_from_body.translation.z() = std::sin(pose.time.seconds() / 10.0);
@@ -86,7 +86,7 @@ TEST(DepthAlignment, SaysWhenTheLagCannotBeTold) {
   DepthProfile repeating = computerProfile(1.0, 0.1);
   for (DepthReading& reading : repeating.readings) reading.depth_m = 10.0 - std::sin(reading.time_s / 10.0);
   EXPECT_NE(alignDepths(repeating, waves.trajectory, std::nullopt).doubt, "");
-  // Another dive altogether.
+  // Another dive.
   DepthProfile other = computerProfile(10.0, 0.1);
   for (DepthReading& reading : other.readings) reading.depth_m = 8.0 + 3.0 * std::cos(reading.time_s / 31.0);
   EXPECT_NE(alignDepths(other, runOfDive(0.0, 1700.0, 0.0).trajectory, std::nullopt).doubt, "");
@@ -112,7 +112,7 @@ TEST(DepthCorrection, TakesTheDriftOutAndKeepsTheDetail) {
     const double error_m = depth_m - depthOfDive(300.0 + 0.1 * static_cast<double>(i));
     worst_m = std::max(worst_m, std::abs(error_m));
     square_sum += error_m * error_m;
-    // Landmarks go along.
+    // Landmarks move with the poses.
     EXPECT_NEAR(run.landmarks[i].position.z() - run.trajectory.poses[i].world_from_body.translation.z(), 0.5,
                 0.05);
   }

@@ -16,7 +16,7 @@ constexpr double kWindow_s = 20.0;
 struct Series {
   std::vector<double> times_s, values;
 
-  /// Range of the indices whose times lie within half a window of a time.
+  /// Range of the indices whose times are within half a window of a time.
   std::pair<size_t, size_t> around(double time_s) const {
     const auto begin = std::lower_bound(times_s.begin(), times_s.end(), time_s - 0.5 * kWindow_s);
     const auto end = std::upper_bound(times_s.begin(), times_s.end(), time_s + 0.5 * kWindow_s);
@@ -33,7 +33,7 @@ struct Series {
   }
 };
 
-/// The series with every value replaced by what `reduce` makes of those around it.
+/// The series with every value replaced by `reduce` of the values around it.
 template <typename Reduce>
 Series filtered(const Series& series, const Reduce& reduce) {
   Series result{series.times_s, {}};
@@ -46,7 +46,7 @@ Series filtered(const Series& series, const Reduce& reduce) {
   return result;
 }
 
-/// Profile less run, smoothed, about once a second: what is to be added to the run's depth.
+/// Smoothed difference of profile and run, about once a second: the correction of the run's depth.
 Series smoothDifferences(const std::vector<DepthComparison>& pairs) {
   Series series;
   for (const DepthComparison& pair : pairs) {
@@ -60,7 +60,7 @@ Series smoothDifferences(const std::vector<DepthComparison>& pairs) {
   return filtered(series, [](const std::vector<double>& values) { return computeStatistics(values).mean; });
 }
 
-/// Root mean square of what smoothing took away.
+/// Root mean square of the part that the smoothing removed.
 double scatterAbout(const Series& smooth, const std::vector<DepthComparison>& pairs) {
   std::vector<double> rests;
   for (const DepthComparison& pair : pairs) {

@@ -5,7 +5,7 @@
 namespace lodeline {
 
 struct NearestPoints::Index {
-  /// Points as nanoflann wants to see them.
+  /// Points in the interface of nanoflann.
   struct Cloud {
     const std::vector<Vec3>& points;
 

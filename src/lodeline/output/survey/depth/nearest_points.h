@@ -7,14 +7,14 @@
 
 namespace lodeline {
 
-/// Finds the nearest of many points.
+/// Nearest-neighbour search among many points.
 class NearestPoints {
  public:
   /// `points` must outlive the object and not be empty.
   explicit NearestPoints(const std::vector<Vec3>& points);
   ~NearestPoints();
 
-  /// Indices of the `count` points (or all, where there are fewer) nearest to a place, nearest first.
+  /// Indices of the `count` points (or all, where there are fewer) nearest to a position, nearest first.
   std::vector<size_t> find(const Vec3& place, size_t count) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// A unit that depths may be in although they are read as metres, or as what the log states.
+/// A possible unit of depths that were read as metres, or in the unit stated by the log.
 struct MistakenUnit {
   double factor;
   const char* words;
@@ -32,7 +32,7 @@ std::optional<DepthAlignment> align(const DepthProfile& profile, const Trajector
   }
 }
 
-/// A profile that fits badly may fit in another unit.
+/// Checks whether a profile that fits badly fits in another unit.
 void considerUnits(const Trajectory& trajectory, std::optional<double> known_lag_s, ProfileFit* fit,
                    std::string* finding) {
   constexpr double kMostSlopeError = 0.12, kMuchBetter = 0.5;
@@ -72,13 +72,13 @@ ProfileFit fitProfile(const std::vector<DepthProfile>& dives, const Trajectory& 
     if (const std::optional<DepthAlignment> alignment = align(dive, trajectory, known_lag_s))
       fits.push_back({dive, *alignment});
   }
-  // Throws where there is no time in common.
+  // Throws without common time.
   if (fits.empty()) fits.push_back({dives.front(), alignDepths(dives.front(), trajectory, known_lag_s)});
   const auto isBetter = [](const ProfileFit& a, const ProfileFit& b) {
     if (a.alignment.doubt.empty() != b.alignment.doubt.empty()) return a.alignment.doubt.empty();
     return a.alignment.rms_m < b.alignment.rms_m;
   };
-  // All dives of a log are in one unit.
+  // All dives of a log have the same unit.
   std::vector<std::string> findings(fits.size());
   if (std::all_of(fits.begin(), fits.end(),
                   [](const ProfileFit& fit) { return !fit.alignment.doubt.empty(); })) {

@@ -10,7 +10,7 @@
 #include "lodeline/output/survey/map/test_dive.h"
 #include "lodeline/util/error.h"
 
-// GeoJSON, KML, GPX: what they say, and that GDAL reads them.
+// Tests of GeoJSON, KML and GPX: their content, and that GDAL reads them.
 
 namespace lodeline {
 namespace {
@@ -78,7 +78,7 @@ TEST(Gpx, HasTrackAndStationsWithTheirTimes) {
   const std::string text = gpxText(windingMap());
   EXPECT_THAT(text, HasSubstr("<trkpt lat=\"29.830000000\" lon=\"-82.600000000\"><ele>8.000</ele>"
                               "<time>2026-11-21T10:00:00.000Z</time></trkpt>"));
-  // The schema wants waypoints before tracks.
+  // The schema requires waypoints before tracks.
   EXPECT_LT(text.find("<wpt "), text.find("<trk>"));
   RunFolder run = test::windingDive();
   for (StampedPose& pose : run.trajectory.poses) {
@@ -111,7 +111,7 @@ TEST(Gis, IsReadByGdal) {
   }
 }
 
-/// The same dive with what a run may not know, and what a run must not say.
+/// The same dive with missing and invalid covariances.
 DiveMap unsureMap() {
   RunFolder run = test::windingDive();
   run.uncertainties.resize(300);

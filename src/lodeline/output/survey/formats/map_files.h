@@ -12,27 +12,27 @@ namespace lodeline {
 enum class MapFormat { Survex, Therion, GeoJson, Kml, Gpx, Ply, Csv, Tum, Colmap };
 /// In the order of MapFormat.
 const std::vector<std::string>& mapFormatNames();
-/// In any case. Throws UsageError, naming the formats that there are.
+/// Format by its name in any case. Throws UsageError with the names of all formats.
 MapFormat mapFormatFromString(const std::string& name);
 
-/// Cameras and images of the recording, which only COLMAP wants.
+/// Cameras and images of the recording, needed only for COLMAP.
 struct MapImages {
   std::vector<CameraCalibration> cameras;
   std::vector<ColmapImage> images;
 };
 
-/// The files of one format for a survey of that name.
+/// Names of the files of one format for a survey of that name.
 std::vector<std::string> mapFileNames(const std::string& name, MapFormat format);
 
-/// Writes a map in one format into a folder that exists, and gives the files. Throws UsageError where the
-/// format needs a place, or images, that the map does not have, and InputError where a file cannot be
+/// Writes a map in one format into an existing folder, and returns the files. Throws UsageError where the
+/// format needs a position, or images, that the map does not have, and InputError where a file cannot be
 /// written.
 std::vector<std::filesystem::path> writeMap(const DiveMap& map, const std::optional<MapImages>& images,
                                             MapFormat format, const std::filesystem::path& folder);
 
 /// Whether a format can join several dives in one project.
 bool joinsDives(MapFormat format);
-/// Writes the file that joins several dives, whose own files stand in the same folder.
+/// Writes the file that joins several dives, whose own files are in the same folder.
 std::vector<std::filesystem::path> writeProject(const std::vector<DiveMap>& maps, const std::string& name,
                                                 const std::string& title, MapFormat format,
                                                 const std::filesystem::path& folder);

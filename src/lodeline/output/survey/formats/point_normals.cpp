@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kNeighbours = 12;  ///< the point itself among them
 
-/// Direction in which the neighbours scatter least; zero where they do not span a plane.
+/// Direction of smallest scatter of the neighbours; zero where they do not span a plane.
 Vec3 planeNormal(const std::vector<Vec3>& points, const std::vector<size_t>& neighbours) {
   if (neighbours.size() < 4) return Vec3::Zero();
   Vec3 mean = Vec3::Zero();

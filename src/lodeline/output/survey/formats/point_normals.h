@@ -6,9 +6,9 @@
 
 namespace lodeline {
 
-/// Unit normals of points on walls: of the plane through each point's nearest neighbours (least squares),
-/// on the side on which the nearest point of `viewpoints` (not empty) lies. Where there are fewer than three
-/// neighbours, or they lie on a line, the direction to that viewpoint.
+/// Unit normals of points on walls: normal of the plane through each point's nearest neighbours (least
+/// squares), on the side of the nearest of the `viewpoints` (not empty). With fewer than three neighbours, or
+/// collinear ones, it is the direction to that viewpoint.
 std::vector<Vec3> normalsTowards(const std::vector<Vec3>& points, const std::vector<Vec3>& viewpoints);
 
 }  // namespace lodeline

@@ -12,7 +12,7 @@
 namespace lodeline {
 namespace {
 
-/// Index of the pose next to a time, where it is near enough.
+/// Index of the pose nearest to a time, if it is close enough.
 std::optional<size_t> poseNear(const Trajectory& trajectory, Time time) {
   constexpr double kTolerance_s = 5e-3;
   const std::vector<StampedPose>& poses = trajectory.poses;

@@ -6,10 +6,10 @@
 
 namespace lodeline {
 
-/// Which images of a recording belong to which poses (within 5 ms), named from the recording's camera folder
-/// on (cam0/data/STAMP.png; those of a bag as `lodeline convert` writes them), and its cameras as the run
-/// left them: with the corrections that it estimated to their extrinsics. Reads the lists of images to their
-/// end; decodes none.
+/// Assigns the images of a recording to poses (within 5 ms). Image names start at the recording's camera
+/// folder (cam0/data/STAMP.png; those of a bag as `lodeline convert` writes them). The cameras contain the
+/// corrections of their extrinsics that the run estimated. Reads the lists of images to their end and decodes
+/// none.
 MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -7,12 +7,12 @@
 #include "lodeline/output/survey/formats/recording_walls.h"
 #include "lodeline/util/files/output_file.h"
 
-// What a recording adds to a map: echoes of the sonar, images.
+// Tests of the recording's additions to a map: echoes of the sonar, images.
 
 namespace lodeline {
 namespace {
 
-/// A recording that is nothing but lists.
+/// A recording given by lists of measurements.
 class ListedSource : public MeasurementSource {
  public:
   const Rig& rig() const override { return rig_; }
@@ -32,7 +32,7 @@ class ListedSource : public MeasurementSource {
   size_t next_image_ = 0, next_echo_ = 0;
 };
 
-/// 1 m/s along x from second 10 on, 10 Hz, without turning.
+/// Motion at 1 m/s along x from second 10 on, 10 Hz, without rotation.
 Trajectory straightWay() {
   Trajectory trajectory;
   for (int i = 0; i <= 20; ++i) {

@@ -8,9 +8,10 @@
 
 namespace lodeline {
 
-/// Points where the beam of a recording's sonar met the walls, in the trajectory's world (m): the sonar lies
-/// at its extrinsics, its head turns about its z axis, and at angle 0 the beam points along x. Echoes with no
-/// pose within 0.2 s on both sides are left out; none without a sonar. Reads the sonar's stream to its end.
+/// Points at which the beam of a recording's sonar hit the walls, in the trajectory's world (m). The sonar
+/// has the pose of its extrinsics, its head rotates about its z axis, and at angle 0 the beam points along x.
+/// Echoes without a pose within 0.2 s on both sides are skipped; empty without a sonar. Reads the sonar's
+/// stream to its end.
 std::vector<Vec3> sonarWalls(MeasurementSource& source, const Trajectory& trajectory,
                              Diagnostics* diagnostics);
 

@@ -11,7 +11,7 @@
 #include "lodeline/output/survey/map/test_dive.h"
 #include "lodeline/util/files/output_file.h"
 
-// What Survex's cavern and Therion make of our files.
+// Tests of the exported files with Survex's cavern and Therion.
 
 namespace lodeline {
 namespace {
@@ -31,10 +31,10 @@ DiveMapOptions devilsEye() {
   return options;
 }
 
-// Both programs give positions in whole centimetres.
+// Both programs give positions in centimetres.
 constexpr double kHalfCentimetre_m = 0.0051;
 
-/// Stations and, at the same places, the poses on the grid.
+/// Compares the stations with those of the map and the poses on the grid.
 void expectAt(const Stations& stations, const DiveMap& map) {
   ASSERT_EQ(stations.size(), map.survey.stations.size());
   for (const auto& [index, position] : stations) {
@@ -55,7 +55,7 @@ class SurveyPrograms : public ::testing::Test {
     return map;
   }
 
-  /// Named stations after cavern; the file must be accepted without a word of complaint.
+  /// Stations from cavern; the file must be accepted without any warning.
   Stations cavern(const std::string& name) const {
     const test::OutsideRun run = test::runIn(folder_.path(), "LC_ALL=C.UTF-8 cavern " + name + ".svx");
     EXPECT_EQ(run.exit_code, 0) << run.output;
@@ -70,7 +70,7 @@ class SurveyPrograms : public ::testing::Test {
     return stations;
   }
 
-  /// The same after Therion.
+  /// The same from Therion.
   Stations therion(const std::string& name) const {
     writeOutput(
         folder_.path() / "test.thconfig",
@@ -88,7 +88,7 @@ class SurveyPrograms : public ::testing::Test {
     return stations;
   }
 
-  /// Both programs accept the map and put its stations where the poses are.
+  /// Both programs must accept the map with its stations at the poses.
   void expectBothAt(const DiveMap& map) const {
     expectAt(cavern(map.name), map);
     expectAt(therion(map.name), map);
@@ -115,7 +115,8 @@ TEST_F(SurveyPrograms, PutEveryStationOnItsPoseToAMillimetre) {
   LODELINE_NEEDS_PROGRAM("therion", "therion");
   const DiveMap map = write(test::windingDive(400.0), devilsEye());
   const Vec3 first = map.place->grid(Vec3::Zero());
-  // A hundredfold copy of the line, from zero: centimetres of the programs are then tenths of a millimetre.
+  // A copy of the line, 100 times larger and from zero: centimetres of the programs are then tenths of a
+  // millimetre.
   replaceIn(map.name + ".svx", R"(\*cs [^\n]*\n)", "");
   replaceIn(map.name + ".svx", R"(\*fix 0 [^\n]*)", "*fix 0 0 0 0\n*units dx dy dz 100 metres");
   replaceIn(map.name + ".th", "    data cartesian", "    units dx dy dz 100 metres\n    data cartesian");
@@ -140,7 +141,7 @@ TEST_F(SurveyPrograms, AgreeInTheSouthAndFarFromTheZonesMiddle) {
   expectBothAt(map);
 }
 
-// The grid's own differences for Survex, true ones for Therion, feet as metres of the same grid.
+// Grid differences for Survex, true ones for Therion; feet are converted to metres of the same grid.
 TEST_F(SurveyPrograms, PutEveryStationOnItsPoseOnNationalGrids) {
   LODELINE_NEEDS_PROGRAM("cavern", "survex");
   LODELINE_NEEDS_PROGRAM("therion", "therion");
@@ -164,7 +165,7 @@ TEST_F(SurveyPrograms, PutEveryStationOnItsPoseOnNationalGrids) {
   }
 }
 
-// Survex takes any grid in metres; Therion only those that have a code.
+// Survex supports any grid in metres, Therion only grids with a code.
 TEST_F(SurveyPrograms, UseTheUtmZoneWhereTherionCannotUseTheGrid) {
   LODELINE_NEEDS_PROGRAM("cavern", "survex");
   LODELINE_NEEDS_PROGRAM("therion", "therion");
@@ -197,7 +198,7 @@ TEST_F(SurveyPrograms, JoinDivesThatBeginAtOnePlace) {
   const test::OutsideRun joined = test::runIn(folder_.path(), "therion cave.thconfig");
   EXPECT_EQ(joined.exit_code, 0) << joined.output;
   EXPECT_THAT(joined.output, Not(AnyOf(HasSubstr("warning"), HasSubstr("error --"))));
-  // A loop where the user knows one: two dives, one cave.
+  // A loop known to the user: two dives in one cave.
   writeOutput(folder_.path() / "all.th",
               "encoding utf-8\nsurvey cave\n input first.th\n input second.th\n centreline\n"
               "  equate 0@first 0@second\n  equate 11@first 11@second\n endcentreline\nendsurvey\n");
@@ -207,7 +208,7 @@ TEST_F(SurveyPrograms, JoinDivesThatBeginAtOnePlace) {
   EXPECT_THAT(loop.output, HasSubstr("average loop error"));
 }
 
-// A run that lost its covariance is not a run that knows its positions exactly.
+// A run without a covariance does not have exact positions.
 TEST_F(SurveyPrograms, TakeNoZeroVarianceForCertainty) {
   RunFolder run = test::windingDive();
   const Vec3 kept = run.uncertainties[200].covariance.diagonal().cwiseSqrt();
@@ -238,7 +239,7 @@ TEST_F(SurveyPrograms, TakeMagneticNorthTurnedByTheDeclination) {
   LODELINE_NEEDS_PROGRAM("therion", "therion");
   RunFolder run = test::windingDive();
   const DiveMap expected = write(run, devilsEye());
-  // The same dive as a run sees it that takes magnetic north for north.
+  // The same dive in a run whose north is magnetic north.
   run.heading_reference = HeadingReference::Magnetic;
   const double declination = findNorth(run.heading_reference, test::kDevilsEye, "2026-11-21", {}).turn_rad;
   for (StampedPose& pose : run.trajectory.poses) {
@@ -268,7 +269,7 @@ TEST_F(SurveyPrograms, SpreadTheMisclosureOfAClosedDive) {
   LODELINE_NEEDS_PROGRAM("cavern", "survex");
   LODELINE_NEEDS_PROGRAM("therion", "therion");
   RunFolder run = test::windingDive(60.0);
-  // Back the same way, with a drift of 0.6 m at its end.
+  // The way back along the same path, with a drift of 0.6 m at its end.
   const std::vector<StampedPose> way = run.trajectory.poses;
   for (size_t i = 1; i < way.size(); ++i) {
     StampedPose pose = way[way.size() - 1 - i];
@@ -285,7 +286,7 @@ TEST_F(SurveyPrograms, SpreadTheMisclosureOfAClosedDive) {
   const Stations survex = cavern(map.name);
   EXPECT_LT((survex.at(0) - survex.at(last)).norm(), 1e-9);
   const Stations therion_stations = therion(map.name);
-  // Half of the drift is taken out half way.
+  // Half of the drift is corrected in the middle.
   const int middle = last / 2;
   EXPECT_LT((survex.at(middle) - therion_stations.at(middle)).cwiseAbs().maxCoeff(), 0.011);
   const Vec3 measured = map.place->grid(map.survey.stations[static_cast<size_t>(middle)].position_ENU);

@@ -5,16 +5,17 @@
 
 #include "lodeline/output/survey/map/dive_map.h"
 
-/// What the writers of survey data share.
+/// Shared functions of the writers of survey data.
 namespace lodeline::survey_text {
 
-/// Positions of stations rounded to what is written (0.1 mm), so that differences of them add up to them.
+/// Positions of stations rounded to the written precision (0.1 mm), so that sums of their differences are
+/// exact.
 Vec3 rounded(const Vec3& position);
 
-/// "0 1 4.0000 -3.0000 0.1000": legs between positions, one a line.
+/// Legs between positions, one per line: "0 1 4.0000 -3.0000 0.1000".
 std::string legs(const std::vector<Vec3>& positions, const std::string& indent);
 
-/// A splay from a station: distance, bearing and inclination as survey programs take them.
+/// A splay from a station: distance, bearing and inclination as survey programs expect them.
 std::string splay(size_t station, const char* target, const Vec3& vector, const std::string& indent);
 
 /// Every note as a comment.

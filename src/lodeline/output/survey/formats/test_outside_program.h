@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-/// Programs of others that tests ask whether they understand our files.
+/// Runs external programs in tests, to check that they can read the exported files.
 namespace lodeline::test {
 
 struct OutsideRun {

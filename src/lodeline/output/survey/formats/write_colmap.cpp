@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-/// COLMAP's name and parameters of a camera. Its pixel centres lie at halves, ours at integers.
+/// COLMAP's name and parameters of a camera. Its pixel centres are at half-integers, ours at integers.
 std::string cameraModel(const CameraCalibration& camera) {
   std::vector<double> parameters = {camera.fx_px, camera.fy_px, camera.cx_px + 0.5, camera.cy_px + 0.5};
   parameters.insert(parameters.end(), camera.distortion.begin(), camera.distortion.end());

@@ -33,7 +33,7 @@ std::string placeHeader(const DiveMap& map) {
       unit);
 }
 
-/// Empty fields for what a map without a place does not know.
+/// Fields of a position; without a georeference those on the Earth are empty.
 std::string placeFields(const DiveMap& map, const Vec3& point_ENU) {
   std::string text = fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", point_ENU.x(), point_ENU.y(), point_ENU.z(),
                                  map.depth_m(point_ENU));
@@ -44,7 +44,7 @@ std::string placeFields(const DiveMap& map, const Vec3& point_ENU) {
                             position.longitude_deg, position.height_m, grid.x(), grid.y());
 }
 
-/// Roots of variances; empty for negative ones, which no variance is.
+/// Square roots of variances; empty for negative ones, which are invalid.
 std::string sigmaFields(const Vec3& variances) {
   std::string text;
   for (double variance : variances)

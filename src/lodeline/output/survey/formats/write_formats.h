@@ -7,29 +7,30 @@
 #include "lodeline/output/survey/map/dive_map.h"
 #include "lodeline/sensors/rig.h"
 
-/// One function a file format: the whole file as text (or bytes). Formats on the Earth (GeoJSON, KML, GPX)
-/// need DiveMap::place.
+/// One function per file format, which returns the whole file as text (or bytes). Georeferenced formats
+/// (GeoJSON, KML, GPX) need DiveMap::place.
 namespace lodeline {
 
-/// Survex data: the line as `*data cartesian`, which cavern takes for grid differences and never turns;
+/// Survex data: the line as `*data cartesian`, which cavern interprets as grid differences without rotation;
 /// splays with grid bearings; passage sizes of the stations that have all four.
 std::string survexText(const DiveMap& map);
-/// One file that includes the files of several dives on one grid and equates those that begin at one place.
+/// A file that includes the files of several dives on one grid and equates those with the same start.
 std::string survexProject(const std::vector<DiveMap>& maps, const std::string& title);
 
-/// Therion data of the same survey, without its place. Therion turns cartesian data and bearings by the
-/// convergence of the meridians at the fixed station: differences are given against true north.
+/// Therion data of the same survey, without its position. Therion rotates cartesian data and bearings by the
+/// meridian convergence at the fixed station, so differences are relative to true north.
 std::string therionText(const DiveMap& map);
-/// The place of the first station, in a file of its own: Therion refuses to equate two fixed stations.
+/// The position of the first station, in a separate file because Therion refuses to equate two fixed
+/// stations.
 std::string therionFix(const DiveMap& map);
-/// Several dives as one survey; those that begin at one place are fixed once and equated.
+/// Several dives as one survey; those with the same start are fixed once and equated.
 std::string therionProject(const std::vector<DiveMap>& maps, const std::string& name,
                            const std::string& title);
-/// A configuration for `therion` that makes model, survey list and KML from `sources`, named `name`.
+/// A configuration for `therion` that creates model, survey list and KML from `sources`, named `name`.
 std::string therionConfig(const DiveMap& map, const std::string& name,
                           const std::vector<std::string>& sources);
 
-/// The dives that begin where an earlier one does, to a millimetre: pairs of names, the earlier first.
+/// Pairs of dives with the same start, to a millimetre, by names, the earlier first.
 std::vector<std::pair<std::string, std::string>> equalStarts(const std::vector<DiveMap>& maps);
 
 /// RFC 7946: longitude, latitude, height above the ellipsoid (WGS 84); line, stations, and the outline of the
@@ -39,15 +40,15 @@ std::string geojsonText(const DiveMap& map);
 /// KML 2.2: the line once on the ground above and once at its height, stations with depth and size.
 std::string kmlText(const DiveMap& map);
 
-/// GPX 1.1: the way as a track, stations as waypoints.
+/// GPX 1.1: the path as a track, stations as waypoints.
 std::string gpxText(const DiveMap& map);
 
-/// Binary PLY in ENU, m: the way with edges and coloured by depth, then landmarks with normals that point at
-/// the way.
+/// Binary PLY in ENU, m: the path with edges and coloured by depth, then landmarks with normals that point
+/// towards the path.
 std::string plyBytes(const DiveMap& map);
 
-/// One line a pose, and one line a station. The first line is the header; what the map is made of stands in a
-/// file of its own (export_owner.h), since GIS programs take comments for a header.
+/// One line per pose, and one line per station. The first line is the header. The notes on the map's origin
+/// are in a separate file (export_owner.h), because GIS programs take comments for a header.
 std::string posesCsv(const DiveMap& map);
 std::string stationsCsv(const DiveMap& map);
 
@@ -65,7 +66,7 @@ struct ColmapImage {
 struct ColmapModel {
   std::string cameras, images, points3D;
 };
-/// Landmarks come without observations, of which a run keeps only the number.
+/// Landmarks have no observations, because a run keeps only their number.
 ColmapModel colmapModel(const DiveMap& map, const std::vector<CameraCalibration>& cameras,
                         const std::vector<ColmapImage>& images);
 

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 /// Longitude, latitude, height above the ellipsoid. 1e-9 degrees are 0.1 mm.
 Json coordinates(const DiveMap& map, const Vec3& point_ENU) {
   const GeodeticPosition position = map.place->geodetic(point_ENU);
-  // Multiples of a power of ten print short only when divided by its inverse.
+  // Division by the inverse of a power of ten gives a number with a short decimal text.
   const auto decimals = [](double value, double per_unit) { return std::round(value * per_unit) / per_unit; };
   return {decimals(position.longitude_deg, 1e9), decimals(position.latitude_deg, 1e9),
           decimals(position.height_m + map.geoid_height_m, 1e4)};
@@ -55,8 +55,8 @@ Json stationFeature(const DiveMap& map, size_t i) {
 
 double cross(const Vec3& a, const Vec3& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The floor plan between two stations as a ring, counter-clockwise as RFC 7946 wants it; empty where the
-/// widths are not known or the corners make no convex outline (sharp bends).
+/// Floor plan between two stations as a ring, counter-clockwise as RFC 7946 requires; empty where the widths
+/// are unknown or the corners do not form a convex outline (sharp bends).
 std::vector<Vec3> planBetween(const SurveyStation& a, const SurveyStation& b) {
   if (!a.passage.left || !a.passage.right || !b.passage.left || !b.passage.right) return {};
   const Vec3 along = b.position_ENU - a.position_ENU;

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// Of the way, between points of the track.
+/// Path length between points of the track.
 constexpr double kTrackSpacing_m = 0.1;
 
 std::string point(const DiveMap& map, const char* element, const Vec3& point_ENU, Time time,

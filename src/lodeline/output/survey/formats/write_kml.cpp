@@ -66,8 +66,8 @@ std::string kmlText(const DiveMap& map) {
       "xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
       "<name>{}</name>\n<description>{}</description>\n{}",
       xmlEscaped(map.title), xmlEscaped(notes), kStyles);
-  // Viewers hide what lies below the terrain: the line at its height shows only with the ground made
-  // transparent, so the one on the ground is what a new user sees.
+  // Viewers hide objects below the terrain. The line at its height is visible only with transparent ground,
+  // so new users see the one on the ground.
   text += linePlacemark(map, "Line, on the ground above", "clampToGround", true);
   text += linePlacemark(map, "Line, at its height (below ground: make the terrain transparent)", "absolute",
                         false);

@@ -27,7 +27,7 @@ void appendVertex(std::string* bytes, const Vec3& position, const Vec3& normal, 
   append(bytes, static_cast<int32_t>(observations));
 }
 
-/// Shallow is yellow, deep is blue.
+/// Colour of a depth: shallow is yellow, deep is blue.
 Colour colourOf(double share) {
   const double s = std::clamp(share, 0.0, 1.0);
   const auto mix = [s](double shallow, double deep) {

@@ -19,7 +19,7 @@ std::string survexFix(const DiveMap& map) {
                      map.place_sigma.z());
 }
 
-/// Where the stations are for cavern: on the grid, or metres from the first.
+/// Position of a station for cavern: on the grid, or metres from the first station.
 Vec3 onGrid(const DiveMap& map, const Vec3& point_ENU) {
   return map.place ? map.place->grid(point_ENU) : point_ENU;
 }
@@ -37,7 +37,7 @@ std::string survexSplays(const DiveMap& map) {
          text + "*flags not splay\n";
 }
 
-/// Stations whose passage is known in a row make one tube; a station without its size ends it.
+/// Consecutive stations with known passage sizes form one tube; a station without a size ends it.
 std::string passageText(const Survey& survey) {
   std::string text;
   bool is_open = false;

@@ -12,14 +12,15 @@ namespace {
 
 using namespace survey_text;
 
-/// The map's place on a grid that Therion can use: the map's own, else the UTM zone of the entrance.
+/// Georeference of the map on a grid that Therion supports: the map's own grid, else the UTM zone of the
+/// entrance.
 std::optional<Georeference> therionPlace(const DiveMap& map) {
   if (!map.place || map.place->gridDescription().therion_name) return map.place;
   return Georeference(map.place->origin(), MapGrid("auto", map.place->origin()));
 }
 
-/// Positions for Therion, as offsets from the first station. It turns what it gets by the convergence at the
-/// fixed station, so grid differences are turned against that.
+/// Positions for Therion, as offsets from the first station. Therion rotates them by the convergence at the
+/// fixed station, so grid differences are rotated in the opposite direction.
 class Offsets {
  public:
   explicit Offsets(const DiveMap& map)
@@ -36,7 +37,7 @@ class Offsets {
   Vec3 first_ENU_;
 };
 
-/// The line that puts the first station of a dive in its place.
+/// The line that fixes the position of a dive's first station.
 std::string fixLine(const DiveMap& map, const std::optional<Georeference>& place) {
   if (!place) return fmt::format("  fix 0@{} 0 0 {:.4f}\n", map.name, -map.start_depth_m + 0.0);
   const Vec3 first = rounded(place->grid(map.survey.stations.front().position_ENU));
@@ -44,20 +45,20 @@ std::string fixLine(const DiveMap& map, const std::optional<Georeference>& place
                      first.z(), map.place_sigma.x(), map.place_sigma.y(), map.place_sigma.z());
 }
 
-/// "cs UTM17", or nothing for a map without a place.
+/// "cs UTM17", or empty for a map without a georeference.
 std::string csLine(const std::optional<Georeference>& place, const char* indent) {
   return place ? fmt::format("{}cs {}\n", indent, place->gridDescription().therion_name.value()) : "";
 }
 
-/// Therion 6.1 warns of dates after 2024, where its model of declination ends, also where no declination is
-/// asked of it.
+/// Date of the survey. Therion 6.1 warns of dates after 2024, where its declination model ends, even if it
+/// needs no declination.
 std::string dateText(const DiveMap& map) {
   if (map.date.empty()) return "";
   if (map.date < "2025") return fmt::format("    date {}\n", dotted(map.date));
   return fmt::format("    # date {}  (Therion 6.1 warns of dates after 2024)\n", dotted(map.date));
 }
 
-/// A name as Therion takes it: one or two words, or more with a stroke before the surname.
+/// A person's name for Therion: one or two words, or more with a slash before the surname.
 std::string therionPerson(std::string name) {
   std::replace(name.begin(), name.end(), '/', ' ');
   std::istringstream stream(name);

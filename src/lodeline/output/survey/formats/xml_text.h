@@ -5,7 +5,7 @@
 
 namespace lodeline {
 
-/// Text for the inside of an XML element or attribute. Characters that XML 1.0 does not know become blanks.
+/// Escapes text for an XML element or attribute. Characters that XML 1.0 does not allow become blanks.
 inline std::string xmlEscaped(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

@@ -8,13 +8,14 @@
 
 namespace lodeline {
 
-/// Places a map in east, north, up (m, true north, origin anywhere near the ground) on the Earth.
+/// Transforms a map in east, north, up (m, true north, origin anywhere near the ground) to coordinates on the
+/// Earth.
 ///
-/// Latitude and longitude are those of the point in the plane that touches the ellipsoid's parallel surface
-/// at the origin (GeographicLib's LocalCartesian), grid coordinates are computed from these by PROJ:
-/// convergence of the meridians and scale of the grid are exact at every point, not only at the origin.
-/// Heights count along the plumb line, z above the origin's height: gravity and water pressure hold an
-/// estimate to level surfaces, which bend away from the plane by 8 cm in a kilometre.
+/// Latitude and longitude are those of the point in the tangential plane of the ellipsoid's parallel surface
+/// at the origin (GeographicLib's LocalCartesian). PROJ computes grid coordinates from them, so meridian
+/// convergence and grid scale are exact at every point, not only at the origin. Heights are along the plumb
+/// line, z above the origin's height: gravity and water pressure tie an estimate to level surfaces, which
+/// deviate from the plane by 8 cm in a kilometre.
 class Georeference {
  public:
   /// Throws UsageError where the origin has no coordinates on the grid, or where lengths on it differ by more
@@ -24,9 +25,9 @@ class Georeference {
   const GeodeticPosition& origin() const { return origin_; }
   const MapGridDescription& gridDescription() const { return grid_.description(); }
 
-  /// Height in the sense of the origin's.
+  /// Height relative to the same level as that of the origin.
   GeodeticPosition geodetic(const Vec3& point_ENU) const;
-  /// Easting, northing, height in metres, also where the grid counts in feet.
+  /// Easting, northing, height in metres, also if the unit of the grid is feet.
   Vec3 grid(const Vec3& point_ENU) const;
 
   /// Angle from true north to grid north, clockwise, at the origin: true azimuth = grid azimuth + this.
@@ -42,7 +43,7 @@ class Georeference {
   double scale_ = 1.0;
 };
 
-/// The vector with its azimuth increased: turned clockwise seen from above.
+/// The vector with its azimuth increased by the angle: rotated clockwise seen from above.
 Vec3 turnedClockwise(const Vec3& vector, double angle_rad);
 
 }  // namespace lodeline

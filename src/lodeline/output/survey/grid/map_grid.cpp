@@ -17,7 +17,7 @@ namespace {
 
 using GeographicLib::UTMUPS;
 
-/// PROJ's code of a grid's name, "EPSG:32617" of "utm17n" or "17N"; upper case else.
+/// PROJ's code of a grid's name: "EPSG:32617" for "utm17n" or "17N"; other names in upper case.
 std::string codeOf(const std::string& crs, const GeodeticPosition& place) {
   std::string code = crs;
   std::transform(code.begin(), code.end(), code.begin(), [](unsigned char c) { return std::toupper(c); });
@@ -37,7 +37,7 @@ std::string codeOf(const std::string& crs, const GeodeticPosition& place) {
   return code;
 }
 
-/// "UTM17N" of EPSG:32617, the code itself of all others.
+/// Name of a code: "UTM17N" for EPSG:32617, the code itself for all others.
 std::string nameOf(const std::string& code) {
   int zone = UTMUPS::INVALID;
   bool north = false;
@@ -58,7 +58,7 @@ std::string withoutAxisOrder(std::string name) {
   return name;
 }
 
-/// What the transformation from WGS 84 gives, in the grid's own unit; infinite where there is none.
+/// Result of the transformation from WGS 84, in the grid's own unit; infinite where there is none.
 Vec2 transformed(PJ* grid_from_wgs84, double latitude_deg, double longitude_deg) {
   const PJ_COORD result =
       proj_trans(grid_from_wgs84, PJ_FWD, proj_coord(longitude_deg, latitude_deg, 0.0, HUGE_VAL));
@@ -66,7 +66,7 @@ Vec2 transformed(PJ* grid_from_wgs84, double latitude_deg, double longitude_deg)
   return {result.xy.x, result.xy.y};
 }
 
-/// Therion's spelling: "UTM17", "UTM55S", "EPSG:6372".
+/// Name in Therion's spelling: "UTM17", "UTM55S", "EPSG:6372".
 std::string therionSpelling(std::string name) {
   if (name.starts_with("UTM") && name.ends_with('N')) name.pop_back();
   return name;
@@ -74,7 +74,7 @@ std::string therionSpelling(std::string name) {
 
 }  // namespace
 
-/// PROJ's objects of one grid, in a context of their own.
+/// PROJ's objects of one grid, with their own context.
 struct MapGrid::Proj {
   struct Destroy {
     void operator()(PJ* object) const { proj_destroy(object); }
@@ -99,8 +99,8 @@ struct MapGrid::Proj {
     return Object(proj_create(context.get(), definition.c_str()));
   }
 
-  /// The transformation from WGS 84 to a grid that PROJ suggests at a place: of all that it knows, or of
-  /// those whose grid files are installed. Nothing where there is none.
+  /// The transformation from WGS 84 to a grid that PROJ suggests at a position: among all known ones, or
+  /// among those whose grid files are installed. Empty where there is none.
   Object suggested(PJ* grid, const GeodeticPosition& place, bool with_missing_files) const {
     const std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, Destroy> factory(
         proj_create_operation_factory_context(context.get(), nullptr));
@@ -165,7 +165,7 @@ struct MapGrid::Proj {
         first != nullptr && proj_coordoperation_is_instantiable(context.get(), first.get()) == 0;
   }
 
-  /// The code of the same grid in metres, which EPSG lists by the name without its unit; empty without one.
+  /// Code of the same grid in metres, found in EPSG by the name without its unit; empty without one.
   std::string codeInMetres(const MapGridDescription& grid, const GeodeticPosition& place) const {
     const PJ_TYPE type = PJ_TYPE_PROJECTED_CRS;
     const std::string title = grid.title.substr(0, grid.title.rfind(" (ft"));

@@ -45,7 +45,7 @@ TEST(MapGrid, RefusesWhatIsNoGridWithAxesToEastAndNorth) {
   EXPECT_THROW(MapGrid("auto", {88.0, 0.0, 0.0}), UsageError);
 }
 
-// By gdaltransform 3.6 and cs2cs 9.1.
+// Reference values from gdaltransform 3.6 and cs2cs 9.1.
 TEST(MapGrid, PutsPlacesWhereProjDoes) {
   LODELINE_NEEDS_PROGRAM("gdaltransform", "gdal-bin");
   struct Case {
@@ -82,7 +82,7 @@ TEST(MapGrid, KnowsTheSameGridInMetres) {
   EXPECT_NEAR(florida.metres_per_unit, 1200.0 / 3937.0, 1e-15);
   EXPECT_EQ(florida.survex_name, "EPSG:6437");
   EXPECT_EQ(florida.therion_name, "EPSG:6437");
-  // A foot of its own, which EPSG lists in feet only.
+  // A national foot; EPSG has this grid in feet only.
   const MapGridDescription gold_coast = MapGrid("EPSG:2136", {6.5, -1.0, 0.0}).description();
   EXPECT_THAT(gold_coast.survex_name, HasSubstr("custom \"+proj=tmerc"));
   EXPECT_THAT(gold_coast.survex_name, HasSubstr("+units=m"));

@@ -15,12 +15,12 @@
 namespace lodeline {
 namespace {
 
-/// The day of a stamp, where that is known.
+/// Date of a stamp, if known.
 std::string dayOf(Time time) { return isoTime(time).value_or("").substr(0, 10); }
 
 std::string dateOf(const RunFolder& run, const DiveMapOptions& options) {
   if (!options.date.empty()) {
-    decimalYear(options.date);  // throws for what is no date
+    decimalYear(options.date);  // throws for an invalid date
     return options.date;
   }
   return run.date.empty() ? dayOf(run.trajectory.poses.front().time) : run.date;
@@ -55,7 +55,7 @@ void checkNumbers(const DiveMapOptions& options) {
   }
 }
 
-/// How deep the first pose was: as stated, else by the run's pressure sensor, else zero.
+/// Sets the depth of the first pose: as stated, else from the run's pressure sensor, else zero.
 void setStartDepth(const RunFolder& run, const DiveMapOptions& options, Diagnostics* diagnostics,
                    DiveMap* map) {
   if (options.start_depth_m) {
@@ -84,8 +84,8 @@ double roughDistance_m(const GeodeticPosition& a, const GeodeticPosition& b) {
   return kRadius_m * std::atan2(direction(a).cross(direction(b)).norm(), direction(a).dot(direction(b)));
 }
 
-/// Throws UsageError where the entrance is no place, or another one than that for which the run computed its
-/// magnetic field.
+/// Throws UsageError where the entrance is not a valid position, or far from the one for which the run
+/// computed its magnetic field.
 void checkEntrance(const GeodeticPosition& entrance, const std::optional<GeodeticPosition>& site) {
   constexpr double kFarthest_m = 50e3;
   const GeodeticPosition swapped{entrance.longitude_deg, entrance.latitude_deg, entrance.height_m};
@@ -105,7 +105,7 @@ void checkEntrance(const GeodeticPosition& entrance, const std::optional<Geodeti
                                                     : "; correct one of them"));
 }
 
-/// What headers may hold: valid UTF-8 in one line, or the rest of it would be read as data.
+/// Text for headers: valid UTF-8 in one line, because further lines would be read as data.
 std::string headerText(const std::string& text) {
   std::string line = isUtf8(text) ? text : fromLatin1(text);
   std::replace_if(
@@ -140,8 +140,8 @@ void reportGrid(const MapGridDescription& grid, Diagnostics* diagnostics) {
   }
 }
 
-/// The covariance of the last pose whose variances are all positive. A run that lost its covariance writes
-/// zeros or negative numbers, which are no certainty.
+/// Sigmas of the last pose whose variances are all positive. A run without a covariance writes zeros or
+/// negative numbers, which do not mean certainty.
 std::optional<Vec3> lastSigma(const std::vector<PositionUncertainty>& uncertainties,
                               Diagnostics* diagnostics) {
   for (auto last = uncertainties.rbegin(); last != uncertainties.rend(); ++last) {

@@ -14,37 +14,37 @@
 
 namespace lodeline {
 
-/// What the user says about a map.
+/// Options of a map given by the user.
 struct DiveMapOptions {
   std::string name;               ///< of the survey; empty for that of the run folder
   std::string title;              ///< empty for the name
   std::vector<std::string> team;  ///< names of people
-  std::string date;               ///< YYYY-MM-DD; empty for what run and stamps say
+  std::string date;               ///< YYYY-MM-DD; empty for that of the run or its stamps
 
   std::optional<GeodeticPosition>
-      entrance;                   ///< the water's surface above the first pose; nothing for a local map
+      entrance;                   ///< the water's surface above the first pose; empty for a local map
   double entrance_sigma_m = 3.0;  ///< horizontal, per axis
   double entrance_height_sigma_m = 5.0;
   std::string crs = "auto";
-  std::optional<double> turn_deg;  ///< see findNorth()
-  std::optional<double>
-      start_depth_m;               ///< of the first pose; nothing for what the run's pressure sensor says
-  std::string start_depth_source;  ///< where that is from, in words
-  double geoid_height_m = 0.0;     ///< of the level from which heights count above the ellipsoid
+  std::optional<double> turn_deg;       ///< see findNorth()
+  std::optional<double> start_depth_m;  ///< of the first pose; empty for that of the run's pressure sensor
+  std::string start_depth_source;       ///< its source, in words
+  double geoid_height_m = 0.0;          ///< height of the vertical datum above the ellipsoid
 
-  std::optional<double> relative_sigma;  ///< of the end, by the length of the line; else as the run says
+  std::optional<double>
+      relative_sigma;  ///< of the end position, relative to the length of the line; empty for that of the run
   StationOptions stations;
   PassageOptions passage;
-  int min_observations = 3;  ///< of a landmark that is taken for wall
+  int min_observations = 3;  ///< minimum for a landmark that counts as a wall point
   bool is_closed = false;
-  std::vector<std::string> notes;  ///< what else the headers are to say
+  std::vector<std::string> notes;  ///< further lines for the headers
 };
 
-/// Everything that goes into maps, in east, north, up with the first pose as origin.
+/// All data of a map, in east, north, up with the first pose as origin.
 struct DiveMap {
   std::string name, title, date;
   std::vector<std::string> team;
-  std::vector<std::string> notes;    ///< where it is from and what was assumed, a line each
+  std::vector<std::string> notes;    ///< origin and assumptions, one per line
   std::filesystem::path run_folder;  ///< as a full path
 
   North north;
@@ -64,11 +64,11 @@ struct DiveMap {
 };
 
 /// `extra_walls_W`: wall points other than landmarks (echoes of a sonar), in the run's world. Throws
-/// InputError and UsageError where the run or the options cannot make a map.
+/// InputError and UsageError where the run or the options do not allow a map.
 DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
                     const std::vector<Vec3>& extra_walls_W, Diagnostics* diagnostics);
 
-/// What the notes, and a summary on the screen, say about a map.
+/// Description of a map for the notes and for a summary on the screen.
 std::vector<std::string> describe(const DiveMap& map, const RunFolder& run);
 
 }  // namespace lodeline

@@ -8,14 +8,14 @@
 
 namespace lodeline {
 
-/// The file with the notes of a map, which also says whose files of that name the folder holds:
+/// Name of the file with the notes of a map, which also identifies the run of the exported files:
 /// "NAME_notes.txt".
 std::string notesFileName(const std::string& name);
-/// Its content: the run's folder and first stamp, then every note of the map, a line each.
+/// Its content: the run's folder and first stamp, then every note of the map, one per line.
 std::string notesText(const DiveMap& map);
 
-/// Throws UsageError where the folder holds one of these files, or notes of that name, and they are not of
-/// this dive: its notes name another run folder and another first stamp, or nothing says whose they are.
+/// Throws UsageError where the folder contains one of these files, or notes of that name, from another dive:
+/// its notes name another run folder and another first stamp, or there are no notes.
 void expectOwnFiles(const std::filesystem::path& folder, const DiveMap& map,
                     const std::vector<std::string>& file_names);
 

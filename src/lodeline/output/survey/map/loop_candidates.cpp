@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// A station that comes back to a leg.
+/// A station that returns to a leg.
 struct Revisit {
   size_t station = 0, leg = 0;
   Vec3 offset_ENU = Vec3::Zero(), sigma_ENU = Vec3::Zero();
@@ -23,7 +23,7 @@ class LineSearch {
     for (size_t i = 1; i < survey.stations.size(); ++i) way_m_.push_back(way_m_.back() + leg(i - 1).norm());
   }
 
-  /// The nearest place of the line before a station, where it may be the same.
+  /// The nearest point of the line before a station, if it may be the same place.
   std::optional<Revisit> revisitOf(size_t station) const {
     std::optional<Revisit> best;
     for (size_t i = 0; i < station; ++i) {

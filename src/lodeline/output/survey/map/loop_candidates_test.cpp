@@ -5,7 +5,7 @@
 namespace lodeline {
 namespace {
 
-/// In along x in legs of 5 m, turned at the end, and back beside the way in.
+/// In along x with legs of 5 m, and back beside the way in.
 Survey inAndOut(const Vec3& beside, double leg_sigma_m) {
   Survey survey;
   for (int i = 0; i <= 20; ++i) {
@@ -51,7 +51,7 @@ TEST(LoopCandidates, AStraightOrHoveringWayHasNone) {
 
 TEST(LoopCandidates, TellsCrossingsApartLongestFirst) {
   Survey survey;
-  // Round a block of 20 m, on, and round another of 10 m.
+  // A loop around a block of 20 m, then one around another of 10 m.
   for (const Vec3& corner :
        {Vec3(0, 0, 0), Vec3(20, 0, 0), Vec3(20, 20, 0), Vec3(0, 20, 0), Vec3(0, 0.2, 0), Vec3(-30, 0, 0),
         Vec3(-40, 0, 0), Vec3(-40, -10, 0), Vec3(-30, -10, 0), Vec3(-30, 0.3, 0)}) {

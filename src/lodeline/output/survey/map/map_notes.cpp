@@ -33,7 +33,8 @@ std::string gridNote(const Georeference& place) {
       grid.name, grid.title, grid.code, grid.unit, place.convergence_rad() / kDegree, place.scale());
 }
 
-/// How coordinates came from WGS 84 to the datum of the grid, and how the files for survey programs name it.
+/// Notes on the transformation from WGS 84 to the datum of the grid, and its name in files for survey
+/// programs.
 void addDatumNotes(const MapGridDescription& grid, std::vector<std::string>* notes) {
   if (grid.accuracy_m != 0.0) {
     notes->push_back(fmt::format("datum: from WGS 84 by {} (PROJ), accuracy {}", grid.operation,
@@ -77,7 +78,7 @@ std::string closureNote(const Survey& survey) {
       distance, closure.percent(), *closure.horizontal_between_ways_m, *closure.vertical_between_ways_m);
 }
 
-/// The longest ones; that they are what they seem is for people to judge.
+/// Notes on the longest loop candidates; people have to confirm them.
 void addLoopNotes(const Survey& survey, std::vector<std::string>* notes) {
   constexpr size_t kMostListed = 5;
   const std::vector<LoopCandidate> loops = findLoopCandidates(survey);

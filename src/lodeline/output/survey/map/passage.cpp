@@ -9,7 +9,7 @@
 namespace lodeline {
 namespace {
 
-/// The passage at a station: unit vectors along it, horizontally to its left, and normal to both.
+/// Axes of the passage at a station: unit vectors along it, horizontally to its left, and normal to both.
 struct Section {
   Vec3 origin = Vec3::Zero();
   Vec3 along = Vec3::UnitX();
@@ -18,7 +18,7 @@ struct Section {
   Vec3 above() const { return along.cross(left); }
 };
 
-/// Horizontal left of a direction; of one that is nearly vertical it means nothing, and `fallback` is taken.
+/// Horizontal direction to the left of `along`; `fallback` if that is nearly vertical.
 Vec3 leftOf(const Vec3& along, const Vec3& fallback) {
   const Vec3 left = Vec3::UnitZ().cross(along);
   return left.norm() > 0.2 ? left.normalized() : fallback;
@@ -41,7 +41,7 @@ std::vector<Section> sectionsOf(const std::vector<SurveyStation>& stations) {
   for (size_t i = 0; i < stations.size(); ++i) {
     const Vec3 along = directionAt(stations, i);
     left = leftOf(along, left);
-    // Exactly normal to each other, also where `left` is that of an earlier station.
+    // Makes them orthogonal, also where `left` is that of an earlier station.
     const Vec3 horizontal = (left - left.dot(along) * along).normalized();
     sections[i] = {stations[i].position_ENU, along, horizontal};
   }

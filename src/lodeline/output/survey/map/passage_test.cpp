@@ -10,8 +10,8 @@
 namespace lodeline {
 namespace {
 
-/// A straight passage along the azimuth of `along`, wide and low: 3 m to the left, 2 to the right, 1 up and
-/// 1.5 down of the line.
+/// A straight passage along `along`, wide and low: 3 m to the left, 2 m to the right, 1 m up and 1.5 m down
+/// from the line.
 std::vector<Vec3> boxWalls(const Vec3& along, std::mt19937* random) {
   const Vec3 left = Vec3::UnitZ().cross(along);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);

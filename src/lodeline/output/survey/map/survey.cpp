@@ -11,7 +11,7 @@
 namespace lodeline {
 namespace {
 
-/// Indices of the positions that are at least `resolution_m` from the one before; the last always.
+/// Indices of positions at least `resolution_m` from the one before, and of the last.
 std::vector<size_t> thinned(const std::vector<Vec3>& positions, double resolution_m) {
   std::vector<size_t> kept = {0};
   for (size_t i = 1; i < positions.size(); ++i) {
@@ -23,7 +23,7 @@ std::vector<size_t> thinned(const std::vector<Vec3>& positions, double resolutio
 
 double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// A way as a sequence of points that are some distance apart.
+/// A path as a sequence of points at some distance from each other.
 class Way {
  public:
   Way(const std::vector<Vec3>& positions, const std::vector<size_t>& indices) {
@@ -33,7 +33,7 @@ class Way {
   size_t size() const { return points_.size(); }
   double distance(size_t from, size_t to) const { return (points_[to] - points_[from]).norm(); }
 
-  /// Angle between the line station -> at and the way of the next `ahead_m`; zero at the end of the way.
+  /// Angle between the line station -> at and the path of the next `ahead_m`; zero at the end of the path.
   double bendAt(size_t station, size_t at, double ahead_m) const {
     size_t next = at;
     while (next + 1 < points_.size() && distance(at, next) < ahead_m) ++next;
@@ -45,7 +45,7 @@ class Way {
   std::vector<Vec3> points_;
 };
 
-/// The point of the way that becomes the station after `station`, at the latest its last point.
+/// Index of the point that becomes the station after `station`, at most the last point.
 size_t nextStation(const Way& way, size_t station, const StationOptions& options) {
   const double ahead_m = 0.5 * options.bend_spacing_m;
   for (size_t at = station + 1; at + 1 < way.size(); ++at) {
@@ -66,7 +66,7 @@ std::vector<size_t> chooseStations(const std::vector<Vec3>& positions, const Sta
   const Way way(positions, kept);
   std::vector<size_t> stations = {0};
   while (stations.back() + 1 < way.size()) stations.push_back(nextStation(way, stations.back(), options));
-  // A last leg that is no more than a rest of the way is joined to the one before.
+  // A very short last leg is joined to the one before.
   if (stations.size() > 2 && way.distance(stations[stations.size() - 2], stations.back()) < 1.0) {
     stations.erase(stations.end() - 2);
   }
@@ -87,7 +87,7 @@ double Survey::length_m() const {
 
 namespace {
 
-/// From a point to the nearest point of a polyline.
+/// Vector from a point to the nearest point of a polyline.
 Vec3 offsetTo(const std::vector<SurveyStation>& stations, size_t last, const Vec3& point) {
   Vec3 nearest = stations.front().position_ENU - point;
   for (size_t i = 1; i <= last; ++i) {

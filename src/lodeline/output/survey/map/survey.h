@@ -8,20 +8,19 @@
 namespace lodeline {
 
 struct StationOptions {
-  double spacing_m = 5.0;           ///< of stations on a straight way
-  double bend_spacing_m = 2.0;      ///< the least, where the way bends
-  double bend_rad = 0.349;          ///< 20 degrees; smaller bends get no station of their own
-  double path_resolution_m = 0.25;  ///< smaller movements are no way travelled
+  double spacing_m = 5.0;           ///< of stations on a straight path
+  double bend_spacing_m = 2.0;      ///< minimum, where the path bends
+  double bend_rad = 0.349;          ///< 20 degrees; smaller bends get no separate station
+  double path_resolution_m = 0.25;  ///< smaller movements do not count as path length
 };
 
-/// Which poses of a way become survey stations, in their order: the first, then one each `spacing_m`
-/// (straight line from station to station), or at the sharpest point of a bend that is at least
-/// `bend_spacing_m` from the station before, and the last. A bend is the angle between the line from the
-/// station before and the way of the next `bend_spacing_m` / 2. Throws InputError where the way is shorter
-/// than two stations take.
+/// Chooses the poses of a path that become survey stations, in order: the first, then one each `spacing_m`
+/// (straight line from station to station), or at the sharpest point of a bend at least `bend_spacing_m` from
+/// the station before, and the last. The angle of a bend is that between the line from the station before and
+/// the path of the next `bend_spacing_m` / 2. Throws InputError where the path is too short for two stations.
 std::vector<size_t> chooseStations(const std::vector<Vec3>& positions, const StationOptions& options);
 
-/// Distances from a station to the walls, m; nothing where no wall is known in that direction.
+/// Distances from a station to the walls, m; empty where no wall is known in that direction.
 struct PassageSize {
   std::optional<double> left, right, up, down;
 
@@ -35,22 +34,22 @@ struct SurveyStation {
   std::vector<Vec3> splays_ENU;  ///< wall points, m
 };
 
-/// How the way in and the way out, or the end and the start, fit together.
+/// Agreement of the ways in and out, or of the end and the start.
 struct Misclosure {
   Vec3 end_from_start_ENU = Vec3::Zero();  ///< m
   double length_m = 0.0;                   ///< of the line
-  /// Where the dive turned back (the end lies nearer to the start than half of the way to the farthest
+  /// For a dive that turned back (the end is nearer to the start than half of the distance to the farthest
   /// point): median distance from the stations of the way back to the way out, horizontal and vertical.
   std::optional<double> horizontal_between_ways_m, vertical_between_ways_m;
 
   double percent() const { return length_m > 0.0 ? 100.0 * end_from_start_ENU.norm() / length_m : 0.0; }
 };
 
-/// A line of stations with what a survey program takes.
+/// A line of stations with the values that survey programs need.
 struct Survey {
   std::vector<SurveyStation> stations;  ///< named by their index
   Vec3 leg_sigma_ENU = Vec3::Zero();    ///< m, of each leg's components
-  bool is_closed = false;               ///< the last station is the first one again
+  bool is_closed = false;               ///< the last station is also the first one
 
   size_t legs() const { return stations.size() - 1; }
   double length_m() const;
@@ -58,8 +57,8 @@ struct Survey {
 
 Misclosure misclosure(const Survey& survey);
 
-/// Standard deviation of a leg such that all legs together give that of the end: sigma / sqrt(legs), at
-/// least 1 mm, below which survey programs take a leg for exact.
+/// Standard deviation of a leg with which all legs together give that of the end: sigma / sqrt(legs). It is
+/// at least 1 mm, below which survey programs treat a leg as exact.
 Vec3 legSigma(const Vec3& end_sigma, size_t legs);
 
 }  // namespace lodeline

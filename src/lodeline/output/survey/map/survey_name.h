@@ -6,13 +6,13 @@
 
 namespace lodeline {
 
-/// The name with every character replaced by '_' that Survex or Therion refuses in names: all but ASCII
-/// letters, digits, '_' and '-', and a '-' in front. At most 64 characters; "dive" where nothing is left.
+/// The name with '_' in place of every character that Survex or Therion does not allow in names: all except
+/// ASCII letters, digits, '_' and '-', and a leading '-'. At most 64 characters; "dive" where nothing is
+/// left.
 std::string surveyName(const std::string& name);
 
-/// A name for each run folder: the last part of its path; where several are equal, with the parts before it
-/// until they differ ("monday_out", "tuesday_out"), else with a number. Survex does not tell upper from lower
-/// case, so neither does the comparison.
+/// Names of run folders: the last component of their paths. Equal ones get the components before it until
+/// they differ ("monday_out", "tuesday_out"), else a number. The comparison ignores case, as Survex does.
 std::vector<std::string> surveyNames(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace lodeline

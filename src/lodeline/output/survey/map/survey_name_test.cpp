@@ -21,7 +21,7 @@ TEST(SurveyNames, DifferWhateverTheFoldersAreCalled) {
   EXPECT_THAT(surveyNames({"/a/out/"}), ElementsAre("out"));
   EXPECT_THAT(surveyNames({"/a/dive1", "/a/dive2"}), ElementsAre("dive1", "dive2"));
   EXPECT_THAT(surveyNames({"/a/monday/out", "/a/tuesday/out"}), ElementsAre("monday_out", "tuesday_out"));
-  // Survex folds case.
+  // Survex ignores case.
   EXPECT_THAT(surveyNames({"/a/b/Out", "/a/c/out"}), ElementsAre("b_Out", "c_out"));
   EXPECT_THAT(surveyNames({"/a/ä", "/a/ö"}), ElementsAre("___1", "___2"));
 }

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-/// Points each 0.1 m along straight lines between corners.
+/// Points at intervals of 0.1 m on straight lines between corners.
 std::vector<Vec3> wayAlong(const std::vector<Vec3>& corners) {
   std::vector<Vec3> way = {corners.front()};
   for (size_t i = 1; i < corners.size(); ++i) {

@@ -4,18 +4,19 @@
 
 #include "lodeline/output/survey/map/dive_map.h"
 
-/// A dive made up for the tests of this layer.
+/// A synthetic dive for the tests in this folder.
 namespace lodeline::test {
 
-/// Florida, 1.6 degrees west of its grid's middle: convergence -0.80 degrees.
+/// Florida, 1.6 degrees west of the central meridian of its grid: convergence -0.80 degrees.
 inline const GeodeticPosition kDevilsEye = {29.83, -82.60, 10.0};
 
-/// Where a diver who winds downwards through a passage is after `s` metres (about).
+/// Position of a diver on a winding path downwards through a passage after (about) `s` metres.
 inline Vec3 wayAt(double s) {
   return {0.8 * s, 6.0 * std::sin(s / 15.0), -0.15 * s + 0.5 * std::cos(s / 6.0) - 0.5};
 }
 
-/// Poses each 0.2 m along that way for `length_m`, at 5 Hz, with walls 2 m around: a round passage.
+/// Poses at intervals of 0.2 m along that path for `length_m`, at 5 Hz, with walls at a distance of 2 m: a
+/// round passage.
 inline RunFolder windingDive(double length_m = 120.0) {
   RunFolder run;
   run.folder = "winding";

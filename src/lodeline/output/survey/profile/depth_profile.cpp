@@ -27,7 +27,7 @@ double resolutionOf(const std::vector<DepthReading>& readings) {
   return smallest_m;
 }
 
-/// Twice the usual step between readings, at least a minute.
+/// Longest gap for interpolation: twice the usual step between readings, at least a minute.
 double maxGap(const std::vector<DepthReading>& readings) {
   std::vector<double> steps_s;
   for (size_t i = 1; i < readings.size(); ++i) steps_s.push_back(readings[i].time_s - readings[i - 1].time_s);
@@ -36,7 +36,7 @@ double maxGap(const std::vector<DepthReading>& readings) {
   return std::max(60.0, 2.0 * *middle);
 }
 
-/// DL7, the format of the Divers Alert Network, which few programs read.
+/// Throws for DL7, the format of the Divers Alert Network, which few programs read.
 void refuseDl7(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   char head[4] = {};
@@ -76,7 +76,7 @@ std::vector<DepthProfile> readDepthProfiles(const std::filesystem::path& file, D
       continue;
     }
     profiles.push_back(profileOf(dive, log->metres_per_unit.value_or(1.0)));
-    // Without numbers in the log every stretch is a dive of its own.
+    // Without dive numbers in the log, every sequence is a separate dive.
     profiles.back().dive_number =
         dive.front().dive > 0 ? dive.front().dive : -static_cast<int>(profiles.size());
     profiles.back().name = file.filename().string();

@@ -16,17 +16,17 @@ struct DepthReading {
 /// Depth over time of one dive from a dive computer or a diver's slate, strictly increasing in time.
 struct DepthProfile {
   std::string name;     ///< of the file
-  std::string dive;     ///< which of the file's dives this is ("lines 3 to 70"); empty where there is one
-  int dive_number = 0;  ///< the same for what several computers recorded of one dive
+  std::string dive;     ///< name of the dive in the file ("lines 3 to 70"); empty where there is one
+  int dive_number = 0;  ///< the same for recordings of one dive by several computers
   std::vector<DepthReading> readings;
-  double resolution_m = 0.0;  ///< smallest step between different depths that occur
-  double max_gap_s = 60.0;    ///< between readings from one to the next of which depths may be interpolated
+  double resolution_m = 0.0;  ///< smallest step between different depths
+  double max_gap_s = 60.0;    ///< longest gap between readings over which depths may be interpolated
   bool has_unit = true;       ///< false where the file states no unit: depths count as metres
 };
 
-/// The dives of a log: a table (profile_rows.h) or XML. Rows that cannot be read or cannot be true
-/// (profile_screen.h) are reported and passed over. Throws InputError where the file is missing, is no log
-/// that can be read, states a unit that is not known, or has no dive with 10 usable readings.
+/// Reads the dives of a log: a table (profile_rows.h) or XML. Rows that cannot be read or are impossible
+/// (profile_screen.h) are reported and skipped. Throws InputError where the file is missing, is not a
+/// readable log, states an unknown unit, or has no dive with 10 usable readings.
 std::vector<DepthProfile> readDepthProfiles(const std::filesystem::path& file, Diagnostics* diagnostics);
 
 /// The same dive with every depth multiplied.

@@ -25,7 +25,7 @@ class DepthProfileTest : public ::testing::Test {
   void expectRefusal(const std::string& text, const char* says) {
     EXPECT_THAT([&] { read(text); }, ThrowsMessage<InputError>(HasSubstr(says)));
   }
-  /// A header and twelve rows of a format with the index in it twice.
+  /// A header and twelve rows of a format that contains the index twice.
   static std::string rows(const std::string& header, const std::string& row) {
     std::string text = header;
     for (int i = 0; i < 12; ++i) text += fmt::format(fmt::runtime(row), i);

@@ -13,17 +13,17 @@ const Words kDepthWords = {"depth",      "tiefe",        "profondeur", "profundi
                            "profondita", "profundidade", "diepte",     "djup"};
 const Words kTimeWords = {"time",     "elapsed", "timestamp", "stamp", "t",      "datetime", "runtime",
                           "divetime", "zeit",    "tauchzeit", "temps", "tiempo", "tempo",    "tijd"};
-/// Depths that are not that of the moment.
+/// Words of depths other than that of the sample.
 const Words kOtherDepths = {
     "average", "avg",   "mean", "max",      "maximum", "min",   "minimum", "stop",     "ceiling", "deco",
     "target",  "first", "next", "last",     "limit",   "mod",   "end",     "greatest", "planned", "plan",
     "error",   "sigma", "std",  "variance", "alarm",   "floor", "safety",  "maximale", "moyenne", "mittlere"};
-/// Times that are not that of the moment.
+/// Words of times other than that of the sample.
 const Words kOtherTimes = {"max",  "maximum", "stop",   "surface", "tts",  "remaining", "first",  "gas",
                            "deco", "average", "ndl",    "next",    "last", "interval",  "offset", "total",
                            "zone", "bottom",  "ascent", "start",   "end",  "no"};
 
-/// How plainly a name says what is wanted: 0 not at all, 3 in one word, 4 for that of each sample.
+/// Clarity of a name: 0 if it does not match, 3 for a single word, 4 for that of each sample.
 int plainness(const ColumnName& name, Words wanted, Words others) {
   if (!name.hasWord(wanted) || name.hasWord(others)) return 0;
   if (name.hasWord({"sample"})) return 4;
@@ -63,7 +63,7 @@ std::optional<ProfileColumns> profileColumns(const std::vector<ColumnName>& name
     return name.words.size() == 1 || name.hasWord({"number", "no", "nr", "id", "index"}) ? 1 : 0;
   });
   if (!columns.time) columns.time = columns.date;
-  // A time since the dive's start has no day.
+  // A time since the start of the dive has no date.
   const bool is_clock =
       columns.time && !names[*columns.time].hasWord({"sample", "elapsed", "dive", "run", "runtime"});
   if (columns.time == columns.date || !is_clock) columns.date.reset();

@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-/// Which columns of a dive log hold what.
+/// Columns of a dive log.
 struct ProfileColumns {
   size_t depth = 0;
   std::optional<size_t> time;
@@ -16,8 +16,8 @@ struct ProfileColumns {
   std::optional<size_t> dive;  ///< number of the dive
 };
 
-/// The columns by their names; nothing where none is the depth of each sample. Where several may be that, the
-/// first of the plainest name is taken ("Sample Depth", then "Depth", then "Depth below surface").
+/// The columns by their names; empty where none is the depth of each sample. Among several candidates, the
+/// first with the clearest name is used ("Sample Depth", then "Depth", then "Depth below surface").
 std::optional<ProfileColumns> profileColumns(const std::vector<ColumnName>& names);
 
 }  // namespace lodeline

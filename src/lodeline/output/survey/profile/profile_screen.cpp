@@ -9,7 +9,7 @@ namespace {
 
 using Rows = std::vector<ProfileRow>;
 
-/// Value at a share of the sorted values, 0 to 1.
+/// Quantile of the values at `share`, 0 to 1.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const auto at =
@@ -29,7 +29,7 @@ double longestStep(const Rows& rows) {
   return std::clamp(10.0 * quantile(steps_s, 0.5), kUsual_s, kLongest_s);
 }
 
-/// Whether one reading can be the next after another.
+/// Test whether one reading can follow another.
 class Succession {
  public:
   explicit Succession(const Rows& rows) : longest_s_(longestStep(rows)) {}
@@ -66,8 +66,7 @@ Rows inOrder(Rows rows) {
   return rows;
 }
 
-/// Stretches without a jump in time; of up to three rows that do not fit where a later one does, none is
-/// kept.
+/// Sequences without a jump in time. Up to three rows that do not fit are dropped if a later row fits.
 std::vector<Rows> stretches(const Rows& rows, const Succession& follows, const PassOverRow& pass_over) {
   constexpr size_t kAhead = 3;
   std::vector<Rows> parts;

@@ -27,12 +27,12 @@ std::string lowerCase(std::string_view text) {
   return result;
 }
 
-/// A header has the depth and the time of each sample, or a plain "Depth" where the readings are evenly
-/// spaced.
+/// Whether the names are a header: with depth and time of each sample, or a plain "Depth" where the readings
+/// are evenly spaced.
 bool isProfileHeader(const std::vector<ColumnName>& names) {
   const std::optional<ProfileColumns> columns = profileColumns(names);
   if (!columns) return false;
-  // Prose and rows of names that another mark separates.
+  // Excludes prose, and names with another separator.
   const auto isSeveral = [](const ColumnName& name) {
     return name.text.find_first_of(",;") != std::string::npos;
   };
@@ -57,8 +57,8 @@ ProfileColumns columnsOf(const TableReader& table, const std::string& file) {
       is_named ? fmt::format("the header '{}' names no", excerpt(table.unknownHeader())) : "there are no"));
 }
 
-/// Metres per unit as lines before the header say it: a column "Imperial Units" with True or False below, or
-/// a line such as "Units: imperial", "# depth unit: ft".
+/// Metres per unit from lines before the header: a column "Imperial Units" with True or False below, or a
+/// line such as "Units: imperial", "# depth unit: ft".
 std::optional<double> unitInPreamble(const std::vector<std::string>& preamble) {
   constexpr double kMetresPerFoot = 0.3048;
   for (size_t i = 0; i < preamble.size(); ++i) {
@@ -84,7 +84,7 @@ std::optional<double> unitInPreamble(const std::vector<std::string>& preamble) {
   return std::nullopt;
 }
 
-/// Seconds between readings that have no time of their own: "Log interval: 5 s".
+/// Seconds between readings without times: "Log interval: 5 s".
 std::optional<double> intervalInPreamble(const std::vector<std::string>& preamble) {
   static const std::regex kInterval(
       R"(\b(?:interval|rate)\b[^0-9]*([0-9]+(?:\.[0-9]+)?)\s*(s|sec|seconds|min)?\b)");
@@ -97,7 +97,7 @@ std::optional<double> intervalInPreamble(const std::vector<std::string>& preambl
   return std::nullopt;
 }
 
-/// Metres per unit as the column's name or the lines before the header state it.
+/// Metres per unit from the column's name or the lines before the header.
 std::optional<double> depthUnit(const TableReader& table, size_t column, const std::string& file) {
   if (!table.hasHeader()) return std::nullopt;
   const StatedUnit unit = statedUnit(table.columns()[column], Quantity::Length);
@@ -125,7 +125,7 @@ std::optional<double> depthFrom(std::string_view cell, std::optional<double>* me
   return number;
 }
 
-/// Times of readings: seconds of clocks and dates; plain numbers wait until their unit is known.
+/// Times of readings: seconds for clocks and dates; plain numbers until their unit is known.
 class Times {
  public:
   Times(const TableReader& table, const ProfileColumns& columns) : columns_(columns) {
@@ -142,7 +142,7 @@ class Times {
 
   bool canTell() const { return columns_.time || interval_s_; }
 
-  /// Seconds, or a number of unknown unit (then `is_number`); nothing where the row has no time.
+  /// Time in seconds, or a number of unknown unit (then `is_number`); empty where the row has no time.
   std::optional<double> of(const TableReader& table, size_t row, bool* is_number) const {
     *is_number = false;
     if (!columns_.time) return static_cast<double>(row) * *interval_s_;
@@ -158,7 +158,8 @@ class Times {
     return day_s && *day_s > 86400.0 ? *day_s + *time_s : *time_s;
   }
 
-  /// Of the numbers: as the column states it; without, of seconds where a dive log can have such an interval.
+  /// Seconds per plain number: from the column's unit, else seconds if that is a plausible interval of a dive
+  /// log.
   double secondsPerNumber(const std::vector<double>& numbers) const {
     if (unit_) return static_cast<double>(nanosecondsPer(*unit_)) / 1e9;
     const double largest = numbers.empty() ? 0.0 : std::abs(numbers[numbers.size() / 2]);
@@ -176,7 +177,7 @@ class Times {
   bool counts_hours_ = false;
 };
 
-/// A block of up to three rows that an empty line sets off from the rest says something else of the columns.
+/// Removes a block of up to three rows before an empty line, whose columns have another meaning.
 void dropBlockBefore(std::vector<ProfileRow>* rows, std::vector<bool>* are_numbers) {
   constexpr size_t kMostRows = 3;
   for (size_t i = 1; i <= kMostRows && i < rows->size(); ++i) {

@@ -32,8 +32,8 @@ std::optional<double> parseClock(std::string_view text) {
   return seconds;
 }
 
-/// Cuts "Z", "+02:00", "-0430" off the end of a time of day and gives its seconds; nothing where it is
-/// malformed.
+/// Removes "Z", "+02:00", "-0430" from the end of a time of day and returns the offset in seconds; empty
+/// where it is malformed.
 std::optional<double> takeOffset(std::string_view* clock) {
   if (clock->ends_with('Z')) {
     clock->remove_suffix(1);
@@ -52,8 +52,8 @@ std::optional<double> takeOffset(std::string_view* clock) {
   return direction * (3600.0 * hours + 60.0 * minutes);
 }
 
-/// Days since 1970 of "2026-11-21", "21.11.2026", "11/21/2026"; with strokes the month comes first unless
-/// that is no month.
+/// Days since 1970 of "2026-11-21", "21.11.2026", "11/21/2026"; with slashes the month comes first unless it
+/// is not a valid month.
 std::optional<double> parseDay(std::string_view text) {
   int parts[3];
   size_t lengths[3];
@@ -91,7 +91,7 @@ std::optional<double> parseTimeOfDay(std::string_view clock) {
     has_twelve_hours = true;
   }
   const std::optional<double> offset_s = takeOffset(&clock);
-  // Two numbers are hours and minutes here.
+  // Two numbers are hours and minutes in a time of day.
   const bool has_seconds = std::count(clock.begin(), clock.end(), ':') == 2;
   std::optional<double> of_day_s = parseClock(has_seconds ? std::string(clock) : std::string(clock) + ":00");
   if (!offset_s || !of_day_s) return std::nullopt;

@@ -44,7 +44,7 @@ void forEach(xmlNode* node, const char* name, const std::function<void(xmlNode*)
   }
 }
 
-/// The text of a child element; empty without it.
+/// Text of a child element; empty without it.
 std::string childText(xmlNode* node, const char* name) {
   for (xmlNode* child = node->children; child != nullptr; child = child->next) {
     if (isNamed(child, name)) return textOf(xmlNodeGetContent(child));
@@ -52,7 +52,7 @@ std::string childText(xmlNode* node, const char* name) {
   return "";
 }
 
-/// The number that a text begins with, as "12.3 m".
+/// Number at the start of a text, such as "12.3 m".
 std::optional<double> leadingNumber(std::string_view text) {
   double number = 0.0;
   if (!csv::parse(text.substr(0, text.find(' ')), &number)) return std::nullopt;
@@ -116,7 +116,7 @@ bool beginsAsXml(const std::filesystem::path& file) {
   std::string head(512, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<size_t>(stream.gcount()));
-  // Past a byte order mark, and the zero bytes of UTF-16.
+  // Skips a byte order mark, and the zero bytes of UTF-16.
   for (const char c : head) {
     if (c == '<') return true;
     if (std::strchr(" \t\r\n\xEF\xBB\xBF\xFF\xFE", c) == nullptr) return false;

@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "landmarks.ply is read as it lies in memory");
 
-/// One vertex as it lies in the file.
+/// One vertex in the layout of the file.
 struct Vertex {
   std::array<float, 3> position;
   int32_t observations;
@@ -31,12 +31,12 @@ static_assert(sizeof(Vertex) == 16);
                   file.string(), what));
 }
 
-/// Reads the header and gives the number of vertices; nothing where the file ends before its header does.
+/// Reads the header and returns the number of vertices; empty where the file ends within its header.
 std::optional<size_t> readHeader(std::ifstream& stream, const std::filesystem::path& file) {
-  constexpr std::array<const char*, 4> kProperties = {"property float x", "property float y",
-                                                      "property float z", "property int observations"};
-  std::string line, properties, wanted;
-  for (const char* property : kProperties) wanted += std::string(property) + "\n";
+  // Early versions had another name for the number of observations.
+  const std::string kCount = "property int ";
+  const std::string wanted = "property float x\nproperty float y\nproperty float z\n" + kCount + "\n";
+  std::string line, properties;
   std::optional<size_t> count;
   bool is_binary = false;
   if (!std::getline(stream, line)) return std::nullopt;
@@ -44,6 +44,7 @@ std::optional<size_t> readHeader(std::ifstream& stream, const std::filesystem::p
   while (std::getline(stream, line) && line != "end_header") {
     if (line == "format binary_little_endian 1.0") is_binary = true;
     if (line.starts_with("element vertex ")) count = std::strtoull(line.c_str() + 15, nullptr, 10);
+    if (line.starts_with(kCount)) line = kCount;
     if (line.starts_with("property ")) properties += line + "\n";
   }
   if (!stream) return std::nullopt;

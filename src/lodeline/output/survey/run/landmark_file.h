@@ -14,9 +14,9 @@ struct MapLandmark {
   int observations = 0;
 };
 
-/// Reads `landmarks.ply` as `lodeline run` writes it; points that are not finite are left out. Of a run that
-/// was killed, whose file has no count yet, no end or not even a header, gives the whole points that are
-/// there, and reports it. Throws InputError where the file has another layout.
+/// Reads `landmarks.ply` of `lodeline run`; points that are not finite are skipped. The file of a killed run
+/// may have no count, no end or no header. Its complete points are returned, and the problem is reported.
+/// Throws InputError where the file has another layout.
 std::vector<MapLandmark> readLandmarkFile(const std::filesystem::path& file, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -77,7 +77,7 @@ std::vector<PositionUncertainty> readUncertainties(const fs::path& file) {
   while (std::getline(stream, line)) {
     csv::split(line, &fields);
     int64_t stamp_ns = 0;
-    // The last line of a run that was killed may be cut off, and frames without a pose have none.
+    // The last line of a killed run may be incomplete, and frames without a pose have no covariance.
     if (fields.size() != columns.count() || !csv::parse(fields[0], &stamp_ns)) continue;
     PositionUncertainty uncertainty;
     uncertainty.time = Time::fromNanoseconds(stamp_ns);
@@ -98,7 +98,7 @@ HeadingReference headingReference(const std::string& name, const fs::path& file)
                   file.string(), name));
 }
 
-/// A summary without a heading is from a run that knew no north.
+/// A summary without a heading comes from a run without north.
 void readHeading(const nlohmann::json& json, const fs::path& file, RunFolder* run) {
   if (!json.contains("heading")) return;
   const nlohmann::json& heading = json["heading"];
@@ -108,7 +108,7 @@ void readHeading(const nlohmann::json& json, const fs::path& file, RunFolder* ru
   }
 }
 
-/// The gauge's part of the summary stands in `pressure.gauge`, in that of older runs in `pressure` itself.
+/// The gauge's values are in `pressure.gauge`, in older runs in `pressure` itself.
 void readStartDepth(const nlohmann::json& json, RunFolder* run) {
   const nlohmann::json pressure = json.value("pressure", nlohmann::json::object());
   const nlohmann::json gauge = pressure.value("gauge", pressure);
@@ -150,7 +150,7 @@ void readSummary(const fs::path& file, RunFolder* run) {
   }
 }
 
-/// Place and date, where the run was told them.
+/// Position and date, if given to the run.
 void readSite(const fs::path& file, RunFolder* run) {
   const YAML::Node heading = loadYamlFile(file)["heading"];
   if (!heading) return;
@@ -177,7 +177,7 @@ RunFolder readRunFolder(const fs::path& folder, Diagnostics* diagnostics) {
     return false;
   };
   if (there("run.json", "its heading is taken to be arbitrary")) readSummary(folder / "run.json", &run);
-  // What belongs to the refined trajectory, where that is what counts.
+  // Files of the refined trajectory, if that is used.
   const bool refined = run.trajectory_file != kCausalTrajectory;
   const auto choose = [&](const char* name, const char* causal) {
     return refined && fs::exists(folder / name) ? name : causal;

@@ -94,7 +94,7 @@ TEST_F(RunFolderTest, MakesDoWithPosesAlone) {
 
 TEST_F(RunFolderTest, NamesWhatItCannotUnderstand) {
   const std::string ply = plyOf({{{1, 2, 3}, 7}, {{1, 2, 3}, 7}});
-  // A run that was killed leaves what it has found.
+  // A killed run keeps its results.
   folder_.write("landmarks.ply", ply.substr(0, 60));
   EXPECT_EQ(read().landmarks.size(), 0U);
   folder_.write("landmarks.ply", ply.substr(0, ply.size() - 5));

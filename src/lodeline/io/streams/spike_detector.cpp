@@ -1,4 +1,4 @@
-#include "lodeline/io/streams/spike_test.h"
+#include "lodeline/io/streams/spike_detector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 namespace lodeline {
 namespace {
 
-constexpr double kChanges = 12.0;  ///< median changes that a jump exceeds
-/// Jumps below these do no harm, whatever the noise.
+constexpr double kChanges = 12.0;  ///< jump threshold, in median changes
+/// Jumps below these values are harmless at any noise.
 constexpr double kLeastRate_rad_per_s = 0.15;
 constexpr double kLeastForce_m_per_s2 = 1.5;
-/// No knock makes a rig turn or accelerate so from one reading to the next.
+/// Changes between consecutive readings that no mechanical shock can cause.
 constexpr double kNoKnock_rad_per_s = 15.0;
 constexpr double kNoKnock_m_per_s2 = 150.0;
 constexpr size_t kMostSpikes = 2;
@@ -20,7 +20,7 @@ constexpr size_t kMedianOf = 5;
 
 double limit(double scale, double least) { return std::max(least, kChanges * scale); }
 
-/// Component-wise median of the first few.
+/// Component-wise median of the first few readings.
 Vec3 medianOf(std::span<const ImuSample> samples, Vec3 ImuSample::*reading) {
   const size_t count = std::min(samples.size(), kMedianOf);
   Vec3 result;
@@ -33,7 +33,7 @@ Vec3 medianOf(std::span<const ImuSample> samples, Vec3 ImuSample::*reading) {
   return result;
 }
 
-/// Whether readings after a spike of this size are as calm as after none; a knock rings.
+/// Whether the readings after a spike of this size are as steady as without one; a shock would oscillate.
 bool isCalm(std::span<const ImuSample> after, Vec3 ImuSample::*reading, double size) {
   constexpr size_t kChangesAfter = 3;
   constexpr double kCalm = 0.15;
@@ -43,7 +43,7 @@ bool isCalm(std::span<const ImuSample> after, Vec3 ImuSample::*reading, double s
   return true;
 }
 
-/// Whether the first `spikes` of the readings lie off, all of them, and what comes then does not.
+/// Whether all of the first `spikes` readings are outliers and the following ones are not.
 bool standsOut(const ImuSample& before, std::span<const ImuSample> following, size_t spikes,
                Vec3 ImuSample::*reading, double limit, double no_knock) {
   constexpr double kReturned = 0.5;
@@ -61,7 +61,7 @@ bool standsOut(const ImuSample& before, std::span<const ImuSample> following, si
 bool isJump(const ReadingHistory& before, const ImuSample& sample) {
   if (!before.isFull()) return false;
   const ImuSample& last = before.last();
-  // Over readings that are missing anything may have happened.
+  // A change across missing readings is not a jump.
   const ImuSample& second_last = *(before.samples().end() - 2);
   constexpr double kPeriods = 2.5;
   if ((sample.time - last.time).seconds() > kPeriods * (last.time - second_last.time).seconds()) return false;

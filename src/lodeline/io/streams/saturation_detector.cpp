@@ -1,11 +1,11 @@
-#include "lodeline/io/streams/saturation_test.h"
+#include "lodeline/io/streams/saturation_detector.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace lodeline {
 
-bool SaturationTest::End::add(double before, double reading, const Axis& axis) {
+bool SaturationDetector::End::add(double before, double reading, const Axis& axis) {
   constexpr int kPlateaus = 3, kLongStay = 10;
   constexpr double kAway = 0.1, kSteps = 3.0, kWide = 20.0, kFine = 2.0;
   if (reading > value) {
@@ -29,7 +29,7 @@ bool SaturationTest::End::add(double before, double reading, const Axis& axis) {
   return plateaus >= kPlateaus;
 }
 
-bool SaturationTest::Axis::add(double reading) {
+bool SaturationDetector::Axis::add(double reading) {
   if (!begun) {
     begun = true;
     before = least = greatest = reading;
@@ -45,7 +45,7 @@ bool SaturationTest::Axis::add(double reading) {
   return at_upper || at_lower;
 }
 
-bool SaturationTest::isSaturated(const ImuSample& sample) {
+bool SaturationDetector::isSaturated(const ImuSample& sample) {
   bool result = false;
   for (size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);

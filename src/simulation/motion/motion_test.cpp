@@ -59,8 +59,8 @@ TEST(Motion, SnapHasNoJumps) {
             motion.at(t - kStep).acceleration_W) /
            (kStep * kStep);
   };
-  // Across any point in time, knots included, the change over 8 ms stays what a continuous function allows; a
-  // jump would keep its size as the steps shrink.
+  // At any time, knots included, the change over 8 ms is within the limit of a continuous function; a step
+  // would keep its size for smaller steps.
   double largest = 0.0, largest_change = 0.0, largest_half_change = 0.0;
   for (int i = 0; i < 4000; ++i) {
     const double t = 20.0 + 0.004 * i;
@@ -90,7 +90,7 @@ std::vector<ImuSample> perfectImu(const Motion& motion, double begin_s, double l
   return samples;
 }
 
-// Classical Runge-Kutta with steps of two samples, the sample between them as the middle.
+// Classical Runge-Kutta with steps of two samples; the sample between them is the middle.
 IntegrationError rungeKuttaError(const Motion& motion, double begin_s, double length_s) {
   const std::vector<ImuSample> samples = perfectImu(motion, begin_s, length_s, 200);
   using State = Eigen::Matrix<double, 10, 1>;  // p, v, q (x y z w)
@@ -118,7 +118,7 @@ IntegrationError rungeKuttaError(const Motion& motion, double begin_s, double le
   return errorAgainst(motion.at(begin_s + length_s), x.head<3>(), Quat(x[9], x[6], x[7], x[8]));
 }
 
-// The way of the estimator, at the scenarios' rate.
+// Integration as in the estimator, at the scenarios' rate.
 IntegrationError preintegrationError(const Motion& motion, double begin_s, double length_s) {
   const Preintegration integral(perfectImu(motion, begin_s, length_s, 200), Vec3::Zero(), Vec3::Zero(),
                                 ImuCalibration());
@@ -136,7 +136,7 @@ TEST(Motion, IntegratingTheNoiseFreeImuFollowsTheTruth) {
   options.path_length_m = 100.0;
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     const Motion motion = dive(seed, options);
-    for (const double begin_s : {0.0, 30.0, 170.0, 300.0}) {  // from rest, in, turn, out
+    for (const double begin_s : {0.0, 30.0, 170.0, 300.0}) {  // at rest, inwards, turn, outwards
       for (const bool preintegrated : {false, true}) {
         const IntegrationError error = preintegrated ? preintegrationError(motion, begin_s, 60.0)
                                                      : rungeKuttaError(motion, begin_s, 60.0);

@@ -1,11 +1,11 @@
-#include "lodeline/io/streams/repeat_test.h"
+#include "lodeline/io/streams/repeat_detector.h"
 
 #include <cmath>
 
 namespace lodeline {
 
-void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3& other, Time time) {
-  constexpr double kOf = 0.25;  // the newest share counts
+void RepeatDetector::Triad::add(const Vec3& before, const Vec3& reading, const Vec3& other, Time time) {
+  constexpr double kOf = 0.25;  // weight of the newest fraction in the running mean
   const auto same = (before.array() == reading.array()).count();
   repeats_ = same == 3;
   if (repeats_) {
@@ -19,13 +19,13 @@ void RepeatTest::Triad::add(const Vec3& before, const Vec3& reading, const Vec3&
   other_least_ = other_greatest_ = other;
 }
 
-bool RepeatTest::Triad::isStuck(Time now, double moving) const {
+bool RepeatDetector::Triad::isStuck(Time now, double moving) const {
   constexpr double kLong_s = 0.1;
   return repeats_ && (resolvesFinely() || !has_changed_) && (now - since_).seconds() > kLong_s &&
          (other_greatest_ - other_least_).maxCoeff() > moving;
 }
 
-RepeatTest::Verdict RepeatTest::judge(const ImuSample& sample) {
+RepeatDetector::Verdict RepeatDetector::judge(const ImuSample& sample) {
   constexpr double kTurning_rad_per_s = 0.3, kMoving_m_per_s2 = 1.5;
   const ImuSample before = before_.value_or(ImuSample{sample.time, Vec3::Constant(NAN), Vec3::Constant(NAN)});
   before_ = sample;
