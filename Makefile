@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything fuzz faults dependencies test-dependencies demo experiments test test-sanitized bench install package format check-format clean
+.PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = src apps studies examples ros fuzz
 
@@ -53,6 +53,18 @@ fuzz: test-dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers
 	ctest --test-dir build/sanitized --output-on-failure -j2 -L fuzz
+
+# Line coverage of the library by all tests, layer by layer.
+coverage: test-dependencies
+	cmake --preset coverage
+	cmake --build --preset coverage
+	ctest --test-dir build/coverage --output-on-failure -j2
+	gcovr --root . --filter src/lodeline --exclude '.*test.*' --print-summary build/coverage
+
+# The checks of .clang-tidy on the product's sources.
+tidy: test-dependencies
+	cmake --preset sanitized -DCMAKE_UNITY_BUILD=OFF -B build/tidy
+	run-clang-tidy-14 -quiet -p build/tidy '(src/lodeline|apps)/.*(?<!_test)\.cpp$$'
 
 bench: everything
 	./scripts/benchmark.sh
