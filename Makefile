@@ -1,6 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything fuzz faults dependencies test-dependencies docs-dependencies demo docs docs-reference experiments \
-  test test-sanitized bench install package format check-format clean
+.PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = src apps studies examples ros fuzz
 
@@ -18,9 +17,6 @@ dependencies:
 
 test-dependencies:
 	./scripts/install-dependencies.sh test
-
-docs-dependencies:
-	./scripts/install-dependencies.sh docs
 
 # Simulates a dive, runs the program on it and compares the result with the truth, in pictures. A recording in
 # place of the simulated one: RECORDING=/path/to/folder-with-mav0.
@@ -58,6 +54,18 @@ fuzz: test-dependencies
 	cmake --build --preset sanitized --target lodeline_fuzzers
 	ctest --test-dir build/sanitized --output-on-failure -j2 -L fuzz
 
+# Line coverage of the library by all tests, layer by layer.
+coverage: test-dependencies
+	cmake --preset coverage
+	cmake --build --preset coverage
+	ctest --test-dir build/coverage --output-on-failure -j2
+	gcovr --root . --filter src/lodeline --exclude '.*test.*' --print-summary build/coverage
+
+# The checks of .clang-tidy on the product's sources.
+tidy: test-dependencies
+	cmake --preset sanitized -DCMAKE_UNITY_BUILD=OFF -B build/tidy
+	run-clang-tidy-14 -quiet -p build/tidy '(src/lodeline|apps)/.*(?<!_test)\.cpp$$'
+
 bench: everything
 	./scripts/benchmark.sh
 
@@ -71,7 +79,9 @@ package: build
 
 # The documentation as a site in build/docs, with the reference of the library in build/docs/api. Debian's package
 # libjs-katex draws its equations.
-docs: docs-dependencies
+.PHONY: docs docs-reference
+docs:
+	./scripts/install-dependencies.sh docs
 	./scripts/check_links.py
 	./scripts/check_findings.py
 	mkdocs build --strict

@@ -33,7 +33,9 @@ lodeline_export(options)
 # The .cpp files of a layer's folder and FOLDERS whose names match a regular expression.
 function(lodeline_files result regex)
   set(found)
-  foreach(folder IN LISTS ARGN)
+  set(folders ${ARGN})
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder IN LISTS folders)
     file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
     list(APPEND found ${files})
   endforeach()
@@ -46,7 +48,8 @@ endfunction()
 #
 # One layer of the library: target lodeline_NAME (an interface library when it has no sources), linked against lower
 # layers (by layer name) and outside libraries (by target name). It is made of all .cpp files in the folder of its
-# CMakeLists.txt and in FOLDERS, which are listed from the bottom up. What a file is, its name says:
+# CMakeLists.txt and in FOLDERS, which are listed from the bottom up ("." is the folder itself, without it the topmost).
+# What a file is, its name says:
 #
 #   *_real_test.cpp     tests that read recordings, and skip themselves where these are missing
 #   *_browser_test.cpp, *_benchmark.cpp, main.cpp     no part of the layer

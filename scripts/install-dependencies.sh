@@ -27,6 +27,7 @@ test=(
   libgtest-dev libgmock-dev libbenchmark-dev python3
   clang-format-14  # other versions lay code out differently
   clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
+  clang-tidy-14 gcovr  # `make tidy`, `make coverage`
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"
   python3-roslaunch  # roscore, for the node's test

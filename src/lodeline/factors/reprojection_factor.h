@@ -2,7 +2,7 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "lodeline/factors/sensors/direction_measurement.h"
+#include "lodeline/factors/direction_measurement.h"
 #include "lodeline/geometry/rigid3.h"
 
 namespace lodeline {

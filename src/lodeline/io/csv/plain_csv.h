@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/io/euroc/sensor_columns.h"
+#include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/tables/table_reader.h"
 #include "lodeline/sensors/measurements.h"
 #include "lodeline/util/diagnostics.h"

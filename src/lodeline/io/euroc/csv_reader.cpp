@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/io/euroc/sensor_columns.h"
+#include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/streams/stream_rate.h"
 #include "lodeline/io/tables/pose_columns.h"
 #include "lodeline/util/error.h"

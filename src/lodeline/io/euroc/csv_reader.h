@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lodeline/io/euroc/sensor_columns.h"
+#include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/tables/table_reader.h"
 #include "lodeline/util/diagnostics.h"
 #include "lodeline/util/time/time.h"

@@ -1,4 +1,4 @@
-#include "lodeline/io/euroc/sensor_columns.h"
+#include "lodeline/io/csv/sensor_columns.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

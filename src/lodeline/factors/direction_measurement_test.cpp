@@ -1,4 +1,4 @@
-#include "lodeline/factors/sensors/direction_measurement.h"
+#include "lodeline/factors/direction_measurement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Checks the structure of the source tree; ends with exit code 1, naming each breach.
+
+  - A folder has at most 30 files, a source file at most 400 lines.
+  - Includes go downwards only. Layers are ordered by src/CMakeLists.txt, then apps, studies and ros; the folders inside
+    a layer by the FOLDERS of its CMakeLists.txt ("." for the layer's own folder, otherwise that comes last).
+
+Tests, and helpers of tests, may include anything. Python 3 without further packages.
+"""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+MOST_FILES, MOST_LINES = 30, 400
+TOPS = ("src", "apps", "studies", "ros", "examples", "fuzz")
+
+
+def arguments(text, keyword):
+    """The words after a keyword of a CMake call, up to the next keyword."""
+    match = re.search(rf"\b{keyword}\s+((?:[a-z./][\w./]*\s*)+)", text)
+    return match.group(1).split() if match else []
+
+
+def folders_in_order():
+    """All folders of code, from the bottom up, relative to the root."""
+    order = []
+
+    def add_layer(folder):
+        cmake = (ROOT / folder / "CMakeLists.txt").read_text()
+        for nested in re.findall(r"add_subdirectory\(([\w./]+)\)", cmake):
+            add_layer(f"{folder}/{nested}")
+        order.extend(str((ROOT / folder / inside).resolve().relative_to(ROOT)) for inside in arguments(cmake, "FOLDERS"))
+        if folder not in order:
+            order.append(folder)
+
+    for layer in re.findall(r"add_subdirectory\(([\w./]+)\)", (ROOT / "src/CMakeLists.txt").read_text()):
+        add_layer(f"src/{layer}")
+    add_layer("apps/lodeline")
+    return order
+
+
+def is_test(file):
+    return file.name.startswith("test_") or file.stem.endswith(("_test", "_benchmark")) or "trials" in file.parts \
+        or "tests" in file.parts
+
+
+def target_of(include):
+    for top in ("src/", ""):
+        if (ROOT / (top + include)).is_file():
+            return str(Path(top + include).parent)
+    return None
+
+
+def breaches():
+    rank = {folder: number for number, folder in enumerate(folders_in_order())}
+    for top in TOPS:
+        for folder in [ROOT / top, *(ROOT / top).rglob("*")]:
+            if not folder.is_dir() or "corpus" in folder.parts:
+                continue
+            files = [file for file in folder.iterdir() if file.is_file()]
+            if len(files) > MOST_FILES:
+                yield f"{folder.relative_to(ROOT)}: {len(files)} files, at most {MOST_FILES} are allowed"
+            for file in files:
+                if file.suffix in (".h", ".cpp"):
+                    yield from breaches_of(file, rank)
+
+
+def breaches_of(file, rank):
+    name = file.relative_to(ROOT)
+    lines = file.read_text().splitlines()
+    if len(lines) > MOST_LINES:
+        yield f"{name}: {len(lines)} lines, at most {MOST_LINES} are allowed"
+    own = rank.get(str(name.parent))
+    if own is None:
+        if name.parts[0] == "src" and not is_test(name):
+            yield f"{name}: its folder is in no layer (FOLDERS of a CMakeLists.txt)"
+        return
+    if is_test(name):
+        return
+    for include in re.findall(r'^#include "([^"]+)"', "\n".join(lines), re.M):
+        other = target_of(include)
+        if other in rank and rank[other] > own:
+            yield f"{name}: includes {include}, which is above it"
+
+
+if __name__ == "__main__":
+    found = sorted(breaches())
+    print("\n".join(found))
+    sys.exit(1 if found else 0)
