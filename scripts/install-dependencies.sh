@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs what Lodeline needs on Debian 12 or Ubuntu 24.04: install-dependencies.sh [build|test|ros|web|docs ...]
 #   build  compiler, libraries and the page's bundler: all that `make build` needs (default)
-#   test   also the tests: their framework, Clang, the formatter, survey and GIS programs, a browser
-#   ros    also the ROS 1 node, and bags written by `lodeline convert`
-#   web    also the tools for work on the page
-#   docs   also the tools of `make docs`
+#   test   what the tests need: those, their framework, Clang, the formatter, survey and GIS programs, a browser
+#   ros    the ROS 1 node, and bags written by `lodeline convert`
+#   web    the browser that the page is tested in
+#   docs   the tools of `make docs`
 # Does nothing where all of it is present.
 set -euo pipefail
 
@@ -24,6 +24,7 @@ ros=(
   libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
 )
 test=(
+  "${build[@]}"
   libgtest-dev libgmock-dev libbenchmark-dev python3
   clang-format-14  # other versions lay code out differently
   clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
@@ -38,13 +39,12 @@ browser=()
 grep -q '^ID=debian' /etc/os-release && browser=(chromium)
 test+=("${browser[@]}")
 web=("${browser[@]}")
-docs=(mkdocs-material doxygen python3)
+docs=(mkdocs-material doxygen libjs-katex python3)
 
-packages=("${build[@]}")
-for group in "$@"; do
+packages=()
+for group in "${@:-build}"; do
   case $group in
-    build) ;;
-    test | ros | web | docs) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
+    build | test | ros | web | docs) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
     *) echo "unknown group '$group'; groups are build, test, ros, web and docs" >&2 && exit 2 ;;
   esac
 done

@@ -28,7 +28,7 @@ const char* const kCalibrateFooter =
 ROS 1 bag (--rig may be missing; the noise of a usual IMU is assumed then),
 a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
 How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
-while rolling the rig over; 60 to 90 s. docs/magnetometer_calibration.md explains every figure.
+while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure.
 Examples:
   lodeline calibrate magnetometer dive1 -o mag.yaml --to 90 --site 29.83,-82.60,20 --date 2026-11-21
   lodeline calibrate magnetometer cloud.txt --unit mG -o mag.yaml --plots plots

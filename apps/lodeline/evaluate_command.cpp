@@ -30,7 +30,7 @@ const char* const kEvaluateFooter = R"(Examples:
   lodeline evaluate KITTI_00_ORB.txt KITTI_00_gt.txt --stretches-m 100,200,300,400
 
 Layouts (found by themselves, or named with --format): TUM, KITTI, EuRoC ground truth, COLMAP images.txt and
-images.bin, the output folder of `lodeline run`; text files may be compressed with gzip. docs/evaluation.md
+images.bin, the output folder of `lodeline run`; text files may be compressed with gzip. docs/reference/error-measures.md
 defines every figure.)";
 
 struct Arguments {

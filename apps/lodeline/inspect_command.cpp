@@ -78,7 +78,7 @@ void addInspectCommand(CLI::App& program) {
   command->add_option("--date", arguments->date, "YYYY-MM-DD, with --site");
   command->footer(
       "Units, rates, gaps, order, axes, extrinsics, focal lengths, time offsets, image quality. "
-      "docs/inspect.md tells\n"
+      "docs/reference/findings.md tells\n"
       "what each finding means.\n"
       "Examples:\n"
       "  lodeline inspect dive1\n"

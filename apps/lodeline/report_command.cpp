@@ -51,7 +51,7 @@ void addReportCommand(CLI::App& program) {
       "Examples:\n"
       "  lodeline report dive1_result -o dive1.html\n"
       "  lodeline report with_mag without_mag --reference dive1/truth.tum --align none -o comparison.html\n"
-      "The page is one file that works without a network; docs/report.md tells what it shows.");
+      "The page is one file that works without a network; docs/how-to/report.md tells what it shows.");
   command->callback([arguments] { reportCommand(*arguments); });
 }
 

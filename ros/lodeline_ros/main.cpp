@@ -1,4 +1,4 @@
-// lodeline_ros: the estimator as a ROS 1 node (docs/ros.md).
+// lodeline_ros: the estimator as a ROS 1 node (docs/reference/ros-node.md).
 
 #include <fmt/core.h>
 #include <glog/logging.h>

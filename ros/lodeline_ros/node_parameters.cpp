@@ -20,7 +20,8 @@ class Reader {
   void read(const char* name, Value* value) {
     known_.emplace_back(name);
     if (node_.hasParam(name) && !node_.getParam(name, *value)) {
-      throw UsageError(fmt::format("~{}: has a value of the wrong type (see docs/ros.md)", name));
+      throw UsageError(
+          fmt::format("~{}: has a value of the wrong type (see docs/reference/ros-node.md)", name));
     }
   }
 
@@ -86,7 +87,8 @@ NodeParameters readNodeParameters(const ros::NodeHandle& node) {
   reader.read("patience_s", &parameters.source.patience_s);
   reader.refuseOthers();
   if (parameters.rig_files.empty()) {
-    throw UsageError("~rig: missing; name the file or files that describe the rig (docs/data.md)");
+    throw UsageError(
+        "~rig: missing; name the file or files that describe the rig (docs/reference/file-formats.md)");
   }
   if (max_images < 1) throw UsageError(fmt::format("~max_images: {} is not positive", max_images));
   if (!(parameters.source.patience_s > 0.0)) throw UsageError("~patience_s: not positive");

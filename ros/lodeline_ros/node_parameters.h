@@ -13,7 +13,7 @@
 
 namespace lodeline {
 
-/// Private parameters of the node (docs/ros.md lists them).
+/// Private parameters of the node (docs/reference/ros-node.md lists them).
 struct NodeParameters {
   std::vector<std::filesystem::path> rig_files;
   std::map<std::string, std::string> topics;  ///< by sensor, with priority over the rig files

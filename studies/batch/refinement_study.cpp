@@ -1,5 +1,5 @@
 // Compares the accuracy of a batch solution with the sliding window on simulated dives of points. Prints the
-// table of docs/refinement.md.
+// table of docs/lab-notes/refinement.md.
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // Monte Carlo test of the estimator's consistency on simulated scenes and dives. Prints the tables of
-// docs/consistency.md.
+// docs/lab-notes/consistency.md.
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // Measures the heading error over simulated dives of points, with and without magnetometer. Prints the table
-// of docs/magnetometer.md.
+// of docs/lab-notes/magnetometer.md.
 
 #include <fmt/core.h>
 

@@ -22,7 +22,7 @@ namespace lodeline {
 namespace {
 
 const char* const kCompareFooter =
-    R"(Methods: off (images and inertial readings alone), paper and absolute (docs/magnetometer.md), azimuth (the finished
+    R"(Methods: off (images and inertial readings alone), paper and absolute (docs/theory/magnetometer.md), azimuth (the finished
 trajectory of off, its heading corrected by the 20 s running median of the field's azimuth).
 Runs of a scenario differ by the noise of its sensors, with the same images; runs of a folder by the front end's seed.
 Bags are turned into folders first, as by `lodeline convert`, in OUT/recordings or the folder of --recordings.

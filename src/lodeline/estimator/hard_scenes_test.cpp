@@ -38,7 +38,7 @@ class HardScene : public testing::TestWithParam<int> {
   }
 
   /// Checks position and each angle against four times the reported sigma. With one camera the scale's sigma
-  /// is too small for some seconds after the start (docs/consistency.md), hence twice that.
+  /// is too small for some seconds after the start (docs/lab-notes/consistency.md), hence twice that.
   void expectWithinItsSigmas() const {
     const double limit = GetParam() == 1 ? 8.0 : 4.0;
     for (const Comparison& c : frames_) {

@@ -39,7 +39,7 @@ struct EstimatedAxes {
 ///
 /// The residual is in axes of body k and is whitened by the covariance of the preintegration. alpha, beta and
 /// gamma are first-order expansions at the biases of k and the axes. This is section III-C of the paper with
-/// gravity pointing down. Derivation: docs/inertial.md.
+/// gravity pointing down. Derivation: docs/theory/inertial.md.
 class InertialFactor final : public ceres::CostFunction {
  public:
   /// `preintegration` must outlive the factor and may be repropagated between evaluations, not during one.

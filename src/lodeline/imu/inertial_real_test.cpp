@@ -87,7 +87,7 @@ TEST_F(RealFlight, PreintegrationIsConsistentAtTheDefaultInflation) {
     fmt::print("  {:5.1f} {:6d} {:9.3f} {:6.3f} {:6.3f} {:6.3f}\n", steps / static_cast<double>(kTruthRate),
                found.count, found.all, found.alpha, found.beta, found.theta);
     sum += found.all;
-    // No factor gives 0.7 to 1.5 for every length, see docs/inertial.md.
+    // No factor gives 0.7 to 1.5 for every length, see docs/lab-notes/inertial.md.
     EXPECT_GT(found.all, 0.65) << steps;
     EXPECT_LT(found.all, 1.6) << steps;
   }

@@ -85,7 +85,7 @@ struct ImuAxes {
 ///
 /// Sources: Forster et al., "On-manifold preintegration for real-time visual-inertial odometry", TRO 2017
 /// (bias correction); Qin, Li & Shen, "VINS-Mono", TRO 2018 (alpha, beta, gamma). Derivation:
-/// docs/inertial.md.
+/// docs/theory/inertial.md.
 class Preintegration {
  public:
   using Mat15 = Eigen::Matrix<double, 15, 15>;

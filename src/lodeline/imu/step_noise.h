@@ -7,7 +7,7 @@
 namespace lodeline {
 
 /// Increase of an IMU's noise by motion relative to its noise at rest. The values apply to a kind of sensor
-/// and mounting, not to one recording; docs/inertial.md has the measurements.
+/// and mounting, not to one recording; docs/lab-notes/inertial.md has the measurements.
 struct MotionNoiseOptions {
   /// Fraction of the change between consecutive readings that is unknown: motion and vibration that the
   /// sampling does not resolve. One sigma, white from step to step.

@@ -44,7 +44,9 @@ bool isTableOfReadings(const std::filesystem::path& data) {
   if (recognized.isFolder() || recognized.kind == FileKind::Ros1Bag) return false;
   if (isBag(data)) return false;  // its reader reports a missing one
   if (recognized.kind != FileKind::Table && recognized.kind != FileKind::Text) {
-    refuseFile(recognized, "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/data.md)");
+    refuseFile(
+        recognized,
+        "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/reference/file-formats.md)");
   }
   return true;
 }

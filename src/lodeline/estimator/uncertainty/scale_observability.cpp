@@ -79,8 +79,8 @@ double ScaleObservability::stereoInformation(const Window& window) const {
   const CameraStates states = cameraStates(window);
   if (!states.secondary.empty()) {
     const ParameterBlock& secondary = *states.secondary.front();
-    if (!further.priors.empty()) rotation_sigma_rad *= kFileTolerance;
-    const double found_m = Eigen::Map<const Vec3>(further.value.data() + 3).norm();
+    if (!secondary.priors.empty()) rotation_sigma_rad *= kFileTolerance;
+    const double found_m = Eigen::Map<const Vec3>(secondary.value.data() + 3).norm();
     // The weight from the loss is 1 / (1 + (x / width)^2).
     if (position_sigma_m > 0.0)
       position_sigma_m = std::hypot(position_sigma_m, found_m / placementLossWidth(secondary));

@@ -28,7 +28,7 @@ struct RunErrors {
   /// End point error with equal first headings, whatever the basis.
   double end_point_equal_start_percent = 0.0;
 
-  /// Over sections of the path (docs/evaluation.md); independent of north.
+  /// Over sections of the path (docs/reference/error-measures.md); independent of north.
   std::vector<RelativeErrors> relative;
   /// Slope of the median relative yaw error over the length of the section, deg per 100 m of path: near zero
   /// where heading does not drift.

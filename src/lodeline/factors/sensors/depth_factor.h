@@ -29,7 +29,7 @@ struct CarriedDepth {
 /// the water over the density that the gauge assumes. The residual does not depend on horizontal position or
 /// heading; d_0 absorbs the pressure at the surface and the depth of the start. The pose and k have
 /// linearization points as in factors/parameters.h; the residual is linear in d_0 and tau. Derivation:
-/// docs/depth.md.
+/// docs/theory/pressure.md.
 class DepthFactor final : public ceres::CostFunction {
  public:
   /// `sigma_m`: of the mean. `first_pose`, `first_scale`: linearization points; null for the current values.

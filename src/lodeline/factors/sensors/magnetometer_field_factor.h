@@ -33,7 +33,7 @@ struct FieldNoise {
 /// A yaw of the world that rotates poses, m_W and d_W together does not change the residual. The factor ties
 /// the heading to m_W, so other terms have to determine the direction of m_W. The linearization points of the
 /// pose (which are R_ref too) are as in factors/parameters.h, that of m_W is as given. The residual is linear
-/// in o_B and d_W. Derivation: docs/magnetometer.md.
+/// in o_B and d_W. Derivation: docs/theory/magnetometer.md.
 class MagnetometerFieldFactor final : public ceres::CostFunction {
  public:
   /// `reference` is R_ref. `first_pose`, `first_field` (T): linearization points; null for the current

@@ -21,7 +21,7 @@ namespace lodeline {
 ///
 /// Limits of this form: m^{k+1} is one noisy reading, but n residuals count it as n independent ones. The
 /// errors of consecutive intervals do not cancel. Heading drifts as without a magnetometer, and the
-/// covariance does not show this drift (docs/magnetometer.md).
+/// covariance does not show this drift (docs/theory/magnetometer.md).
 class MagnetometerRelativeFactor final : public ceres::SizedCostFunction<3, kPoseSize, kPoseSize> {
  public:
   /// `newest_B`: m^{k+1}, axes of body k+1; `mean_Bk`: mean over j of dR_k^j m^j, axes of body k; T.

@@ -82,7 +82,8 @@ std::string imuText(const ImuCalibration& imu, const std::optional<ImuCorrection
 
 std::string rigText(const RigFile& file) {
   const Rig& rig = file.rig;
-  std::string text = "# Rig file of Lodeline (docs/data.md). T_BS takes sensor to IMU coordinates.\n";
+  std::string text =
+      "# Rig file of Lodeline (docs/reference/file-formats.md). T_BS takes sensor to IMU coordinates.\n";
   const auto begin = [&](const std::string& sensor) {
     text += sensor + ":\n";
     const auto topic = file.topics.find(sensor);
@@ -122,7 +123,7 @@ std::string rigText(const RigFile& file) {
 }
 
 std::string rigTemplate() {
-  return R"(# Rig file of Lodeline (docs/data.md): one section a sensor. Replace the numbers, remove what the rig lacks.
+  return R"(# Rig file of Lodeline (docs/reference/file-formats.md): one section a sensor. Replace the numbers, remove what the rig lacks.
 # Use: lodeline run DATA -o OUT --rig rig.yaml
 
 cam0:                               # cameras: cam0, cam1, … without gaps; cam0 is the reference

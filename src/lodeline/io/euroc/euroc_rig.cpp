@@ -121,10 +121,10 @@ std::optional<Calibration> settledOptional(const EurocLayout& layout, const char
     return std::nullopt;
   }
   if (!described && layout.needs_calibration) {
-    throw InputError(
-        fmt::format("{}: calibration file missing; write one (docs/data.md), describe {} in a rig "
-                    "file (--rig), or move its folder away",
-                    (layout.sensor(name) / "sensor.yaml").string(), name));
+    throw InputError(fmt::format(
+        "{}: calibration file missing; write one (docs/reference/file-formats.md), describe {} in a rig "
+        "file (--rig), or move its folder away",
+        (layout.sensor(name) / "sensor.yaml").string(), name));
   }
   Calibration calibration;
   calibration.rate_hz = 0.0;

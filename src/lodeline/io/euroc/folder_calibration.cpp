@@ -210,11 +210,12 @@ class FolderCalibration {
       seen += fmt::format("{} {}", seen.empty() ? "; passed over, as they do not describe it:" : ",",
                           around.lexically_relative(folderOf(layout_)).string());
     }
-    throw InputError(fmt::format(
-        "{}: calibration file missing. Give one with --rig FILE (Kalibr's, OpenVINS's or another "
-        "program's: docs/data.md), or put camchain-imucam.yaml and imu.yaml beside mav0, or a sensor.yaml "
-        "there{}",
-        file, seen));
+    throw InputError(
+        fmt::format("{}: calibration file missing. Give one with --rig FILE (Kalibr's, OpenVINS's or another "
+                    "program's: docs/reference/file-formats.md), or put camchain-imucam.yaml and imu.yaml "
+                    "beside mav0, or a sensor.yaml "
+                    "there{}",
+                    file, seen));
   }
 
   const EurocLayout& layout_;

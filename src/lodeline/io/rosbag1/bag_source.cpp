@@ -20,7 +20,7 @@ RigFile readRig(const std::filesystem::path& bag, const BagOptions& options, Dia
   if (!options.needs_calibration) return {};
   throw InputError(
       fmt::format("{}: a bag does not hold the calibration; describe the rig with --rig FILE, or in {} "
-                  "(docs/data.md shows how)",
+                  "(docs/reference/file-formats.md shows how)",
                   bag.string(), beside.string()));
 }
 

@@ -22,7 +22,7 @@ constexpr const char* kConvertRos2 =
 constexpr const char* kFilm =
     "a film holds no stamps and no readings that Lodeline reads; record images with stamps and an IMU (a ROS "
     "1 "
-    "bag, or a folder with mav0: docs/data.md)";
+    "bag, or a folder with mav0: docs/reference/file-formats.md)";
 constexpr const char* kUnpack = "unpack it and give the folder or the bag that it holds";
 
 /// Magic bytes at an offset that identify a kind of file.
@@ -235,7 +235,7 @@ RecognizedFile recognizeFolder(const fs::path& path) {
     return {path, FileKind::ImageFolder,
             fmt::format("a folder of {} pictures without a list", entries.pictures),
             "Lodeline needs the stamp of each image and the readings of an IMU: mav0/cam0/data.csv, "
-            "mav0/cam0/data/STAMP.png, mav0/imu0/data.csv (docs/data.md)"};
+            "mav0/cam0/data/STAMP.png, mav0/imu0/data.csv (docs/reference/file-formats.md)"};
   }
   if (entries.archives > 0 && entries.others == 0) {
     return {path, FileKind::ArchiveFolder, "a folder of archives",

@@ -14,8 +14,8 @@ namespace lodeline {
 /// without the page.
 std::string fillPage(const nlohmann::ordered_json& data);
 
-/// A self-contained HTML page of one or more runs from their output folders; docs/report.md describes its
-/// content. Throws as runPageJson() and fillPage().
+/// A self-contained HTML page of one or more runs from their output folders; docs/how-to/report.md describes
+/// its content. Throws as runPageJson() and fillPage().
 std::string reportPage(const std::vector<std::filesystem::path>& runs,
                        const std::optional<ReportReference>& reference, Diagnostics* diagnostics);
 
