@@ -18,8 +18,8 @@ dependencies:
 test-dependencies:
 	./scripts/install-dependencies.sh test
 
-# Simulates a dive, runs the program on it and compares the result with the truth, in pictures. A recording in
-# place of the simulated one: RECORDING=/path/to/folder-with-mav0.
+# Runs the program on the sample dive and compares the result with the truth, in pictures. A recording in place of the
+# sample: RECORDING=/path/to/folder-with-mav0.
 demo: build
 	./scripts/demo.sh
 

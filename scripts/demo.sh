@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# Simulates a short cave dive as a diver would bring it home, estimates its trajectory and compares that with the
-# truth. With RECORDING=/path/to/folder-with-mav0 the same on a recording of yours, with all of its cameras and with
-# the first one alone. Everything goes to demo/.
+# Estimates the trajectory of the sample dive and compares it with the truth. With RECORDING=/path/to/folder-with-mav0 the
+# same on a recording of yours, with all of its cameras and with the first one alone. Everything goes to demo/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -36,16 +35,15 @@ if [ -n "${RECORDING:-}" ]; then
   estimate demo/one_camera sim3 --set "source.cameras=[0]"
   results=(demo/all_cameras demo/one_camera)
 else
-  recording=demo/recording
-  announce simulate demo --realism field -o "$recording"
-  "$lodeline" simulate demo --realism field -o "$recording"
+  recording=samples/cave_dive
   findReference
-  estimate demo/result yaw
+  estimate demo/result yaw --mag-calibration "$recording/magnetometer.yaml" --site 20.32,-87.39,5 --date 2026-11-21
   results=(demo/result)
 fi
 
 printf '\nPictures to look at:\n'
 for folder in "${results[@]}"; do
   [ -z "$reference" ] || printf '  %s\n' "$folder"/plots/*.png
+  printf '  %s\n' "$folder/report.html"
   printf '  %s  tracks of one frame each 3 s, blue new to red old\n' "$folder/frames/*.png"
 done
