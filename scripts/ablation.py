@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Measures what each mechanism of the estimator is worth.
+
+Runs a fixed set of dives with the default settings and with each mechanism switched off, and prints a table: geometric
+means over the dives of error without the mechanism / error with it, in position and rotation. A value above 1 means that
+the mechanism helps. The dives: three IMUs, clean and field realism, stereo and one camera; and a real recording if there is one.
+
+    ablation.py WORK [--program build/release/bin/lodeline] [--only NAME ...] [--markdown FILE]
+
+WORK keeps rendered dives and finished runs; a second call goes on where the first one ended.
+"""
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SECONDS = 40
+# Scenario, IMU and seed of each pair of dives (clean, field).
+RIGS = [("cave1_short", "gx5-25", 7103), ("dos_ojos", "gv7", 7211), ("demo", "consumer", 7307)]
+
+# Mechanism, settings that switch it off, and whether it needs the magnetometer.
+MECHANISMS = [
+    ("as it is", [], False),
+    ("landmark linearization cache", ["window.frozen_frames=0"], False),
+    ("intrinsics model selection", ["camera_calibration.trust_confirmed_files=false"], False),
+    ("intrinsics as states", ["camera_calibration.intrinsics=false"], False),
+    ("camera calibration as states", ["camera_calibration.enabled=false"], False),
+    ("rotation learned from stereo matches", ["front_end.learn_stereo_rotation=false"], False),
+    ("track weights", ["solver.track_weights=false"], False),
+    ("interpolated frames", ["window.interpolated_gap_s=0"], False),
+    ("split tracks", ["window.split_at_keyframe=0"], False),
+    ("two grades of gyroscopes", ["inertial.calibrated_below_rad_per_s_sqrtHz=1"], False),
+    ("axes of the IMU as states", ["inertial.gyroscope_axes_sigma=0", "inertial.accelerometer_axes_sigma=0"], False),
+    ("noise of unresolved motion", ["inertial.unresolved_share=0"], False),
+    ("noise of axis errors", ["inertial.axis_error=0"], False),
+    ("zero-velocity update", ["rest.enabled=false"], False),
+    ("static image mask", ["front_end.static_image_mask=false"], False),
+    ("water density prior", ["pressure.water_density_prior=false"], False),
+    ("lag of the pressure sensor as a state", ["pressure.lag_sigma_s=0"], False),
+    ("long start-up", ["window.startup_frames=0", "window.startup_frames_mono=0"], False),
+    ("magnetometer", ["magnetometer.model=off"], True),
+    ("Student weights of the field", ["magnetometer.student_dof=1e6"], True),
+    ("magnetic step detector", ["magnetometer.step.enabled=false"], True),
+    ("dip and norm gate", ["magnetometer.gate.max_norm_error=1", "magnetometer.gate.max_dip_error_rad=3"], True),
+]
+
+
+def call(command):
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode not in (0, 3):
+        sys.exit(f"{' '.join(map(str, command))}: exit code {result.returncode}\n{result.stderr[-2000:]}")
+
+
+def render(program, work):
+    """Renders the dives that are missing. Returns (name, folder, calibration of the magnetometer) of each."""
+    recordings = []
+    for scenario, imu, seed in RIGS:
+        for realism in ("clean", "field"):
+            name = f"{scenario}_{imu}_{realism}"
+            folder, waving = work / "dives" / name, work / "dives" / f"{name}_waving"
+            common = ["--realism", realism, "--seed", seed, "--imu", imu, "--quiet"]
+            if not (folder / "finished").exists():
+                print("rendering", name, flush=True)
+                call([program, "simulate", scenario, "--seconds", SECONDS, "--width", 480, "--camera-rate-hz", 12,
+                      "-o", folder, *common] | Text())
+                call([program, "simulate", "figure_eight", "--no-images", "-o", waving, *common] | Text())
+                call([program, "calibrate", "magnetometer", waving, "-o", folder / "magnetometer.yaml"] | Text())
+                (folder / "finished").touch()
+            recordings.append((name, folder, folder / "magnetometer.yaml"))
+    real = Path(os.environ.get("LODELINE_DATA_DIR", ROOT / "../shared/data")) / "euroc_mh01_stereo_14s"
+    if (real / "mav0").exists():
+        recordings.append(("real", real, None))
+    return recordings
+
+
+class Text:
+    """`list | Text()` is the list with all of its members as text."""
+
+    def __ror__(self, command):
+        return [str(part) for part in command]
+
+
+def errors(program, work, recording, mono, settings):
+    """Position (m) and rotation (rad) error of one run; a finished run is read again."""
+    name, folder, calibration = recording
+    key = "default" if not settings else "_".join(settings).replace("/", "_")
+    out = work / "runs" / f"{name}_{'mono' if mono else 'stereo'}" / key
+    figures = out / "figures.json"
+    if not figures.exists():
+        command = [program, "run", folder, "-o", out, "--overwrite", "--quiet"]
+        for setting in settings + (["source.cameras=[0]"] if mono else []):
+            command += ["--set", setting]
+        if calibration and "magnetometer.calibration=" not in settings:
+            command += ["--mag-calibration", calibration]
+        call(command | Text())
+        truth = folder / "mav0/state_groundtruth_estimate0/data.csv"
+        call([program, "evaluate", out, truth, "--interpolate", "--align", "se3", "--json", figures] | Text())
+    read = json.loads(figures.read_text())
+    return position_and_rotation(read)
+
+
+def position_and_rotation(figures):
+    return figures["position"]["rmse_m"], figures["rotation"]["rmse_rad"]
+
+
+def geometric_mean(values):
+    return math.exp(sum(map(math.log, values)) / len(values))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("work", type=Path)
+    parser.add_argument("--program", type=Path, default=ROOT / "build/release/bin/lodeline")
+    parser.add_argument("--only", nargs="*", help="mechanisms to measure")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--markdown", type=Path, help="file for the table")
+    arguments = parser.parse_args()
+    recordings = render(arguments.program, arguments.work)
+    dives = [(recording, mono) for recording in recordings for mono in (False, True)]
+
+    def measure(settings):
+        with ThreadPoolExecutor(arguments.jobs) as pool:
+            return list(pool.map(lambda dive: errors(arguments.program, arguments.work, *dive, settings), dives))
+
+    lines = ["| mechanism left out | position, ratio | rotation, ratio | worst position | worst rotation |", "| --- | --- | --- | --- | --- |"]
+    references = {False: measure(["magnetometer.model=off"]), True: measure([])}
+    for name, settings, magnetic in MECHANISMS:
+        if not settings or (arguments.only and name not in arguments.only):
+            continue
+        tried = settings if magnetic else ["magnetometer.model=off", *settings]
+        pairs = list(zip(measure(tried), references[magnetic]))
+        ratios = [[without[i] / reference[i] for without, reference in pairs] for i in range(2)]
+        lines.append("| " + " | ".join([name, *(f"{geometric_mean(r):.3f}" for r in ratios), *(f"{max(r):.2f}" for r in ratios)]) + " |")
+        print(lines[-1], flush=True)
+        if arguments.markdown:
+            arguments.markdown.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
