@@ -1,4 +1,4 @@
-// What `lodeline` puts into the page; src/lodeline/page writes it. Names of columns are those of the CSV files.
+// What `lodeline` puts into the page; src/lodeline/output/report/page writes it. Names of columns are those of the CSV files.
 
 export interface Table {
   total: number; // rows of the file; the page may hold fewer

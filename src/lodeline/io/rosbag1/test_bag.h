@@ -27,7 +27,7 @@ inline bool hasRosbag() {
 /// Runs test_bag.py with arguments in shell syntax and returns its output.
 inline std::string runRosbag(const std::string& arguments) {
   const std::string command = "/usr/bin/python3 '" + testSourceDir().string() +
-                              "/src/lodeline/bags/test_bag.py' " + arguments + " 2>&1";
+                              "/src/lodeline/io/rosbag1/test_bag.py' " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("no shell");
   std::string output;
