@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 #include "lodeline/batch/batch_problem.h"
 #include "lodeline/batch/refined_frames.h"
+#include "lodeline/estimator/solver/levenberg_marquardt.h"
 #include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/util/thread_clock.h"
@@ -16,56 +15,28 @@
 namespace lodeline {
 namespace {
 
-/// One round of Levenberg-Marquardt steps.
-struct Round {
-  int iterations = 0;
-  double initial_cost = 0.0, final_cost = 0.0;
-  bool converged = false;
+/// The batch problem as minimize() wants it. The matrix is factorized in place, and so computed again for
+/// every damping.
+class BatchSteps {
+ public:
+  BatchSteps(BatchProblem& problem, BlockSkylineCholesky& hessian) : problem_(problem), hessian_(hessian) {}
+  double cost() { return problem_.cost(); }
+  void linearize() { before_ = problem_.values(); }
+  bool step(double damping) {
+    Eigen::VectorXd gradient;
+    problem_.linearize(&hessian_, &gradient);
+    hessian_.damp(damping);
+    if (!hessian_.factorize()) return false;
+    problem_.step(hessian_.solve(-gradient));
+    return true;
+  }
+  void restore() { problem_.setValues(before_); }
+
+ private:
+  BatchProblem& problem_;
+  BlockSkylineCholesky& hessian_;
+  std::vector<double> before_;
 };
-
-/// Applies a step that reduces the cost and returns the new cost; empty where no damping gives such a step.
-/// `damping` is adapted.
-std::optional<double> lowerCost(BatchProblem& problem, double cost, BlockSkylineCholesky* hessian,
-                                double* damping) {
-  constexpr double kLeastDamping = 1e-12, kMostDamping = 1e1;
-  const std::vector<double> before = problem.values();
-  Eigen::VectorXd gradient;
-  while (*damping <= kMostDamping) {
-    problem.linearize(hessian, &gradient);
-    hessian->damp(*damping);
-    if (hessian->factorize()) {
-      problem.step(hessian->solve(-gradient));
-      const double lowered = problem.cost();
-      if (lowered < cost) {
-        *damping = std::max(kLeastDamping, 0.05 * *damping);
-        return lowered;
-      }
-      problem.setValues(before);
-    }
-    *damping *= 30.0;
-  }
-  return std::nullopt;
-}
-
-/// Iterates until convergence if `is_last`, else until the accuracy suffices for the next round's landmarks
-/// and weights.
-Round solve(BatchProblem& problem, const RefinementOptions& wanted, bool is_last,
-            BlockSkylineCholesky* hessian) {
-  constexpr double kRoughGain = 1e-4;  // relative to the cost
-  Round round;
-  double damping = 1e-7;
-  double cost = round.initial_cost = problem.cost();
-  while (round.iterations < wanted.max_iterations && !round.converged) {
-    ++round.iterations;
-    const std::optional<double> lowered = lowerCost(problem, cost, hessian, &damping);
-    const double least_gain =
-        is_last ? wanted.gain_tolerance : std::max(wanted.gain_tolerance, kRoughGain * cost);
-    round.converged = !lowered || cost - *lowered < least_gain;
-    cost = lowered.value_or(cost);
-  }
-  round.final_cost = cost;
-  return round;
-}
 
 void measureMoves(const std::vector<FrameEstimate>& before, const std::vector<FrameEstimate>& after,
                   RefinementSummary* summary) {
@@ -129,7 +100,10 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
       summary.outlier_share = problem.renewLandmarks();
       problem.weighObservations(summary.observation_variance);
     }
-    const Round round = solve(problem, wanted, i + 1 == wanted.rounds, &hessian);
+    // Each round but the last ends when its accuracy suffices for the next round's landmarks and weights.
+    const double relative_gain = i + 1 == wanted.rounds ? 0.0 : 1e-4;
+    BatchSteps steps(problem, hessian);
+    const SolveSummary round = minimize(steps, {wanted.max_iterations, relative_gain, wanted.gain_tolerance});
     if (i == 0) {
       summary.forward_cost = round.initial_cost;
       summary.first_round_cost = round.final_cost;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "lodeline/estimator/initialization/start.h"
-#include "lodeline/estimator/solver/window_solver.h"
+#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/trials/heading_trial.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmarks.h"
@@ -55,7 +55,7 @@ double yawInformationAfter(int frames, bool relative, bool keep_linearization_po
     frame.magnetometer->relative = relative;
     createLandmarks(test.window, test.factors, test.options.landmark);
     if (k < 3) continue;
-    EXPECT_TRUE(solveWindow(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
+    EXPECT_TRUE(solveWithCeres(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
     removeOutliers(test.window, test.factors, test.options.landmark);
     marginalizer.marginalizeToSize(test.window, {.recent_frames = 3, .keyframes = 3});
     if (keep_linearization_points) continue;

@@ -47,7 +47,8 @@ Eigen::Matrix<double, 15, 15> covarianceOf(const NormalEquations& system, const 
 
 std::vector<const double*> correlatedBlocks(const NormalEquations& system, const Window& window) {
   const Frame& newest = window.newest();
-  std::vector<const double*> blocks = {newest.pose.data(), newest.motion.data()};
+  std::vector<const double*> blocks = {newest.pose.data()};
+  if (newest.has_motion) blocks.push_back(newest.motion.data());
   for (const auto& state : window.globals()) {
     if (state->is_correlation_wanted && system.find(state->value.data()))
       blocks.push_back(state->value.data());

@@ -7,9 +7,9 @@
 #include "lodeline/estimator/initialization/start.h"
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/prior_terms.h"
-#include "lodeline/estimator/solver/window_solver.h"
 #include "lodeline/estimator/solver/window_update.h"
 #include "lodeline/estimator/trials/marginalizer_dive.h"
+#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/estimator/visual/landmarks.h"
@@ -46,7 +46,7 @@ class LosslessMarginalizationTest : public testing::Test {
       createLandmarks(test.window, test.factors, test.options.landmark);
     }
     test.start = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
-    ASSERT_TRUE(solveWindow(test.window, test.start, test.factors, kToTheEnd).usable);
+    ASSERT_TRUE(solveWithCeres(test.window, test.start, test.factors, kToTheEnd).usable);
   }
   static constexpr SolveLimits kToTheEnd{100, 1e-16};
 
@@ -63,7 +63,7 @@ TEST_F(LosslessMarginalizationTest, ThenSolvingEqualsTheBatchSolution) {
   marginalizer.marginalizeToSize(shortened_.window, {.recent_frames = 3, .keyframes = 4});
   ASSERT_EQ(shortened_.window.frames().size(), 7u);
   ASSERT_FALSE(marginalizer.takeMapPoints().empty());
-  ASSERT_TRUE(solveWindow(shortened_.window, marginalizer.prior(), shortened_.factors, kToTheEnd).usable);
+  ASSERT_TRUE(solveWithCeres(shortened_.window, marginalizer.prior(), shortened_.factors, kToTheEnd).usable);
 
   // With linearization points 1e-4 (m, rad) away from the solution, the rest is of second order: some per
   // cent of the curvature that Gauss-Newton leaves out.
@@ -116,8 +116,8 @@ TEST_F(LosslessMarginalizationTest, CutTracksCountAsTwo) {
   const auto expected = newestCovariance(batch_.window, two.prior(), batch_.factors);
   const auto covariance = newestCovariance(shortened_.window, cut.prior(), shortened_.factors);
   EXPECT_LT((covariance - expected).norm(), 1e-6 * expected.norm());
-  ASSERT_TRUE(solveWindow(batch_.window, two.prior(), batch_.factors, kToTheEnd).usable);
-  ASSERT_TRUE(solveWindow(shortened_.window, cut.prior(), shortened_.factors, kToTheEnd).usable);
+  ASSERT_TRUE(solveWithCeres(batch_.window, two.prior(), batch_.factors, kToTheEnd).usable);
+  ASSERT_TRUE(solveWithCeres(shortened_.window, cut.prior(), shortened_.factors, kToTheEnd).usable);
   for (const auto& frame : shortened_.window.frames()) {
     const Frame& other = *batch_.window.find(frame->id);
     EXPECT_LT(perturbationBetween(other.worldFromBody(), frame->worldFromBody()).norm(), 1e-8);
@@ -175,7 +175,7 @@ Eigen::Vector4d informationAfter(int frames, LinearizationPoints linearization_p
     const SolveLimits limits{4, 1e-6};
     EXPECT_TRUE(interpolates
                     ? updateWindow(test.window, marginalizer.prior(), test.factors, limits).summary.usable
-                    : solveWindow(test.window, marginalizer.prior(), test.factors, limits).usable);
+                    : solveWithCeres(test.window, marginalizer.prior(), test.factors, limits).usable);
     removeOutliers(test.window, test.factors, options.landmark);
     if (linearization_points == LinearizationPoints::ResetLinearizationPoints)
       marginalizer.resetLinearizationPoints(test.window);

@@ -1,13 +1,13 @@
 #include "lodeline/estimator/solver/window_update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/prior_terms.h"
 #include "lodeline/estimator/problem/window_cholesky.h"
+#include "lodeline/estimator/solver/levenberg_marquardt.h"
 #include "lodeline/estimator/visual/reprojection_system.h"
 
 namespace lodeline {
@@ -51,19 +51,17 @@ int tangentSizeOf(const Window& window) {
   return size;
 }
 
-/// All terms of a window, in a form that is fast to evaluate repeatedly.
+/// All terms of a window, in a form that is fast to evaluate repeatedly; the problem of minimize().
 class QuickTerms {
  public:
   QuickTerms(Window& window, const Prior& prior, const FactorBuilder& factors,
              const LandmarkLinearizationCache& frozen)
-      : prior_(prior),
+      : window_(window),
+        prior_(prior),
         motion_(collectMotionTerms(window, factors)),
         visual_(window, factors, ReprojectionSystem::Of::kLive),
         linearization_cache_(frozen),
         size_(tangentSizeOf(window)) {}
-
-  /// Called after blocks have changed.
-  void update() { visual_.update(); }
 
   double cost() {
     double cost = prior_.cost() + visual_.cost() + linearization_cache_.cost();
@@ -73,20 +71,39 @@ class QuickTerms {
 
   std::vector<double> errors() const { return visual_.errors(); }
 
-  Snapshot snapshot(const Window& window) const { return {window, visual_.landmarks()}; }
-
-  NormalEquations linearize() {
-    NormalEquations system;
-    system.reserve(size_);
-    prior_.addTo(&system);
-    for (const Factor& factor : motion_) system.add(factor);
-    visual_.addTo(&system);
-    linearization_cache_.addTo(&system);
-    return system;
+  void linearize() {
+    before_.emplace(window_, visual_.landmarks());
+    system_ = NormalEquations();
+    system_.reserve(size_);
+    prior_.addTo(&system_);
+    for (const Factor& factor : motion_) system_.add(factor);
+    visual_.addTo(&system_);
+    linearization_cache_.addTo(&system_);
+    correlated_ = correlatedBlocks(system_, window_);
+    cholesky_.emplace(system_, motionsButTheNewest(window_), correlated_);
   }
 
-  void apply(Window& window, const NormalEquations& system, const Eigen::VectorXd& step) {
-    for (const NormalEquations::Block& block : system.blocks()) {
+  bool step(double damping) {
+    is_damped_ = damping > 0.0;
+    if (!cholesky_->factorize(damping)) return false;
+    apply(-cholesky_->solve(system_.gradient()));
+    return true;
+  }
+
+  void restore() {
+    before_->restore();
+    visual_.update();
+  }
+
+  /// Covariance with the Jacobians of the last step.
+  JointCovariance covariance() const {
+    return is_damped_ ? JointCovariance(system_, window_)
+                      : JointCovariance(system_, correlated_, cholesky_->covarianceOfLast());
+  }
+
+ private:
+  void apply(const Eigen::VectorXd& step) {
+    for (const NormalEquations::Block& block : system_.blocks()) {
       if (block.ambient_size == kPoseSize) {
         poseToBlock(perturbed(poseFromBlock(block.value), step.segment<6>(block.offset)), block.value);
       } else {
@@ -94,65 +111,34 @@ class QuickTerms {
             step.segment(block.offset, block.ambient_size);
       }
     }
-    visual_.stepLandmarks(system, step);
-    window.placeInterpolated();
-    update();
+    visual_.stepLandmarks(system_, step);
+    window_.placeInterpolated();
+    visual_.update();
   }
 
- private:
+  Window& window_;
   PriorTerms prior_;
   std::vector<Factor> motion_;
   ReprojectionSystem visual_;
   const LandmarkLinearizationCache& linearization_cache_;
   int size_;
   std::vector<double> residual_;
+  // Of the last linearization:
+  NormalEquations system_;
+  std::vector<const double*> correlated_;
+  std::optional<WindowCholesky> cholesky_;
+  std::optional<Snapshot> before_;
+  bool is_damped_ = false;  ///< whether its last step was
 };
 
 }  // namespace
 
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                           const SolveLimits& limits, const LandmarkLinearizationCache& frozen) {
-  // The first step is undamped. After darkness the window as a whole is known to metres, and its frames
-  // relative to each other to micrometres. Any damping that is small relative to the latter would hold the
-  // whole window at its dead-reckoning position.
-  constexpr double kLeastDamping = 1e-9;
-  constexpr double kMostDamping = 1e-1;
   QuickTerms terms(window, prior, factors, frozen);
   WindowUpdate update;
-  double cost = terms.cost();
-  update.summary.initial_cost = cost;
-  double damping = 0.0;
-  NormalEquations system;
-  std::vector<const double*> correlated;
-  std::optional<WindowCholesky> cholesky;
-  bool is_damped = false;
-  while (update.summary.iterations < limits.max_iterations) {
-    ++update.summary.iterations;
-    system = terms.linearize();
-    correlated = correlatedBlocks(system, window);
-    cholesky.emplace(system, motionsButTheNewest(window), correlated);
-    const Snapshot before = terms.snapshot(window);
-    double gain = 0.0;
-    while (!(gain > 0.0) && damping <= kMostDamping) {
-      is_damped = damping > 0.0;
-      if (cholesky->factorize(damping)) {
-        terms.apply(window, system, -cholesky->solve(system.gradient()));
-        gain = cost - terms.cost();
-        if (!(gain > 0.0)) {
-          before.restore();
-          terms.update();
-        }
-      }
-      damping = gain > 0.0 ? 0.01 * damping : std::max(kLeastDamping, 100.0 * damping);
-    }
-    if (damping < kLeastDamping) damping = 0.0;
-    if (!(gain > limits.function_tolerance * cost)) break;
-    cost -= gain;
-  }
-  update.summary.final_cost = cost;
-  update.summary.usable = std::isfinite(cost);
-  update.covariance = is_damped ? JointCovariance(system, window)
-                                : JointCovariance(system, correlated, cholesky->covarianceOfLast());
+  update.summary = minimize(terms, limits);
+  update.covariance = terms.covariance();
   update.errors_sigmas = terms.errors();
   return update;
 }

@@ -2,7 +2,7 @@
 
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/window_terms.h"
-#include "lodeline/estimator/solver/window_solver.h"
+#include "lodeline/estimator/solver/levenberg_marquardt.h"
 #include "lodeline/estimator/visual/landmark_linearization_cache.h"
 
 namespace lodeline {
@@ -15,10 +15,10 @@ struct WindowUpdate {
   std::vector<double> errors_sigmas;
 };
 
-/// Fast counterpart of solveWindow() for the same cost: Levenberg-Marquardt steps on normal equations that
-/// use PriorTerms and ReprojectionSystem in place of the factors. It takes a fraction of the time of a
-/// general solver, and also gives the covariance. It updates poses, motions and landmarks of the window in
-/// place, except for frozen landmarks.
+/// Minimizes the cost over all variables of the window with minimize(). The normal equations use PriorTerms
+/// and ReprojectionSystem in place of the factors, which takes a fraction of the time of a general solver,
+/// and also gives the covariance. It updates poses, motions and landmarks of the window in place, except for
+/// frozen landmarks. On one thread, so that the same input gives the same bytes.
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                           const SolveLimits& limits,
                           const LandmarkLinearizationCache& frozen = LandmarkLinearizationCache(0));

@@ -1,4 +1,4 @@
-#include "lodeline/estimator/solver/window_solver.h"
+#include "lodeline/estimator/solver/window_update.h"
 #include "lodeline/estimator/problem/covariance.h"
 
 #include <gtest/gtest.h>
@@ -26,14 +26,14 @@ void fill(TestWindow& test, double pixel_sigma_px) {
   }
 }
 
-TEST(WindowSolver, FindsBackToTheTruth) {
+TEST(WindowUpdate, FindsBackToTheTruth) {
   TestWindow test(2);
   fill(test, 0.1);
   const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
   std::vector<Rigid3> truth;
   for (const auto& frame : test.window.frames()) truth.push_back(frame->worldFromBody());
   test.disturb(0.02, 5);
-  const SolveSummary summary = solveWindow(test.window, prior, test.factors, {50, 1e-9});
+  const SolveSummary summary = updateWindow(test.window, prior, test.factors, {50, 1e-9}).summary;
   EXPECT_TRUE(summary.usable);
   EXPECT_LT(summary.final_cost, 0.01 * summary.initial_cost);
   // A tenth of a pixel: 0.2 mrad per observation, and the corresponding distance at 5 m over the root of 5
@@ -45,18 +45,18 @@ TEST(WindowSolver, FindsBackToTheTruth) {
   }
 }
 
-TEST(WindowSolver, StaysWhereItIsAtTheMinimum) {
+TEST(WindowUpdate, StaysWhereItIsAtTheMinimum) {
   TestWindow test(2);
   fill(test, 0.5);
   const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
-  solveWindow(test.window, prior, test.factors, {100, 1e-14});
+  updateWindow(test.window, prior, test.factors, {100, 1e-14});
   const Rigid3 before = test.window.newest().worldFromBody();
-  const SolveSummary again = solveWindow(test.window, prior, test.factors, {10, 1e-9});
+  const SolveSummary again = updateWindow(test.window, prior, test.factors, {10, 1e-9}).summary;
   EXPECT_NEAR(again.final_cost, again.initial_cost, 1e-9 * again.initial_cost);
   EXPECT_LT(perturbationBetween(before, test.window.newest().worldFromBody()).norm(), 1e-6);
 }
 
-TEST(WindowSolver, CovarianceEqualsTheDenseInverse) {
+TEST(WindowUpdate, CovarianceEqualsTheDenseInverse) {
   TestWindow test(2);
   fill(test, 0.5);
   const Prior prior = startPrior(*test.window.frames().front(), test.options.initial_state, 0.05);
@@ -76,7 +76,7 @@ TEST(WindowSolver, CovarianceEqualsTheDenseInverse) {
   EXPECT_EQ(covariance, covariance.transpose());
 }
 
-TEST(WindowSolver, ScaleIsAsSureAsDistanceOrSpeed) {
+TEST(WindowUpdate, ScaleIsAsSureAsDistanceOrSpeed) {
   Frame frame;
   NavigationState state;
   state.world_from_body.translation = Vec3(0.0, 10.0, 0.0);

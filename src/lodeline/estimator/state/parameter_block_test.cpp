@@ -8,7 +8,7 @@
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/window_terms.h"
 #include "lodeline/estimator/solver/marginalizer.h"
-#include "lodeline/estimator/solver/window_solver.h"
+#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/solver/window_update.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/geometry/so3.h"
@@ -76,7 +76,7 @@ TEST_F(ParameterBlockTest, IsSolvedForByBothSolvers) {
     vector_->value = {5e-5, 0.0, 1e-5};
     poseToBlock(Rigid3(so3::exp(Vec3(0.0, 0.1, 1.9)), Vec3(0.2, 0.2, 0.2)), pose_->value.data());
     if (ceres) {
-      solveWindow(test_.window, prior, test_.factors, {50, 1e-16});
+      solveWithCeres(test_.window, prior, test_.factors, {50, 1e-16});
     } else {
       updateWindow(test_.window, prior, test_.factors, {50, 1e-16});
     }

@@ -1,4 +1,4 @@
-#include "lodeline/estimator/solver/window_solver.h"
+#include "lodeline/estimator/trials/test_ceres.h"
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -57,7 +57,7 @@ ceres::Solver::Options solverOptions(const SolveLimits& limits) {
   options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   options.max_num_iterations = limits.max_iterations;
-  options.function_tolerance = limits.function_tolerance;
+  options.function_tolerance = limits.relative_gain;
   // Directions that only the whole window determines (scale, tilt) have a curvature far below the diagonal of
   // their blocks. The default damping of 1e-4 of that diagonal would make convergence along them very slow.
   options.initial_trust_region_radius = 1e9;
@@ -68,8 +68,8 @@ ceres::Solver::Options solverOptions(const SolveLimits& limits) {
 
 }  // namespace
 
-SolveSummary solveWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
-                         const SolveLimits& limits) {
+SolveSummary solveWithCeres(Window& window, const Prior& prior, const FactorBuilder& factors,
+                            const SolveLimits& limits) {
   const WindowTerms terms = collectTerms(window, prior, factors);
   BlockCopies copies;
   for (const LandmarkFactors& landmark : terms.landmarks) copies.add(landmark.landmark, kLandmarkSize);
