@@ -42,6 +42,24 @@ const char* toString(Mode mode) {
   return "";
 }
 
+const char* toString(ModeEvent event) {
+  switch (event) {
+    case ModeEvent::Started:
+      return "started";
+    case ModeEvent::ScaleKnown:
+      return "scale known";
+    case ModeEvent::StartupTooLong:
+      return "start-up too long";
+    case ModeEvent::VisionLost:
+      return "vision lost";
+    case ModeEvent::VisionBack:
+      return "vision back";
+    case ModeEvent::VisionBackScaleLost:
+      return "vision back, scale lost";
+  }
+  return "";
+}
+
 void ModeMachine::apply(ModeEvent event) {
   const auto next = [event](Mode from, Mode before_darkness) {
     const auto line = std::find_if(kTransitions.begin(), kTransitions.end(), [&](const ModeTransition& t) {

@@ -27,6 +27,8 @@ enum class ModeEvent {
   VisionBackScaleLost  ///< the same after longer, with one camera
 };
 
+const char* toString(ModeEvent event);
+
 /// One line of the transition table. `to` is empty for the mode before the darkness.
 struct ModeTransition {
   Mode from;

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
+#include <sstream>
+#include <string>
+
+#include "lodeline/util/files/test_data.h"
 
 namespace lodeline {
 namespace {
@@ -148,6 +153,20 @@ TEST(ModeTransitions, HaveOneLineForAModeAndAnEvent) {
   for (const ModeTransition& line : modeTransitions()) {
     EXPECT_TRUE(lines.emplace(line.from, line.event).second) << toString(line.from);
   }
+}
+
+TEST(ModeTransitions, AreThoseOfTheDocumentation) {
+  std::ifstream file(testSourceDir() / "docs/theory/modes.md");
+  ASSERT_TRUE(file);
+  std::stringstream text;
+  text << file.rdbuf();
+  const std::string page = text.str();
+  std::string table = "| from | event | to |\n| --- | --- | --- |\n";
+  for (const ModeTransition& t : modeTransitions()) {
+    table += std::string("| ") + toString(t.from) + " | " + toString(t.event) + " | " +
+             (t.to ? toString(*t.to) : "the mode before") + " |\n";
+  }
+  EXPECT_NE(page.find(table + "\n"), std::string::npos) << table;
 }
 
 }  // namespace
