@@ -87,7 +87,7 @@ class Text:
 
 
 def errors(program, work, recording, mono, settings):
-    """Position (m) and rotation (rad) error of one run; a finished run is read again."""
+    """Position (m) and rotation (deg) error of one run; a finished run is read again."""
     name, folder, calibration = recording
     key = "default" if not settings else "_".join(settings).replace("/", "_")
     out = work / "runs" / f"{name}_{'mono' if mono else 'stereo'}" / key
@@ -99,14 +99,14 @@ def errors(program, work, recording, mono, settings):
         if calibration and "magnetometer.calibration=" not in settings:
             command += ["--mag-calibration", calibration]
         call(command | Text())
-        truth = folder / "mav0/state_groundtruth_estimate0/data.csv"
+        truth = next(f for f in (folder / "mav0/state_groundtruth_estimate0").iterdir() if f.name in ("data.csv", "gt_tum.txt"))
         call([program, "evaluate", out, truth, "--interpolate", "--align", "se3", "--json", figures] | Text())
     read = json.loads(figures.read_text())
     return position_and_rotation(read)
 
 
 def position_and_rotation(figures):
-    return figures["position"]["rmse_m"], figures["rotation"]["rmse_rad"]
+    return figures["absolute"]["position_m"]["rmse"], figures["absolute"]["rotation_deg"]["rmse"]
 
 
 def geometric_mean(values):
