@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "lodeline/evaluation/figures/evaluation_report.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 namespace {
 

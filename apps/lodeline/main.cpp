@@ -25,7 +25,7 @@
 #include "apps/lodeline/shared/arguments.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/printable_text.h"
 
 namespace {

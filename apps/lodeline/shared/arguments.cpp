@@ -8,9 +8,9 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/choice.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

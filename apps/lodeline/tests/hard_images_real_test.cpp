@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "lodeline/estimator/odometry.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 
 namespace lodeline {

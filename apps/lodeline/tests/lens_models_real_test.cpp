@@ -8,10 +8,9 @@
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/estimator/odometry.h"
-#include "lodeline/evaluation/errors/evaluation.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 
 namespace lodeline {

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <opencv2/core/utility.hpp>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/output/live/live_view.h"
 #include "lodeline/pipeline/output_choice.h"
 #include "lodeline/pipeline/run_progress.h"
 #include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/settings/settings.h"
 
 namespace lodeline {

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "lodeline/batch/estimator_log.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/attitude_track.h"
 #include "lodeline/estimator/odometry.h"
 #include "lodeline/inspection/clock_monitor.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
 #include "lodeline/output/files/run_output.h"
 #include "lodeline/output/report/run_summary.h"
 #include "lodeline/pipeline/run_request.h"
 #include "lodeline/pipeline/run_settings.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 #include "lodeline/util/files/folder_lock.h"
 #include "lodeline/util/settings/settings.h"
 

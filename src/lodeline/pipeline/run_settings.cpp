@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

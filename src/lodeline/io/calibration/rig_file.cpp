@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_kind.h"
 #include "lodeline/io/calibration/calibration_translation.h"
 #include "lodeline/io/calibration/euroc_calibration.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

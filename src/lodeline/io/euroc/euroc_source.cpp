@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/images/image_loader.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

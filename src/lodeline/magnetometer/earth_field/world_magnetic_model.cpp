@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/earth_field/magnetic_models.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -9,7 +9,7 @@
 #include "lodeline/io/synchronizer/frame_packet.h"
 #include "lodeline/output/live/live_server.h"
 #include "lodeline/output/report/run_summary.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/estimator.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

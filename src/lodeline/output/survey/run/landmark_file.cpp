@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -1,12 +1,42 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
+
+/// One reading of the gyroscope and accelerometer in the body frame B (= IMU frame).
+struct ImuSample {
+  Time time;
+  Vec3 angular_velocity_B = Vec3::Zero();  ///< rad/s, biased
+  Vec3 specific_force_B = Vec3::Zero();    ///< m/s^2, biased; +9.8 along up at rest
+  /// Time between the real readings on both sides of the step that ends here, s; 0 where it equals the step.
+  /// An interpolated sample within a gap keeps the length of the whole gap, in which the motion is unknown.
+  double gap_s = 0.0;
+};
+
+/// One raw magnetometer reading in the magnetometer frame M.
+struct MagnetometerSample {
+  Time time;
+  Vec3 field_M = Vec3::Zero();  ///< T
+};
+
+/// One depth reading from a pressure sensor.
+struct DepthSample {
+  Time time;
+  double depth_m = 0.0;  ///< positive down
+};
+
+/// One echo of a pencil-beam scanning sonar.
+struct SonarSample {
+  Time time;
+  double range_m = 0.0;
+  double angle_rad = 0.0;  ///< angle of the beam about the axis of the sonar head
+};
 
 /// Noise of an IMU as continuous densities in Kalibr's convention: two-sided square root of power per hertz.
 /// A discrete sample at rate f has sigma = density * sqrt(f). The values are those of the datasheet or the
@@ -104,6 +134,41 @@ struct Rig {
   std::optional<MagnetometerCalibration> magnetometer;
   std::optional<PressureCalibration> pressure;
   std::optional<SonarCalibration> sonar;
+};
+
+/// Calibrated scale, misalignment and bias of an IMU, and the correction of its readings. The measurement
+/// model is Kalibr's with constant biases:
+///
+///     gyroscope reading     = G^-1 w + S f + b_g        accelerometer reading = F^-1 f + b_a
+///
+/// with the angular velocity w (rad/s) and the specific force f (m/s^2) in body axes.
+struct ImuCorrection {
+  Mat3 accelerometer = Mat3::Identity();  ///< F
+  Mat3 gyroscope = Mat3::Identity();      ///< G, includes the rotation from the gyroscope's axes to B
+  Mat3 g_sensitivity = Mat3::Zero();      ///< S, rad/s per m/s^2
+  Vec3 accelerometer_bias = Vec3::Zero();
+  Vec3 gyroscope_bias = Vec3::Zero();
+  /// Offset added to IMU stamps to obtain the clock of the cameras' offsets (Kalibr's time_offset).
+  double time_offset_s = 0.0;
+
+  ImuSample applied(const ImuSample& reading) const {
+    ImuSample sample;
+    sample.time = reading.time + Duration::fromSeconds(time_offset_s);
+    sample.specific_force_B = accelerometer * (reading.specific_force_B - accelerometer_bias);
+    sample.angular_velocity_B =
+        gyroscope * (reading.angular_velocity_B - gyroscope_bias - g_sensitivity * sample.specific_force_B);
+    return sample;
+  }
+
+  /// Largest relative change of a single-axis reading caused by scale and misalignment.
+  double largestChange() const {
+    const double force = (accelerometer - Mat3::Identity()).cwiseAbs().maxCoeff();
+    return std::max(force, (gyroscope - Mat3::Identity()).cwiseAbs().maxCoeff());
+  }
+  bool isIdentity() const {
+    return largestChange() == 0.0 && g_sensitivity.isZero(0.0) && accelerometer_bias.isZero(0.0) &&
+           gyroscope_bias.isZero(0.0) && time_offset_s == 0.0;
+  }
 };
 
 }  // namespace lodeline
