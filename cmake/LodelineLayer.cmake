@@ -18,7 +18,8 @@ target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Wall -Wextr
 if(LODELINE_WARNINGS_AS_ERRORS)
   target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
-target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
+target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include>
+                                                      $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
                                                       $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                                       $<INSTALL_INTERFACE:include>)
 if(LODELINE_SANITIZERS)

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
 

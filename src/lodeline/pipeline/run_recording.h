@@ -3,7 +3,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/run_summary.h"
 #include "lodeline/pipeline/run_request.h"
-#include "lodeline/pipeline/run_settings.h"
+#include "lodeline/api/run_settings.h"
 
 namespace lodeline {
 

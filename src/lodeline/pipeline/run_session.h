@@ -8,13 +8,13 @@
 #include "lodeline/batch/estimator_log.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/attitude_track.h"
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 #include "lodeline/inspection/clock_monitor.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
 #include "lodeline/output/files/run_output.h"
 #include "lodeline/output/report/run_summary.h"
 #include "lodeline/pipeline/run_request.h"
-#include "lodeline/pipeline/run_settings.h"
+#include "lodeline/api/run_settings.h"
 #include "lodeline/recording.h"
 #include "lodeline/util/files/folder_lock.h"
 #include "lodeline/util/settings/settings.h"
@@ -48,7 +48,7 @@ class RunSession {
   /// Landmarks that left the window with it.
   const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }
-  const Odometry& odometry() const { return odometry_; }
+  const PacketOdometry& odometry() const { return odometry_; }
 
  private:
   void followClocks(const FrameEstimate& estimate);
@@ -60,7 +60,7 @@ class RunSession {
   std::optional<FolderLock> lock_;
   Diagnostics* diagnostics_;
   Synchronizer synchronizer_;
-  Odometry odometry_;
+  PacketOdometry odometry_;
   Diagnostics unheard_;  ///< findings of the attitude filter, which synchronizer and odometry report as well
   AttitudeTrack attitude_;
   RunSummary summary_;

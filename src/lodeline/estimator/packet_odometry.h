@@ -36,10 +36,10 @@ struct FoundDelay {
 };
 
 /// The whole way from a packet of measurements to an estimate.
-class Odometry {
+class PacketOdometry {
  public:
   /// `diagnostics` must outlive the odometry.
-  Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics);
+  PacketOdometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics);
 
   /// Adds one packet of the synchronizer; packets must come in order.
   FrameEstimate add(const FramePacket& packet);

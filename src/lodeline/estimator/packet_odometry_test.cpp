@@ -1,11 +1,11 @@
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 
 #include <gtest/gtest.h>
 
 namespace lodeline {
 namespace {
 
-TEST(Odometry, FollowsMorePointsWithAnImuThatMayNeverHaveBeenCalibrated) {
+TEST(PacketOdometry, FollowsMorePointsWithAnImuThatMayNeverHaveBeenCalibrated) {
   Rig rig;
   EstimatorOptions options;
   const double limit = options.imu_axes.calibrated_below_rad_per_s_sqrtHz;

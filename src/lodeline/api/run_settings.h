@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"

@@ -1,4 +1,4 @@
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 
 #include <fmt/format.h>
 
@@ -42,7 +42,7 @@ int tracksFor(const Rig& rig, const EstimatorOptions& options) {
   return optionsFor(rig, options).imu_axes.areDoubted() ? 250 : 180;
 }
 
-Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics)
+PacketOdometry::PacketOdometry(const Rig& rig, const OdometryOptions& options, Diagnostics* diagnostics)
     : imu_(rig.imu),
       front_end_(rig, frontEndOptions(rig, options)),
       estimator_(rig, options.estimator, diagnostics),
@@ -52,7 +52,7 @@ Odometry::Odometry(const Rig& rig, const OdometryOptions& options, Diagnostics* 
       stereo_monitor_(rig, diagnostics),
       diagnostics_(diagnostics) {}
 
-FrameEstimate Odometry::add(const FramePacket& packet) {
+FrameEstimate PacketOdometry::add(const FramePacket& packet) {
   const double start_s = threadSeconds();
   const Quat by_gyroscope = previousFromCurrent(packet);
   const Quat steady = steadilyTurning(packet, by_gyroscope);
@@ -78,7 +78,7 @@ FrameEstimate Odometry::add(const FramePacket& packet) {
   return estimate;
 }
 
-void Odometry::follow(const NavigationState& state) {
+void PacketOdometry::follow(const NavigationState& state) {
   gyroscope_bias_B_ = state.gyroscope_bias_B;
   if (newest_) {
     const Quat turned = newest_->world_from_body.rotation.conjugate() * state.world_from_body.rotation;
@@ -87,12 +87,12 @@ void Odometry::follow(const NavigationState& state) {
   newest_ = state;
 }
 
-Quat Odometry::steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const {
+Quat PacketOdometry::steadilyTurning(const FramePacket& packet, const Quat& by_gyroscope) const {
   if (!newest_ || packet.imu.empty()) return by_gyroscope;
   return so3::exp((packet.time - packet.imu.front().time).seconds() * rate_B_);
 }
 
-void Odometry::reportStaticImageMask(Time time) {
+void PacketOdometry::reportStaticImageMask(Time time) {
   constexpr double kWorthSaying = 0.005;  // less is a particle, left out all the same
   for (size_t i = 0; i < static_image_mask_reported_.size(); ++i) {
     const double share = front_end_.fixedStructures()[i].share();
@@ -108,7 +108,7 @@ void Odometry::reportStaticImageMask(Time time) {
   }
 }
 
-void Odometry::lookForDelays(const FramePacket& packet) {
+void PacketOdometry::lookForDelays(const FramePacket& packet) {
   constexpr int kEvery = 10;
   constexpr double kLeast_s = 2e-3, kSigmas = 6.0;
   if (++frames_ % kEvery != 0) return;
@@ -130,7 +130,7 @@ void Odometry::lookForDelays(const FramePacket& packet) {
   }
 }
 
-void Odometry::reportTurnedCameras() {
+void PacketOdometry::reportTurnedCameras() {
   for (size_t i = 0; i < tracks_.camera_rotations.size(); ++i) {
     const double turn_rad = tracks_.camera_rotations[i].norm();
     if (turn_rad == 0.0 || turn_reported_[i]) continue;
@@ -147,7 +147,7 @@ void Odometry::reportTurnedCameras() {
   }
 }
 
-Quat Odometry::previousFromCurrent(const FramePacket& packet) {
+Quat PacketOdometry::previousFromCurrent(const FramePacket& packet) {
   predicted_.reset();
   if (first_ || packet.imu.size() < 2) return Quat::Identity();
   const Vec3 accelerometer_bias_B = newest_ ? newest_->accelerometer_bias_B : Vec3::Zero();
@@ -156,7 +156,7 @@ Quat Odometry::previousFromCurrent(const FramePacket& packet) {
   return preintegration.motion().gamma;
 }
 
-RigMotion Odometry::motion(const FramePacket& packet) const {
+RigMotion PacketOdometry::motion(const FramePacket& packet) const {
   RigMotion motion;
   if (packet.imu.empty()) return motion;
   motion.rate_B = packet.imu.back().angular_velocity_B - gyroscope_bias_B_;

@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/run_settings.h"
+#include "lodeline/api/run_settings.h"
 
 #include <fmt/core.h>
 
