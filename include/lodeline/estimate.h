@@ -47,6 +47,13 @@ struct MapPoint {
   int observations = 0;            ///< number in the window when it left
 };
 
+/// A point of a map, in the world of the map's trajectory.
+struct MapLandmark {
+  Vec3 position = Vec3::Zero();  ///< m
+  int observations = 0;
+};
+
+/// What the estimator has for a frame.
 enum class Status {
   Waiting,   ///< not initialized; no pose
   Tracking,  ///< images and inertial readings
@@ -199,6 +206,7 @@ struct FrameEstimate {
   ScaleInformation scale;  ///< what carries it at present
 };
 
+/// What the batch solution of a recording is like.
 struct RefinementSummary {
   /// Reason why there is no batch solution; empty where there is one.
   std::string refusal;

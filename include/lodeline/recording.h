@@ -5,6 +5,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -41,6 +42,10 @@ struct PendingImage {
   std::function<StoredImage()> stored = {};
   Time recorded = {};  ///< the stored stamp, unaffected by changes of `time`; set by the synchronizer
 };
+
+/// An image in memory, for LiveSource::push(): 8 or 16-bit pixels, grey or BGR. `time`: mid-exposure, on the
+/// camera's clock. The pixels must not change until the image has been processed.
+PendingImage imageInMemory(Time time, const cv::Mat& pixels);
 
 /// Hash that is equal for images stored under the same name.
 inline uint64_t contentKey(const PendingImage& image) { return std::hash<std::string>()(image.name); }
@@ -200,5 +205,11 @@ struct EurocOptions {
   /// Files that describe the rig (see readRigFiles); they have priority over those in the recording.
   std::vector<std::filesystem::path> rig_files = {};
 };
+
+/// Opens a recording in the EuRoC ASL layout; `data`: the folder that contains mav0, or mav0 itself. Throws
+/// InputError where it is no recording or lacks what `options` require. `diagnostics` must outlive the
+/// source.
+std::unique_ptr<RecordedSource> openEuroc(const std::filesystem::path& data, const EurocOptions& options,
+                                          Diagnostics* diagnostics);
 
 }  // namespace lodeline

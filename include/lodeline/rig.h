@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/types.h"
 
 namespace lodeline {
@@ -170,5 +172,16 @@ struct ImuCorrection {
            gyroscope_bias.isZero(0.0) && time_offset_s == 0.0;
   }
 };
+
+/// A rig and the correction of its recorded inertial readings, where its files state one.
+struct DescribedRig {
+  Rig rig;  ///< unstated rates are 0; LiveSource::settleRates() measures them
+  std::optional<ImuCorrection> imu_correction;
+};
+
+/// Reads files that together describe a rig: this program's rig files, EuRoC's, Kalibr's, OpenVINS' and
+/// others (docs/reference/file-formats.md). Throws InputError where a file is wrong, and for a rig without
+/// camera or IMU.
+DescribedRig readRig(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics);
 
 }  // namespace lodeline

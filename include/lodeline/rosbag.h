@@ -2,11 +2,16 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
+#include "lodeline/recording.h"
+
 namespace lodeline {
 
+/// Parts of a ROS 1 bag to read, and where its rig is described.
 struct BagOptions {
   /// Files that describe the rig (see readRigFiles). Empty: NAME.rig.yaml beside NAME.bag.
   std::vector<std::filesystem::path> rig_files;
@@ -22,5 +27,10 @@ struct BagOptions {
   /// no stamps. The recording times include the transport delay and its jitter.
   bool use_received_times = false;
 };
+
+/// Opens a ROS 1 bag. Throws InputError where it is no bag, or no rig file describes its sensors, and
+/// UsageError for a topic of a sensor that the rig does not have. `diagnostics` must outlive the source.
+std::unique_ptr<RecordedSource> openBag(const std::filesystem::path& bag, const BagOptions& options,
+                                        Diagnostics* diagnostics);
 
 }  // namespace lodeline

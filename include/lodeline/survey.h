@@ -11,19 +11,13 @@
 
 namespace lodeline {
 
-/// A point of a map, in the world of the map's trajectory.
-struct MapLandmark {
-  Vec3 position = Vec3::Zero();  ///< m
-  int observations = 0;
-};
-
 /// Reported covariance of one position relative to the first, in the world of the run's trajectory.
 struct PositionUncertainty {
   Time time;
   Mat3 covariance = Mat3::Zero();  ///< m^2
 };
 
-/// Results of `lodeline run` that a map needs.
+/// Results of a run that a map needs.
 struct RunFolder {
   std::filesystem::path folder;
   std::string trajectory_file;                     ///< name of the file of the poses
@@ -44,11 +38,17 @@ struct RunFolder {
       intrinsics_corrections;  ///< as in factors/intrinsics_factor.h; may be empty
 };
 
+/// What a map needs of the estimates of one run, or of its Refinement. The world turns to a north that was
+/// found after the first pose. Estimates without a pose are left out. Throws InputError where none has one.
+RunFolder runOf(const std::string& name, const std::vector<FrameEstimate>& estimates,
+                const std::vector<MapPoint>& landmarks);
+
 /// Reads a run folder: poses from `trajectory_refined.tum` where it exists (with `states_refined.csv` and
 /// `landmarks_refined.ply`), else from `trajectory.tum`. Other missing files are reported as findings. Throws
 /// InputError where there are no poses, or a file is malformed.
 RunFolder readRunFolder(const std::filesystem::path& folder, Diagnostics* diagnostics);
 
+/// Spacing of survey stations.
 struct StationOptions {
   double spacing_m = 5.0;           ///< of stations on a straight path
   double bend_spacing_m = 2.0;      ///< minimum, where the path bends
@@ -56,6 +56,7 @@ struct StationOptions {
   double path_resolution_m = 0.25;  ///< smaller movements do not count as path length
 };
 
+/// How passage sizes and splays are measured from wall points.
 struct PassageOptions {
   double half_slab_m = 2.5;      ///< along the passage, in front of a station and behind it
   double reach_m = 30.0;         ///< wall points further away are ignored
@@ -95,6 +96,14 @@ struct DiveMapOptions {
   std::vector<std::string> notes;  ///< further lines for the headers
 };
 
+/// Files of survey, GIS and 3-D programs. Colmap needs the recording's images, which only the program reads.
 enum class MapFormat { Survex, Therion, GeoJson, Kml, Gpx, Ply, Csv, Tum, Colmap };
+
+/// Writes one dive in these formats and its notes to a folder, which is made, and returns the files. Throws
+/// InputError and UsageError where run or options do not allow a map, or a format needs a position or images
+/// that are missing.
+std::vector<std::filesystem::path> writeSurvey(const RunFolder& run, const DiveMapOptions& options,
+                                               const std::vector<MapFormat>& formats,
+                                               const std::filesystem::path& folder, Diagnostics* diagnostics);
 
 }  // namespace lodeline

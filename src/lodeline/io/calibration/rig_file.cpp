@@ -194,4 +194,15 @@ void selectCameras(const std::vector<int>& indices, const std::string& name, Rig
   rig->cameras = std::move(selected);
 }
 
+DescribedRig readRig(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics) {
+  const RigFile file = readRigFiles(files, diagnostics);
+  const std::string names = files.empty() ? "no file" : files.front().string();
+  if (!file.has_imu) {
+    throw InputError(
+        fmt::format("{}: no section imu0 in the rig's files (or Kalibr's imu.yaml is missing)", names));
+  }
+  if (file.rig.cameras.empty()) throw InputError(fmt::format("{}: no camera in the rig's files", names));
+  return {file.rig, file.imu_correction};
+}
+
 }  // namespace lodeline

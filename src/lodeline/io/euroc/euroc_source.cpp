@@ -45,6 +45,11 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
   if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics, kMagnetometerRate);
 }
 
+std::unique_ptr<RecordedSource> openEuroc(const std::filesystem::path& data, const EurocOptions& options,
+                                          Diagnostics* diagnostics) {
+  return std::make_unique<EurocSource>(data, options, diagnostics);
+}
+
 std::optional<ImuSample> EurocSource::nextRecordedImu() {
   if (!next(&imu_, &row_)) return std::nullopt;
   return ImuSample{row_.time, Vec3(row_.numbers.data()), Vec3(row_.numbers.data() + 3)};

@@ -301,4 +301,9 @@ std::optional<SonarSample> BagSource::nextSonar() {
   return echo;
 }
 
+std::unique_ptr<RecordedSource> openBag(const std::filesystem::path& bag, const BagOptions& options,
+                                        Diagnostics* diagnostics) {
+  return std::make_unique<BagSource>(bag, options, diagnostics);
+}
+
 }  // namespace lodeline

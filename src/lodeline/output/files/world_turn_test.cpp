@@ -10,7 +10,7 @@
 #include "lodeline/output/files/landmark_writer.h"
 #include "lodeline/output/files/run_table.h"
 #include "lodeline/output/files/state_writer.h"
-#include "lodeline/output/survey/run/landmark_file.h"
+#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/angles.h"
 

@@ -1,4 +1,4 @@
-#include "lodeline/output/survey/run/landmark_file.h"
+#include "lodeline/output/files/landmark_file.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/survey.h"
-#include "lodeline/types.h"
+#include "lodeline/estimate.h"
 
 namespace lodeline {
 
