@@ -1,7 +1,7 @@
 # The front door. Every target installs what it lacks and builds first.
 .PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
-CODE = src apps studies examples ros fuzz
+CODE = include src apps studies examples ros fuzz
 
 # The program and the library; `everything` has the tests, benchmarks and studies as well.
 build: dependencies
