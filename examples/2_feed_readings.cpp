@@ -16,7 +16,7 @@ namespace {
 /// Pushes all readings up to the time of an image, then the image.
 void pushUpTo(lodeline::Time time, lodeline::RecordedSource* recording, lodeline::LiveSource* rig) {
   const lodeline::Time end = time + lodeline::Duration::fromSeconds(0.05);
-  while (const auto sample = recording->nextRecordedImu()) {
+  while (const auto sample = recording->nextImu()) {
     rig->push(*sample);
     if (sample->time > end) break;
   }

@@ -17,6 +17,7 @@
 #include "lodeline/trajectory.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {

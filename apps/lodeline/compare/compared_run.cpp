@@ -11,6 +11,7 @@
 #include "lodeline/evaluation/trajectory/text_table.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {

@@ -63,6 +63,13 @@ std::vector<std::string> optionsOf(const CLI::App& command) {
 
 }  // namespace
 
+std::vector<std::string> withHelpAsOption(std::vector<std::string> words) {
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
+}
+
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words) {
   std::vector<std::string> joined;
   for (size_t i = 0; i < words.size();) {

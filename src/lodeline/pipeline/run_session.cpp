@@ -5,6 +5,7 @@
 #include "lodeline/pipeline/process_usage.h"
 #include "lodeline/pipeline/refine_run.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {
