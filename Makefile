@@ -3,10 +3,10 @@
 PREFIX ?= /usr/local
 CODE = include src apps studies examples ros fuzz
 
-# The program and the library; `everything` has the tests, benchmarks and studies as well.
+# The program and the library. `everything` has the tests, benchmarks and studies as well, in the same folder.
 build: dependencies
-	cmake --preset release
-	cmake --build --preset release --target lodeline_product
+	cmake --preset product
+	cmake --build --preset product
 
 everything: test-dependencies
 	cmake --preset release
