@@ -59,6 +59,16 @@ TEST_F(RigFileTest, ReadsOurOwnKeys) {
   EXPECT_NEAR(file.water.depth_m(101325.0 + 1025.0 * 9.80665 * 12.5), 12.5, 1e-9);
 }
 
+TEST_F(RigFileTest, IsReadAsARigOfCamerasAndImu) {
+  const auto readAsRig = [&](const std::string& text) {
+    place_.write("rig.yaml", text);
+    return readRig(std::vector<std::filesystem::path>{place_.path("rig.yaml")}, &diagnostics_);
+  };
+  EXPECT_EQ(readAsRig(imu_ + camera_).rig.cameras.size(), 1u);
+  EXPECT_THROW(readAsRig(imu_), InputError);
+  EXPECT_THROW(readAsRig(camera_), InputError);
+}
+
 TEST_F(RigFileTest, ReadsKalibrsFiles) {
   const RigFile file = read(
       {std::string("cam0:\n  rostopic: /left\n  T_cam_imu: ") + kTransform +
