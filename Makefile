@@ -59,7 +59,7 @@ coverage: test-dependencies
 	cmake --preset coverage
 	cmake --build --preset coverage
 	ctest --test-dir build/coverage --output-on-failure -j2
-	gcovr --root . --filter src/lodeline --exclude '.*test.*' --print-summary build/coverage
+	gcovr --root . --filter src/lodeline --filter include --exclude '.*test.*' --print-summary build/coverage
 
 # The checks of .clang-tidy on the product's sources.
 tidy: test-dependencies

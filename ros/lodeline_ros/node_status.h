@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/estimator.h"
+#include "lodeline/estimate.h"
 #include "lodeline_ros/message_types.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/estimator.h"
+#include "lodeline/estimate.h"
 
 namespace lodeline {
 

@@ -7,9 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/batch/refine.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/estimator.h"
+#include "lodeline/estimate.h"
 #include "lodeline/output/report/blind_stretches.h"
 #include "lodeline/rig.h"
 
