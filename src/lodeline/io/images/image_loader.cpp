@@ -114,8 +114,13 @@ LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& n
 
 PendingImage imageInMemory(Time time, const cv::Mat& pixels) {
   const std::string name = fmt::format("image at {} ns", time.nanoseconds());
-  return {time, name, [pixels] { return LoadedImage{greyFrom(pixels), ""}; },
-          [pixels] { return StoredImage{{}, pixels, ""}; }};
+  return {time, name,
+          [pixels] {
+            return LoadedImage{greyFrom(pixels), ""};
+          },
+          [pixels] {
+            return StoredImage{{}, pixels, ""};
+          }};
 }
 
 LoadedImage loadGreyImage(const std::filesystem::path& file, const GreyRange& range) {
