@@ -1,12 +1,12 @@
 # The front door. Every target installs what it lacks and builds first.
 .PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized bench install package format check-format clean
 PREFIX ?= /usr/local
-CODE = src apps studies examples ros fuzz
+CODE = include src apps studies examples ros fuzz
 
-# The program and the library; `everything` has the tests, benchmarks and studies as well.
+# The program and the library. `everything` has the tests, benchmarks and studies as well, in the same folder.
 build: dependencies
-	cmake --preset release
-	cmake --build --preset release --target lodeline_product
+	cmake --preset product
+	cmake --build --preset product
 
 everything: test-dependencies
 	cmake --preset release
@@ -59,7 +59,7 @@ coverage: test-dependencies
 	cmake --preset coverage
 	cmake --build --preset coverage
 	ctest --test-dir build/coverage --output-on-failure -j2
-	gcovr --root . --filter src/lodeline --exclude '.*test.*' --print-summary build/coverage
+	gcovr --root . --filter src/lodeline --filter include --exclude '.*test.*' --print-summary build/coverage
 
 # The checks of .clang-tidy on the product's sources.
 tidy: test-dependencies

@@ -1,14 +1,18 @@
 # What is installed: everything but tests, benchmarks and studies.
 add_custom_target(lodeline_product)
 
-# Makes a target part of the installed library, as lodeline::NAME.
+# Makes a layer part of the installed library where a component contains it.
 function(lodeline_export name)
   get_target_property(kind lodeline_${name} TYPE)
   if(NOT kind STREQUAL INTERFACE_LIBRARY)
     add_dependencies(lodeline_product lodeline_${name})
   endif()
-  set_target_properties(lodeline_${name} PROPERTIES EXPORT_NAME ${name})
-  install(TARGETS lodeline_${name} EXPORT lodeline)
+  foreach(component IN LISTS LODELINE_COMPONENTS)
+    if(name IN_LIST LODELINE_${component}_LAYERS)
+      set_target_properties(lodeline_${name} PROPERTIES EXPORT_NAME layer_${name})
+      install(TARGETS lodeline_${name} EXPORT lodeline_${component})
+    endif()
+  endforeach()
 endfunction()
 
 # What every target of the project is compiled with.
@@ -18,7 +22,8 @@ target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Wall -Wextr
 if(LODELINE_WARNINGS_AS_ERRORS)
   target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
-target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
+target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include>
+                                                      $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
                                                       $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                                       $<INSTALL_INTERFACE:include>)
 if(LODELINE_SANITIZERS)
@@ -91,6 +96,9 @@ function(lodeline_layer name)
       list(APPEND links lodeline_${dependency})
     elseif(dependency MATCHES "^[a-z0-9]+$")
       message(FATAL_ERROR "layer '${name}' depends on '${dependency}', which is not below it")
+    elseif(dependency MATCHES "^(Boost::headers|nlohmann_json::.*|nanoflann::.*|CLI11::.*)$")
+      # Headers alone, which no public header includes.
+      list(APPEND links $<BUILD_INTERFACE:${dependency}>)
     else()
       list(APPEND links ${dependency})
     endif()
@@ -98,7 +106,7 @@ function(lodeline_layer name)
   if(sources)
     add_library(lodeline_${name} STATIC ${sources})
     target_link_libraries(lodeline_${name} PUBLIC lodeline_options ${links})
-    if("CLI11::CLI11" IN_LIST links)
+    if("CLI11::CLI11" IN_LIST ARG_DEPENDS)
       lodeline_use_precompiled(lodeline_${name} commands)
     else()
       lodeline_use_precompiled(lodeline_${name} library)
@@ -108,7 +116,6 @@ function(lodeline_layer name)
     target_link_libraries(lodeline_${name} INTERFACE lodeline_options ${links})
   endif()
   lodeline_export(${name})
-  add_library(lodeline::${name} ALIAS lodeline_${name})  # the name that find_package(lodeline) gives it
   if(NOT LODELINE_BUILD_TESTS)
     return()
   endif()

@@ -13,7 +13,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # What the program needs is read from its binary; what find_package(lodeline) needs is only recommended.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
-    "libeigen3-dev, libceres-dev, libopencv-dev, libyaml-cpp-dev, libcli11-dev, libfmt-dev, nlohmann-json3-dev, \
-zlib1g-dev, libdeflate-dev, libgeographiclib-dev, libproj-dev, libxml2-dev, libnanoflann-dev, libembree-dev, libtbb-dev, libcpp-httplib-dev, gnuplot-nox")
+    "libeigen3-dev, libceres-dev, libopencv-core-dev, libopencv-imgcodecs-dev, libopencv-calib3d-dev, libopencv-video-dev, \
+libyaml-cpp-dev, libfmt-dev, zlib1g-dev, libdeflate-dev, libtbb-dev, libgeographiclib-dev, libproj-dev, libxml2-dev, \
+libembree-dev, libbz2-dev, liblz4-dev, libcpp-httplib-dev, gnuplot-nox")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "survex, therion, qgis")
 include(CPack)

@@ -1,45 +1,46 @@
 // Reads a recording in the EuRoC layout, estimates its trajectory and prints it in TUM's layout:
-//   example_1_run_recording FOLDER > trajectory.tum
+//   example_1_run_recording FOLDER [SECONDS] > trajectory.tum
 
 #include <cstdio>
 #include <exception>
 
-#include "lodeline/estimator/odometry.h"
-#include "lodeline/io/euroc/euroc_source.h"
-#include "lodeline/io/synchronizer/synchronizer.h"
+#include "lodeline/odometry.h"
 
 int main(int argc, char** argv) try {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: %s FOLDER_WITH_MAV0\n", argv[0]);
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: %s FOLDER_WITH_MAV0 [SECONDS]\n", argv[0]);
     return 2;
   }
   // Collects all problems of the recording.
   lodeline::Diagnostics diagnostics;
+  lodeline::OdometrySettings settings;
+  if (argc > 2) settings.set("source.duration_s", argv[2]);
 
-  // The source returns each sensor's readings as stored; the synchronizer makes one packet per image.
-  lodeline::EurocSource source(argv[1], {}, &diagnostics);
-  lodeline::Synchronizer synchronizer(&source, {}, &diagnostics);
-  lodeline::Odometry odometry(source.rig(), {}, &diagnostics);
+  const auto open = [&](lodeline::Diagnostics* findings) {
+    return lodeline::openEuroc(argv[1], settings.recording(), findings);
+  };
+  settings.adaptTo(open, argv[1], &diagnostics);
+  const auto source = open(&diagnostics);
+  lodeline::Odometry odometry(source.get(), settings, &diagnostics);
 
-  int posed = 0;
-  while (const auto packet = synchronizer.next()) {
-    const lodeline::FrameEstimate estimate = odometry.add(*packet);
-    if (estimate.status == lodeline::Status::Waiting) {
-      std::fprintf(stderr, "waiting for %s\n", estimate.waiting_for.c_str());
+  int poses = 0;
+  while (const auto estimate = odometry.next()) {
+    if (estimate->status == lodeline::Status::Waiting) {
+      std::fprintf(stderr, "waiting for %s\n", estimate->waiting_for.c_str());
       continue;
     }
-    const lodeline::Rigid3& pose = estimate.state.world_from_body;
+    const lodeline::Rigid3& pose = estimate->state.world_from_body;
     const lodeline::Vec3& p = pose.translation;
     const lodeline::Quat& q = pose.rotation;
-    std::printf("%.9f %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", estimate.time.seconds(), p.x(), p.y(), p.z(),
+    std::printf("%.9f %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", estimate->time.seconds(), p.x(), p.y(), p.z(),
                 q.x(), q.y(), q.z(), q.w());
-    ++posed;
+    ++poses;
   }
   for (const lodeline::Finding& finding : diagnostics.ranked()) {
     std::fprintf(stderr, "%s (%d times)\n", finding.first_message.c_str(), finding.count);
   }
-  std::fprintf(stderr, "%d poses\n", posed);
-  return posed > 0 ? 0 : 3;
+  std::fprintf(stderr, "%d poses\n", poses);
+  return poses > 0 ? 0 : 3;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

@@ -6,8 +6,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "lodeline/evaluation/figures/evaluation_report.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 namespace {
 
@@ -38,7 +37,17 @@ int main(int argc, char** argv) try {
   lodeline::EvaluationOptions options;
   options.alignment = lodeline::AlignmentType::SE3;
   const lodeline::Evaluation evaluation = lodeline::evaluate(estimate, reference, options, diagnostics);
-  std::printf("%s", lodeline::evaluationTable(evaluation, diagnostics).c_str());
+  const lodeline::Statistics position_m = evaluation.absolute.position();
+  const lodeline::Statistics rotation_deg = evaluation.absolute.rotation();
+  std::printf("%zu pairs on %.1f m, %.1f %% of the images or the time have a pose\n", evaluation.pairs.size(),
+              evaluation.reference_path_m, 100.0 * evaluation.completion.share);
+  std::printf("position error %.3f m RMS, %.3f m at most; rotation error %.2f deg RMS\n", position_m.rmse,
+              position_m.max, rotation_deg.rmse);
+  for (const lodeline::RelativeErrors& relative : evaluation.relative) {
+    std::printf("over %5.1f m: %.3f m, %.2f deg (medians)\n", relative.length_m,
+                lodeline::computeStatistics(relative.translation_m).median,
+                lodeline::computeStatistics(relative.rotation_deg).median);
+  }
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

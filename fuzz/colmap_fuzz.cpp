@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 // COLMAP's images.bin and images.txt.
 

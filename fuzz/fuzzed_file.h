@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline::fuzz {
 

@@ -1,6 +1,6 @@
 #include "fuzzed_file.h"
+#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/output/files/run_table.h"
-#include "lodeline/output/survey/run/landmark_file.h"
 
 // Files of a results folder, possibly truncated or damaged: states.csv and landmarks.ply.
 

@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 // Trajectories in every layout; the layout is recognized from the file.
 

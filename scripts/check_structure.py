@@ -4,6 +4,8 @@
   - A folder has at most 30 files, a source file at most 400 lines.
   - Includes go downwards only. Layers are ordered by src/CMakeLists.txt, then apps, studies and ros; the folders inside
     a layer by the FOLDERS of its CMakeLists.txt ("." for the layer's own folder, otherwise that comes last).
+  - A public header (include/lodeline) counts as part of the lowest folder that uses it. It includes only public headers,
+    the standard library, Eigen and OpenCV's core; so do the examples.
 
 Tests, and helpers of tests, may include anything. Python 3 without further packages.
 """
@@ -13,7 +15,24 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MOST_FILES, MOST_LINES = 30, 400
-TOPS = ("src", "apps", "studies", "ros", "examples", "fuzz")
+TOPS = ("include", "src", "apps", "studies", "ros", "examples", "fuzz")
+PUBLIC = "include/lodeline"
+MOST_PUBLIC_HEADERS = 12
+# The folder as part of which each public header counts.
+FOLDER_OF_PUBLIC = {
+    "version.h": "src/lodeline/util",
+    "diagnostics.h": "src/lodeline/util",
+    "types.h": "src/lodeline/util",
+    "rig.h": "src/lodeline/sensors",
+    "recording.h": "src/lodeline/io/synchronizer",
+    "rosbag.h": "src/lodeline/io/rosbag1",
+    "estimate.h": "src/lodeline/imu",
+    "trajectory.h": "src/lodeline/evaluation/trajectory",
+    "odometry.h": "src/lodeline/api",
+    "simulation.h": "src/simulation/sensors",
+    "survey.h": "src/lodeline/output/survey/run",
+    "live.h": "src/lodeline/output/live",
+}
 
 
 def arguments(text, keyword):
@@ -46,6 +65,8 @@ def is_test(file):
 
 
 def target_of(include):
+    if (ROOT / "include" / include).is_file():
+        return FOLDER_OF_PUBLIC.get(Path(include).name)
     for top in ("src/", ""):
         if (ROOT / (top + include)).is_file():
             return str(Path(top + include).parent)
@@ -59,6 +80,8 @@ def breaches():
             if not folder.is_dir() or "corpus" in folder.parts:
                 continue
             files = [file for file in folder.iterdir() if file.is_file()]
+            if str(folder.relative_to(ROOT)) == PUBLIC and len(files) > MOST_PUBLIC_HEADERS:
+                yield f"{PUBLIC}: {len(files)} headers, at most {MOST_PUBLIC_HEADERS} are allowed"
             if len(files) > MOST_FILES:
                 yield f"{folder.relative_to(ROOT)}: {len(files)} files, at most {MOST_FILES} are allowed"
             for file in files:
@@ -66,12 +89,26 @@ def breaches():
                     yield from breaches_of(file, rank)
 
 
+def breaches_of_public(name, lines):
+    """Includes of a public header or an example that users do not have."""
+    if str(name.parent) == PUBLIC and name.name not in FOLDER_OF_PUBLIC:
+        yield f"{name}: has no folder in FOLDER_OF_PUBLIC of {Path(__file__).name}"
+    for kind, include in re.findall(r'^#include ([<"])([^>"]+)[>"]', "\n".join(lines), re.M):
+        is_outside = re.fullmatch(r"[a-z_]+|Eigen/\w+|opencv2/core(/\w+)?\.hpp", include)
+        is_public = include.startswith("lodeline/") and (ROOT / "include" / include).is_file()
+        if not (is_outside if kind == "<" else is_public):
+            yield f"{name}: includes {include}, which is not for users of the library"
+
+
 def breaches_of(file, rank):
     name = file.relative_to(ROOT)
     lines = file.read_text().splitlines()
+    if str(name.parent) == PUBLIC or name.parts[0] == "examples":
+        yield from breaches_of_public(name, lines)
     if len(lines) > MOST_LINES:
         yield f"{name}: {len(lines)} lines, at most {MOST_LINES} are allowed"
-    own = rank.get(str(name.parent))
+    folder = FOLDER_OF_PUBLIC.get(name.name) if str(name.parent) == PUBLIC else str(name.parent)
+    own = rank.get(folder)
     if own is None:
         if name.parts[0] == "src" and not is_test(name):
             yield f"{name}: its folder is in no layer (FOLDERS of a CMakeLists.txt)"

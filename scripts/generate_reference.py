@@ -60,7 +60,7 @@ def commands_page(program):
     for words, summary in leaves:
         name = " ".join(words)
         page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
-    page += ["", "`lodeline COMMAND --help` prints the text of one command. `lodeline --version` prints the version.",
+    page += ["", "`lodeline COMMAND --help` prints the text of one command, as does `lodeline help COMMAND`. `lodeline --version` prints the version.",
              "[Exit codes](exit-codes.md) are the same for all commands."]
     for words, _ in leaves:
         text = help_of(program, *words)

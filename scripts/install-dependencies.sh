@@ -10,15 +10,17 @@ set -euo pipefail
 
 build=(
   build-essential cmake ninja-build ccache git
-  libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libopencv-dev libyaml-cpp-dev libcli11-dev libfmt-dev
+  libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libyaml-cpp-dev libcli11-dev libfmt-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev libopencv-video-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev
   libbz2-dev liblz4-dev  # ROS 1 bags
   gnuplot-nox
   libcpp-httplib-dev
 )
-# The report page. A node from elsewhere brings its own npm, and Debian's would clash with it.
-command -v npm >/dev/null || build+=(nodejs npm)
+# The report page. A node from elsewhere clashes with Debian's. npm as a package brings 360 others along; without one, CMake
+# fetches npm as one file.
+command -v node >/dev/null || build+=(nodejs ca-certificates)
 ros=(
   librosbag-storage-dev libsensor-msgs-dev  # writing bags
   libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node

@@ -7,13 +7,13 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/plain_csv.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/noise_report.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/io/streams/ordered_stream.h"
@@ -18,7 +19,6 @@
 #include "lodeline/output/files/attitude_writer.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/plots.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 #include "lodeline/magnetometer/calibration/calibration_plots.h"
@@ -15,7 +16,6 @@
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"

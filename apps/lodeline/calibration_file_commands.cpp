@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_text.h"
 #include "lodeline/output/report/findings.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/convert/convert.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

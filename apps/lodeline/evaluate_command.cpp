@@ -7,14 +7,13 @@
 #include <fstream>
 #include <memory>
 
-#include "lodeline/evaluation/errors/evaluation.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/evaluation_report.h"
 #include "lodeline/evaluation/figures/plots.h"
 #include "lodeline/evaluation/trajectory/image_times.h"
 #include "lodeline/evaluation/trajectory/read_body_from_camera.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/output/report/read_reported_uncertainty.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/json_text.h"
 
 namespace lodeline {

@@ -8,11 +8,11 @@
 #include <opencv2/core/utility.hpp>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/io/csv/plain_source.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 

@@ -23,10 +23,12 @@
 #include "apps/lodeline/report_command.h"
 #include "apps/lodeline/run_command.h"
 #include "apps/lodeline/shared/arguments.h"
+#include "apps/lodeline/shared/build_info.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/printable_text.h"
+#include "lodeline/version.h"
 
 namespace {
 
@@ -52,9 +54,11 @@ int main(int argc, char** argv) {
   quietSolverLog(argv[0]);
   CLI::App program("Lodeline: where a camera rig went and which way it faced, from images and inertial data");
   program.name("lodeline");
-  program.set_version_flag("--version", "lodeline " LODELINE_VERSION);
+  const lodeline::BuildInfo build = lodeline::buildInfo();
+  program.set_version_flag(
+      "--version", fmt::format("lodeline {} (commit {}, {})", LODELINE_VERSION, build.commit, build.type));
   program.require_subcommand(1);
-  program.footer("`lodeline COMMAND --help` explains a command, with examples.");
+  program.footer("`lodeline help COMMAND` explains a command, with examples.");
   lodeline::addRunCommand(program);
   lodeline::addRefineCommand(program);
   lodeline::addEvaluateCommand(program);
@@ -70,8 +74,8 @@ int main(int argc, char** argv) {
   lodeline::addRigTemplateCommand(program);
   lodeline::addInspectCommand(program);
   try {
-    std::vector<std::string> arguments =
-        lodeline::withJoinedPlaces(lodeline::completeLiveOption({argv + 1, argv + argc}));
+    std::vector<std::string> arguments = lodeline::withJoinedPlaces(
+        lodeline::completeLiveOption(lodeline::withHelpAsOption({argv + 1, argv + argc})));
     lodeline::refuseUnknownWords(program, arguments);
     std::reverse(arguments.begin(), arguments.end());  // the order that CLI11 expects
     program.parse(std::move(arguments));

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

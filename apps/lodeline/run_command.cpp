@@ -10,11 +10,11 @@
 
 #include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/interruption.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/pipeline/run_recording.h"
 #include "lodeline/pipeline/run_report.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

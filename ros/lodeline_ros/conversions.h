@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/estimator.h"
+#include "lodeline/estimate.h"
 #include "lodeline_ros/message_types.h"
 
 /// Functions that convert estimates to ROS 1 messages (packages geometry_msgs, nav_msgs, sensor_msgs 1.13).

@@ -20,7 +20,7 @@ EstimatePublisher::EstimatePublisher(ros::NodeHandle node, FrameNames names, boo
 }
 
 void EstimatePublisher::publish(const FramePacket& packet, const FrameEstimate& estimate,
-                                const Odometry& odometry, const ImuCalibration& imu) {
+                                const PacketOdometry& odometry, const ImuCalibration& imu) {
   if (estimate.status == Status::Waiting) return;
   const double gyroscope_sigma = imu.noise.gyroscope_density_rad_per_s_sqrtHz * std::sqrt(imu.rate_hz);
   const Turning turning{packet.imu.back().angular_velocity_B, gyroscope_sigma};

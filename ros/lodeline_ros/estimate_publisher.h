@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 #include "lodeline/io/synchronizer/frame_packet.h"
 #include "lodeline_ros/conversions.h"
 
@@ -18,7 +18,7 @@ class EstimatePublisher {
   EstimatePublisher(ros::NodeHandle node, FrameNames names, bool with_tf);
 
   /// Publishes nothing for a frame without a pose. `imu`: calibration of the IMU of the packet's readings.
-  void publish(const FramePacket& packet, const FrameEstimate& estimate, const Odometry& odometry,
+  void publish(const FramePacket& packet, const FrameEstimate& estimate, const PacketOdometry& odometry,
                const ImuCalibration& imu);
 
  private:

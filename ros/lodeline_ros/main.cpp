@@ -8,11 +8,11 @@
 #include <opencv2/core/utility.hpp>
 #include <thread>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/pipeline/run_recording.h"
 #include "lodeline/pipeline/run_report.h"
 #include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
-#include "lodeline/util/error.h"
 #include "lodeline_ros/estimate_publisher.h"
 #include "lodeline_ros/node_parameters.h"
 #include "lodeline_ros/node_status.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/edit_distance.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

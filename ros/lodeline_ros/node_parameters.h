@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/io/synchronizer/live_source.h"
 #include "lodeline/pipeline/run_request.h"
+#include "lodeline/recording.h"
 #include "lodeline_ros/conversions.h"
 
 namespace lodeline {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/estimator.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimate.h"
 #include "lodeline_ros/message_types.h"
 
 namespace lodeline {

@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "apps/lodeline/tests/test_program.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/io/rosbag1/bag_file.h"
 #include "lodeline/io/rosbag1/topic_choice.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 #include "lodeline_ros/message_types.h"
 #include "lodeline_ros/raw_message.h"

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/checked_reading.h"
 #include "lodeline/io/rosbag1/image_messages.h"
 #include "lodeline/io/rosbag1/messages.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

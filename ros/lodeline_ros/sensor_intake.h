@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lodeline/io/calibration/rig_file.h"
-#include "lodeline/io/synchronizer/live_source.h"
+#include "lodeline/recording.h"
 #include "lodeline_ros/raw_message.h"
 
 namespace lodeline {

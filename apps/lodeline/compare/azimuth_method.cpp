@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "lodeline/ahrs/magnetometer_readings.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/azimuth_correction.h"
-#include "lodeline/evaluation/trajectory/write_trajectory.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "lodeline/evaluation/trajectory/trajectory.h"
 #include "lodeline/pipeline/run_recording.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

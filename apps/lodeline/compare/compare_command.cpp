@@ -10,13 +10,14 @@
 #include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/comparison_report.h"
 #include "lodeline/evaluation/figures/plots.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/output/report/findings.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {

@@ -7,10 +7,11 @@
 #include <sstream>
 
 #include "apps/lodeline/compare/azimuth_method.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {

@@ -6,11 +6,11 @@
 #include <cctype>
 
 #include "apps/lodeline/simulate/simulate_recording.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/convert/convert.h"
 #include "lodeline/magnetometer/calibration/calibrate_magnetometer.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 #include "lodeline/pipeline/available_images.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"
 

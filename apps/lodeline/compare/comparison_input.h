@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "lodeline/pipeline/run_recording.h"
-#include "lodeline/util/time/time.h"
-#include "simulation/dive/scenario.h"
+#include "lodeline/simulation.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/depth/profile_fit.h"
 #include "lodeline/output/survey/map/map_times.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -8,13 +8,13 @@
 #include <set>
 
 #include "apps/lodeline/shared/place_argument.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/survey/formats/map_files.h"
 #include "lodeline/output/survey/formats/recording_images.h"
 #include "lodeline/output/survey/formats/recording_walls.h"
 #include "lodeline/output/survey/map/export_owner.h"
 #include "lodeline/output/survey/map/survey_name.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

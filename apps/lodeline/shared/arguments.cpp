@@ -8,9 +8,9 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/choice.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
@@ -62,6 +62,13 @@ std::vector<std::string> optionsOf(const CLI::App& command) {
 }
 
 }  // namespace
+
+std::vector<std::string> withHelpAsOption(std::vector<std::string> words) {
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
+}
 
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words) {
   std::vector<std::string> joined;

@@ -9,6 +9,9 @@ class App;
 
 namespace lodeline {
 
+/// `help COMMAND` as `COMMAND --help`, and `help` alone as `--help`; other words as they are.
+std::vector<std::string> withHelpAsOption(std::vector<std::string> words);
+
 /// The words of the command line with each position (`--site`, `--entrance`) as one word LAT,LON,HEIGHT. Its
 /// three numbers may be separated by commas or blanks, or be three words.
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words);

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 

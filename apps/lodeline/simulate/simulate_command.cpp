@@ -8,7 +8,7 @@
 
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_recording.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

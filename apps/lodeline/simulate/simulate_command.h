@@ -2,7 +2,7 @@
 
 #include <CLI/App.hpp>
 
-#include "simulation/dive/scenario.h"
+#include "lodeline/simulation.h"
 
 namespace lodeline {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "simulation/dive/recording.h"
+#include "lodeline/simulation.h"
 
 namespace lodeline {
 

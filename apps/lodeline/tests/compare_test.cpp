@@ -1,7 +1,7 @@
 #include <fstream>
 
 #include "apps/lodeline/tests/test_magnetic_room.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 // Tests of `lodeline compare` as a program.
 

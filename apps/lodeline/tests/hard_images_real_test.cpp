@@ -12,10 +12,10 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/odometry.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/estimator/packet_odometry.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 
 namespace lodeline {
@@ -55,7 +55,7 @@ class HardImages : public testing::TestWithParam<int> {
     if (GetParam() == 1) options.camera_indices = {0};
     EurocSource source(recording_, options, &diagnostics);
     Synchronizer synchronizer(&source, {}, &diagnostics);
-    Odometry odometry(source.rig(), {}, &diagnostics);
+    PacketOdometry odometry(source.rig(), {}, &diagnostics);
     std::optional<Time> first;
     while (auto packet = synchronizer.next()) {
       first = first.value_or(packet->time);

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "lodeline/cameras/camera.h"
-#include "lodeline/estimator/odometry.h"
-#include "lodeline/evaluation/errors/evaluation.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/estimator/packet_odometry.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 
 namespace lodeline {
@@ -83,7 +82,7 @@ class LensModels : public testing::TestWithParam<int> {
       EXPECT_GT(changes.back().shareSeen(), 0.97) << "the images do not show all that such a lens sees";
     }
     Synchronizer synchronizer(&source, {}, &diagnostics);
-    Odometry odometry(rig, {}, &diagnostics);
+    PacketOdometry odometry(rig, {}, &diagnostics);
     Trajectory trajectory;
     while (auto packet = synchronizer.next()) {
       for (size_t camera = 0; camera < changes.size(); ++camera) {

@@ -30,11 +30,24 @@ class ProgramTest : public ::testing::Test {
 TEST_F(ProgramTest, PrintsVersionAndHelp) {
   const Execution version = runProgram("--version");
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_THAT(version.output, HasSubstr("lodeline "));
+  EXPECT_THAT(version.output,
+              ::testing::ContainsRegex("^lodeline [0-9]+\\.[0-9]+\\.[0-9]+ \\(commit "
+                                       "(unknown|[0-9a-f]{12,40}(-dirty)?), [A-Za-z]+\\)\n$"));
   EXPECT_EQ(runProgram("--help").exit_code, 0);
   const Execution help = runProgram("evaluate --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, HasSubstr("Examples:"));
+}
+
+TEST_F(ProgramTest, ExplainsACommandInThreeWays) {
+  EXPECT_EQ(runProgram("help").output, runProgram("--help").output);
+  EXPECT_EQ(runProgram("help").exit_code, 0);
+  const Execution help = runProgram("help calibrate magnetometer");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_EQ(help.output, runProgram("calibrate magnetometer --help").output);
+  const Execution unknown = runProgram("help evalute");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output, HasSubstr("evaluate"));
 }
 
 TEST_F(ProgramTest, EndsWithTwoOnWrongUsage) {

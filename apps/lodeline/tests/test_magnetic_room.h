@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/lodeline/tests/test_room.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline::test {

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "lodeline/geometry/rigid3.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/imu/gravity.h"
+#include "lodeline/types.h"
 
 namespace lodeline::test {
 namespace {

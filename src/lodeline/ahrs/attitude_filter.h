@@ -8,8 +8,8 @@
 #include "lodeline/ahrs/heading_filter.h"
 #include "lodeline/ahrs/magnetometer_readings.h"
 #include "lodeline/ahrs/rest_detector.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

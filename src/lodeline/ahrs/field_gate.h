@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lodeline/ahrs/low_pass.h"
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lodeline/ahrs/low_pass.h"
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

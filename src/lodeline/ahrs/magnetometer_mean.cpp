@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/rotation_increment.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/test_motion.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

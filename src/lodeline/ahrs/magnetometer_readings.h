@@ -7,8 +7,8 @@
 
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/ahrs/reading_unit.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "lodeline/ahrs/field_unit.h"
-#include "lodeline/geometry/types.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lodeline/ahrs/low_pass.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

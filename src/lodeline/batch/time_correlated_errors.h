@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -9,7 +9,7 @@
 
 #include "lodeline/cameras/equidistant_camera.h"
 #include "lodeline/cameras/radial_tangential_camera.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

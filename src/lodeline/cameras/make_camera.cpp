@@ -5,7 +5,7 @@
 #include "lodeline/cameras/camera.h"
 #include "lodeline/cameras/equidistant_camera.h"
 #include "lodeline/cameras/radial_tangential_camera.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

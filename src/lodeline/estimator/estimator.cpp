@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/initialization/start.h"
 #include "lodeline/estimator/monitoring/inertial_monitor.h"
 #include "lodeline/estimator/problem/covariance.h"
@@ -17,7 +18,6 @@
 #include "lodeline/estimator/visual/keyframe_policy.h"
 #include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/estimator/visual/landmarks.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/initialization/mono_initializer.h"
 #include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
 #include "lodeline/estimator/mode/mode_machine.h"
@@ -20,47 +22,10 @@
 #include "lodeline/estimator/uncertainty/scale_observability.h"
 #include "lodeline/estimator/visual/landmark_linearization_cache.h"
 #include "lodeline/estimator/zero_velocity/stationary_detector.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 
 class InertialMonitor;
-
-enum class Status {
-  Waiting,   ///< not initialized; no pose
-  Tracking,  ///< images and inertial readings
-  /// The same, but these contradict each other (InertialMonitor): carried on by what is more plausible, with
-  /// wider uncertainty.
-  Degraded,
-  Inertial,  ///< too few landmarks are seen: carried on by inertial readings alone
-};
-const char* toString(Status status);
-
-/// What is known right after a frame was added; never revised later.
-struct FrameEstimate {
-  Time time;
-  Status status = Status::Waiting;
-  std::string waiting_for;  ///< in words, while waiting
-  NavigationState state;
-  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position,
-  /// and to north or, while that is unknown, to the first pose's heading.
-  Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
-  InertialDoubt inertial_doubt;  ///< of the readings since the frame before
-  bool is_keyframe = false;
-  int tracks = 0;     ///< seen in this frame
-  int landmarks = 0;  ///< of which have a position
-  double reprojection_rms_sigmas = 0.0;
-  std::optional<double> scene_distance_m;  ///< of the landmarks, in harmonic mean
-  int solver_iterations = 0;
-  Mode mode = Mode::Waiting;  ///< the estimator's, after this frame
-  /// Nothing where the calibration is taken as the files give it.
-  std::optional<CameraCorrections> camera_corrections;
-  std::optional<SensorAxes> gyroscope_axes;      ///< the same
-  std::optional<SensorAxes> accelerometer_axes;  ///< the same
-  MagnetometerEstimate magnetometer;
-  DepthEstimate depth;
-  ScaleInformation scale;  ///< what carries it at present
-};
 
 /// Visual-inertial odometry over a sliding window of keyframes and recent frames (paper section III).
 class Estimator {

@@ -8,8 +8,8 @@
 #include <functional>
 #include <set>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/trials/scene.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "lodeline/factors/reprojection_factor.h"
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

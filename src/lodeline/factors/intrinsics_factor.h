@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lodeline/factors/reprojection_factor.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -2,7 +2,7 @@
 
 #include <ceres/manifold.h>
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -3,7 +3,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include "lodeline/factors/direction_measurement.h"
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/frontend/detection/mask.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -7,12 +7,12 @@
 #include <map>
 #include <set>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/frontend/draw_tracks.h"
 #include "lodeline/frontend/test_accuracy.h"
 #include "lodeline/frontend/test_sequence.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

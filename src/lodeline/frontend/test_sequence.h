@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

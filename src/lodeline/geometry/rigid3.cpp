@@ -1,11 +1,11 @@
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 #include <fmt/core.h>
 
 #include <Eigen/SVD>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 namespace {

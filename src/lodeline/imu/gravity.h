@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

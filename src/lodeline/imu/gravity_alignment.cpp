@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/squared.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/imu/rotation_increment.h"
 #include "lodeline/imu/sample_check.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

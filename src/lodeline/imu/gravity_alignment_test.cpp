@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/test_motion.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

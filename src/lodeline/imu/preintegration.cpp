@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/imu/rotation_increment.h"
 #include "lodeline/imu/sample_check.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -3,13 +3,11 @@
 #include <span>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/imu/inertial_doubt.h"
+#include "lodeline/estimate.h"
 #include "lodeline/imu/rotation_increment.h"
 #include "lodeline/imu/step_noise.h"
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 
@@ -61,11 +59,6 @@ struct IntermediateRotation {
 
   Quat correctedFor(const Vec3& gyroscope_bias_change) const;
 };
-
-/// Scale and misalignment errors D of a sensor's calibrated axes: the true value is (I + D) (reading - bias).
-/// D is stored column by column; 0 for a sensor as calibrated. (D_w and D_a in Yang et al., "Online IMU
-/// intrinsic calibration: is it necessary?", RSS 2020.)
-using SensorAxes = Eigen::Matrix<double, 9, 1>;
 
 struct ImuAxes {
   SensorAxes gyroscope = SensorAxes::Zero();

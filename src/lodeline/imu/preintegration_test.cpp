@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/test_motion.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

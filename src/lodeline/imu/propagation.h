@@ -1,19 +1,10 @@
 #pragma once
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/estimate.h"
 #include "lodeline/imu/preintegration.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
-
-/// Navigation state at one moment.
-struct NavigationState {
-  Time time;
-  Rigid3 world_from_body;
-  Vec3 velocity_W = Vec3::Zero();            ///< m/s
-  Vec3 gyroscope_bias_B = Vec3::Zero();      ///< rad/s
-  Vec3 accelerometer_bias_B = Vec3::Zero();  ///< m/s^2
-};
 
 /// Predicts the state at the end of the preintegrated interval from the state at its start; the biases stay
 /// constant. The interval is corrected to first order for the state's biases. Throws std::invalid_argument

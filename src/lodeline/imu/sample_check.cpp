@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -6,7 +6,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/imu/propagation.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

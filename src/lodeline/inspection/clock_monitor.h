@@ -5,10 +5,10 @@
 #include <optional>
 #include <span>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/frontend/tracking/tracks.h"
 #include "lodeline/inspection/survey/turn_comparison.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

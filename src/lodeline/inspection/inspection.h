@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
 #include "lodeline/inspection/survey/camera_survey.h"
 #include "lodeline/inspection/survey/imu_survey.h"
 #include "lodeline/inspection/survey/magnetometer_survey.h"
 #include "lodeline/inspection/survey/stereo_survey.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

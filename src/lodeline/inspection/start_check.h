@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
 #include "lodeline/inspection/inspection.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

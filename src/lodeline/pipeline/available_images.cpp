@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/image_times.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

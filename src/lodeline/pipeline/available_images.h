@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lodeline/io/euroc/euroc_rig.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

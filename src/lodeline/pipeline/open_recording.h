@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/rosbag1/bag_source.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

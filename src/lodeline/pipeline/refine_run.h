@@ -4,7 +4,7 @@
 #include <map>
 
 #include "lodeline/batch/refine.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

@@ -3,17 +3,16 @@
 #include <fmt/core.h>
 #include <malloc.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <opencv2/core/utility.hpp>
 
-#include "lodeline/inspection/start_check.h"
+#include "lodeline/api/recording_check.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/live/live_view.h"
 #include "lodeline/pipeline/output_choice.h"
 #include "lodeline/pipeline/run_progress.h"
 #include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/settings/settings.h"
 
 namespace lodeline {
@@ -41,19 +40,11 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
 }
 
 /// Opens the recording a second time, to check its first seconds before the run.
-void checkRecording(const RunRequest& request, RunSettings* options, Diagnostics* diagnostics) {
-  StartCheckOptions start;
-  start.begin_s = options->synchronizer.skip_s;
-  if (options->synchronizer.duration_s > 0.0) {
-    start.length_s = std::min(start.length_s, options->synchronizer.duration_s);
-  }
+void checkRequested(const RunRequest& request, RunSettings* options, Diagnostics* diagnostics) {
   const SourceFactory open = [&](Diagnostics* unheard) -> std::unique_ptr<MeasurementSource> {
     return openRecording(request.data, options->source, request.bag, unheard);
   };
-  const StartCheck check = checkStart(open, request.data, start, diagnostics);
-  options->synchronizer.image_offset_s = check.image_offset_s;
-  options->synchronizer.inertial.rate_to_SI = check.rate_to_SI;
-  options->shown_noise = check.noise;
+  checkRecording(open, request.data, options, diagnostics);
 }
 
 /// Configures the heap of glibc. By default it gives every thread its own heap. Images are decoded by one
@@ -105,7 +96,7 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
 
   const std::unique_ptr<RecordedSource> source =
       openRecording(request.data, options.source, request.bag, diagnostics);
-  checkRecording(request, &options, diagnostics);
+  checkRequested(request, &options, diagnostics);
   RunSession session(request, settings, options, source.get(), diagnostics);
   process(&session, source->rig(), request);
   return session.finish();

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lodeline/api/run_settings.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/report/run_summary.h"
 #include "lodeline/pipeline/run_request.h"
-#include "lodeline/pipeline/run_settings.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

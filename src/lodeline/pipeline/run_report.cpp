@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
 #include "lodeline/pipeline/run_recording.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

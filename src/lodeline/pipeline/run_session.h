@@ -1,21 +1,17 @@
 #pragma once
 
 #include <chrono>
-#include <map>
 #include <optional>
 #include <vector>
 
-#include "lodeline/batch/estimator_log.h"
+#include "lodeline/api/estimation_loop.h"
+#include "lodeline/api/run_settings.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/attitude_track.h"
-#include "lodeline/estimator/odometry.h"
-#include "lodeline/inspection/clock_monitor.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/io/synchronizer/synchronizer.h"
 #include "lodeline/output/files/run_output.h"
 #include "lodeline/output/report/run_summary.h"
 #include "lodeline/pipeline/run_request.h"
-#include "lodeline/pipeline/run_settings.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 #include "lodeline/util/files/folder_lock.h"
 #include "lodeline/util/settings/settings.h"
 
@@ -35,7 +31,7 @@ class RunSession {
              RecordedSource* source, Diagnostics* diagnostics);
 
   /// Reads the next packet; returns false at the end of the source.
-  bool fetch();
+  bool fetch() { return loop_.fetch(); }
   /// Processes the fetched packet with front end, estimator and writers. Throws InputError.
   void process();
   /// Completes the files, including the refined ones if the request asks for them. A packet that was fetched
@@ -43,35 +39,24 @@ class RunSession {
   RunSummary finish();
 
   /// Packet processed last.
-  const FramePacket& packet() const { return processed_; }
+  const FramePacket& packet() const { return loop_.packet(); }
   const FrameEstimate& estimate() const { return summary_.last(); }
   /// Landmarks that left the window with it.
   const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }
-  const Odometry& odometry() const { return odometry_; }
+  const PacketOdometry& odometry() const { return loop_.odometry(); }
 
  private:
-  void followClocks(const FrameEstimate& estimate);
-  bool stamp(FrameEstimate* estimate);
-
   using Clock = std::chrono::steady_clock;
 
   std::string folder_;  ///< empty for none
   std::optional<FolderLock> lock_;
   Diagnostics* diagnostics_;
-  Synchronizer synchronizer_;
-  Odometry odometry_;
+  EstimationLoop loop_;
   Diagnostics unheard_;  ///< findings of the attitude filter, which synchronizer and odometry report as well
   AttitudeTrack attitude_;
   RunSummary summary_;
   std::optional<RunOutput> output_;
-  std::optional<EstimatorLog> record_;  ///< if the run is to be refined
-  std::optional<FramePacket> fetched_;
-  FramePacket processed_;
-  ClockMonitor clocks_;
-  Duration image_offset_;  ///< from the clock of the images to that of the results
-  std::optional<Time> last_result_stamp_;
-  std::map<Time, Time> result_stamps_;  ///< of frames whose results have a stamp other than their time
   std::vector<MapPoint> landmarks_;
   Clock::time_point start_;
   double start_processor_s_ = 0.0;

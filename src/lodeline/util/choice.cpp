@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/edit_distance.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

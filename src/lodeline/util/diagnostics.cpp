@@ -1,4 +1,4 @@
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
 
 #include <algorithm>
 #include <tuple>

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "simulation/dive/scenario.h"
+#include "lodeline/simulation.h"
 #include "simulation/rendering/optics/flat_port.h"
 #include "simulation/sensors/imu_model.h"
 #include "simulation/sensors/magnetometer_model.h"

@@ -7,9 +7,9 @@
 #include <set>
 #include <tuple>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 #include "simulation/dive/dive_world.h"
 
 namespace lodeline {

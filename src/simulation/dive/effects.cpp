@@ -1,8 +1,8 @@
-#include "simulation/dive/effects.h"
+#include "lodeline/simulation.h"
 
 #include <fmt/core.h>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

@@ -10,7 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "simulation/dive/recording_files.h"
 #include "simulation/sensors/sensor_clock.h"
 

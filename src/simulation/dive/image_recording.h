@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "lodeline/simulation.h"
 #include "simulation/dive/dive.h"
 #include "simulation/rendering/image_renderer.h"
 
@@ -22,18 +23,6 @@ std::vector<ScheduledImage> scheduleImages(const Dive& dive);
 /// Writes mav0/camN/data.csv for all cameras.
 void recordImageLists(const Dive& dive, const std::vector<ScheduledImage>& images,
                       const std::filesystem::path& folder);
-
-struct ImageProgress {
-  size_t done = 0;      ///< number of images in the folder
-  size_t rendered = 0;  ///< number of them rendered by this run
-  size_t total = 0;
-};
-
-struct ImageRecordingOptions {
-  int threads = 0;                                     ///< 0: number of processors
-  std::function<bool()> stop;                          ///< called after each image
-  std::function<void(const ImageProgress&)> progress;  ///< called after each image, one call at a time
-};
 
 /// Renders mav0/camN/data/STAMP.png in parallel. Existing images are kept. Each image gets its name only when
 /// complete, so an interrupted recording can be continued. Throws InputError where an image cannot be

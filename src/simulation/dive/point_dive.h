@@ -1,8 +1,8 @@
 #pragma once
 
+#include "lodeline/simulation.h"
 #include "simulation/dive/point_simulation.h"
 #include "simulation/motion/dive_motion.h"
-#include "simulation/sensors/standard_rig.h"
 
 namespace lodeline {
 

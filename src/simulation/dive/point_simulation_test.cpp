@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
+#include "lodeline/simulation.h"
 #include "simulation/motion/dive_motion.h"
-#include "simulation/sensors/standard_rig.h"
 
 namespace lodeline {
 namespace {

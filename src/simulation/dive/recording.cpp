@@ -1,10 +1,10 @@
-#include "simulation/dive/recording.h"
+#include "lodeline/simulation.h"
 
 #include <fmt/format.h>
 
 #include <sstream>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "simulation/dive/dive_world.h"
 #include "simulation/dive/recording_files.h"
 #include "simulation/dive/sensor_recording.h"

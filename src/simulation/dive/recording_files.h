@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "lodeline/io/synchronizer/recording_file.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -1,4 +1,4 @@
-#include "simulation/dive/recording.h"
+#include "lodeline/simulation.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/io/euroc/euroc_source.h"
-#include "lodeline/util/error.h"
 #include "simulation/dive/dive.h"
 
 namespace lodeline {

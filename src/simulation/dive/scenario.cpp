@@ -1,10 +1,10 @@
-#include "simulation/dive/scenario.h"
+#include "lodeline/simulation.h"
 
 #include <fmt/core.h>
 
 #include <cmath>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "simulation/sensors/imu_model.h"
 
 namespace lodeline {

@@ -1,11 +1,11 @@
-#include "simulation/dive/scenario.h"
+#include "lodeline/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

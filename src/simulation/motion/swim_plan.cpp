@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "simulation/shared/random.h"
 #include "simulation/shared/waves.h"
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 #include "simulation/rendering/light/light_meter.h"
 #include "simulation/rendering/light/render_settings.h"
 #include "simulation/rendering/light/render_world.h"

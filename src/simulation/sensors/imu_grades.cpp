@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 #include "simulation/sensors/imu_model.h"
 
 namespace lodeline {

@@ -3,8 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 #include "simulation/shared/random.h"
 
 namespace lodeline {

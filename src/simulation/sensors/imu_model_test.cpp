@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 #include "simulation/shared/random.h"
 
 namespace lodeline {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 #include "simulation/shared/motion.h"
 #include "simulation/shared/random.h"
 

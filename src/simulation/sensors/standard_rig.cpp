@@ -1,4 +1,4 @@
-#include "simulation/sensors/standard_rig.h"
+#include "lodeline/simulation.h"
 
 #include <fmt/core.h>
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 #include "simulation/shared/spline.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <random>
 #include <string_view>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
 #include "lodeline/imu/preintegration.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

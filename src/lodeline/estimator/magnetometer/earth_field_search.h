@@ -2,8 +2,7 @@
 
 #include <optional>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

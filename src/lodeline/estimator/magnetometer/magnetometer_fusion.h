@@ -5,6 +5,8 @@
 #include <span>
 
 #include "lodeline/ahrs/magnetometer_readings.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/magnetometer/earth_field_search.h"
 #include "lodeline/estimator/magnetometer/field/field_innovation.h"
 #include "lodeline/estimator/magnetometer/field/magnetic_noise_estimator.h"
@@ -16,35 +18,8 @@
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/solver/marginalizer.h"
 #include "lodeline/estimator/state/magnetometer_states.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
-
-/// Status of the magnetometer in a frame, and the estimate of its field.
-struct MagnetometerEstimate {
-  MagnetometerStatus status = MagnetometerStatus::Off;
-  HeadingReference heading_reference = HeadingReference::Start;
-  /// Rotation about the vertical, rad, from the estimator's world to a world whose y axis points to that
-  /// reference, by the present estimate. 0 where the world was rotated before the first pose; empty while
-  /// north is unknown. The estimator's world itself never rotates after its first pose.
-  std::optional<double> north_from_world_rad;
-  double north_from_world_sigma_rad = 0.0;  ///< of that rotation, relative to the heading of the first pose
-  std::optional<Time> north_found;          ///< time at which north was found, if after the first pose
-  int field_epoch = 0;  ///< counts replacements of the field that is taken for the Earth's
-  /// Sigmas of the heading relative to that reference, rad: from the frame's covariance, and of the
-  /// declination.
-  double heading_sigma_rad = 0.0;
-  double declination_sigma_rad = 0.0;
-  /// Sigma of the heading that the window's covariance does not contain: from the axes of an uncalibrated
-  /// magnetometer, or of an IMU that may never have been calibrated and against which the magnetometer was
-  /// calibrated.
-  double axes_sigma_rad = 0.0;
-  /// Estimated field of the Earth and offset of the corrected readings, T; empty unless the use is Absolute.
-  std::optional<Vec3> field_W;
-  std::optional<Vec3> offset_B;
-  std::optional<double>
-      correlated_noise_sigma_T;  ///< time-correlated error of the field per axis, as estimated
-};
 
 /// Adds the magnetometer to a window. It assigns readings to frames, rotates the world to north at the start,
 /// and maintains the parameter blocks. It applies the gate and gives each frame its mean field

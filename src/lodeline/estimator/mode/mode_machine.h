@@ -3,20 +3,11 @@
 #include <optional>
 #include <span>
 
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/options/options.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
-
-/// What the estimator does with a new frame.
-enum class Mode {
-  Waiting,       ///< no window: images and readings are collected until a start is possible
-  StartingUp,    ///< every frame stays in the window, nothing is marginalized
-  Tracking,      ///< the window slides: old frames are marginalized
-  InertialOnly,  ///< the newest frames see too few landmarks: inertial readings alone carry the pose
-  Recovering,    ///< images are back, but the scale of one camera is lost: as StartingUp
-};
-const char* toString(Mode mode);
 
 enum class ModeEvent {
   Started,             ///< a window was initialized

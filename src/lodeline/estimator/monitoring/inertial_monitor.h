@@ -4,11 +4,11 @@
 #include <deque>
 #include <optional>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/monitoring/motion_innovation.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/frontend/tracking/tracks.h"
 #include "lodeline/inspection/survey/stereo_survey.h"
 #include "lodeline/io/synchronizer/frame_packet.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -2,7 +2,8 @@
 
 #include <optional>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/estimate.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 
@@ -12,15 +13,6 @@ enum class MagnetometerUse {
   Paper,      ///< readings of an interval relative to each other: MagnetometerRelativeFactor
   Off,
 };
-
-/// Direction of the world's y axis.
-enum class HeadingReference {
-  Automatic,  ///< True where the field at the site is known, else Magnetic
-  True,
-  Magnetic,
-  Start,  ///< the world is rotated so that the first pose has no yaw
-};
-const char* toString(HeadingReference reference);
 
 /// Limits within which a frame's field counts as the Earth's.
 struct MagnetometerGateOptions {

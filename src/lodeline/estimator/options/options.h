@@ -4,10 +4,10 @@
 
 #include "lodeline/estimator/options/depth_options.h"
 #include "lodeline/estimator/options/magnetometer_options.h"
-#include "lodeline/geometry/types.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/imu/gravity_alignment.h"
 #include "lodeline/imu/preintegration.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

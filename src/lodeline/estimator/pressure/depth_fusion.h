@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/pressure/depth_gate.h"
 #include "lodeline/estimator/pressure/gauge_monitor.h"
@@ -12,31 +14,8 @@
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/solver/marginalizer.h"
 #include "lodeline/estimator/state/depth_states.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
-
-/// Status of the pressure sensor in a frame, and the estimate of its gauge; see DepthStates.
-struct DepthEstimate {
-  DepthStatus status = DepthStatus::Off;
-  struct Gauge {
-    double depth_at_origin_m = 0.0;
-    double density_ratio = 1.0, density_ratio_sigma = 0.0;
-    double lag_s = 0.0, lag_sigma_s = 0.0;
-    double body_depth_m = 0.0;  ///< of the body, as the gauge would read at its position
-    /// Sigma of the density ratio beyond the window's covariance.
-    double unmodelled_sigma = 0.0;
-    /// Sigma of the density ratio without images.
-    double told_sigma = 0.0;
-    std::optional<ScalarPrior> prior = std::nullopt;  ///< of the density ratio, see ParameterBlock
-  };
-  std::optional<Gauge> gauge;  ///< empty until the first reading
-
-  /// Value for EstimateSources::density_sigma.
-  std::optional<double> unmodelledDensitySigma() const {
-    return gauge ? std::optional(gauge->unmodelled_sigma) : std::nullopt;
-  }
-};
 
 /// Adds the pressure sensor to a window. It maintains the parameter blocks, carries readings to their frame,
 /// and applies monitor and gate. It gives the frame its depth (Frame::depth), from which FactorBuilder makes

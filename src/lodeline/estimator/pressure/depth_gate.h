@@ -2,22 +2,11 @@
 
 #include <optional>
 
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/options/depth_options.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
-
-/// Status of the pressure sensor in one frame.
-enum class DepthStatus {
-  Off,     ///< not requested, or not on board
-  NoData,  ///< no reading since the frame before
-  Used,
-  Jump,       ///< rejected: a spike, or the first readings after a step
-  Restarted,  ///< used, from now on with another offset
-  Frozen,     ///< rejected: constant readings while the rig rises or sinks
-  Slope,      ///< rejected: readings do not follow the rig's rise and fall, as in another unit
-};
-const char* toString(DepthStatus status);
 
 struct DepthDecision {
   DepthStatus status = DepthStatus::NoData;

@@ -6,7 +6,7 @@
 #include "lodeline/estimator/pressure/depth_gate.h"
 #include "lodeline/estimator/pressure/gauge_scale_check.h"
 #include "lodeline/estimator/pressure/vertical_motion.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -2,7 +2,7 @@
 
 #include <deque>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
@@ -14,7 +15,7 @@ namespace lodeline {
 struct CameraStates {
   ParameterBlock* camera0 = nullptr;
   ParameterBlock* time_offset = nullptr;
-  std::vector<ParameterBlock*> secondary;     ///< of camera 1, 2, ...
+  std::vector<ParameterBlock*> secondary;   ///< of camera 1, 2, ...
   std::vector<ParameterBlock*> intrinsics;  ///< of every camera; empty where they are not estimated
 
   explicit operator bool() const { return camera0 != nullptr; }
@@ -44,14 +45,6 @@ Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options);
 /// the states are empty.
 Vec3 rayOf(const Observation& observation, const CameraStates& states);
 
-/// Present values of the camera calibration states.
-struct CameraCorrections {
-  std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m
-  double time_offset_s = 0.0;                           ///< to be added to the images' time stamps
-  /// Of each camera as in factors/intrinsics_factor.h; empty where the intrinsics are not estimated.
-  std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
-  bool are_files_held = false;  ///< of intrinsics and secondary rotations, see IntrinsicsModelSelection
-};
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 
 }  // namespace lodeline

@@ -4,7 +4,7 @@
 
 #include "lodeline/estimator/options/magnetometer_options.h"
 #include "lodeline/estimator/state/window.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

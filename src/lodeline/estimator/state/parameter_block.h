@@ -4,14 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/estimate.h"
 #include "lodeline/factors/parameters.h"
 
 namespace lodeline {
-
-/// A normal distribution of a scalar.
-struct ScalarPrior {
-  double value = 0.0, sigma = 0.0;
-};
 
 /// An estimated quantity of the window that belongs to no frame: a field vector, a sensor's offset,
 /// extrinsics, a time offset. Factors refer to its block like to that of a frame; solver, normal equations,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lodeline/ahrs/magnetometer_mean.h"
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/state/parameter_block.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/interpolated_pose.h"
@@ -20,7 +21,7 @@
 #include "lodeline/frontend/tracking/tracks.h"
 #include "lodeline/imu/preintegration.h"
 #include "lodeline/imu/propagation.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 
@@ -103,13 +104,6 @@ struct Landmark {
   std::array<double, kLandmarkSize> parameters{};
 
   double inverseDistance() const { return parameters[2]; }
-};
-
-/// A landmark that has left the window and will not change any more.
-struct MapPoint {
-  TrackId track = -1;
-  Vec3 position_W = Vec3::Zero();  ///< m
-  int observations = 0;            ///< number in the window when it left
 };
 
 /// Observations of one tracked point, and its landmark.

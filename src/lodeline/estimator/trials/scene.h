@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/estimator/estimator.h"
-#include "lodeline/util/diagnostics.h"
 #include "simulation/dive/point_simulation.h"
 
 namespace lodeline {

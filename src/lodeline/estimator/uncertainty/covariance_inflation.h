@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "lodeline/estimator/options/options.h"
-#include "lodeline/geometry/rigid3.h"
 #include "lodeline/imu/propagation.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -2,20 +2,12 @@
 
 #include <optional>
 
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/state/window.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
-
-/// Information that each sensor gives about the scale: 1 / sigma^2 of the logarithm of the scale.
-struct ScaleInformation {
-  double stereo = 0.0;
-  double accelerometer = 0.0;
-  double depth = 0.0;
-
-  double sum() const { return stereo + accelerometer + depth; }
-};
 
 /// Computes which sensors determine the scale, without any effect on the estimator. Each source is evaluated
 /// by itself, over the half-minute for which images carry a scale onwards:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -8,7 +8,7 @@
 #include "lodeline/ahrs/rest_detector.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/frontend/tracking/tracks.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

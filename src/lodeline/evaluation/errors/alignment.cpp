@@ -1,4 +1,4 @@
-#include "lodeline/evaluation/errors/alignment.h"
+#include "lodeline/trajectory.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/choice.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

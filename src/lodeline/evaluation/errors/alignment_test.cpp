@@ -1,10 +1,10 @@
-#include "lodeline/evaluation/errors/alignment.h"
+#include "lodeline/trajectory.h"
 
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

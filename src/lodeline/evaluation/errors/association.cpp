@@ -1,11 +1,11 @@
-#include "lodeline/evaluation/errors/association.h"
+#include "lodeline/trajectory.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -1,10 +1,9 @@
-#include "lodeline/evaluation/errors/association.h"
+#include "lodeline/trajectory.h"
 
 #include <gtest/gtest.h>
 
-#include "lodeline/evaluation/errors/completion.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -1,4 +1,4 @@
-#include "lodeline/evaluation/errors/claims.h"
+#include "lodeline/trajectory.h"
 
 #include <algorithm>
 #include <iterator>

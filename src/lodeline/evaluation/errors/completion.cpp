@@ -1,4 +1,4 @@
-#include "lodeline/evaluation/errors/completion.h"
+#include "lodeline/trajectory.h"
 
 #include <algorithm>
 

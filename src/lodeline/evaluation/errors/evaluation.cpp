@@ -1,11 +1,11 @@
-#include "lodeline/evaluation/errors/evaluation.h"
+#include "lodeline/trajectory.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/errors/orientation_order.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/evaluation/errors/alignment.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

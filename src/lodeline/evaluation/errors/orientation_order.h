@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/evaluation/errors/association.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

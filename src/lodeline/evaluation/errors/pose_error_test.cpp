@@ -1,10 +1,9 @@
-#include "lodeline/evaluation/errors/pose_error.h"
+#include "lodeline/trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "lodeline/evaluation/errors/evaluation.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
 namespace lodeline {

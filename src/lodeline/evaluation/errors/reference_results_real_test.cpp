@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "lodeline/evaluation/errors/evaluation.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 
 // Tests on published trajectories with the results of their authors' tools.

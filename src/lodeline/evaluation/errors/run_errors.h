@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/evaluation/errors/evaluation.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

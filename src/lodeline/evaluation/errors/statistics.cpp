@@ -1,4 +1,4 @@
-#include "lodeline/evaluation/errors/statistics.h"
+#include "lodeline/trajectory.h"
 
 #include <algorithm>
 #include <cmath>

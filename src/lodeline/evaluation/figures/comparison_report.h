@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/errors/comparison.h"
 #include "lodeline/evaluation/figures/gnuplot.h"
-#include "lodeline/util/diagnostics.h"
 
 /// Output of a comparison: text and Markdown for people, JSON for programs, figures.
 namespace lodeline {

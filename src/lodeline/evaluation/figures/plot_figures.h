@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/evaluation/errors/evaluation.h"
 #include "lodeline/evaluation/figures/gnuplot.h"
+#include "lodeline/trajectory.h"
 
 /// Figures of an evaluation: the reference in black, the estimate in colour.
 namespace lodeline {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/plot_figures.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "lodeline/evaluation/errors/evaluation.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/gnuplot.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

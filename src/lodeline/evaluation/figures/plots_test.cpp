@@ -7,10 +7,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/evaluation_report.h"
 #include "lodeline/evaluation/figures/gnuplot.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

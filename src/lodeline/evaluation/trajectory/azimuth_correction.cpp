@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

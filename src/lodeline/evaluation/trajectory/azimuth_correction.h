@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/evaluation/trajectory/trajectory.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "lodeline/evaluation/errors/pose_error.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

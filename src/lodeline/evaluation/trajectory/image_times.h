@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lodeline/evaluation/trajectory/text_table.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/tables/pose_columns.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
 #include "lodeline/io/tables/table_reader.h"
 #include "lodeline/io/tables/time_columns.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/pose_rows.h"
 #include "lodeline/evaluation/trajectory/read_formats.h"
 #include "lodeline/io/tables/pose_columns.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

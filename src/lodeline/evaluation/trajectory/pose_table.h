@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/io/tables/byte_source.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lodeline/evaluation/errors/association.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 

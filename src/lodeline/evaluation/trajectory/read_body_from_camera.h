@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

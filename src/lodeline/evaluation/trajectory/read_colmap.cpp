@@ -2,9 +2,9 @@
 
 #include <cstring>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/image_times.h"
 #include "lodeline/evaluation/trajectory/read_formats.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

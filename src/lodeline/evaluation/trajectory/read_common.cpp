@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/read_formats.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

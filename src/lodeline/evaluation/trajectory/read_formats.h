@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
+#include "lodeline/trajectory.h"
 
 /// Readers of readTrajectory(), one per layout. They return the poses in the order of the file.
 namespace lodeline {

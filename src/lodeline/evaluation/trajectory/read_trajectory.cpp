@@ -1,13 +1,13 @@
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 #include <fmt/format.h>
 
 #include <array>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/pose_table.h"
 #include "lodeline/evaluation/trajectory/read_formats.h"
 #include "lodeline/io/tables/text_lines.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

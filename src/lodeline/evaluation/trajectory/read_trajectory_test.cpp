@@ -1,14 +1,13 @@
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/trajectory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/image_times.h"
 #include "lodeline/evaluation/trajectory/read_body_from_camera.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/evaluation/trajectory/write_trajectory.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "lodeline/evaluation/trajectory/trajectory.h"
+#include "lodeline/trajectory.h"
 
 /// Shared functions of the tests in this folder.
 namespace lodeline::test {

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/tables/text_lines.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -1,4 +1,4 @@
-#include "lodeline/evaluation/trajectory/trajectory.h"
+#include "lodeline/trajectory.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

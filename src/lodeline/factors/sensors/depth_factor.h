@@ -3,7 +3,7 @@
 #include <ceres/cost_function.h>
 
 #include "lodeline/factors/parameters.h"
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/factors/numeric_jacobian.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

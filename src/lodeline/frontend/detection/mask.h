@@ -2,7 +2,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lodeline/frontend/detection/image_pyramid.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

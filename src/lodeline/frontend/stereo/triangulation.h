@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -3,13 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/estimate.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
-
-/// Identifies one physical point as long as it is tracked; never reused.
-using TrackId = int64_t;
 
 /// One observation of a tracked point in one image.
 struct FeatureObservation {

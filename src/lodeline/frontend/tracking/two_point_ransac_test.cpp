@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <random>
 
-#include "lodeline/geometry/rigid3.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -2,9 +2,8 @@
 
 #include <span>
 
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/noise_fit.h"
 #include "lodeline/imu/noise/stillness_monitor.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

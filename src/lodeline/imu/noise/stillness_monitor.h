@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

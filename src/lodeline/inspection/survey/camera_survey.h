@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/frontend/detection/image_quality.h"
 #include "lodeline/inspection/survey/stream_survey.h"
 #include "lodeline/inspection/survey/turn_comparison.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

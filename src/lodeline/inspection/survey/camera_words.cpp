@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "lodeline/cameras/camera.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

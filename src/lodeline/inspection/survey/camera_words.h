@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

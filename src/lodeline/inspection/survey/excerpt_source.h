@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

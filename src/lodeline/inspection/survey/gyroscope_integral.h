@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

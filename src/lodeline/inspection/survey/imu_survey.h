@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/inspection/survey/stream_survey.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

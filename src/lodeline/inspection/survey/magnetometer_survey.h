@@ -5,7 +5,7 @@
 
 #include "lodeline/ahrs/field_unit.h"
 #include "lodeline/inspection/survey/stream_survey.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

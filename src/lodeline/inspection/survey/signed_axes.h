@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -5,7 +5,7 @@
 
 #include "lodeline/inspection/survey/point_following.h"
 #include "lodeline/inspection/survey/stream_survey.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

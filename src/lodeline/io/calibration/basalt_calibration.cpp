@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_translation.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

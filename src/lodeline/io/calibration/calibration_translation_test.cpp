@@ -5,11 +5,11 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/calibration/rig_text.h"
 #include "lodeline/io/euroc/test_euroc_rig.h"
 #include "lodeline/io/euroc/test_recording.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_translation.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lodeline/cameras/camera.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

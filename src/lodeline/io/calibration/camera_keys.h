@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lodeline/io/calibration/yaml_file.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

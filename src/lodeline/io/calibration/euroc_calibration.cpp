@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/camera_keys.h"
 #include "lodeline/io/calibration/imu_keys.h"
 #include "lodeline/io/calibration/yaml_file.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -3,8 +3,7 @@
 #include <optional>
 
 #include "lodeline/io/calibration/yaml_file.h"
-#include "lodeline/sensors/imu_correction.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

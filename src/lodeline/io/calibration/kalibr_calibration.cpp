@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/camera_keys.h"
 #include "lodeline/io/calibration/imu_keys.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_translation.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_kind.h"
 #include "lodeline/io/calibration/calibration_translation.h"
 #include "lodeline/io/calibration/euroc_calibration.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
@@ -192,6 +192,17 @@ void selectCameras(const std::vector<int>& indices, const std::string& name, Rig
     selected.push_back(rig->cameras[static_cast<size_t>(index)]);
   }
   rig->cameras = std::move(selected);
+}
+
+DescribedRig readRig(const std::vector<std::filesystem::path>& files, Diagnostics* diagnostics) {
+  const RigFile file = readRigFiles(files, diagnostics);
+  const std::string names = files.empty() ? "no file" : files.front().string();
+  if (!file.has_imu) {
+    throw InputError(
+        fmt::format("{}: no section imu0 in the rig's files (or Kalibr's imu.yaml is missing)", names));
+  }
+  if (file.rig.cameras.empty()) throw InputError(fmt::format("{}: no camera in the rig's files", names));
+  return {file.rig, file.imu_correction};
 }
 
 }  // namespace lodeline

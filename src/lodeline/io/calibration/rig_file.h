@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_sections.h"
-#include "lodeline/sensors/imu_correction.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

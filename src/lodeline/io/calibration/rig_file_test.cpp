@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/euroc/test_recording.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
@@ -57,6 +57,16 @@ TEST_F(RigFileTest, ReadsOurOwnKeys) {
   EXPECT_FALSE(file.topics.contains("cam0"));
   EXPECT_TRUE(file.rig.pressure);
   EXPECT_NEAR(file.water.depth_m(101325.0 + 1025.0 * 9.80665 * 12.5), 12.5, 1e-9);
+}
+
+TEST_F(RigFileTest, IsReadAsARigOfCamerasAndImu) {
+  const auto readAsRig = [&](const std::string& text) {
+    place_.write("rig.yaml", text);
+    return readRig(std::vector<std::filesystem::path>{place_.path("rig.yaml")}, &diagnostics_);
+  };
+  EXPECT_EQ(readAsRig(imu_ + camera_).rig.cameras.size(), 1u);
+  EXPECT_THROW(readAsRig(imu_), InputError);
+  EXPECT_THROW(readAsRig(camera_), InputError);
 }
 
 TEST_F(RigFileTest, ReadsKalibrsFiles) {

@@ -6,11 +6,11 @@
 #include <array>
 #include <cctype>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_kind.h"
 #include "lodeline/io/calibration/calibration_translation.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
 #include "lodeline/util/edit_distance.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

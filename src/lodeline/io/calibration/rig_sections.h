@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/yaml_file.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

@@ -6,8 +6,8 @@
 #include <cctype>
 #include <fstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/edit_distance.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/gravity.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

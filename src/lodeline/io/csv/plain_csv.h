@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/tables/table_reader.h"
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

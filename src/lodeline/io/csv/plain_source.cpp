@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/streams/stream_rate.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "lodeline/io/csv/plain_csv.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/streams/stream_rate.h"
 #include "lodeline/io/tables/pose_columns.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/tables/table_reader.h"
-#include "lodeline/util/diagnostics.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_recording.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

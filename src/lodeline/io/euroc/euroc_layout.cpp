@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/image_list.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/euroc/image_list.h"
 #include "lodeline/io/streams/stream_rate.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,30 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/recording.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 
 struct RigFile;
-
-/// Parts of an EuRoC ASL recording to read. The defaults fit trajectory estimation. Tools that use only
-/// inertial or magnetic readings can open recordings that contain nothing else.
-struct EurocOptions {
-  /// Numbers N of the camN folders to use; the first one is the reference. Empty for all cameras.
-  std::vector<int> camera_indices;
-  /// False ignores the cameras of the recording.
-  bool with_cameras = true;
-  /// False accepts a recording without cameras. Where images are missing, it accepts the bare image lists.
-  bool needs_cameras = true;
-  /// False accepts a recording without `imu0`; EuRoC's body is then the body frame.
-  bool needs_imu = true;
-  /// False gives sensors without a calibration file the default calibration, with a warning. Such a camera
-  /// has no size and cannot project.
-  bool needs_calibration = true;
-  /// Files that describe the rig (see readRigFiles); they have priority over those in the recording.
-  std::vector<std::filesystem::path> rig_files = {};
-};
 
 /// Paths and parts of an EuRoC ASL recording.
 struct EurocLayout {

@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/images/image_loader.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
@@ -43,6 +43,11 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
     magnetometer_.emplace(layout_.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), CsvContent::Depth, diagnostics, kDepthRate);
   if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics, kMagnetometerRate);
+}
+
+std::unique_ptr<RecordedSource> openEuroc(const std::filesystem::path& data, const EurocOptions& options,
+                                          Diagnostics* diagnostics) {
+  return std::make_unique<EurocSource>(data, options, diagnostics);
 }
 
 std::optional<ImuSample> EurocSource::nextRecordedImu() {

@@ -7,7 +7,7 @@
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/image_list.h"
 #include "lodeline/io/images/grey_range.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_kind.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/euroc/euroc_rig.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_euroc_rig.h"
 #include "lodeline/io/euroc/test_recording.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

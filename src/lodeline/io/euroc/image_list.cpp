@@ -8,8 +8,8 @@
 #include <fstream>
 #include <limits>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/time/time_unit.h"
 
 namespace lodeline {

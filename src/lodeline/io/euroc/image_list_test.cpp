@@ -6,9 +6,9 @@
 
 #include <fstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/euroc/test_recording.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

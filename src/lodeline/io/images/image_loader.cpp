@@ -112,6 +112,17 @@ LoadedImage decodeGreyImage(std::span<const uint8_t> bytes, const std::string& n
   return result;
 }
 
+PendingImage imageInMemory(Time time, const cv::Mat& pixels) {
+  const std::string name = fmt::format("image at {} ns", time.nanoseconds());
+  return {time, name,
+          [pixels] {
+            return LoadedImage{greyFrom(pixels), ""};
+          },
+          [pixels] {
+            return StoredImage{{}, pixels, ""};
+          }};
+}
+
 LoadedImage loadGreyImage(const std::filesystem::path& file, const GreyRange& range) {
   std::vector<uint8_t> bytes;
   const std::string problem = whyUnreadable(file, &bytes);

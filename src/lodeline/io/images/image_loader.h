@@ -5,7 +5,7 @@
 #include <string>
 
 #include "lodeline/io/images/grey_range.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/record.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/bag_scan.h"
 #include "lodeline/io/rosbag1/chunk_cache.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

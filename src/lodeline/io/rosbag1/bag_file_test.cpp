@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_recording.h"
 #include "lodeline/io/rosbag1/messages.h"
 #include "lodeline/io/rosbag1/test_bag.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

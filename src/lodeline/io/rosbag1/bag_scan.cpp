@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/record.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/checked_reading.h"
 #include "lodeline/io/rosbag1/image_messages.h"
 #include "lodeline/io/streams/stream_rate.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
@@ -299,6 +299,11 @@ std::optional<SonarSample> BagSource::nextSonar() {
   const SonarSample echo = echoes_.front();
   echoes_.pop_front();
   return echo;
+}
+
+std::unique_ptr<RecordedSource> openBag(const std::filesystem::path& bag, const BagOptions& options,
+                                        Diagnostics* diagnostics) {
+  return std::make_unique<BagSource>(bag, options, diagnostics);
 }
 
 }  // namespace lodeline

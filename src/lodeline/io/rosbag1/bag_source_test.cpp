@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_recording.h"
 #include "lodeline/io/rosbag1/test_bag.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -1,11 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_recording.h"
 #include "lodeline/io/rosbag1/bag_source.h"
 #include "lodeline/io/rosbag1/convert/bag_writer.h"
 #include "lodeline/io/rosbag1/messages.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

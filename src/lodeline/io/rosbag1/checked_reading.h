@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lodeline/io/rosbag1/messages.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline::messages {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <thread>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "lodeline/io/images/grey_range.h"
 #include "lodeline/io/rosbag1/wire.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/recording.h"
 
 /// Functions for sensor_msgs/Image and sensor_msgs/CompressedImage.
 namespace lodeline::messages {

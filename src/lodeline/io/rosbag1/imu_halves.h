@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "lodeline/io/rosbag1/bag_file.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -5,10 +5,10 @@
 
 #include <deque>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_recording.h"
 #include "lodeline/io/rosbag1/bag_source.h"
 #include "lodeline/io/rosbag1/test_bag.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/rosbag1/wire.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/recording.h"
+#include "lodeline/rig.h"
 
 /// Functions that convert ROS 1 messages of a rig's sensors (packages sensor_msgs 1.13, geometry_msgs 1.13)
 /// to readings and back. Parsing functions throw wire::Reader::CutOff where bytes are missing.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/imu_halves.h"
 #include "lodeline/io/rosbag1/messages.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

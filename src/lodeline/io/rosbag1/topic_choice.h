@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/bag_file.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 /// Functions for ROS 1's serialization: little endian, no padding; a 32-bit length precedes each string and
 /// each list of variable length (wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes). The

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 /// Limits of inertial readings that no sensor can exceed.
 namespace lodeline::inertial_limits {

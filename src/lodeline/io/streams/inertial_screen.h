@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/streams/reading_history.h"
 #include "lodeline/io/streams/repeat_detector.h"
 #include "lodeline/io/streams/saturation_detector.h"
 #include "lodeline/io/streams/unit_change.h"
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

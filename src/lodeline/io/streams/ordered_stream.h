@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/streams/stamp_bursts.h"
 #include "lodeline/io/streams/stream_rate.h"
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 #include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {

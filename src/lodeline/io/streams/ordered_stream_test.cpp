@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/streams/stamp_bursts.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {

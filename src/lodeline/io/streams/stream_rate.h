@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/util/diagnostics.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/types.h"
 #include "lodeline/util/time/time_unit.h"
 
 namespace lodeline {

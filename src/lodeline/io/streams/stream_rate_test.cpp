@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

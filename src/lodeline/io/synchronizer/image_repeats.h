@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "lodeline/ahrs/rest_detector.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/synchronizer/frame_packet.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

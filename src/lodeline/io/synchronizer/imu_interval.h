@@ -7,7 +7,7 @@
 
 #include "lodeline/io/streams/ordered_stream.h"
 #include "lodeline/io/streams/time_span.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
 #include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {

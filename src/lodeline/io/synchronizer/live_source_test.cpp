@@ -1,4 +1,4 @@
-#include "lodeline/io/synchronizer/live_source.h"
+#include "lodeline/recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

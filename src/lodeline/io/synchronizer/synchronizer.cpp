@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/synchronizer/inertial_stream.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

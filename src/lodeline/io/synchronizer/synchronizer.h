@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/streams/inertial_screen.h"
 #include "lodeline/io/streams/ordered_stream.h"
 #include "lodeline/io/synchronizer/frame_packet.h"
 #include "lodeline/io/synchronizer/image_repeats.h"
 #include "lodeline/io/synchronizer/imu_interval.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

@@ -3,10 +3,10 @@
 
 #include <sstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/euroc/test_recording.h"
 #include "lodeline/io/synchronizer/synchronizer.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

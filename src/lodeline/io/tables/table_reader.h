@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/tables/cells.h"
 #include "lodeline/io/tables/column_name.h"
 #include "lodeline/io/tables/text_lines.h"
-#include "lodeline/util/diagnostics.h"
 #include "lodeline/util/time/time_unit.h"
 
 namespace lodeline {

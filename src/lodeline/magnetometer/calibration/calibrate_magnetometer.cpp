@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/hard_iron_change.h"
 #include "lodeline/magnetometer/calibration/heading/axis_checks.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/magnetometer/iron/heading_error.h"
 #include "lodeline/magnetometer/iron/reading_screen.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

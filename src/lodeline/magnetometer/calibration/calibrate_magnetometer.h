@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/heading/inertial_calibration.h"
 #include "lodeline/magnetometer/calibration/magnetometer_record.h"
 #include "lodeline/magnetometer/iron/iron_calibration.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

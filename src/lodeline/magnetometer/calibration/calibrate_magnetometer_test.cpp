@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <random>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/calibration_report.h"
 #include "lodeline/magnetometer/calibration/heading/test_turning_sensor.h"
 #include "lodeline/magnetometer/iron/test_cloud.h"
-#include "lodeline/util/error.h"
 
 // The complete calibration with imperfect sensors.
 

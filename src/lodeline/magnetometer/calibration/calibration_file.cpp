@@ -5,8 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <fstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/yaml_file.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

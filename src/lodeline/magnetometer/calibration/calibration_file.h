@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lodeline/magnetometer/iron/magnetometer_fit.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -4,10 +4,10 @@
 
 #include <sstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
 #include "lodeline/magnetometer/calibration/calibrate_magnetometer.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/test_data.h"
 
 // Recordings of real sensors.

@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

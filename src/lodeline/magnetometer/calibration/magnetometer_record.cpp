@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/plain_csv.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
@@ -12,7 +13,6 @@
 #include "lodeline/io/streams/inertial_screen.h"
 #include "lodeline/io/streams/ordered_stream.h"
 #include "lodeline/io/streams/time_span.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "lodeline/ahrs/field_unit.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/recording.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -2,61 +2,17 @@
 
 #include <fmt/core.h>
 
-#include <GeographicLib/Geocentric.hpp>
-#include <GeographicLib/SphericalHarmonic.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
+#include "lodeline/diagnostics.h"
+#include "lodeline/magnetometer/earth_field/harmonic_field.h"
 #include "lodeline/magnetometer/earth_field/magnetic_models.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {
-
-/// Evaluates the field of one set of Gauss coefficients (nT or nT/year).
-class HarmonicSum {
- public:
-  HarmonicSum(const CoefficientTable& table, double GaussCoefficient::*g, double GaussCoefficient::*h)
-      : c_(storage(false)), s_(storage(true)) {
-    for (const GaussCoefficient& term : table) {
-      // GeographicLib stores coefficients by columns of equal order, the sine terms without the column of
-      // order zero.
-      c_[column(term.order) + term.degree - term.order] = term.*g;
-      if (term.order > 0) {
-        s_[column(term.order) - (kMagneticModelDegree + 1) + term.degree - term.order] = term.*h;
-      }
-    }
-    sum_ = GeographicLib::SphericalHarmonic(c_, s_, kMagneticModelDegree, kReferenceRadius_m,
-                                            GeographicLib::SphericalHarmonic::SCHMIDT);
-  }
-
-  // Not copyable because the sum stores the addresses of the coefficients.
-  HarmonicSum(const HarmonicSum&) = delete;
-  HarmonicSum& operator=(const HarmonicSum&) = delete;
-
-  /// Field in geocentric axes, in the unit of the coefficients.
-  Vec3 at(const Vec3& geocentric_m) const {
-    Vec3 gradient;
-    sum_(geocentric_m.x(), geocentric_m.y(), geocentric_m.z(), gradient.x(), gradient.y(), gradient.z());
-    return -kReferenceRadius_m * gradient;
-  }
-
- private:
-  static constexpr double kReferenceRadius_m = 6371200.0;
-  static constexpr int column(int order) {
-    return order * (kMagneticModelDegree + 1) - order * (order - 1) / 2;
-  }
-  static std::vector<double> storage(bool sine) {
-    constexpr int kTerms = (kMagneticModelDegree + 1) * (kMagneticModelDegree + 2) / 2;
-    return std::vector<double>(sine ? kTerms - (kMagneticModelDegree + 1) : kTerms, 0.0);
-  }
-
-  std::vector<double> c_, s_;
-  GeographicLib::SphericalHarmonic sum_;
-};
 
 void check(const GeodeticPosition& p, double year) {
   const double first = kMagneticModels.front().epoch;
@@ -102,18 +58,13 @@ FieldElements fieldElements(const Vec3& field_ENU) {
 MagneticField worldMagneticField(const GeodeticPosition& p, double decimal_year) {
   check(p, decimal_year);
   const MagneticModel& model = modelOf(decimal_year);
-  const HarmonicSum main_field(*model.coefficients, &GaussCoefficient::g_nT, &GaussCoefficient::h_nT);
-  const HarmonicSum variation(*model.coefficients, &GaussCoefficient::g_nT_per_year,
-                              &GaussCoefficient::h_nT_per_year);
-
-  Vec3 geocentric_m;
-  std::vector<double> rotation(9);  // geocentric from east, north, up; row by row
-  GeographicLib::Geocentric::WGS84().Forward(p.latitude_deg, p.longitude_deg, p.height_m, geocentric_m.x(),
-                                             geocentric_m.y(), geocentric_m.z(), rotation);
-  const Mat3 geocentric_from_enu =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
-  const Vec3 rate = variation.at(geocentric_m);
-  const Vec3 field = main_field.at(geocentric_m) + (decimal_year - model.epoch) * rate;
+  const Vec3 geocentric_m = geocentricPosition(p);
+  const Vec3 rate = harmonicField(*model.coefficients, &GaussCoefficient::g_nT_per_year,
+                                  &GaussCoefficient::h_nT_per_year, geocentric_m);
+  const Vec3 at_epoch =
+      harmonicField(*model.coefficients, &GaussCoefficient::g_nT, &GaussCoefficient::h_nT, geocentric_m);
+  const Vec3 field = at_epoch + (decimal_year - model.epoch) * rate;
+  const Mat3 geocentric_from_enu = geocentricFromEnu(p);
   constexpr double kTeslaPerNanotesla = 1e-9;
   return {kTeslaPerNanotesla * (geocentric_from_enu.transpose() * field),
           kTeslaPerNanotesla * (geocentric_from_enu.transpose() * rate)};

@@ -2,16 +2,9 @@
 
 #include <string>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
-
-/// A place on or near the Earth, geodetic on the WGS84 ellipsoid.
-struct GeodeticPosition {
-  double latitude_deg = 0.0;
-  double longitude_deg = 0.0;
-  double height_m = 0.0;  ///< above the ellipsoid
-};
 
 /// The Earth's field at one place and time, in local axes east, north, up.
 struct MagneticField {

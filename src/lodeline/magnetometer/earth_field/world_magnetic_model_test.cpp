@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/iron/ellipsoid_fit.h"
 #include "lodeline/magnetometer/iron/heading_error.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/iron/test_cloud.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

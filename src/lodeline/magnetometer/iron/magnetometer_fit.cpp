@@ -5,8 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/choice.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

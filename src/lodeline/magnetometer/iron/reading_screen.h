@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "lodeline/sensors/measurements.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

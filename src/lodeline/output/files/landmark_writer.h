@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/estimate.h"
 #include "lodeline/output/files/world_turn.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "lodeline/io/synchronizer/frame_packet.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

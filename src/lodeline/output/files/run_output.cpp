@@ -12,7 +12,8 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const 
 }
 
 std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEstimate* estimate,
-                                       const std::optional<AttitudeEstimate>& attitude, Odometry* odometry) {
+                                       const std::optional<AttitudeEstimate>& attitude,
+                                       PacketOdometry* odometry) {
   if (estimate != nullptr) states_->write(*estimate, attitude);
   std::vector<MapPoint> finished = odometry->estimator().takeMapPoints();
   landmarks_.write(finished);
@@ -25,7 +26,7 @@ std::vector<MapPoint> RunOutput::write(const FramePacket& packet, const FrameEst
   return finished;
 }
 
-int64_t RunOutput::finish(const Odometry& odometry, const MagnetometerEstimate& last) {
+int64_t RunOutput::finish(const PacketOdometry& odometry, const MagnetometerEstimate& last) {
   const std::optional<WorldTurn> turn = WorldTurn::of(last);
   landmarks_.write(odometry.estimator().currentMapPoints());
   landmarks_.finish(last.heading_reference, turn);

@@ -27,12 +27,12 @@ class RunOutput {
   /// To be called after each packet with its results; `estimate` is null where it has no stamp of its own.
   /// Returns the landmarks that left the window and were written. Throws InputError where writing fails.
   std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate* estimate,
-                              const std::optional<AttitudeEstimate>& attitude, Odometry* odometry);
+                              const std::optional<AttitudeEstimate>& attitude, PacketOdometry* odometry);
 
   /// Adds the landmarks that are still in the window and completes the files. Rotates them to north where it
   /// was found after the first pose (WorldTurn); `last`: as after the last frame. Returns the number of
   /// landmarks. Closes the files of the states.
-  int64_t finish(const Odometry& odometry, const MagnetometerEstimate& last);
+  int64_t finish(const PacketOdometry& odometry, const MagnetometerEstimate& last);
 
   /// Processor time of the pictures so far.
   double picturesSeconds() const { return pictures_s_; }

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lodeline/ahrs/attitude_filter.h"
-#include "lodeline/estimator/estimator.h"
+#include "lodeline/estimate.h"
 
 namespace lodeline {
 

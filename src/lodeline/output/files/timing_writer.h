@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "lodeline/estimator/odometry.h"
+#include "lodeline/estimator/packet_odometry.h"
 
 namespace lodeline {
 

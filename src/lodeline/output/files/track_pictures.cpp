@@ -4,8 +4,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/frontend/draw_tracks.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

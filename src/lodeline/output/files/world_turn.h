@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
+#include "lodeline/estimate.h"
 
 namespace lodeline {
 

@@ -6,12 +6,12 @@
 #include <random>
 #include <sstream>
 
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/output/files/landmark_writer.h"
 #include "lodeline/output/files/run_table.h"
 #include "lodeline/output/files/state_writer.h"
-#include "lodeline/output/survey/run/landmark_file.h"
+#include "lodeline/output/files/landmark_file.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline {

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/live/event_queue.h"
 #include "lodeline/output/live/request_guard.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

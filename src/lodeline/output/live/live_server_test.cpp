@@ -8,7 +8,7 @@
 #include <chrono>
 #include <thread>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

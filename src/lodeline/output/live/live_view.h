@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/state/window.h"
-#include "lodeline/frontend/front_end.h"
+#include "lodeline/estimate.h"
 #include "lodeline/io/synchronizer/frame_packet.h"
 #include "lodeline/output/live/live_server.h"
 #include "lodeline/output/report/run_summary.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
+
+class FrontEnd;
 
 /// The page before any data arrives. `camera_axis_B`: viewing direction of the first camera. Throws
 /// UsageError where the program was built without the page.

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/estimator.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimate.h"
 
 namespace lodeline {
 

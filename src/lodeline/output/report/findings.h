@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

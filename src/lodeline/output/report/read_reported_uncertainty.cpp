@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/files/run_table.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

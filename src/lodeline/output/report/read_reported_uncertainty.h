@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "lodeline/evaluation/errors/claims.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

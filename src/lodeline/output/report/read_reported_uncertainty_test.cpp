@@ -4,8 +4,8 @@
 
 #include <fstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

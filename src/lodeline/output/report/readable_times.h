@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/files/landmark_writer.h"
 #include "lodeline/output/files/state_writer.h"
 #include "lodeline/output/report/run_summary.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

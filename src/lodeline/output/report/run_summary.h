@@ -7,11 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/batch/refine.h"
-#include "lodeline/estimator/estimator.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimate.h"
 #include "lodeline/output/report/blind_stretches.h"
-#include "lodeline/sensors/rig.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

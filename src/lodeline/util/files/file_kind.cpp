@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

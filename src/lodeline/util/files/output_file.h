@@ -5,7 +5,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

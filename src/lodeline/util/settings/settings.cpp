@@ -8,9 +8,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/choice.h"
 #include "lodeline/util/edit_distance.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

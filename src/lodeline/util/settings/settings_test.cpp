@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/edit_distance.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

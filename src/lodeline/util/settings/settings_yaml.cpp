@@ -7,7 +7,7 @@
 #include <ostream>
 #include <set>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/settings/settings.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 /// Time arithmetic for unchecked stamps, which may have any 64-bit value. The functions saturate instead of
 /// overflowing.

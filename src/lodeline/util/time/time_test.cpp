@@ -1,4 +1,4 @@
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 #include "simulation/shared/waves.h"
 
 namespace lodeline {

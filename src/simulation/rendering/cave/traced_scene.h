@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 #include "simulation/rendering/cave/triangle_mesh.h"
 
 struct RTCSceneTy;

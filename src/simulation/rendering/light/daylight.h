@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 #include "simulation/rendering/optics/fast_exp.h"
 #include "simulation/rendering/optics/render_types.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/geometry/rigid3.h"
+#include "lodeline/types.h"
 #include "simulation/rendering/optics/fast_exp.h"
 #include "simulation/rendering/optics/render_types.h"
 

@@ -8,7 +8,7 @@
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/estimator/options/magnetometer_options.h"
 #include "lodeline/estimator/uncertainty/time_correlated_error.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -2,24 +2,11 @@
 
 #include <optional>
 
+#include "lodeline/estimate.h"
 #include "lodeline/estimator/options/magnetometer_options.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
-
-/// Status of the magnetometer in one frame.
-enum class MagnetometerStatus {
-  Off,           ///< not requested, or not on board
-  NoData,        ///< no usable reading since the frame before
-  Used,          ///< accepted as the Earth's field
-  Norm,          ///< rejected: the field has another size
-  Dip,           ///< rejected: the field has another inclination
-  Innovation,    ///< rejected: the heading disagrees with gyroscope and images
-  Readmitted,    ///< rejected for so long that the field is accepted again, with an estimated disturbance
-  Inconsistent,  ///< all readings rejected: the field has disagreed for longer than it has agreed
-  Uncalibrated,  ///< not used because its hard and soft iron are unknown
-};
-const char* toString(MagnetometerStatus status);
 
 /// Measured minus expected field, with one sigma of each difference.
 struct FieldCheck {

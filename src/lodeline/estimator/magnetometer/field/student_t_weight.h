@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lodeline/estimator/options/magnetometer_options.h"
-#include "lodeline/util/time/time.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -1,5 +1,5 @@
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/convert/bag_writer.h"
-#include "lodeline/util/error.h"
 
 // Replaces bag_writer.cpp in builds without librosbag-storage.
 

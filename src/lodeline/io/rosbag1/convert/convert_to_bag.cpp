@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/images/image_loader.h"
@@ -13,7 +14,6 @@
 #include "lodeline/io/rosbag1/convert/rig_conversion.h"
 #include "lodeline/io/rosbag1/image_messages.h"
 #include "lodeline/io/rosbag1/messages.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <unordered_map>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/images/image_loader.h"
 #include "lodeline/io/rosbag1/bag_source.h"
 #include "lodeline/io/rosbag1/checked_reading.h"
@@ -11,7 +12,6 @@
 #include "lodeline/io/rosbag1/convert/rig_conversion.h"
 #include "lodeline/io/rosbag1/messages.h"
 #include "lodeline/io/synchronizer/recording_file.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

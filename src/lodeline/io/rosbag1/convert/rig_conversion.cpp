@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/synchronizer/recording_file.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/euroc/euroc_rig.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/heading/field_alignment.h"
 #include "lodeline/magnetometer/iron/magnetometer_fit.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

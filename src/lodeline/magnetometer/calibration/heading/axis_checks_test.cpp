@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/calibrate_magnetometer.h"
 #include "lodeline/magnetometer/calibration/heading/test_turning_sensor.h"
-#include "lodeline/util/error.h"
 
 // Axes that are exchanged or have the wrong sign.
 

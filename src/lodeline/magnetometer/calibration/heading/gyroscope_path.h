@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
-#include "lodeline/sensors/measurements.h"
+#include "lodeline/rig.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/imu/test_motion.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/heading/inertial_smoother.h"
 #include "lodeline/magnetometer/iron/iron_fit.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -8,7 +8,7 @@
 #include "lodeline/magnetometer/calibration/heading/field_alignment.h"
 #include "lodeline/magnetometer/calibration/heading/inertial_residuals.h"
 #include "lodeline/magnetometer/iron/magnetometer_fit.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/calibration/heading/test_turning_sensor.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

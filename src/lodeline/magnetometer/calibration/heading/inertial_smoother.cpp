@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -1,8 +1,8 @@
 #include "lodeline/output/report/page/report_page.h"
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/run_page.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/json_text.h"
 
 namespace lodeline {

@@ -7,12 +7,12 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/run_page.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/output/report/page/test_run.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -2,11 +2,10 @@
 
 #include <optional>
 
-#include "lodeline/evaluation/errors/evaluation.h"
 #include "lodeline/evaluation/figures/evaluation_report.h"
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
 #include "lodeline/output/report/page/row_choice.h"
 #include "lodeline/output/report/page/table_json.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "lodeline/evaluation/errors/statistics.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/iron/iron_fit.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

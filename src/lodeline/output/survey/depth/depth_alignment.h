@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lodeline/output/survey/profile/depth_profile.h"
-#include "lodeline/output/survey/run/run_folder.h"
+#include "lodeline/survey.h"
 
 namespace lodeline {
 

@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/evaluation/errors/statistics.h"
 #include "lodeline/output/survey/depth/depth_alignment.h"
 #include "lodeline/output/survey/depth/nearest_points.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "lodeline/geometry/types.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

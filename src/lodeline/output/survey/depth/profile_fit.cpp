@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

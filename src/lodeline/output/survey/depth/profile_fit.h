@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/depth/depth_alignment.h"
-#include "lodeline/util/diagnostics.h"
 
 namespace lodeline {
 

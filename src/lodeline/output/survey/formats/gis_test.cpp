@@ -4,11 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/survey/formats/map_files.h"
 #include "lodeline/output/survey/formats/test_outside_program.h"
 #include "lodeline/output/survey/map/test_dive.h"
-#include "lodeline/util/error.h"
 
 // Tests of GeoJSON, KML and GPX: their content, and that GDAL reads them.
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/choice.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

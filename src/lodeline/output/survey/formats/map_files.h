@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "lodeline/output/survey/formats/write_formats.h"
+#include "lodeline/survey.h"
 
 namespace lodeline {
 
-enum class MapFormat { Survex, Therion, GeoJson, Kml, Gpx, Ply, Csv, Tum, Colmap };
 /// In the order of MapFormat.
 const std::vector<std::string>& mapFormatNames();
 /// Format by its name in any case. Throws UsageError with the names of all formats.

@@ -5,13 +5,13 @@
 #include <cstring>
 #include <sstream>
 
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/survey/formats/map_files.h"
 #include "lodeline/output/survey/formats/point_normals.h"
 #include "lodeline/output/survey/formats/test_outside_program.h"
 #include "lodeline/output/survey/map/test_dive.h"
-#include "lodeline/util/error.h"
+#include "lodeline/trajectory.h"
 
 // PLY, CSV, TUM, COLMAP.
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "lodeline/io/synchronizer/measurement_source.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/formats/map_files.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "lodeline/evaluation/trajectory/trajectory.h"
-#include "lodeline/io/synchronizer/measurement_source.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/recording.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 

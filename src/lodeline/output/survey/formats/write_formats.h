@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lodeline/output/survey/map/dive_map.h"
-#include "lodeline/sensors/rig.h"
+#include "lodeline/rig.h"
 
 /// One function per file format, which returns the whole file as text (or bytes). Georeferenced formats
 /// (GeoJSON, KML, GPX) need DiveMap::place.

@@ -2,9 +2,9 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
-#include "lodeline/geometry/types.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/survey/grid/map_grid.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

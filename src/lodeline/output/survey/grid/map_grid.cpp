@@ -10,7 +10,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/geometry/types.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 

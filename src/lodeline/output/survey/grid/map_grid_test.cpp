@@ -6,9 +6,9 @@
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/formats/test_outside_program.h"
 #include "lodeline/output/survey/grid/georeference.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

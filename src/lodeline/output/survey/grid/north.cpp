@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "lodeline/estimator/options/magnetometer_options.h"
+#include "lodeline/estimate.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 
 namespace lodeline {

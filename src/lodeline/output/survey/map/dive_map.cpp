@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/tables/cells.h"
 #include "lodeline/io/tables/text_lines.h"
 #include "lodeline/output/survey/map/map_times.h"
 #include "lodeline/output/survey/map/survey_name.h"
 #include "lodeline/util/angles.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

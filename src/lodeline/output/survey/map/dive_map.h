@@ -5,40 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/grid/georeference.h"
 #include "lodeline/output/survey/grid/north.h"
 #include "lodeline/output/survey/map/passage.h"
 #include "lodeline/output/survey/map/survey.h"
-#include "lodeline/output/survey/run/run_folder.h"
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/survey.h"
 
 namespace lodeline {
-
-/// Options of a map given by the user.
-struct DiveMapOptions {
-  std::string name;               ///< of the survey; empty for that of the run folder
-  std::string title;              ///< empty for the name
-  std::vector<std::string> team;  ///< names of people
-  std::string date;               ///< YYYY-MM-DD; empty for that of the run or its stamps
-
-  std::optional<GeodeticPosition>
-      entrance;                   ///< the water's surface above the first pose; empty for a local map
-  double entrance_sigma_m = 3.0;  ///< horizontal, per axis
-  double entrance_height_sigma_m = 5.0;
-  std::string crs = "auto";
-  std::optional<double> turn_deg;       ///< see findNorth()
-  std::optional<double> start_depth_m;  ///< of the first pose; empty for that of the run's pressure sensor
-  std::string start_depth_source;       ///< its source, in words
-  double geoid_height_m = 0.0;          ///< height of the vertical datum above the ellipsoid
-
-  std::optional<double>
-      relative_sigma;  ///< of the end position, relative to the length of the line; empty for that of the run
-  StationOptions stations;
-  PassageOptions passage;
-  int min_observations = 3;  ///< minimum for a landmark that counts as a wall point
-  bool is_closed = false;
-  std::vector<std::string> notes;  ///< further lines for the headers
-};
 
 /// All data of a map, in east, north, up with the first pose as origin.
 struct DiveMap {

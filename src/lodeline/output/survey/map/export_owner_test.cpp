@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/survey/map/test_dive.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "lodeline/evaluation/errors/statistics.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/evaluation/errors/statistics.h"
-#include "lodeline/util/error.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {

@@ -3,16 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/evaluation/trajectory/trajectory.h"
+#include "lodeline/survey.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
-
-struct StationOptions {
-  double spacing_m = 5.0;           ///< of stations on a straight path
-  double bend_spacing_m = 2.0;      ///< minimum, where the path bends
-  double bend_rad = 0.349;          ///< 20 degrees; smaller bends get no separate station
-  double path_resolution_m = 0.25;  ///< smaller movements do not count as path length
-};
 
 /// Chooses the poses of a path that become survey stations, in order: the first, then one each `spacing_m`
 /// (straight line from station to station), or at the sharpest point of a bend at least `bend_spacing_m` from

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/profile/profile_rows.h"
 #include "lodeline/output/survey/profile/profile_screen.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

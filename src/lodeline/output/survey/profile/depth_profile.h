@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/util/diagnostics.h"
+#include "lodeline/diagnostics.h"
 
 namespace lodeline {
 

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/survey/profile/profile_time.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

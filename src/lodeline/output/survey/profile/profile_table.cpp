@@ -7,12 +7,12 @@
 #include <regex>
 #include <string>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/tables/table_reader.h"
 #include "lodeline/io/tables/units.h"
 #include "lodeline/output/survey/profile/profile_columns.h"
 #include "lodeline/output/survey/profile/profile_rows.h"
 #include "lodeline/output/survey/profile/profile_time.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/time/time_unit.h"
 
 namespace lodeline {

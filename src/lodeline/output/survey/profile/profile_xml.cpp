@@ -8,10 +8,10 @@
 #include <memory>
 #include <string_view>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/profile/profile_rows.h"
 #include "lodeline/output/survey/profile/profile_time.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

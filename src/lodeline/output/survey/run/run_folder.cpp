@@ -1,4 +1,4 @@
-#include "lodeline/output/survey/run/run_folder.h"
+#include "lodeline/survey.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "lodeline/evaluation/trajectory/read_trajectory.h"
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/yaml_file.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/csv_fields.h"
-#include "lodeline/util/error.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {

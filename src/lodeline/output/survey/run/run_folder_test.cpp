@@ -1,12 +1,12 @@
-#include "lodeline/output/survey/run/run_folder.h"
+#include "lodeline/survey.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/util/error.h"
 
 namespace lodeline {
 namespace {

@@ -1,0 +1,16 @@
+# lodeline_find_library(TARGET HEADER NAME...): a library without a CMake package of its own as an imported target.
+macro(lodeline_find_library target header)
+  if(NOT TARGET ${target})
+    string(REGEX REPLACE ".*::" "" library ${target})
+    string(TOUPPER ${library} variable)
+    find_path(${variable}_INCLUDE_DIR ${header} PATH_SUFFIXES opencv4)
+    find_library(${variable}_LIBRARY NAMES ${ARGN})
+    if(NOT ${variable}_INCLUDE_DIR OR NOT ${variable}_LIBRARY)
+      lodeline_refuse(${library})
+    else()
+      add_library(${target} UNKNOWN IMPORTED)
+      set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${${variable}_LIBRARY}
+                            INTERFACE_INCLUDE_DIRECTORIES ${${variable}_INCLUDE_DIR})
+    endif()
+  endif()
+endmacro()
