@@ -17,7 +17,7 @@ constexpr double kOutlierResidual = 1e4;
 Vec2 placeInPlane(DistortionModel model, const Vec3& ray, Mat23* by_ray) {
   constexpr double kOnAxis = 1e-6;
   const double sine = ray.head<2>().norm();
-  if (model != DistortionModel::Equidistant || sine < kOnAxis) {
+  if (model != "equidistant" || sine < kOnAxis) {
     const Vec2 place = ray.head<2>() / ray.z();
     *by_ray << Mat2::Identity() / ray.z(), -place / ray.z();
     return place;
@@ -80,7 +80,7 @@ DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, con
   measurement.curvature = imageCurvature(camera, bearing_C, measurement.tangent_C, by_offset) / sigma_px;
   const CameraCalibration& calibration = camera.calibration();
   Mat23 in_plane_by_ray;
-  measurement.in_plane = placeInPlane(calibration.distortion_model, bearing_C, &in_plane_by_ray);
+  measurement.in_plane = placeInPlane(calibration.model, bearing_C, &in_plane_by_ray);
   measurement.in_plane_by_sigmas =
       in_plane_by_ray * measurement.tangent_C * measurement.sqrt_information.inverse();
   measurement.focal_lengths_sigmas = Vec2(calibration.fx_px, calibration.fy_px) / sigma_px;

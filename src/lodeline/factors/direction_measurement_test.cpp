@@ -89,8 +89,8 @@ TEST_P(ResidualThroughALens, GrowsOutwardsHoweverFarOff) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, ResidualThroughALens,
-                         testing::Values(DistortionModel::None, DistortionModel::RadialTangential,
-                                         DistortionModel::Equidistant));
+                         testing::Values("none", "radial-tangential",
+                                         "equidistant"));
 
 }  // namespace
 }  // namespace lodeline

@@ -72,8 +72,8 @@ CameraCalibration correctedIntrinsics(const CameraCalibration& file, const doubl
   lens.cy_px += intrinsics[3];
   const double k_1 = intrinsics[4], k_2 = intrinsics[5];
   if (k_1 == 0.0 && k_2 == 0.0) return lens;
-  if (lens.distortion_model == DistortionModel::None) {
-    lens.distortion_model = DistortionModel::RadialTangential;
+  if (lens.model == "none") {
+    lens.model = "radial-tangential";
     lens.distortion.clear();
   }
   if (lens.distortion.size() < 4) lens.distortion.resize(4, 0.0);

@@ -116,8 +116,8 @@ TEST_P(IntrinsicsOfAModel, TakeTheirDerivativeWhereThePointShouldBe) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, IntrinsicsOfAModel,
-                         testing::Values(DistortionModel::None, DistortionModel::RadialTangential,
-                                         DistortionModel::Equidistant));
+                         testing::Values("none", "radial-tangential",
+                                         "equidistant"));
 
 }  // namespace
 }  // namespace lodeline

@@ -29,7 +29,7 @@ struct ReprojectionScene {
     calibration.fy_px = 457.0;
     calibration.cx_px = 367.0;
     calibration.cy_px = 248.0;
-    calibration.distortion_model = DistortionModel::RadialTangential;
+    calibration.model = "radial-tangential";
     calibration.distortion = {-0.283, 0.074, 0.0002, 1.8e-5};
     return calibration;
   }
@@ -53,9 +53,9 @@ struct ReprojectionScene {
 /// Calibration of the same camera with another distortion model.
 inline CameraCalibration withModel(DistortionModel model) {
   CameraCalibration file = ReprojectionScene::calibration();
-  file.distortion_model = model;
-  if (model == DistortionModel::None) file.distortion.clear();
-  if (model == DistortionModel::Equidistant) file.distortion = {-0.02, 0.01, -0.003, 0.001};
+  file.model = model;
+  if (model == "none") file.distortion.clear();
+  if (model == "equidistant") file.distortion = {-0.02, 0.01, -0.003, 0.001};
   return file;
 }
 

@@ -17,7 +17,7 @@ std::string transform(const Rigid3& body_from_sensor) {
 }
 
 std::string cameraText(const CameraCalibration& c) {
-  const bool equidistant = c.distortion_model == DistortionModel::Equidistant;
+  const bool equidistant = c.model == "equidistant";
   std::string text = "sensor_type: camera\n" + transform(c.body_from_camera);
   text += fmt::format("rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n", c.rate_hz, c.width_px,
                       c.height_px);

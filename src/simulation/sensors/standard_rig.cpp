@@ -34,7 +34,7 @@ CameraCalibration camera(const StandardRigOptions& o, int index) {
   calibration.fy_px = (index == 0 ? 456.8 : 458.1) * scale;
   calibration.cx_px = 0.5 * o.width_px + (index == 0 ? 3.2 : -4.7) * scale;
   calibration.cy_px = 0.5 * o.height_px + (index == 0 ? -5.1 : 2.4) * scale;
-  calibration.distortion_model = DistortionModel::RadialTangential;
+  calibration.model = "radial-tangential";
   calibration.distortion = index == 0 ? std::vector<double>{-0.172, 0.058, 3e-4, -2e-4}
                                       : std::vector<double>{-0.175, 0.060, -1e-4, 3e-4};
   calibration.rate_hz = o.camera_rate_hz;

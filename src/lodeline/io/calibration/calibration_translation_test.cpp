@@ -32,7 +32,7 @@ void expectSameRig(const RigFile& file, const RigFile& truth) {
     EXPECT_EQ(camera.fy_px, expected.fy_px);
     EXPECT_EQ(camera.cx_px, expected.cx_px);
     EXPECT_EQ(camera.cy_px, expected.cy_px);
-    EXPECT_EQ(camera.distortion_model, expected.distortion_model);
+    EXPECT_EQ(camera.model, expected.model);
     ASSERT_GE(camera.distortion.size(), expected.distortion.size());
     for (size_t k = 0; k < camera.distortion.size(); ++k) {
       EXPECT_EQ(camera.distortion[k], k < expected.distortion.size() ? expected.distortion[k] : 0.0);
@@ -148,7 +148,7 @@ IMU.NoiseAcc: 0.0028
 IMU.GyroWalk: 0.000022
 IMU.AccWalk: 0.00086
 )");
-  EXPECT_EQ(fisheye.rig.cameras.at(1).distortion_model, DistortionModel::Equidistant);
+  EXPECT_EQ(fisheye.rig.cameras.at(1).model, "equidistant");
   EXPECT_TRUE(fisheye.rig.cameras.at(1).body_from_camera.translation.isApprox(Vec3(0, 0.1, 0), 1e-12));
 }
 

@@ -27,10 +27,10 @@ DistortionModel readDistortionModel(CalibrationMap* map) {
   const std::string name = map->text("distortion_model");
   if (name == "radial-tangential" || name == "radtan" || name == "plumb_bob" ||
       name == "rational_polynomial") {
-    return DistortionModel::RadialTangential;
+    return "radial-tangential";
   }
-  if (name == "equidistant" || name == "equi") return DistortionModel::Equidistant;
-  if (name == "none" || name.empty()) return DistortionModel::None;
+  if (name == "equidistant" || name == "equi") return "equidistant";
+  if (name == "none" || name.empty()) return "none";
   throw InputError(
       fmt::format("{} is '{}'; supported are radial-tangential (radtan), equidistant and none: calibrate "
                   "with one of these",
@@ -38,18 +38,18 @@ DistortionModel readDistortionModel(CalibrationMap* map) {
 }
 
 std::vector<double> readDistortion(const std::string& key, DistortionModel model, CalibrationMap* map) {
-  if (model == DistortionModel::None) {
+  if (model == "none") {
     map->ignore({key});
     return {};
   }
   std::vector<double> values = map->numbers(key);
   const size_t n = values.size();
-  const bool fits = model == DistortionModel::Equidistant ? n == 4 : n == 4 || n == 5 || n == 8;
+  const bool fits = model == "equidistant" ? n == 4 : n == 4 || n == 5 || n == 8;
   const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   if (!fits || !finite) {
     throw InputError(fmt::format("{} has {} numbers; {} needs {} finite ones", map->at(key), n,
                                  map->text("distortion_model"),
-                                 model == DistortionModel::Equidistant ? "4" : "4, 5 or 8"));
+                                 model == "equidistant" ? "4" : "4, 5 or 8"));
   }
   return values;
 }
@@ -125,8 +125,8 @@ void readPinhole(const std::string& coefficients_key, CalibrationMap* map, Camer
   if (!(camera->fx_px > 0.0 && camera->fy_px > 0.0)) {
     throw InputError(map->at("intrinsics") + ": the focal lengths must be positive");
   }
-  camera->distortion_model = readDistortionModel(map);
-  camera->distortion = readDistortion(coefficients_key, camera->distortion_model, map);
+  camera->model = readDistortionModel(map);
+  camera->distortion = readDistortion(coefficients_key, camera->model, map);
   checkPlausible(*map, *camera);
   checkDistortion(coefficients_key, *map, *camera);
 }

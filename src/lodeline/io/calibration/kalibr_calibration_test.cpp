@@ -68,11 +68,11 @@ TEST_F(KalibrTest, WinsOverSensorYamlAndSaysSo) {
   ASSERT_EQ(rig.cameras.size(), 2u);
   const CameraCalibration& camera = rig.cameras[0];
   EXPECT_EQ(camera.fx_px, 30.0);
-  EXPECT_EQ(camera.distortion_model, DistortionModel::Equidistant);
+  EXPECT_EQ(camera.model, "equidistant");
   EXPECT_EQ(camera.time_offset_to_imu_s, 0.0125);
   EXPECT_EQ(camera.rate_hz, 20.0);
   EXPECT_TRUE((camera.body_from_camera.inverse() * Vec3(1, 0, 0)).isApprox(Vec3(0.5, -1, 0), 1e-12));
-  EXPECT_EQ(rig.cameras[1].distortion_model, DistortionModel::None);
+  EXPECT_EQ(rig.cameras[1].model, "none");
   EXPECT_TRUE((rig.cameras[1].body_from_camera.inverse() * Vec3(1, 0, 0)).isApprox(Vec3(0.4, -1, 0), 1e-12));
   EXPECT_EQ(rig.imu.rate_hz, 201.0);
   EXPECT_EQ(rig.imu.noise.accelerometer_density_m_per_s2_sqrtHz, 0.004);

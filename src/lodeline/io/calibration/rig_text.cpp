@@ -32,8 +32,8 @@ std::string biasText(const Vec3& bias) {
 std::string rateText(double rate_hz) { return rate_hz > 0.0 ? fmt::format("  rate_hz: {}\n", rate_hz) : ""; }
 
 const char* distortionText(DistortionModel model) {
-  if (model == DistortionModel::RadialTangential) return "radial-tangential";
-  return model == DistortionModel::Equidistant ? "equidistant" : "none";
+  if (model == "radial-tangential") return "radial-tangential";
+  return model == "equidistant" ? "equidistant" : "none";
 }
 
 std::string cameraText(const CameraCalibration& camera, bool has_extrinsics) {
@@ -43,8 +43,8 @@ std::string cameraText(const CameraCalibration& camera, bool has_extrinsics) {
   text += fmt::format("  resolution: [{}, {}]\n", camera.width_px, camera.height_px);
   text +=
       fmt::format("  intrinsics: [{}, {}, {}, {}]\n", camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
-  text += fmt::format("  distortion_model: {}\n", distortionText(camera.distortion_model));
-  if (camera.distortion_model != DistortionModel::None) {
+  text += fmt::format("  distortion_model: {}\n", distortionText(camera.model));
+  if (camera.model != "none") {
     text += fmt::format("  distortion_coefficients: [{}]\n", fmt::join(camera.distortion, ", "));
   }
   if (camera.time_offset_to_imu_s != 0.0) {

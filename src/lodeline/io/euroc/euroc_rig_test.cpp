@@ -50,7 +50,7 @@ TEST_F(EurocRigTest, ReadsEverySensor) {
   EXPECT_EQ(rig.cameras[0].width_px, 16);
   EXPECT_EQ(rig.cameras[0].height_px, 12);
   EXPECT_EQ(rig.cameras[0].fy_px, 21.0);
-  EXPECT_EQ(rig.cameras[0].distortion_model, DistortionModel::RadialTangential);
+  EXPECT_EQ(rig.cameras[0].model, "radial-tangential");
   EXPECT_THAT(rig.cameras[0].distortion, ElementsAre(-0.1, 0.01, 1e-4, 2e-4));
   ASSERT_TRUE(rig.magnetometer.has_value());
   EXPECT_EQ(rig.magnetometer->noise_density_T_per_sqrtHz, 1e-8);

@@ -13,8 +13,8 @@ std::string cameraModel(const CameraCalibration& camera) {
   std::vector<double> parameters = {camera.fx_px, camera.fy_px, camera.cx_px + 0.5, camera.cy_px + 0.5};
   parameters.insert(parameters.end(), camera.distortion.begin(), camera.distortion.end());
   const char* name = "PINHOLE";
-  if (camera.distortion_model == DistortionModel::Equidistant) name = "OPENCV_FISHEYE";
-  if (camera.distortion_model == DistortionModel::RadialTangential) {
+  if (camera.model == "equidistant") name = "OPENCV_FISHEYE";
+  if (camera.model == "radial-tangential") {
     const bool is_short = camera.distortion.size() <= 4;
     name = is_short ? "OPENCV" : "FULL_OPENCV";
     parameters.resize(is_short ? 8 : 12, 0.0);
