@@ -55,8 +55,8 @@ struct CameraModel {
   TypicalLens typical;
 
   bool takes(size_t count) const;
-  /// The permitted numbers of parameters in words, for example "4, 5 or 8".
-  std::string countWords() const;
+  /// The permitted numbers of parameters after the first `without` ones in words, for example "4, 5 or 8".
+  std::string countWords(size_t without = 0) const;
 };
 
 /// All registered models in the order of registration.

@@ -69,11 +69,11 @@ bool CameraModel::takes(size_t count) const {
   return std::find(counts.begin(), counts.end(), count) != counts.end();
 }
 
-std::string CameraModel::countWords() const {
+std::string CameraModel::countWords(size_t without) const {
   std::string words;
   for (size_t i = 0; i < counts.size(); ++i) {
     if (i > 0) words += i + 1 == counts.size() ? " or " : ", ";
-    words += std::to_string(counts[i]);
+    words += std::to_string(counts[i] - without);
   }
   return words;
 }

@@ -89,8 +89,7 @@ TEST_P(ResidualThroughALens, GrowsOutwardsHoweverFarOff) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, ResidualThroughALens,
-                         testing::Values("none", "radial-tangential",
-                                         "equidistant"));
+                         testing::Values("none", "radial-tangential", "equidistant"));
 
 }  // namespace
 }  // namespace lodeline

@@ -116,8 +116,7 @@ TEST_P(IntrinsicsOfAModel, TakeTheirDerivativeWhereThePointShouldBe) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, IntrinsicsOfAModel,
-                         testing::Values("none", "radial-tangential",
-                                         "equidistant"));
+                         testing::Values("none", "radial-tangential", "equidistant"));
 
 }  // namespace
 }  // namespace lodeline
