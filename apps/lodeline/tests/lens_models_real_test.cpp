@@ -18,7 +18,7 @@ namespace lodeline {
 namespace {
 
 struct Lens {
-  DistortionModel model;
+  const char* model;
   /// Long enough for the whole view to be within the original images, which extend to 37 degrees off the
   /// axis.
   double focal_length_px;
@@ -117,6 +117,10 @@ class LensModels : public testing::TestWithParam<int> {
 
 TEST_P(LensModels, EquidistantReachesItsFigures) {
   expectItsFigures({"equidistant", 560.0, {-0.012, 0.004, -0.003, 0.0005}});
+}
+
+TEST_P(LensModels, DoubleSphereReachesItsFigures) {
+  expectItsFigures({"double-sphere", 448.0, {-0.2, 0.57}});
 }
 
 TEST_P(LensModels, PinholeReachesItsFigures) { expectItsFigures({"none", 490.0, {}}); }
