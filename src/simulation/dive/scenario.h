@@ -49,6 +49,7 @@ struct ScenarioChanges {
   std::optional<int> width_px, height_px, cameras;
   std::optional<double> camera_rate_hz, imu_rate_hz, magnetometer_rate_hz;
   std::optional<std::string> imu_grade;
+  std::optional<std::string> camera_model;
   std::string realism = "clean";
   std::vector<std::string> effects;  ///< "name=on|off", applied after `realism`
   bool starts_moving = false;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "lodeline/sensors/rig.h"
 
 namespace lodeline {
@@ -19,13 +21,16 @@ struct StandardRigOptions {
   double magnetometer_rate_hz = 50.0;
   double pressure_rate_hz = 2.0;
   double sonar_rate_hz = 20.0;
+  /// Name of a camera model (cameras/camera_model.h). Empty: the radial-tangential lenses of the rig itself.
+  std::string camera_model;
 };
 
 /// The hand-held rig of the simulator. Its cameras are side by side with a baseline of 14 cm, look ahead, are
 /// 70 degrees wide (as behind glass in water) and have barrel distortion. The IMU is between them, upside
 /// down and rotated; the magnetometer is inside the IMU. A pressure port is behind, and a sonar head below
 /// scans across the view. As in any rig, the extrinsics differ a little from the drawing. The IMU noise has
-/// its default.
+/// its default. A `camera_model` gives both cameras that model's typical lens, with focal lengths 0.3 %
+/// apart.
 MountedRig standardRig(const StandardRigOptions& options);
 
 }  // namespace lodeline

@@ -168,7 +168,7 @@ TEST_F(KalibrModels, AreRefusedWithTheKeyThatIsWrong) {
   short_list.intrinsics = "[301, 302, 370, 240]";
   wide.intrinsics = "[-0.2, 0.6, 3.01, 3.02, 3.7, 2.4]";
   for (const auto& [model, complaint] :
-       {std::pair(swapped, "focal lengths must be positive"), std::pair(odd, "camera_model 'cubic'"),
+       {std::pair(swapped, "xi of the double-sphere model is 301"), std::pair(odd, "camera_model 'cubic'"),
         std::pair(short_list, "must be 6 finite numbers (xi, alpha, fx, fy, cx, cy in px)"),
         std::pair(wide, "shares of the image's size")}) {
     EXPECT_THAT([&, &model = model] { readChain(chain(model)); },
