@@ -69,12 +69,6 @@ struct ImuCalibration {
   ImuNoise noise;
 };
 
-enum class DistortionModel {
-  None,
-  RadialTangential,  ///< Brown-Conrady: k1 k2 p1 p2 [k3 [k4 k5 k6]] (OpenCV's order)
-  Equidistant,       ///< Kannala-Brandt: k1 k2 k3 k4
-};
-
 /// A camera as described by a calibration file; `makeCamera` creates the projection model from it.
 struct CameraCalibration {
   std::string name;  ///< e.g. "cam0"
@@ -84,8 +78,8 @@ struct CameraCalibration {
   double fy_px = 0.0;
   double cx_px = 0.0;  ///< pixel centres have integer coordinates
   double cy_px = 0.0;
-  DistortionModel distortion_model = DistortionModel::None;
-  std::vector<double> distortion;
+  std::string model = "none";      ///< name of a CameraModel (cameras/camera_model.h)
+  std::vector<double> distortion;  ///< parameters of the model after fx, fy, cx, cy
   double rate_hz = 20.0;
   Rigid3 body_from_camera;
   /// Offset added to camera stamps to obtain the IMU clock (Kalibr's timeshift_cam_imu).

@@ -95,13 +95,16 @@ struct StandardRigOptions {
   double magnetometer_rate_hz = 50.0;
   double pressure_rate_hz = 2.0;
   double sonar_rate_hz = 20.0;
+  /// Name of a camera model (cameras/camera_model.h). Empty: the radial-tangential lenses of the rig itself.
+  std::string camera_model;
 };
 
 /// The hand-held rig of the simulator. Its cameras are side by side with a baseline of 14 cm, look ahead, are
 /// 70 degrees wide (as behind glass in water) and have barrel distortion. The IMU is between them, upside
 /// down and rotated; the magnetometer is inside the IMU. A pressure port is behind, and a sonar head below
 /// scans across the view. As in any rig, the extrinsics differ a little from the drawing. The IMU noise has
-/// its default.
+/// its default. A `camera_model` gives both cameras that model's typical lens, with focal lengths 0.3 %
+/// apart.
 MountedRig standardRig(const StandardRigOptions& options);
 
 enum class WorldKind { Cave, Wreck, None };
@@ -141,6 +144,7 @@ struct ScenarioChanges {
   std::optional<int> width_px, height_px, cameras;
   std::optional<double> camera_rate_hz, imu_rate_hz, magnetometer_rate_hz;
   std::optional<std::string> imu_grade;
+  std::optional<std::string> camera_model;
   std::string realism = "clean";
   std::vector<std::string> effects;  ///< "name=on|off", applied after `realism`
   bool starts_moving = false;

@@ -28,7 +28,7 @@ Rig previewRig() {
     camera.fx_px = camera.fy_px = 420.0;
     camera.cx_px = 320.4;
     camera.cy_px = 238.7;
-    camera.distortion_model = DistortionModel::RadialTangential;
+    camera.model = "radial-tangential";
     camera.distortion = {-0.18, 0.05, 0.0005, -0.0003};
     Mat3 rotation;  // camera x right, y down, z forward in a body with x forward, y left, z up
     rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;

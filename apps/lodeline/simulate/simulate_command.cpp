@@ -8,6 +8,7 @@
 
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_recording.h"
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/diagnostics.h"
 
 namespace lodeline {
@@ -29,6 +30,7 @@ std::string footer() {
       "\nExamples:\n"
       "  lodeline simulate demo -o demo --realism field\n"
       "  lodeline simulate cave1_short -o dive --metres 60 --effect flat_port=on\n"
+      "  lodeline simulate demo -o fisheye --camera-model double-sphere\n"
       "  lodeline simulate figure_eight -o calibration --seed 7\n\n"
       "An interrupted simulation goes on where it stopped when the same command is given again.";
   return text;
@@ -71,6 +73,8 @@ void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
   command->add_option("--imu-rate-hz", c.imu_rate_hz, "inertial readings a second (200)");
   command->add_option("--magnetometer-rate-hz", c.magnetometer_rate_hz,
                       "magnetometer readings a second (50)");
+  command->add_option("--camera-model", c.camera_model,
+                      "lens of the cameras: " + cameraModelNames() + " (the rig's own)");
   command->add_option("--imu", c.imu_grade, "gx5-25, gv7 or consumer");
   command->add_flag("--starts-moving", c.starts_moving, "begin in mid-swim instead of at rest");
 }

@@ -7,20 +7,33 @@
 
 namespace lodeline {
 
+struct CameraModel;
+
+/// Derivative of a pixel by the parameters of its camera: fx, fy, cx, cy, then CameraCalibration::distortion.
+using PixelByParameters = Eigen::Matrix<double, 2, Eigen::Dynamic>;
+
 /// Projects points of the camera frame C (z forward, x right, y down; m) to pixels and back. Implementations
 /// are immutable, so threads can share them.
 class Camera {
  public:
-  explicit Camera(const CameraCalibration& calibration) : calibration_(calibration) {}
+  explicit Camera(const CameraCalibration& calibration);
   virtual ~Camera() = default;
 
-  /// Pixel of a point and, where requested, the 2x3 derivative of the pixel by the point (px/m). Returns
-  /// nothing where the model is invalid: behind the camera, or beyond the angle up to which the distortion
-  /// grows monotonically. The pixel may be outside the image.
-  virtual std::optional<Vec2> project(const Vec3& point_C, Mat23* pixel_by_point = nullptr) const = 0;
+  /// Pixel of a point and, where requested, its derivative by the point (2x3, px/m) and by the parameters.
+  /// Returns nothing where the model is invalid: at the centre, behind the camera, or beyond maxAngle_rad().
+  /// The pixel may be outside the image.
+  virtual std::optional<Vec2> project(const Vec3& point_C, Mat23* pixel_by_point = nullptr,
+                                      PixelByParameters* pixel_by_parameters = nullptr) const = 0;
 
   /// Unit viewing ray of a pixel in C, exact to 1e-10 rad. Returns nothing outside the range of the model.
   virtual std::optional<Vec3> unproject(const Vec2& pixel) const = 0;
+
+  /// Largest angle to the optical axis at which the model is valid, rad. Up to it the distance of the pixel
+  /// from the principal point grows with the angle.
+  virtual double maxAngle_rad() const = 0;
+
+  /// Derivative of the pixel by the angle to the optical axis, on the axis; along u and along v, px/rad.
+  Vec2 focalLengthsOnAxis_px() const;
 
   /// Whether a pixel is in the image and at least `border_px` from its edges.
   bool contains(const Vec2& pixel, double border_px = 0.0) const {
@@ -30,12 +43,15 @@ class Camera {
   }
 
   const CameraCalibration& calibration() const { return calibration_; }
+  const CameraModel& model() const { return *model_; }
 
  private:
   CameraCalibration calibration_;
+  const CameraModel* model_;
 };
 
-/// Creates the camera model named by a calibration. Throws InputError where the parameters are invalid.
+/// Creates the camera of a calibration by the model that it names. Throws InputError for an unknown model and
+/// for invalid parameters.
 std::shared_ptr<const Camera> makeCamera(const CameraCalibration& calibration);
 
 }  // namespace lodeline

@@ -1,19 +1,43 @@
-#include "lodeline/cameras/equidistant_camera.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
+
+#include "lodeline/cameras/camera_model.h"
+#include "lodeline/cameras/image_place.h"
 
 namespace lodeline {
 namespace {
 
-constexpr double kWidestLensRad = 115.0 * std::numbers::pi / 180.0;
 constexpr double kConvergedStepRad = 1e-13;
 /// Tangent of the angle to the axis below which the series is used. There the series is exact to machine
 /// precision, and the closed form would divide zero by zero.
 constexpr double kNearAxis = 1e-4;
 
-}  // namespace
+/// Fisheye camera model. The image radius theta_d is a polynomial of the angle theta to the optical axis:
+///
+///     theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
+///
+/// Source: J. Kannala, S. Brandt, "A generic camera model and calibration method for conventional,
+/// wide-angle, and fish-eye lenses", PAMI 2006, as used by OpenCV's fisheye module and Kalibr. The model is
+/// valid beyond 90 degrees while the polynomial increases, at most to the 115 degrees of the widest lenses
+/// made.
+class EquidistantCamera final : public Camera {
+ public:
+  explicit EquidistantCamera(const CameraCalibration& calibration);
+
+  std::optional<Vec2> project(const Vec3& point_C, Mat23* pixel_by_point,
+                              PixelByParameters* pixel_by_parameters) const override;
+  std::optional<Vec3> unproject(const Vec2& pixel) const override;
+  double maxAngle_rad() const override { return max_angle_rad_; }
+
+ private:
+  double distort(double theta, double* derivative) const;
+  double findMaxAngle() const;
+
+  std::array<double, 4> k_{};
+  double max_angle_rad_ = 0.0;
+  double max_distorted_ = 0.0;
+};
 
 EquidistantCamera::EquidistantCamera(const CameraCalibration& calibration) : Camera(calibration) {
   std::copy_n(calibration.distortion.begin(), std::min(calibration.distortion.size(), k_.size()), k_.begin());
@@ -37,7 +61,7 @@ double EquidistantCamera::findMaxAngle() const {
   constexpr int kSteps = 2000;
   double good = 0.0;
   for (int i = 1; i <= kSteps; ++i) {
-    double bad = kWidestLensRad * i / kSteps;
+    double bad = kWidestLens_rad * i / kSteps;
     if (rises(bad)) {
       good = bad;
       continue;
@@ -52,7 +76,8 @@ double EquidistantCamera::findMaxAngle() const {
   return good;
 }
 
-std::optional<Vec2> EquidistantCamera::project(const Vec3& point_C, Mat23* pixel_by_point) const {
+std::optional<Vec2> EquidistantCamera::project(const Vec3& point_C, Mat23* pixel_by_point,
+                                               PixelByParameters* pixel_by_parameters) const {
   const double x = point_C.x(), y = point_C.y(), z = point_C.z();
   const double rho2 = x * x + y * y;
   const double rho = std::sqrt(rho2);
@@ -79,12 +104,17 @@ std::optional<Vec2> EquidistantCamera::project(const Vec3& point_C, Mat23* pixel
     *pixel_by_point << c.fx_px * (scale + x * x * bend), c.fx_px * x * y * bend, c.fx_px * x * scale_by_z,
         c.fy_px * x * y * bend, c.fy_px * (scale + y * y * bend), c.fy_px * y * scale_by_z;
   }
+  if (pixel_by_parameters) {
+    setPinholeColumns(c, scale * point_C.head<2>(), pixel_by_parameters);
+    const Vec2 lateral_px(c.fx_px * x, c.fy_px * y);
+    double power = rho > 0.0 ? theta / rho : 1.0 / z;
+    for (int k = 4; k < 8; ++k) pixel_by_parameters->col(k) = (power *= theta * theta) * lateral_px;
+  }
   return Vec2(c.fx_px * scale * x + c.cx_px, c.fy_px * scale * y + c.cy_px);
 }
 
 std::optional<Vec3> EquidistantCamera::unproject(const Vec2& pixel) const {
-  const CameraCalibration& c = calibration();
-  const Vec2 distorted((pixel.x() - c.cx_px) / c.fx_px, (pixel.y() - c.cy_px) / c.fy_px);
+  const Vec2 distorted = placeOf(calibration(), pixel);
   const double target = distorted.norm();
   if (!(target <= max_distorted_)) return std::nullopt;
   if (target == 0.0) return Vec3::UnitZ();
@@ -104,6 +134,24 @@ std::optional<Vec3> EquidistantCamera::unproject(const Vec2& pixel) const {
   }
   const Vec2 direction = distorted / target * std::sin(theta);
   return Vec3(direction.x(), direction.y(), std::cos(theta));
+}
+
+}  // namespace
+
+CameraModel equidistantModel() {
+  return {
+      .name = "equidistant",
+      .distortions = {"equidistant", "equi"},
+      .aliases = {"kb4", "KANNALA_BRANDT", "KannalaBrandt8", "fisheye"},
+      .parameters = {"k1", "k2", "k3", "k4"},
+      .counts = {4},
+      .make = [](const CameraCalibration& c) -> std::shared_ptr<const Camera> {
+        return std::make_shared<EquidistantCamera>(c);
+      },
+      .radial_model = "equidistant",
+      .colmap = {{"OPENCV_FISHEYE", 4}},
+      .typical = {0.55, {-0.012, 0.004, -0.003, 0.0005}},
+  };
 }
 
 }  // namespace lodeline

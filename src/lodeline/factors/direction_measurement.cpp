@@ -13,23 +13,6 @@ namespace {
 constexpr double kMinCosine = 0.1;
 constexpr double kOutlierResidual = 1e4;
 
-/// DirectionMeasurement::in_plane of a unit ray, and its derivative by the ray.
-Vec2 placeInPlane(DistortionModel model, const Vec3& ray, Mat23* by_ray) {
-  constexpr double kOnAxis = 1e-6;
-  const double sine = ray.head<2>().norm();
-  if (model != DistortionModel::Equidistant || sine < kOnAxis) {
-    const Vec2 place = ray.head<2>() / ray.z();
-    *by_ray << Mat2::Identity() / ray.z(), -place / ray.z();
-    return place;
-  }
-  const Vec2 outwards = ray.head<2>() / sine;
-  const double angle = std::atan2(sine, ray.z());
-  by_ray->leftCols<2>() =
-      angle / sine * Mat2::Identity() + (ray.z() - angle / sine) * outwards * outwards.transpose();
-  by_ray->col(2) = -sine * outwards;
-  return angle * outwards;
-}
-
 /// Second derivative d^2(pixel) / d(offset)^2, columns aa, ab, bb, by finite differences of the first
 /// derivative. Zero where the camera cannot project the neighbouring ray.
 Mat23 imageCurvature(const Camera& camera, const Vec3& ray, const Mat32& tangent, const Mat2& by_offset) {
@@ -68,6 +51,22 @@ struct Quadratic {
 
 }  // namespace
 
+Vec2 placeInPlane(RadialPlane plane, const Vec3& ray, Mat23* by_ray) {
+  constexpr double kOnAxis = 1e-6;
+  const double sine = ray.head<2>().norm();
+  if (plane == RadialPlane::Tangent || sine < kOnAxis) {
+    const Vec2 place = ray.head<2>() / ray.z();
+    *by_ray << Mat2::Identity() / ray.z(), -place / ray.z();
+    return place;
+  }
+  const Vec2 outwards = ray.head<2>() / sine;
+  const double angle = std::atan2(sine, ray.z());
+  by_ray->leftCols<2>() =
+      angle / sine * Mat2::Identity() + (ray.z() - angle / sine) * outwards * outwards.transpose();
+  by_ray->col(2) = -sine * outwards;
+  return angle * outwards;
+}
+
 DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, const Vec3& bearing_C,
                                                        double sigma_px) {
   DirectionMeasurement measurement;
@@ -78,15 +77,15 @@ DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, con
   const Mat2 by_offset = pixel_by_point * measurement.tangent_C;
   measurement.sqrt_information = by_offset / sigma_px;
   measurement.curvature = imageCurvature(camera, bearing_C, measurement.tangent_C, by_offset) / sigma_px;
-  const CameraCalibration& calibration = camera.calibration();
   Mat23 in_plane_by_ray;
-  measurement.in_plane = placeInPlane(calibration.distortion_model, bearing_C, &in_plane_by_ray);
+  measurement.in_plane = placeInPlane(camera.model().plane, bearing_C, &in_plane_by_ray);
   measurement.in_plane_by_sigmas =
       in_plane_by_ray * measurement.tangent_C * measurement.sqrt_information.inverse();
-  measurement.focal_lengths_sigmas = Vec2(calibration.fx_px, calibration.fy_px) / sigma_px;
   measurement.sigmas_per_px = 1.0 / sigma_px;
-  if (const auto centre = camera.project(Vec3::UnitZ()); pixel && centre)
-    measurement.from_centre_sigmas = (*pixel - *centre) / sigma_px;
+  Mat23 on_axis_by_point;
+  const auto centre = camera.project(Vec3::UnitZ(), &on_axis_by_point);
+  measurement.focal_lengths_sigmas = Vec2(on_axis_by_point(0, 0), on_axis_by_point(1, 1)) / sigma_px;
+  if (pixel && centre) measurement.from_centre_sigmas = (*pixel - *centre) / sigma_px;
   return measurement;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lodeline/cameras/camera.h"
+#include "lodeline/cameras/camera_model.h"
 
 namespace lodeline {
 
@@ -19,15 +19,18 @@ struct DirectionMeasurement {
   Mat23 curvature = Mat23::Zero();
   Vec2 from_centre_sigmas = Vec2::Zero();    ///< pixel minus principal point, over sigma_px
   double sigmas_per_px = 1.0;                ///< 1 / sigma_px
-  Vec2 focal_lengths_sigmas = Vec2::Ones();  ///< over sigma_px
-  /// Position of the ray in the plane in which the camera model defines its radius. Its distance from the
-  /// centre is the tangent of the angle to the optical axis; in the equidistant model it is the angle.
+  Vec2 focal_lengths_sigmas = Vec2::Ones();  ///< on the axis, over sigma_px
+  /// Position of the ray in the RadialPlane of the camera model. Its distance from the centre is the tangent
+  /// of the angle to the optical axis, or the angle.
   Vec2 in_plane = Vec2::Zero();
   Mat2 in_plane_by_sigmas = Mat2::Zero();  ///< d(in_plane) / d(pixel over sigma_px)
 
   /// Measurement of a pixel whose ray is `bearing_C`. The camera must be able to project that ray.
   static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
 };
+
+/// Position of a unit ray in a RadialPlane (DirectionMeasurement::in_plane) and its derivative by the ray.
+Vec2 placeInPlane(RadialPlane plane, const Vec3& ray, Mat23* by_ray);
 
 /// Residual of a DirectionMeasurement for the homogeneous point q (frame of the target camera, any positive
 /// scale). `by_point` receives the derivative d(residual)/dq unless it is null. With the offset o = B^T q /

@@ -1,6 +1,9 @@
 #include "lodeline/factors/intrinsics_factor.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "lodeline/cameras/fit_camera.h"
 
 namespace lodeline {
 namespace {
@@ -29,6 +32,20 @@ struct Place {
            profile(intrinsics) * outwards_sigmas;
   }
 };
+
+/// The lens of the same model that is closest to `lens` with the profile k_1 |p|^2 + k_2 |p|^4 added.
+CameraCalibration withProfile(const CameraCalibration& lens, double k_1, double k_2) {
+  const auto camera = makeCamera(lens);
+  const Vec2 focal_lengths_px = camera->focalLengthsOnAxis_px();
+  std::vector<Sighting> sightings = imageSightings(*camera);
+  for (Sighting& sighting : sightings) {
+    Mat23 by_ray;
+    const Vec2 place = placeInPlane(camera->model().plane, sighting.ray_C, &by_ray);
+    const double squared = place.squaredNorm();
+    sighting.pixel += (k_1 * squared + k_2 * squared * squared) * focal_lengths_px.cwiseProduct(place);
+  }
+  return fitCamera(lens, std::move(sightings)).calibration;
+}
 
 }  // namespace
 
@@ -72,11 +89,10 @@ CameraCalibration correctedIntrinsics(const CameraCalibration& file, const doubl
   lens.cy_px += intrinsics[3];
   const double k_1 = intrinsics[4], k_2 = intrinsics[5];
   if (k_1 == 0.0 && k_2 == 0.0) return lens;
-  if (lens.distortion_model == DistortionModel::None) {
-    lens.distortion_model = DistortionModel::RadialTangential;
-    lens.distortion.clear();
-  }
-  if (lens.distortion.size() < 4) lens.distortion.resize(4, 0.0);
+  const CameraModel* radial = findCameraModel(cameraModel(file).radial_model);
+  if (radial == nullptr) return withProfile(lens, k_1, k_2);
+  lens.model = radial->name;
+  lens.distortion.resize(std::max(lens.distortion.size(), radial->counts.front()), 0.0);
   lens.distortion[0] += k_1;
   lens.distortion[1] += k_2;
   return lens;

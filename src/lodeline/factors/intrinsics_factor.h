@@ -12,14 +12,13 @@ namespace lodeline {
 // Parameter block of the intrinsics of a camera, all zero where the calibration file is right:
 //   intrinsics  [s_u, s_v, c_u, c_v, k_1, k_2]: relative change of both focal lengths, shift of the principal
 //               point (px), change of the first two radial coefficients.
-// Let p be the position of a ray in the plane in which the camera model defines its radius
-// (DirectionMeasurement::in_plane). Let u be the pixel at which the intrinsics of the file project the ray.
-// The corrected intrinsics project it at
+// Let p be the position of a ray in the RadialPlane of the camera model (DirectionMeasurement::in_plane). Let
+// u be the pixel at which the intrinsics of the file project the ray. The corrected intrinsics project it at
 //   u + diag(s_u, s_v) (u - c) + [c_u, c_v] + (k_1 |p|^2 + k_2 |p|^4) diag(f_u, f_v) p
-// with the principal point c and the focal lengths f of the file. This is the first-order effect of different
-// numbers in the file. Powers of the sine of the angle, in place of p, would leave 0.3 px at the border for
-// errors of 0.006 in the coefficients. Their signs would be opposite on opposite sides. The focal length
-// would absorb that error.
+// with the principal point c of the file and its focal lengths f on the axis. This is the first-order effect
+// of different numbers in the file. Powers of the sine of the angle, in place of p, would leave 0.3 px at the
+// border for errors of 0.006 in the coefficients. Their signs would be opposite on opposite sides. The focal
+// length would absorb that error.
 
 constexpr int kIntrinsicsSize = 6;
 
@@ -45,8 +44,9 @@ Vec2 intrinsicsShift(const DirectionMeasurement& measurement, const Vec2& residu
 /// DirectionMeasurement::bearing_C is the ray by the file alone.
 Vec3 rayThrough(const DirectionMeasurement& measurement, const double* intrinsics);
 
-/// The calibration of a file with an intrinsics block applied, in the camera model of the file. A model
-/// without distortion becomes radial-tangential where the block changes a radial coefficient.
+/// The calibration of a file with an intrinsics block applied, in the camera model of the file. Where the
+/// model has no coefficients k_1 and k_2, its parameters are fitted to the corrected pixels. A pinhole camera
+/// becomes radial-tangential where the block changes a radial coefficient.
 CameraCalibration correctedIntrinsics(const CameraCalibration& file, const double* intrinsics);
 
 /// Adds the intrinsics block of the observing camera to another reprojection factor with two residuals. The

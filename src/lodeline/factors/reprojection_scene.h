@@ -3,10 +3,12 @@
 #include <ceres/cost_function.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
-#include "lodeline/cameras/camera.h"
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/factors/numeric_jacobian.h"
 #include "lodeline/factors/reprojection_factor.h"
 #include "lodeline/geometry/so3.h"
@@ -29,7 +31,7 @@ struct ReprojectionScene {
     calibration.fy_px = 457.0;
     calibration.cx_px = 367.0;
     calibration.cy_px = 248.0;
-    calibration.distortion_model = DistortionModel::RadialTangential;
+    calibration.model = "radial-tangential";
     calibration.distortion = {-0.283, 0.074, 0.0002, 1.8e-5};
     return calibration;
   }
@@ -50,13 +52,30 @@ struct ReprojectionScene {
   }
 };
 
-/// Calibration of the same camera with another distortion model.
-inline CameraCalibration withModel(DistortionModel model) {
+/// Calibration of the same camera with another model: its typical lens, with the same focal length on the
+/// axis.
+inline CameraCalibration withModel(const std::string& name) {
   CameraCalibration file = ReprojectionScene::calibration();
-  file.distortion_model = model;
-  if (model == DistortionModel::None) file.distortion.clear();
-  if (model == DistortionModel::Equidistant) file.distortion = {-0.02, 0.01, -0.003, 0.001};
+  const Vec2 focal_lengths_px(file.fx_px, file.fy_px);
+  file.model = name;
+  file.distortion = cameraModel(file).typical.parameters;
+  file.fx_px = file.fy_px = 1.0;
+  const Vec2 on_axis_px = makeCamera(file)->focalLengthsOnAxis_px();
+  file.fx_px = focal_lengths_px.x() / on_axis_px.x();
+  file.fy_px = focal_lengths_px.y() / on_axis_px.y();
   return file;
+}
+
+/// All registered models, for parameterized tests, and the names of such tests.
+inline std::vector<std::string> modelNames() {
+  std::vector<std::string> names;
+  for (const CameraModel& model : cameraModels()) names.emplace_back(model.name);
+  return names;
+}
+inline std::string modelTestName(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 /// Residual of a factor with two rows.

@@ -171,7 +171,7 @@ void FrontEnd::rejectOutliers(const std::vector<Vec3>& previous_bearings, const 
     bearings.push_back(camera.unproject(track.warp.position.cast<double>()).value_or(Vec3::Zero()));
   }
   const auto agreeing = [&](const Mat3& rotation) {
-    return twoPointRansac(previous_bearings, bearings, rotation, camera.calibration().fx_px,
+    return twoPointRansac(previous_bearings, bearings, rotation, camera.focalLengthsOnAxis_px().x(),
                           options_.consensus);
   };
   const auto count = [](const std::vector<bool>& which) {

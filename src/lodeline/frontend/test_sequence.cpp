@@ -43,7 +43,7 @@ CameraCalibration cameraAt(const std::string& name, double x_m) {
   c.fx_px = c.fy_px = 458.0;
   c.cx_px = 375.5;
   c.cy_px = 239.5;
-  c.distortion_model = DistortionModel::None;
+  c.model = "none";
   c.rate_hz = TestSequence::kRateHz;
   c.body_from_camera.translation = Vec3(x_m, 0.0, 0.0);
   return c;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "lodeline/cameras/camera_file_keys.h"
+
 namespace lodeline {
 namespace {
 
@@ -17,13 +19,14 @@ std::string transform(const Rigid3& body_from_sensor) {
 }
 
 std::string cameraText(const CameraCalibration& c) {
-  const bool equidistant = c.distortion_model == DistortionModel::Equidistant;
+  const CameraFileKeys keys = cameraFileKeys(c);
   std::string text = "sensor_type: camera\n" + transform(c.body_from_camera);
-  text += fmt::format("rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n", c.rate_hz, c.width_px,
-                      c.height_px);
-  text += fmt::format("intrinsics: [{}, {}, {}, {}]  # fu, fv, cu, cv\n", c.fx_px, c.fy_px, c.cx_px, c.cy_px);
-  text += fmt::format("distortion_model: {}\ndistortion_coefficients: [{}]\n",
-                      equidistant ? "equidistant" : "radial-tangential", fmt::join(c.distortion, ", "));
+  text += fmt::format("rate_hz: {}\nresolution: [{}, {}]\ncamera_model: {}\n", c.rate_hz, c.width_px,
+                      c.height_px, keys.camera_model);
+  text += fmt::format("intrinsics: [{}]  # {}\n", fmt::join(keys.intrinsics, ", "),
+                      intrinsicsNames(cameraModel(c)));
+  text += fmt::format("distortion_model: {}\ndistortion_coefficients: [{}]\n", keys.distortion_model,
+                      fmt::join(keys.distortion_coefficients, ", "));
   if (c.time_offset_to_imu_s != 0.0) text += fmt::format("timeshift_cam_imu: {}\n", c.time_offset_to_imu_s);
   return text;
 }

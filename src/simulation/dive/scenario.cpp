@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/diagnostics.h"
 #include "simulation/sensors/imu_model.h"
 
@@ -84,6 +85,20 @@ void changeExtent(const ScenarioChanges& c, Scenario& s) {
   if (c.metres && !c.seconds) s.duration_s = s.path_length_m / standard_speed;
 }
 
+void changeCameraModel(const std::string& name, Scenario& s) {
+  const CameraModel* model = findCameraModel(name);
+  if (model == nullptr) {
+    throw UsageError(
+        fmt::format("--camera-model: there is no model '{}'; there are {}", name, cameraModelNames()));
+  }
+  if (s.effects.has(Effect::FlatPort)) {
+    throw UsageError(
+        "--camera-model: the effect flat_port makes the lenses itself, by refraction; switch it off with "
+        "--effect flat_port=off");
+  }
+  s.rig.camera_model = model->name;
+}
+
 }  // namespace
 
 const std::vector<Scenario>& scenarios() {
@@ -121,6 +136,7 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
     s.rig.magnetometer_rate_hz = positive(*c.magnetometer_rate_hz, "--magnetometer-rate-hz");
   s.effects = EffectSet::named(c.realism);
   for (const std::string& assignment : c.effects) s.effects.set(assignment);
+  if (c.camera_model) changeCameraModel(*c.camera_model, s);
   s.starts_at_rest = !c.starts_moving;
   if (c.no_images) s.images = false;
   return s;
@@ -145,6 +161,7 @@ std::string describe(const Scenario& s) {
   for (const EffectDescription& d : effectDescriptions()) {
     text += fmt::format("  {}: {}\n", d.name, s.effects.has(d.effect) ? "on" : "off");
   }
+  if (!s.rig.camera_model.empty()) text += fmt::format("camera_model: {}\n", s.rig.camera_model);
   if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
   return text;
 }

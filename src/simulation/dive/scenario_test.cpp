@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/diagnostics.h"
 
 namespace lodeline {
@@ -70,9 +71,32 @@ TEST(Scenario, RefusesWhatMakesNoRecording) {
   expectRefused("demo", [](ScenarioChanges& c) { c.cameras = 3; });
   expectRefused("demo", [](ScenarioChanges& c) { c.camera_rate_hz = 0.0; });
   expectRefused("demo", [](ScenarioChanges& c) { c.imu_grade = "perfect"; });
+  expectRefused("demo", [](ScenarioChanges& c) { c.camera_model = "cubic"; });
+  expectRefused("demo", [](ScenarioChanges& c) {
+    c.camera_model = "ds";
+    c.effects = {"flat_port=on"};
+  });
   expectRefused("demo", [](ScenarioChanges& c) { c.realism = "dirty"; });
   expectRefused("demo", [](ScenarioChanges& c) { c.effects = {"silt=on"}; });
   expectRefused("demo", [](ScenarioChanges& c) { c.effects = {"silt_outs"}; });
+}
+
+// The focal length on the axis decides how wide the view is, whatever the model.
+TEST(Scenario, TakesEveryCameraModel) {
+  for (const CameraModel& model : cameraModels()) {
+    ScenarioChanges changes;
+    changes.camera_model = std::string(model.name);
+    const Rig rig = standardRig(makeScenario("demo", changes).rig).rig;
+    ASSERT_EQ(rig.cameras.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(rig.cameras[i].model, model.name);
+      EXPECT_NEAR(focalLengthOnAxis_px(rig.cameras[i]),
+                  model.typical.focal_length_share * 640.0 * (i == 0 ? 1.0 : 1.003), 1e-9);
+      const auto camera = makeCamera(rig.cameras[i]);
+      for (const Vec2& corner : {Vec2(0, 0), Vec2(639, 0), Vec2(0, 479), Vec2(639, 479)})
+        EXPECT_TRUE(camera->unproject(corner)) << model.name;
+    }
+  }
 }
 
 TEST(Scenario, DescriptionTellsScenariosApart) {
@@ -80,6 +104,9 @@ TEST(Scenario, DescriptionTellsScenariosApart) {
   const std::string plain = describe(makeScenario("demo", changes));
   EXPECT_EQ(plain, describe(makeScenario("demo", changes)));
   changes.effects = {"marine_snow=off"};
+  EXPECT_NE(plain, describe(makeScenario("demo", changes)));
+  changes = {};
+  changes.camera_model = "ds";
   EXPECT_NE(plain, describe(makeScenario("demo", changes)));
   changes = {};
   changes.seed = 2;

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/geometry/so3.h"
 #include "simulation/rendering/test_render.h"
 
@@ -77,8 +78,8 @@ TEST(ImageRenderer, SameBytesWhateverTheThreadsAndTheOrder) {
 
 /// Traces the points of corners of one noise-free image, projects them into a later image and compares them
 /// with the optical flow there.
-TEST(ImageRenderer, LandmarksAppearWhereTheyProject) {
-  const Rig rig = RenderFixture::stereoRig();
+/// Median distance between points tracked from image to image and the projections of the rendered surface.
+double medianError_px(const Rig& rig) {
   const ImageRenderer renderer(RenderFixture::shortCave(), rig, RenderSettings::ideal());
   const auto motion = swim();
   const double later_s = kTime_s + 0.2;
@@ -90,14 +91,31 @@ TEST(ImageRenderer, LandmarksAppearWhereTheyProject) {
   std::vector<double> errors_px;
   for (size_t i = 0; i < from.size(); ++i) {
     const auto point_W = renderer.hitPoint(0, Vec2(from[i].x, from[i].y), motion(kTime_s));
-    ASSERT_TRUE(point_W);
-    const auto pixel = camera->project(camera_from_world * *point_W);
+    EXPECT_TRUE(point_W);
+    const auto pixel = point_W ? camera->project(camera_from_world * *point_W) : std::nullopt;
     if (pixel) errors_px.push_back((*pixel - Vec2(to[i].x, to[i].y)).norm());
   }
   EXPECT_GT(errors_px.size(), 200u);
-  const double error_px = median(errors_px);
+  return median(errors_px);
+}
+
+TEST(ImageRenderer, LandmarksAppearWhereTheyProject) {
+  const double error_px = medianError_px(RenderFixture::stereoRig());
   RecordProperty("median_error_px", std::to_string(error_px));
   EXPECT_LE(error_px, 0.1);
+}
+
+TEST(ImageRenderer, RendersThroughEveryCameraModel) {
+  for (const CameraModel& model : cameraModels()) {
+    Rig rig = RenderFixture::stereoRig();
+    CameraCalibration& camera = rig.cameras[0];
+    camera.model = model.name;
+    camera.distortion = model.typical.parameters;
+    const double focal_px = model.typical.focal_length_share * camera.width_px;
+    camera.fx_px = camera.fy_px = focal_px;
+    camera.fx_px = camera.fy_px = focal_px * focal_px / focalLengthOnAxis_px(camera);
+    EXPECT_LE(medianError_px(rig), 0.15) << model.name;
+  }
 }
 
 TEST(ImageRenderer, StereoPairsLieOnTheirEpipolarLines) {

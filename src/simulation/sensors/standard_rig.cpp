@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
 
@@ -24,6 +25,18 @@ Quat diverFromSonar() {
   return Quat(rotation);
 }
 
+/// Replaces the lens by the typical one of a camera model.
+void setTypicalLens(const CameraModel& model, int index, CameraCalibration* calibration) {
+  const double on_axis_px =
+      model.typical.focal_length_share * calibration->width_px * (index == 0 ? 1.0 : 1.003);
+  calibration->model = model.name;
+  calibration->distortion = model.typical.parameters;
+  calibration->fx_px = calibration->fy_px = on_axis_px;
+  const double unscaled_px = focalLengthOnAxis_px(*calibration);
+  calibration->fx_px = on_axis_px * on_axis_px / unscaled_px;
+  calibration->fy_px = 0.999 * calibration->fx_px;
+}
+
 CameraCalibration camera(const StandardRigOptions& o, int index) {
   CameraCalibration calibration;
   calibration.name = fmt::format("cam{}", index);
@@ -34,10 +47,11 @@ CameraCalibration camera(const StandardRigOptions& o, int index) {
   calibration.fy_px = (index == 0 ? 456.8 : 458.1) * scale;
   calibration.cx_px = 0.5 * o.width_px + (index == 0 ? 3.2 : -4.7) * scale;
   calibration.cy_px = 0.5 * o.height_px + (index == 0 ? -5.1 : 2.4) * scale;
-  calibration.distortion_model = DistortionModel::RadialTangential;
+  calibration.model = "radial-tangential";
   calibration.distortion = index == 0 ? std::vector<double>{-0.172, 0.058, 3e-4, -2e-4}
                                       : std::vector<double>{-0.175, 0.060, -1e-4, 3e-4};
   calibration.rate_hz = o.camera_rate_hz;
+  if (const CameraModel* model = findCameraModel(o.camera_model)) setTypicalLens(*model, index, &calibration);
   return calibration;
 }
 

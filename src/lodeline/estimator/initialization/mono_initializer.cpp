@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/estimator/initialization/start.h"
 #include "lodeline/estimator/initialization/visual_inertial_alignment.h"
 #include "lodeline/estimator/initialization/visual_structure.h"
@@ -95,7 +96,7 @@ std::vector<Preintegration*> MonoInitializer::intervals() const {
 
 bool MonoInitializer::solveVisualStructure() {
   for (auto& [id, track] : window_.tracks()) track.landmark.reset();
-  const double focal_px = rig_.cameras[0].fx_px;
+  const double focal_px = focalLengthOnAxis_px(rig_.cameras[0]);
   const double parallax_px = focal_px * parallaxAfterBestRotation(commonTracks(
                                             window_, *window_.frames().front(), window_.newest()));
   if (parallax_px < options_.mono_initialization.min_parallax_px) {

@@ -1,5 +1,7 @@
 #include "lodeline/estimator/zero_velocity/stationary_detector.h"
 
+#include "lodeline/cameras/camera_model.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,7 +33,7 @@ double median(std::vector<double>* values) {
 StationaryDetector::StationaryDetector(const Rig& rig, const RestOptions& options)
     : options_(options),
       noise_(rig.imu.noise),
-      focal_length_px_(rig.cameras.empty() ? 0.0 : rig.cameras.front().fx_px),
+      focal_length_px_(rig.cameras.empty() ? 0.0 : focalLengthOnAxis_px(rig.cameras.front())),
       readings_(detectorOptions(rig.imu, options)) {}
 
 bool StationaryDetector::add(const FrameTracks& tracks, std::span<const ImuSample> imu) {

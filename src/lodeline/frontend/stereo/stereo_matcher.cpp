@@ -26,8 +26,9 @@ StereoMatcher::StereoMatcher(std::shared_ptr<const Camera> first, std::shared_pt
     : first_(std::move(first)),
       second_(std::move(second)),
       options_(options),
-      limit_px_(std::max(options.max_epipolar_px, kLimit_rad * second_->calibration().fx_px)),
-      rotation_(relativePose(*first_, *second_), second_->calibration().fx_px, limit_px_),
+      focal_length_px_(second_->focalLengthsOnAxis_px().x()),
+      limit_px_(std::max(options.max_epipolar_px, kLimit_rad * focal_length_px_)),
+      rotation_(relativePose(*first_, *second_), focal_length_px_, limit_px_),
       second_from_first_by_file_(relativePose(*first_, *second_)),
       second_from_first_(second_from_first_by_file_) {}
 
@@ -72,7 +73,7 @@ std::optional<Vec2> StereoMatcher::projectAt(const Vec3& first_bearing, double i
 
 double StereoMatcher::epipolarErrorPx(const RayPair& rays) const {
   const std::optional<Vec3> normal = epipolarNormal(second_from_first_, rays.first);
-  return normal ? second_->calibration().fx_px * std::abs(normal->dot(rays.second)) : 0.0;
+  return normal ? focal_length_px_ * std::abs(normal->dot(rays.second)) : 0.0;
 }
 
 std::optional<double> StereoMatcher::inverseDepth(const RayPair& rays) const {
@@ -156,15 +157,14 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
   const auto second_bearing = second_->unproject(warp->position.cast<double>());
   if (!second_bearing) return std::nullopt;
   const RayPair rays{*first_bearing, *second_bearing};
-  const double widest_px = options_.learn_rotation
-                               ? std::max(limit_px_, options_.max_rotation_rad * second_->calibration().fx_px)
-                               : limit_px_;
+  const double widest_px =
+      options_.learn_rotation ? std::max(limit_px_, options_.max_rotation_rad * focal_length_px_) : limit_px_;
   if (epipolarErrorPx(rays) > widest_px || !returns(first, second, *warp, track)) return std::nullopt;
   return StereoCandidate{*warp, rays};
 }
 
 void StereoMatcher::learn(const std::vector<RayPair>& candidates) {
-  delay_.add(candidates, second_from_first_, second_->calibration().fx_px, rate_C_, velocity_C_);
+  delay_.add(candidates, second_from_first_, focal_length_px_, rate_C_, velocity_C_);
   if (!options_.learn_rotation) return;
   rotation_.add(candidates, imageSecondFromFirst());
   place();
@@ -175,7 +175,7 @@ std::optional<double> StereoMatcher::accept(const RayPair& candidate) const {
   const auto inverse_depth = inverseDepth(candidate);
   if (!inverse_depth) return std::nullopt;
   const double farthest_per_m =
-      -kBeyondInfinityPx / (second_->calibration().fx_px * second_from_first_.translation.norm());
+      -kBeyondInfinityPx / (focal_length_px_ * second_from_first_.translation.norm());
   if (*inverse_depth < farthest_per_m || *inverse_depth > 1.0 / options_.min_depth_m) return std::nullopt;
   return std::max(0.0, *inverse_depth);
 }

@@ -92,7 +92,8 @@ class StereoMatcher {
 
   std::shared_ptr<const Camera> first_, second_;
   StereoMatcherOptions options_;
-  double limit_px_;  ///< max_epipolar_px, or a quarter of a degree
+  double focal_length_px_;  ///< of the second camera, on the axis
+  double limit_px_;         ///< max_epipolar_px, or a quarter of a degree
   StereoRotation rotation_;
   StereoDelay delay_;
   Rigid3 second_from_first_by_file_;

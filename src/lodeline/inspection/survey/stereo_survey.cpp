@@ -64,7 +64,7 @@ PointVerdict judge(const PointPair& point, const Arrangement& arrangement) {
 double turnOf(const Arrangement& as_calibrated, const std::vector<PointPair>& points) {
   constexpr double kLimit_px = 2.0;  // of stereo matches in a run
   const Rigid3 second_from_first = as_calibrated.first_from_second.inverse();
-  StereoRotation rotation(second_from_first, as_calibrated.second->calibration().fx_px, kLimit_px);
+  StereoRotation rotation(second_from_first, as_calibrated.second->focalLengthsOnAxis_px().x(), kLimit_px);
   std::vector<RayPair> pairs;
   for (const PointPair& point : points) {
     const std::optional<Vec3> first = as_calibrated.first->unproject(point.first);

@@ -24,22 +24,21 @@ YAML::Node basaltCamera(CalibrationMap* map, const YAML::Node& resolution) {
   std::optional<CalibrationMap> numbers = map->section("intrinsics");
   if (!numbers) throw InputError(map->at("intrinsics") + " is missing");
   camera["resolution"] = resolution;
-  if (type == "pinhole") {
-    camera["distortion_model"] = "none";
-  } else if (type == "kb4") {
-    camera["distortion_model"] = "equidistant";
-    camera["distortion_coefficients"] = numbersUnder({"k1", "k2", "k3", "k4"}, &*numbers);
-  } else if (type == "pinhole-radtan8") {
-    camera["distortion_model"] = "radial-tangential";
-    camera["distortion_coefficients"] =
-        numbersUnder({"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}, &*numbers);
-  } else {
+  const CameraModel* model = findCameraModel(type);
+  if (model == nullptr) {
     throw InputError(
         fmt::format("{} is '{}', a camera model that Lodeline does not have; calibrate with "
-                    "`basalt_calibrate --cam-types kb4` (or pinhole-radtan8)",
+                    "`basalt_calibrate --cam-types kb4` (or ds, eucm, pinhole-radtan8)",
                     map->atLine("camera_type"), type));
   }
-  camera["intrinsics"] = numbersUnder({"fx", "fy", "cx", "cy"}, &*numbers);
+  setCameraModel(*model, &camera);
+  std::vector<std::string> before(model->parameters.begin(), model->parameters.end());
+  const auto first_coefficient = before.begin() + static_cast<std::ptrdiff_t>(model->before_focal_lengths);
+  const std::vector<std::string> coefficients(first_coefficient, before.end());
+  before.erase(first_coefficient, before.end());
+  before.insert(before.end(), {"fx", "fy", "cx", "cy"});
+  camera["intrinsics"] = numbersUnder(before, &*numbers);
+  if (!coefficients.empty()) camera["distortion_coefficients"] = numbersUnder(coefficients, &*numbers);
   return camera;
 }
 

@@ -17,6 +17,11 @@ void collectScalars(const YAML::Node& node, YAML::Node* list) {
 
 }  // namespace
 
+void setCameraModel(const CameraModel& model, YAML::Node* camera) {
+  (*camera)["camera_model"] = std::string(model.projections.front());
+  (*camera)["distortion_model"] = std::string(model.distortions.front());
+}
+
 YAML::Node numbersAsWritten(const std::string& key, size_t count, CalibrationMap* map) {
   const std::vector<double> numbers = map->numbers(key);
   if (numbers.size() != count) {

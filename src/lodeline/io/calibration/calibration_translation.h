@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/yaml_file.h"
 
@@ -31,13 +32,14 @@ TranslatedSections translateOrbSlam(CalibrationMap* root);
 
 TranslatedSections translateOkvis(CalibrationMap* root);
 
-/// Accepts the camera types pinhole, pinhole-radtan8 and kb4; refuses ds, eucm and others.
 TranslatedSections translateBasalt(CalibrationMap* root);
 
 /// Translates one camera without extrinsics: the file of ROS's calibrator, a printed sensor_msgs/CameraInfo,
 /// or the file of OpenCV's calibration sample.
 YAML::Node translateCameraInfo(CalibrationMap* root);
 
+/// Writes the names of a model to the section of a camera.
+void setCameraModel(const CameraModel& model, YAML::Node* camera);
 /// The numbers under several keys as one list, copied as written.
 YAML::Node numbersUnder(const std::vector<std::string>& keys, CalibrationMap* map);
 /// The list of numbers under a key, copied as written. Throws InputError where it does not have `count`

@@ -32,7 +32,7 @@ void expectSameRig(const RigFile& file, const RigFile& truth) {
     EXPECT_EQ(camera.fy_px, expected.fy_px);
     EXPECT_EQ(camera.cx_px, expected.cx_px);
     EXPECT_EQ(camera.cy_px, expected.cy_px);
-    EXPECT_EQ(camera.distortion_model, expected.distortion_model);
+    EXPECT_EQ(camera.model, expected.model);
     ASSERT_GE(camera.distortion.size(), expected.distortion.size());
     for (size_t k = 0; k < camera.distortion.size(); ++k) {
       EXPECT_EQ(camera.distortion[k], k < expected.distortion.size() ? expected.distortion[k] : 0.0);
@@ -148,7 +148,7 @@ IMU.NoiseAcc: 0.0028
 IMU.GyroWalk: 0.000022
 IMU.AccWalk: 0.00086
 )");
-  EXPECT_EQ(fisheye.rig.cameras.at(1).distortion_model, DistortionModel::Equidistant);
+  EXPECT_EQ(fisheye.rig.cameras.at(1).model, "equidistant");
   EXPECT_TRUE(fisheye.rig.cameras.at(1).body_from_camera.translation.isApprox(Vec3(0, 0.1, 0), 1e-12));
 }
 
@@ -157,15 +157,24 @@ TEST_F(CalibrationTranslationTest, Okvis) {
   const RigFile late =
       read("late.yaml", replaced(test::eurocOkvis(), "image_delay: 0.00", "image_delay: 0.02"));
   EXPECT_EQ(late.rig.cameras.at(0).time_offset_to_imu_s, -0.02) << "OKVIS subtracts it from the stamp";
-  EXPECT_THAT(refusal("fov.yaml", replaced(test::eurocOkvis(), "distortion_type: radialtangential",
-                                           "distortion_type: fov")),
-              HasSubstr("'fov', a camera model that Lodeline does not have"));
+  for (const char* unknown : {"mirror", "ds"}) {
+    EXPECT_THAT(refusal("odd.yaml", replaced(test::eurocOkvis(), "distortion_type: radialtangential",
+                                             fmt::format("distortion_type: {}", unknown))),
+                HasSubstr(fmt::format("'{}', a camera model that Lodeline does not have", unknown)));
+  }
 }
 
 TEST_F(CalibrationTranslationTest, Basalt) {
   expectSameRig(read("basalt.json", test::eurocBasalt()), truth());
-  EXPECT_THAT(refusal("ds.json", replaced(test::eurocBasalt(), "pinhole-radtan8", "ds")),
-              AllOf(HasSubstr("'ds', a camera model that Lodeline does not have"), HasSubstr("kb4")));
+  EXPECT_THAT(refusal("odd.json", replaced(test::eurocBasalt(), "pinhole-radtan8", "mirror")),
+              AllOf(HasSubstr("'mirror', a camera model that Lodeline does not have"), HasSubstr("kb4")));
+  EXPECT_THAT(refusal("ds.json", replaced(test::eurocBasalt(), "pinhole-radtan8", "ds")), HasSubstr("xi"));
+  const RigFile sphere =
+      read("sphere.json", replaced(test::eurocBasalt(), R"("pinhole-radtan8", "intrinsics": {)",
+                                   R"("ds", "intrinsics": {"xi": -0.2, "alpha": 0.6, )"));
+  EXPECT_EQ(sphere.rig.cameras.at(0).model, "double-sphere");
+  EXPECT_THAT(sphere.rig.cameras.at(0).distortion, testing::ElementsAre(-0.2, 0.6));
+  EXPECT_EQ(sphere.rig.cameras.at(0).fx_px, 458.654);
   const RigFile skewed =
       read("skewed.json",
            replaced(replaced(replaced(test::eurocBasalt(), "[0, 0, 0, 0, 0, 0, 0, 0, 0]",
@@ -201,8 +210,25 @@ TEST_F(CalibrationTranslationTest, Vins) {
               HasSubstr("does not know how the camera is mounted"));
   EXPECT_THAT(refusal("gone.yaml", replaced(test::eurocVins(densities), "cam1_pinhole", "cam1_none")),
               HasSubstr("cam1_none.yaml, which is missing"));
-  place_.write("cam1_pinhole.yaml", replaced(test::eurocVinsCamera(1), "PINHOLE", "MEI"));
-  EXPECT_THAT(refusal("mei.yaml", test::eurocVins(densities)), HasSubstr("'MEI', a camera model"));
+  place_.write("cam1_pinhole.yaml", replaced(test::eurocVinsCamera(1), "PINHOLE", "SCARAMUZZA"));
+  EXPECT_THAT(refusal("odd.yaml", test::eurocVins(densities)), HasSubstr("'SCARAMUZZA', a camera model"));
+}
+
+TEST_F(CalibrationTranslationTest, VinsWithAMirror) {
+  writeVinsCameras();
+  place_.write(
+      "cam1_pinhole.yaml",
+      "%YAML:1.0\n---\nmodel_type: MEI\ncamera_name: camera\nimage_width: 752\nimage_height: 480\n"
+      "mirror_parameters:\n   xi: 1.2\ndistortion_parameters:\n   k1: 0.01\n   k2: 0.02\n   p1: 0.003\n"
+      "   p2: 0.004\nprojection_parameters:\n   gamma1: 900.0\n   gamma2: 901.0\n   u0: 370.0\n"
+      "   v0: 240.0\n");
+  const RigFile file = read("vins.yaml", test::eurocVins("acc_n: 2.0e-3\ngyr_n: 1.7e-04\nacc_w: 3.0e-3\n"
+                                                         "gyr_w: 1.9e-05\n"));
+  const CameraCalibration& camera = file.rig.cameras.at(1);
+  EXPECT_EQ(camera.model, "unified");
+  EXPECT_THAT(camera.distortion, testing::ElementsAre(1.2, 0.01, 0.02, 0.003, 0.004));
+  EXPECT_EQ(camera.fy_px, 901.0);
+  EXPECT_EQ(camera.cx_px, 370.0);
 }
 
 TEST_F(CalibrationTranslationTest, VinsMono) {

@@ -31,7 +31,7 @@ YAML::Node translateCameraInfo(CalibrationMap* root) {
   const bool is_ideal =
       std::all_of(coefficients.begin(), coefficients.end(), [](double number) { return number == 0.0; });
   std::string model = root->has("distortion_model") ? root->text("distortion_model") : "plumb_bob";
-  if (model == "fisheye") model = "equidistant";
+  if (const CameraModel* known = findCameraModel(model)) model = known->distortions.front();
   if (is_ideal) model = "none";
   camera["distortion_model"] = model;
   if (!is_ideal) camera["distortion_coefficients"] = numbersAsWritten(key, coefficients.size(), root);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lodeline/cameras/camera.h"
+#include "lodeline/cameras/camera_file_keys.h"
 #include "lodeline/diagnostics.h"
 
 namespace lodeline {
@@ -23,33 +24,30 @@ std::vector<double> numbersOfCount(const std::string& key, size_t count, const c
   return values;
 }
 
-DistortionModel readDistortionModel(CalibrationMap* map) {
-  const std::string name = map->text("distortion_model");
-  if (name == "radial-tangential" || name == "radtan" || name == "plumb_bob" ||
-      name == "rational_polynomial") {
-    return DistortionModel::RadialTangential;
-  }
-  if (name == "equidistant" || name == "equi") return DistortionModel::Equidistant;
-  if (name == "none" || name.empty()) return DistortionModel::None;
-  throw InputError(
-      fmt::format("{} is '{}'; supported are radial-tangential (radtan), equidistant and none: calibrate "
-                  "with one of these",
-                  map->at("distortion_model"), name));
+const CameraModel& readModel(CalibrationMap* map) {
+  const bool has_projection = map->has("camera_model");
+  const std::string projection = has_projection ? map->text("camera_model") : "pinhole";
+  const std::string distortion = map->text("distortion_model");
+  const CameraModel* model = findCameraModel(projection, distortion);
+  if (model != nullptr) return *model;
+  throw InputError(fmt::format(
+      "{} is '{}'{}; supported are, with their distortion models, {}: calibrate with one of these",
+      map->at("distortion_model"), distortion,
+      has_projection ? fmt::format(" and camera_model '{}'", projection) : "", cameraFileModels()));
 }
 
-std::vector<double> readDistortion(const std::string& key, DistortionModel model, CalibrationMap* map) {
-  if (model == DistortionModel::None) {
+std::vector<double> readDistortion(const std::string& key, const CameraModel& model, CalibrationMap* map) {
+  const std::string name = map->text("distortion_model");
+  if (name == "none" || name.empty()) {
     map->ignore({key});
     return {};
   }
   std::vector<double> values = map->numbers(key);
   const size_t n = values.size();
-  const bool fits = model == DistortionModel::Equidistant ? n == 4 : n == 4 || n == 5 || n == 8;
   const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  if (!fits || !finite) {
-    throw InputError(fmt::format("{} has {} numbers; {} needs {} finite ones", map->at(key), n,
-                                 map->text("distortion_model"),
-                                 model == DistortionModel::Equidistant ? "4" : "4, 5 or 8"));
+  if (!model.takes(model.before_focal_lengths + n) || !finite) {
+    throw InputError(fmt::format("{} has {} numbers; {} needs {} finite ones", map->at(key), n, name,
+                                 model.countWords(model.before_focal_lengths)));
   }
   return values;
 }
@@ -58,7 +56,8 @@ std::vector<double> readDistortion(const std::string& key, DistortionModel model
 /// another image size.
 void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) {
   const double width = camera.width_px, height = camera.height_px;
-  const double focal_share = camera.fx_px / width;
+  const Vec2 focal_px = makeCamera(camera)->focalLengthsOnAxis_px();
+  const double focal_share = focal_px.x() / width;
   const bool is_relative = std::max({camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}) < 10.0 &&
                            std::min(width, height) > 20.0;
   if (is_relative) {
@@ -69,12 +68,12 @@ void checkPlausible(const CalibrationMap& map, const CameraCalibration& camera) 
         map.at("intrinsics"), camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, width, height));
   }
   constexpr double kShortest = 0.1, kLongest = 20.0;  // in image widths; real lenses have 0.25 to 5
-  if (focal_share < kShortest || focal_share > kLongest || camera.fy_px < kShortest * height ||
-      camera.fy_px > kLongest * width) {
+  if (focal_share < kShortest || focal_share > kLongest || focal_px.y() < kShortest * height ||
+      focal_px.y() > kLongest * width) {
     throw InputError(
         fmt::format("{}: a focal length of {:g}, {:g} px cannot be for an image {} px wide; it must be in "
                     "pixels of that size",
-                    map.at("intrinsics"), camera.fx_px, camera.fy_px, width));
+                    map.at("intrinsics"), focal_px.x(), focal_px.y(), width));
   }
   if (camera.cx_px < 0.0 || camera.cx_px > width || camera.cy_px < 0.0 || camera.cy_px > height) {
     throw InputError(fmt::format(
@@ -100,33 +99,33 @@ void checkDistortion(const std::string& key, const CalibrationMap& map,
   if (share >= 0.5) return;
   throw InputError(fmt::format(
       "{}: under this distortion only {:.0f} % of the image have a viewing ray; are model and order "
-      "of the coefficients right (radtan: k1, k2, p1, p2; equidistant: k1, k2, k3, k4)?",
-      map.at(key), 100.0 * share));
+      "of the coefficients right ({}: {})?",
+      map.at(key), 100.0 * share, calibration.model, fmt::join(camera->model().parameters, ", ")));
 }
 
 }  // namespace
 
-void readPinhole(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera) {
-  if (map->has("camera_model") && map->text("camera_model") != "pinhole") {
-    throw InputError(fmt::format("{} is '{}'; only pinhole is supported: calibrate again with that model",
-                                 map->at("camera_model"), map->text("camera_model")));
-  }
+void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera) {
   const std::vector<double> resolution = numbersOfCount("resolution", 2, "width, height in px", map);
   camera->width_px = static_cast<int>(std::clamp(resolution[0], 0.0, 1e6));
   camera->height_px = static_cast<int>(std::clamp(resolution[1], 0.0, 1e6));
-  const std::vector<double> intrinsics = numbersOfCount("intrinsics", 4, "fx, fy, cx, cy in px", map);
-  camera->fx_px = intrinsics[0];
-  camera->fy_px = intrinsics[1];
-  camera->cx_px = intrinsics[2];
-  camera->cy_px = intrinsics[3];
   if (camera->width_px < 1 || camera->height_px < 1) {
     throw InputError(map->at("resolution") + " must be two positive numbers");
   }
+  const CameraModel& model = readModel(map);
+  CameraFileKeys keys;
+  keys.intrinsics = numbersOfCount("intrinsics", model.before_focal_lengths + 4,
+                                   (intrinsicsNames(model) + " in px").c_str(), map);
+  keys.distortion_coefficients = readDistortion(coefficients_key, model, map);
+  setFromFileKeys(model, keys, camera);
   if (!(camera->fx_px > 0.0 && camera->fy_px > 0.0)) {
     throw InputError(map->at("intrinsics") + ": the focal lengths must be positive");
   }
-  camera->distortion_model = readDistortionModel(map);
-  camera->distortion = readDistortion(coefficients_key, camera->distortion_model, map);
+  const std::string fault = model.fault ? model.fault(camera->distortion) : "";
+  if (!fault.empty()) {
+    throw InputError(fmt::format(
+        "{}: {}", map->at(model.before_focal_lengths > 0 ? "intrinsics" : coefficients_key), fault));
+  }
   checkPlausible(*map, *camera);
   checkDistortion(coefficients_key, *map, *camera);
 }

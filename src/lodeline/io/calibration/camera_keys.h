@@ -8,9 +8,10 @@
 
 namespace lodeline {
 
-/// Reads the camera keys common to EuRoC's sensor.yaml and Kalibr's camchain: `camera_model` (pinhole),
-/// `resolution`, `intrinsics` (fx fy cx cy, px), `distortion_model` (radial-tangential or radtan,
-/// equidistant, none) and the coefficients under `coefficients_key`. Throws InputError for anything else.
-void readPinhole(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera);
+/// Reads the camera keys common to EuRoC's sensor.yaml and Kalibr's camchain: `camera_model` (pinhole where
+/// it is missing), `resolution`, `intrinsics`, `distortion_model` and the coefficients under
+/// `coefficients_key`. Throws InputError for a model that is not registered, and for parameters that no lens
+/// has.
+void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera);
 
 }  // namespace lodeline

@@ -57,7 +57,7 @@ CameraCalibration readEurocCamera(const std::string& name, CalibrationMap* map) 
   map->ignore({"sensor_type", "comment"});
   CameraCalibration camera;
   camera.name = name;
-  readPinhole("distortion_coefficients", map, &camera);
+  readCameraModel("distortion_coefficients", map, &camera);
   if (!map->has("T_BS")) {
     throw InputError(
         fmt::format("{} (camera to IMU) is missing: this is the calibration of a camera alone. Calibrate "

@@ -44,7 +44,7 @@ CameraCalibration readKalibrCamera(int number, const CameraCalibration* before, 
   map->ignore({"cam_overlaps", "rostopic", "camera_model"});
   CameraCalibration camera;
   camera.name = fmt::format("cam{}", number);
-  readPinhole("distortion_coeffs", map, &camera);
+  readCameraModel("distortion_coeffs", map, &camera);
   camera.body_from_camera = readBodyFromCamera(before, map);
   camera.time_offset_to_imu_s = map->numberOr("timeshift_cam_imu", 0.0);
   camera.rate_hz = 0.0;

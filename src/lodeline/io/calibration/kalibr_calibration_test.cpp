@@ -1,9 +1,12 @@
 #include "lodeline/io/calibration/kalibr_calibration.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/calibration/rig_file.h"
+#include "lodeline/io/calibration/rig_text.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/test_recording.h"
 
@@ -68,11 +71,11 @@ TEST_F(KalibrTest, WinsOverSensorYamlAndSaysSo) {
   ASSERT_EQ(rig.cameras.size(), 2u);
   const CameraCalibration& camera = rig.cameras[0];
   EXPECT_EQ(camera.fx_px, 30.0);
-  EXPECT_EQ(camera.distortion_model, DistortionModel::Equidistant);
+  EXPECT_EQ(camera.model, "equidistant");
   EXPECT_EQ(camera.time_offset_to_imu_s, 0.0125);
   EXPECT_EQ(camera.rate_hz, 20.0);
   EXPECT_TRUE((camera.body_from_camera.inverse() * Vec3(1, 0, 0)).isApprox(Vec3(0.5, -1, 0), 1e-12));
-  EXPECT_EQ(rig.cameras[1].distortion_model, DistortionModel::None);
+  EXPECT_EQ(rig.cameras[1].model, "none");
   EXPECT_TRUE((rig.cameras[1].body_from_camera.inverse() * Vec3(1, 0, 0)).isApprox(Vec3(0.4, -1, 0), 1e-12));
   EXPECT_EQ(rig.imu.rate_hz, 201.0);
   EXPECT_EQ(rig.imu.noise.accelerometer_density_m_per_s2_sqrtHz, 0.004);
@@ -91,6 +94,91 @@ TEST_F(KalibrTest, NeedsNoSensorYamlOfCamerasAndImu) {
   EXPECT_NEAR(rig.cameras[1].rate_hz, 20.0, 1e-6);
   EXPECT_EQ(rig.imu.rate_hz, 201.0);
   EXPECT_EQ(diagnostics_.count("kalibr_used"), 0);
+}
+
+/// One section of a camchain, as Kalibr writes it for a model.
+struct KalibrModel {
+  const char* camera_model;
+  const char* intrinsics;
+  const char* distortion_model;
+  const char* coefficients;
+  const char* name;
+  std::vector<double> parameters;
+};
+
+class KalibrModels : public KalibrTest, public testing::WithParamInterface<KalibrModel> {
+ protected:
+  static std::string chain(const KalibrModel& model) {
+    return fmt::format(
+        "cam0:\n  T_cam_imu: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n  camera_model: {}\n  intrinsics: {}\n"
+        "  distortion_model: {}\n  distortion_coeffs: {}\n  resolution: [752, 480]\n  rostopic: /cam0\n{}",
+        model.camera_model, model.intrinsics, model.distortion_model, model.coefficients, kImuOfKalibr);
+  }
+  RigFile readChain(const std::string& text) {
+    recording_.write("chain.yaml", text);
+    return readRigFiles({recording_.path("chain.yaml")}, &diagnostics_);
+  }
+};
+
+TEST_P(KalibrModels, AreReadAndWritten) {
+  const RigFile file = readChain(chain(GetParam()));
+  for (const RigFile& rig : {file, readChain(rigText(file))}) {
+    const CameraCalibration& camera = rig.rig.cameras.at(0);
+    EXPECT_EQ(camera.model, GetParam().name);
+    EXPECT_EQ(camera.fx_px, 301.0);
+    EXPECT_EQ(camera.fy_px, 302.0);
+    EXPECT_EQ(camera.cx_px, 370.0);
+    EXPECT_EQ(camera.cy_px, 240.0);
+    EXPECT_EQ(camera.distortion, GetParam().parameters);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, KalibrModels,
+    testing::Values(
+        KalibrModel{"pinhole", "[301, 302, 370, 240]", "none", "[]", "none", {}},
+        KalibrModel{"pinhole",
+                    "[301, 302, 370, 240]",
+                    "radtan",
+                    "[-0.1, 0.02, 1e-3, 2e-3]",
+                    "radial-tangential",
+                    {-0.1, 0.02, 1e-3, 2e-3}},
+        KalibrModel{"pinhole",
+                    "[301, 302, 370, 240]",
+                    "equidistant",
+                    "[-0.01, 0.02, -0.003, 0.004]",
+                    "equidistant",
+                    {-0.01, 0.02, -0.003, 0.004}},
+        KalibrModel{"pinhole", "[301, 302, 370, 240]", "fov", "[0.93]", "field-of-view", {0.93}},
+        KalibrModel{"ds", "[-0.2, 0.6, 301, 302, 370, 240]", "none", "[]", "double-sphere", {-0.2, 0.6}},
+        KalibrModel{"eucm", "[0.6, 1.1, 301, 302, 370, 240]", "none", "[]", "extended-unified", {0.6, 1.1}},
+        KalibrModel{"omni",
+                    "[0.9, 301, 302, 370, 240]",
+                    "radtan",
+                    "[-0.1, 0.02, 1e-3, 2e-3]",
+                    "unified",
+                    {0.9, -0.1, 0.02, 1e-3, 2e-3}},
+        KalibrModel{"omni", "[0.9, 301, 302, 370, 240]", "none", "[]", "unified", {0.9}}));
+
+TEST_F(KalibrModels, AreRefusedWithTheKeyThatIsWrong) {
+  const KalibrModel good{"ds", "[-0.2, 0.6, 301, 302, 370, 240]", "none", "[]", "", {}};
+  KalibrModel swapped = good, odd = good, short_list = good, wide = good;
+  swapped.intrinsics = "[301, 302, 370, 240, -0.2, 0.6]";
+  odd.camera_model = "cubic";
+  short_list.intrinsics = "[301, 302, 370, 240]";
+  wide.intrinsics = "[-0.2, 0.6, 3.01, 3.02, 3.7, 2.4]";
+  for (const auto& [model, complaint] :
+       {std::pair(swapped, "xi of the double-sphere model is 301"), std::pair(odd, "camera_model 'cubic'"),
+        std::pair(short_list, "must be 6 finite numbers (xi, alpha, fx, fy, cx, cy in px)"),
+        std::pair(wide, "shares of the image's size")}) {
+    EXPECT_THAT([&, &model = model] { readChain(chain(model)); },
+                ThrowsMessage<InputError>(HasSubstr(complaint)));
+  }
+  KalibrModel impossible = good;
+  impossible.intrinsics = "[-0.2, 1.6, 301, 302, 370, 240]";
+  EXPECT_THAT([&] { readChain(chain(impossible)); },
+              ThrowsMessage<InputError>(testing::AllOf(
+                  HasSubstr("cam0.intrinsics"), HasSubstr("alpha of the double-sphere model is 1.6"))));
 }
 
 TEST_F(KalibrTest, RefusesAChainWithoutImu) {

@@ -6,14 +6,6 @@
 namespace lodeline {
 namespace {
 
-const char* distortionName(const std::string& theirs) {
-  if (theirs == "radialtangential" || theirs == "plumb_bob" || theirs == "radialtangential8") {
-    return "radial-tangential";
-  }
-  if (theirs == "equidistant") return "equidistant";
-  return theirs == "none" ? "none" : nullptr;
-}
-
 YAML::Node okvisCamera(CalibrationMap* map) {
   YAML::Node camera;
   camera["T_BS"] = numbersAsWritten("T_SC", 16, map);
@@ -23,15 +15,15 @@ YAML::Node okvisCamera(CalibrationMap* map) {
     camera["intrinsics"].push_back(number.Scalar());
   }
   const std::string theirs = map->text("distortion_type");
-  const char* model = distortionName(theirs);
-  if (model == nullptr) {
+  const CameraModel* model = findCameraModel(theirs);
+  if (model == nullptr || model->before_focal_lengths > 0) {
     throw InputError(
         fmt::format("{} is '{}', a camera model that Lodeline does not have; calibrate with "
                     "radialtangential or equidistant",
                     map->atLine("distortion_type"), theirs));
   }
-  camera["distortion_model"] = model;
-  if (theirs != "none") {
+  setCameraModel(*model, &camera);
+  if (!model->parameters.empty()) {
     const size_t count = map->numbers("distortion_coefficients").size();
     camera["distortion_coefficients"] = numbersAsWritten("distortion_coefficients", count, map);
   }

@@ -35,17 +35,12 @@ YAML::Node orbCamera(const std::string& prefix, const std::string& type, Calibra
   YAML::Node camera;
   camera["resolution"] = orbNumbers("Camera.", {"width", "height"}, root);
   camera["intrinsics"] = orbNumbers(prefix, {"fx", "fy", "cx", "cy"}, root);
-  camera["distortion_model"] = "none";
-  if (type == "KannalaBrandt8") {
-    camera["distortion_model"] = "equidistant";
-    camera["distortion_coefficients"] = orbNumbers(prefix, {"k1", "k2", "k3", "k4"}, root);
-  } else if (type == "PinHole" && root->has(prefix + "k1")) {
-    camera["distortion_model"] = "radial-tangential";
-    camera["distortion_coefficients"] = orbNumbers(prefix, {"k1", "k2", "p1", "p2"}, root);
-    if (root->has(prefix + "k3")) {
-      camera["distortion_coefficients"] = orbNumbers(prefix, {"k1", "k2", "p1", "p2", "k3"}, root);
-    }
-  }
+  const bool is_distorted = type == "PinHole" && root->has(prefix + "k1");
+  const CameraModel& model = *findCameraModel(is_distorted ? "radial-tangential" : type);
+  setCameraModel(model, &camera);
+  std::vector<std::string> coefficients(model.parameters.begin(), model.parameters.end());
+  if (is_distorted) coefficients.resize(root->has(prefix + "k3") ? 5 : 4);
+  if (!coefficients.empty()) camera["distortion_coefficients"] = orbNumbers(prefix, coefficients, root);
   if (root->has("Camera.fps") && root->number("Camera.fps") > 0.0)
     camera["rate_hz"] = root->text("Camera.fps");
   return camera;

@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 #include <filesystem>
 
+#include "lodeline/cameras/camera_file_keys.h"
+
 namespace lodeline {
 namespace {
 
@@ -31,21 +33,17 @@ std::string biasText(const Vec3& bias) {
 
 std::string rateText(double rate_hz) { return rate_hz > 0.0 ? fmt::format("  rate_hz: {}\n", rate_hz) : ""; }
 
-const char* distortionText(DistortionModel model) {
-  if (model == DistortionModel::RadialTangential) return "radial-tangential";
-  return model == DistortionModel::Equidistant ? "equidistant" : "none";
-}
-
 std::string cameraText(const CameraCalibration& camera, bool has_extrinsics) {
   std::string text = has_extrinsics
                          ? transformText(camera.body_from_camera)
                          : "  # T_BS:  camera to IMU coordinates, 4x4; FILL IN, no file given says it\n";
   text += fmt::format("  resolution: [{}, {}]\n", camera.width_px, camera.height_px);
-  text +=
-      fmt::format("  intrinsics: [{}, {}, {}, {}]\n", camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
-  text += fmt::format("  distortion_model: {}\n", distortionText(camera.distortion_model));
-  if (camera.distortion_model != DistortionModel::None) {
-    text += fmt::format("  distortion_coefficients: [{}]\n", fmt::join(camera.distortion, ", "));
+  const CameraFileKeys keys = cameraFileKeys(camera);
+  if (keys.camera_model != "pinhole") text += fmt::format("  camera_model: {}\n", keys.camera_model);
+  text += fmt::format("  intrinsics: [{}]\n", fmt::join(keys.intrinsics, ", "));
+  text += fmt::format("  distortion_model: {}\n", keys.distortion_model);
+  if (!keys.distortion_coefficients.empty()) {
+    text += fmt::format("  distortion_coefficients: [{}]\n", fmt::join(keys.distortion_coefficients, ", "));
   }
   if (camera.time_offset_to_imu_s != 0.0) {
     text += fmt::format("  timeshift_cam_imu: {}\n", camera.time_offset_to_imu_s);
@@ -135,7 +133,8 @@ cam0:                               # cameras: cam0, cam1, … without gaps; cam
     - [0.0, 0.0, 0.0, 1.0]
   resolution: [752, 480]            # width, height, px
   intrinsics: [458.0, 457.0, 367.0, 248.0]  # fx, fy, cx, cy, px
-  distortion_model: radial-tangential       # radial-tangential (4, 5 or 8 numbers), equidistant (4) or none
+  # camera_model: ds                # pinhole where it is missing; omni, ds, eucm: intrinsics as Kalibr's
+  distortion_model: radial-tangential       # radial-tangential (4, 5 or 8 numbers), equidistant (4), fov (1) or none
   distortion_coefficients: [-0.28, 0.07, 0.0002, 0.00002]  # k1, k2, p1, p2 [, k3 [, k4, k5, k6]]
   timeshift_cam_imu: 0.0            # s; stamp of an image + this = IMU clock
   rate_hz: 20

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_translation.h"
@@ -19,6 +21,24 @@ double positiveFigure(const std::string& key, CalibrationMap* map) {
     throw InputError(fmt::format("{} is {:g}; it must be positive", map->atLine(key), value));
   return value;
 }
+
+/// Keys of a camera model in VINS's files (camodocal), and the names of the same model in Lodeline.
+struct VinsModel {
+  std::string_view name, model, without_distortion;
+  std::vector<std::string> pinhole, coefficients;
+  bool is_fisheye = false;  ///< the coefficients are among the projection parameters
+};
+
+const VinsModel kVinsModels[] = {
+    {"PINHOLE", "radial-tangential", "none", {"fx", "fy", "cx", "cy"}, {"k1", "k2", "p1", "p2"}},
+    {"MEI", "unified", "unified", {"gamma1", "gamma2", "u0", "v0"}, {"k1", "k2", "p1", "p2"}},
+    {"KANNALA_BRANDT",
+     "equidistant",
+     "equidistant",
+     {"mu", "mv", "u0", "v0"},
+     {"k2", "k3", "k4", "k5"},
+     true},
+};
 
 /// Translates the noise. For every reading, VINS adds acc_n^2 dt^2 to the variance of the velocity and
 /// acc_w^2 dt^2 to that of the bias. acc_n is therefore the standard deviation of a reading.
@@ -86,26 +106,25 @@ YAML::Node translateVinsCamera(CalibrationMap* root) {
   YAML::Node camera;
   camera["resolution"].push_back(root->text("image_width"));
   camera["resolution"].push_back(root->text("image_height"));
-  const std::string model = root->text("model_type");
-  const bool is_fisheye = model == "KANNALA_BRANDT";
-  if (!is_fisheye && model != "PINHOLE") {
+  const std::string type = root->text("model_type");
+  const auto keys = std::find_if(std::begin(kVinsModels), std::end(kVinsModels),
+                                 [&](const VinsModel& model) { return model.name == type; });
+  if (keys == std::end(kVinsModels)) {
     throw InputError(
-        fmt::format("{} is '{}', a camera model that Lodeline does not have; calibrate with PINHOLE or "
+        fmt::format("{} is '{}', a camera model that Lodeline does not have; calibrate with PINHOLE, MEI or "
                     "KANNALA_BRANDT",
-                    root->atLine("model_type"), model));
+                    root->atLine("model_type"), type));
   }
   std::optional<CalibrationMap> projection = root->section("projection_parameters");
   if (!projection) throw InputError(root->at("projection_parameters") + " is missing");
-  if (is_fisheye) {
-    camera["intrinsics"] = numbersUnder({"mu", "mv", "u0", "v0"}, &*projection);
-    camera["distortion_model"] = "equidistant";
-    camera["distortion_coefficients"] = numbersUnder({"k2", "k3", "k4", "k5"}, &*projection);
-    return camera;
-  }
-  camera["intrinsics"] = numbersUnder({"fx", "fy", "cx", "cy"}, &*projection);
-  std::optional<CalibrationMap> distortion = root->section("distortion_parameters");
-  camera["distortion_model"] = distortion ? "radial-tangential" : "none";
-  if (distortion) camera["distortion_coefficients"] = numbersUnder({"k1", "k2", "p1", "p2"}, &*distortion);
+  if (std::optional<CalibrationMap> mirror = root->section("mirror_parameters"))
+    camera["intrinsics"] = numbersUnder({"xi"}, &*mirror);
+  for (const YAML::Node& number : numbersUnder(keys->pinhole, &*projection))
+    camera["intrinsics"].push_back(number.Scalar());
+  std::optional<CalibrationMap> distortion =
+      keys->is_fisheye ? projection : root->section("distortion_parameters");
+  setCameraModel(*findCameraModel(distortion ? keys->model : keys->without_distortion), &camera);
+  if (distortion) camera["distortion_coefficients"] = numbersUnder(keys->coefficients, &*distortion);
   return camera;
 }
 

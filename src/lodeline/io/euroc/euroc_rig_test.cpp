@@ -50,7 +50,7 @@ TEST_F(EurocRigTest, ReadsEverySensor) {
   EXPECT_EQ(rig.cameras[0].width_px, 16);
   EXPECT_EQ(rig.cameras[0].height_px, 12);
   EXPECT_EQ(rig.cameras[0].fy_px, 21.0);
-  EXPECT_EQ(rig.cameras[0].distortion_model, DistortionModel::RadialTangential);
+  EXPECT_EQ(rig.cameras[0].model, "radial-tangential");
   EXPECT_THAT(rig.cameras[0].distortion, ElementsAre(-0.1, 0.01, 1e-4, 2e-4));
   ASSERT_TRUE(rig.magnetometer.has_value());
   EXPECT_EQ(rig.magnetometer->noise_density_T_per_sqrtHz, 1e-8);
@@ -151,7 +151,11 @@ TEST_P(SpoiltCamera, IsRefusedWithTheReason) {
 
 INSTANTIATE_TEST_SUITE_P(
     Keys, SpoiltCamera,
-    testing::Values(Spoilt{"pinhole", "omni", "only pinhole"}, Spoilt{"radial-tangential", "fov", "'fov'"},
+    testing::Values(Spoilt{"pinhole", "mirror", "camera_model 'mirror'; supported are"},
+                    Spoilt{"pinhole", "omni", "must be 5 finite numbers (xi, fx, fy, cx, cy in px)"},
+                    Spoilt{"pinhole", "ds", "'radial-tangential' and camera_model 'ds'"},
+                    Spoilt{"radial-tangential", "fov", "fov needs 1 finite ones"},
+                    Spoilt{"radial-tangential", "cubic", "'cubic'"},
                     Spoilt{"radial-tangential", "[1]", "not a word"},
                     Spoilt{"[-0.1, 0.01, 1e-4, 2e-4]", "[1, 2, 3]", "4, 5 or 8"},
                     Spoilt{"[16, 12]", "[16]", "must be 2 finite numbers"},

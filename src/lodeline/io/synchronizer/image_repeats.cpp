@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/io/synchronizer/sparse_difference.h"
 
 namespace lodeline {
@@ -64,7 +65,7 @@ ImageRepeats::ImageRepeats(const Rig& rig, Diagnostics* diagnostics)
     View view;
     view.name = camera.name;
     view.camera_from_body = camera.body_from_camera.rotation.conjugate().toRotationMatrix();
-    view.focal_px = camera.fx_px;
+    view.focal_px = focalLengthOnAxis_px(camera);
     views_.push_back(std::move(view));
   }
 }

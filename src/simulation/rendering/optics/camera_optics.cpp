@@ -34,7 +34,7 @@ CameraOptics::CameraOptics(const CameraCalibration& calibration, const Intrinsic
                                          (1.0 - lens.vignetting * off_centre * off_centre));
     }
   });
-  const double fx_water = calibration.fx_px * (port_ ? port_->index_water : 1.0);
+  const double fx_water = camera_->focalLengthsOnAxis_px().x() * (port_ ? port_->index_water : 1.0);
   pixel_angle_rad_ = static_cast<float>(1.0 / fx_water);
 }
 

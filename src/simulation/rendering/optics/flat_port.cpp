@@ -73,7 +73,7 @@ CameraCalibration airCameraFor(const CameraCalibration& in_water, const FlatPort
   CameraCalibration air = in_water;
   air.fx_px /= port.index_water;
   air.fy_px /= port.index_water;
-  air.distortion_model = DistortionModel::None;
+  air.model = "none";
   air.distortion.clear();
   return air;
 }
@@ -119,7 +119,7 @@ PortFit fitRadialTangential(const CameraCalibration& in_air, const FlatPort& por
   fit.calibration.fy_px = p[1];
   fit.calibration.cx_px = p[2];
   fit.calibration.cy_px = p[3];
-  fit.calibration.distortion_model = DistortionModel::RadialTangential;
+  fit.calibration.model = "radial-tangential";
   fit.calibration.distortion = {p[4], p[5], p[6], p[7]};
   fit.calibration.body_from_camera = in_air.body_from_camera * Rigid3(Quat::Identity(), Vec3(0.0, 0.0, p[8]));
   fit.rms_px = std::sqrt(squared_sum / static_cast<double>(sights.size()));

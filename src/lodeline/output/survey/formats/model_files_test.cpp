@@ -35,11 +35,11 @@ MapImages twoCameras(const DiveMap& map) {
   camera.fx_px = camera.fy_px = 400.0;
   camera.cx_px = 399.5;
   camera.cy_px = 299.5;
-  camera.distortion_model = DistortionModel::RadialTangential;
+  camera.model = "radial-tangential";
   camera.distortion = {-0.1, 0.01, 0.001, 0.002};
   camera.body_from_camera = Rigid3(Quat(0.5, -0.5, 0.5, -0.5), Vec3(0.1, 0.02, 0.03));
   images.cameras = {camera, camera};
-  images.cameras[1].distortion_model = DistortionModel::Equidistant;
+  images.cameras[1].model = "equidistant";
   for (size_t i = 0; i < map.trajectory.size(); i += 10) {
     images.images.push_back(
         {0, i, "cam0/data/" + std::to_string(map.trajectory.poses[i].time.nanoseconds()) + ".png"});

@@ -2,27 +2,40 @@
 
 #include <iterator>
 
+#include "lodeline/cameras/fit_camera.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/output/survey/formats/write_formats.h"
 
 namespace lodeline {
 namespace {
 
+/// COLMAP's form of a camera with at least its number of parameters; null where COLMAP has none.
+const ColmapForm* colmapForm(const CameraCalibration& camera) {
+  for (const ColmapForm& form : cameraModel(camera).colmap) {
+    if (form.parameters >= camera.distortion.size()) return &form;
+  }
+  return nullptr;
+}
+
 /// COLMAP's name and parameters of a camera. Its pixel centres are at half-integers, ours at integers.
-std::string cameraModel(const CameraCalibration& camera) {
+std::string cameraLine(const CameraCalibration& camera, const ColmapForm& form) {
   std::vector<double> parameters = {camera.fx_px, camera.fy_px, camera.cx_px + 0.5, camera.cy_px + 0.5};
   parameters.insert(parameters.end(), camera.distortion.begin(), camera.distortion.end());
-  const char* name = "PINHOLE";
-  if (camera.distortion_model == DistortionModel::Equidistant) name = "OPENCV_FISHEYE";
-  if (camera.distortion_model == DistortionModel::RadialTangential) {
-    const bool is_short = camera.distortion.size() <= 4;
-    name = is_short ? "OPENCV" : "FULL_OPENCV";
-    parameters.resize(is_short ? 8 : 12, 0.0);
-  }
-  std::string text = name;
-  text += fmt::format(" {} {}", camera.width_px, camera.height_px);
+  parameters.resize(4 + form.parameters, 0.0);
+  std::string text = fmt::format("{} {} {}", form.name, camera.width_px, camera.height_px);
   for (double parameter : parameters) text += fmt::format(" {:.12g}", parameter);
   return text;
+}
+
+/// The line of a camera. A comment precedes it where COLMAP lacks the model: a fitted equidistant camera
+/// takes its place.
+std::string cameraLines(size_t id, const CameraCalibration& camera) {
+  if (const ColmapForm* form = colmapForm(camera))
+    return fmt::format("{} {}\n", id, cameraLine(camera, *form));
+  const CameraFit fit = convertedCamera(camera, *findCameraModel("equidistant"));
+  return fmt::format(
+      "# {}: COLMAP has no {} model; the fisheye model below deviates by {:.2g} px rms\n{} {}\n", camera.name,
+      camera.model, fit.rms_px, id, cameraLine(fit.calibration, *colmapForm(fit.calibration)));
 }
 
 }  // namespace
@@ -32,7 +45,7 @@ ColmapModel colmapModel(const DiveMap& map, const std::vector<CameraCalibration>
   ColmapModel model;
   model.cameras = "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
   for (size_t i = 0; i < cameras.size(); ++i) {
-    model.cameras += fmt::format("{} {}\n", i + 1, cameraModel(cameras[i]));
+    model.cameras += cameraLines(i + 1, cameras[i]);
   }
   model.images = "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; then POINTS2D[] (none)\n";
   size_t id = 0;
