@@ -52,9 +52,12 @@ class Marginalizer {
   /// removed, so that the prior stays small. Its observations stay where its pose can be interpolated
   /// (keyframe_policy.h); otherwise they are dropped.
   void marginalizeOldestFrame(Window& window, const WindowOptions& wanted);
-  /// Adds the magnetometer, depth and rest terms that contain the oldest of two frames to `system`, and
-  /// removes them from the frames.
+  /// Adds the terms of sensors and rest that contain the oldest of two frames to `system`, and removes them
+  /// from the frames.
   void addSensors(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
+  /// The same for the measurements of one frame, those relative to `before`, or the others where that is
+  /// null.
+  void addMeasurements(const Window& window, Frame* before, Frame& frame, NormalEquations* system) const;
   /// Removes the oldest keyframe. Landmarks that the newest keyframe does not observe are marginalized with
   /// all their observations. The others are marginalized with their observations before a cut
   /// (WindowOptions). Where that would leave too few observations on either side, they lose those in the

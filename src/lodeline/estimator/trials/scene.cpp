@@ -167,7 +167,8 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
 }
 
 Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const DepthSample> depth) {
-  const FrameEstimate estimate = estimator_.add(frame.tracks, frame.imu, {}, depth);
+  const FrameEstimate estimate = estimator_.add(
+      frame.tracks, frame.imu, SensorReadings(std::vector<DepthSample>(depth.begin(), depth.end())));
   Comparison comparison = comparison_.compare(frame, estimate, estimator_);
   comparison.time_s = scene_.secondsOf(frame.truth.time);
   return comparison;
