@@ -75,7 +75,8 @@ void BatchProblem::addSensorFactors(size_t k, std::vector<Factor>* terms) {
   Frame& frame = *window_.frames()[k];
   Frame* before = k > 0 ? window_.frames()[k - 1].get() : nullptr;
   for (const auto& measurement : frame.measurements) {
-    for (Factor& factor : measurement->factors({factors_, window_, before, frame})) {
+    for (Factor& factor :
+         measurement->factors({factors_, window_, before, frame, MeasurementContext::Scope::Batch})) {
       for (double*& block : factor.blocks) {
         for (const Chain& chain : chains_) {
           if (block == chain.front().state->value.data()) block = nodeOf(chain, k);

@@ -244,6 +244,14 @@ void BatchProblem::orderBlocks() {
       first = std::min(first, oldest);
     }
   }
+  // A measurement on landmarks connects all states that share a landmark with its own.
+  for (size_t k = 0; k < states(); ++k) {
+    const Measurements& measurements = window_.frames()[k]->measurements;
+    if (std::none_of(measurements.begin(), measurements.end(),
+                     [](const auto& measurement) { return measurement->containsLandmarks(); }))
+      continue;
+    for (size_t i = first_seen[k]; i < k; ++i) first_seen[i] = std::min(first_seen[i], first_seen[k]);
+  }
   // A node of a chain comes after the states for which it is valid.
   const auto appendNodes = [&](const Chain& chain, size_t k) {
     for (size_t i = 0; i < chain.size(); ++i) {

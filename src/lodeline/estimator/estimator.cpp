@@ -106,9 +106,11 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
     startSensors();
     rememberCovariance(jointCovariance(window_, marginalizer_.prior(), factors_), &estimate);
   } else {
+    addSensorRows(&estimate);
     return estimate;
   }
   report(tracks, &estimate);
+  addSensorRows(&estimate);
   inertial_covariance_propagation_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
                                           estimate.magnetometer.field_W.has_value(), &estimate.covariance);
   requireCovariance(&estimate, diagnostics_);
@@ -131,6 +133,22 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   estimate.magnetometer.heading_sigma_rad =
       std::hypot(std::sqrt(estimate.covariance(5, 5)), estimate.magnetometer.declination_sigma_rad);
   return estimate;
+}
+
+void Estimator::addSensorRows(FrameEstimate* estimate) const {
+  for (const auto& sensor : sensors_) {
+    if (auto row = sensor->row()) estimate->sensor_rows.push_back(std::move(*row));
+  }
+}
+
+std::vector<std::string> Estimator::sensorColumns() const {
+  std::vector<std::string> names;
+  for (const auto& sensor : sensors_) {
+    const auto row = sensor->row();
+    if (!row) continue;
+    for (const auto& [name, value] : row->columns) names.push_back(name);
+  }
+  return names;
 }
 
 void Estimator::checkOrder(Time time, std::span<const ImuSample> imu) const {

@@ -60,6 +60,7 @@ struct FrameEstimate {
   std::optional<SensorAxes> gyroscope_axes;      ///< the same
   std::optional<SensorAxes> accelerometer_axes;  ///< the same
   SensorEstimates sensors;                       ///< of the other sensors
+  std::vector<SensorRow> sensor_rows;            ///< SensorFusion::row() of each sensor that has one
   MagnetometerEstimate magnetometer;
   DepthEstimate depth;
   ScaleInformation scale;  ///< what carries it at present
@@ -87,6 +88,8 @@ class Estimator {
   const Prior& prior() const { return marginalizer_.prior(); }
   /// One for each kind of sensor beside cameras and IMU, in the order of their terms.
   const std::vector<std::unique_ptr<SensorFusion>>& sensors() const { return sensors_; }
+  /// Names of the columns in FrameEstimate::sensor_rows.
+  std::vector<std::string> sensorColumns() const;
 
   /// Landmarks that left the window since the last call, in order.
   std::vector<MapPoint> takeMapPoints() { return marginalizer_.takeMapPoints(); }
@@ -98,6 +101,7 @@ class Estimator {
   ObservationList observationsOf(const FrameTracks& tracks) const;
   bool initialize(const FrameTracks& tracks, const ObservationList& observations,
                   std::span<const ImuSample> imu, FrameEstimate* estimate);
+  void addSensorRows(FrameEstimate* estimate) const;
   bool startMonocular(Time time, ObservationList observations, std::span<const ImuSample> imu);
   bool startAtOnce(Time time, const ObservationList& observations, FrameEstimate* estimate);
   /// The states of the calibration, for a window that starts.

@@ -2,6 +2,7 @@
 
 #include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
 #include "lodeline/estimator/pressure/depth_fusion.h"
+#include "lodeline/estimator/sonar/sonar_fusion.h"
 
 namespace lodeline {
 
@@ -10,6 +11,7 @@ std::vector<std::unique_ptr<SensorFusion>> makeSensorFusions(const Rig& rig, con
   std::vector<std::unique_ptr<SensorFusion>> sensors;
   sensors.push_back(std::make_unique<MagnetometerFusion>(rig, options, diagnostics));
   sensors.push_back(std::make_unique<DepthFusion>(rig, options, diagnostics));
+  sensors.push_back(std::make_unique<SonarFusion>(rig, options, diagnostics));
   return sensors;
 }
 

@@ -123,6 +123,7 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   for (const std::string& assignment : c.effects) s.effects.set(assignment);
   s.starts_at_rest = !c.starts_moving;
   if (c.no_images) s.images = false;
+  s.rig.sonar_scans_ahead = c.sonar_ahead;
   return s;
 }
 
@@ -145,6 +146,7 @@ std::string describe(const Scenario& s) {
   for (const EffectDescription& d : effectDescriptions()) {
     text += fmt::format("  {}: {}\n", d.name, s.effects.has(d.effect) ? "on" : "off");
   }
+  if (s.rig.sonar_scans_ahead) text += "sonar_scans_ahead: true\n";
   if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
   return text;
 }

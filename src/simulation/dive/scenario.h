@@ -53,6 +53,7 @@ struct ScenarioChanges {
   std::vector<std::string> effects;  ///< "name=on|off", applied after `realism`
   bool starts_moving = false;
   bool no_images = false;
+  bool sonar_ahead = false;  ///< StandardRigOptions::sonar_scans_ahead
 };
 
 const std::vector<Scenario>& scenarios();

@@ -1,9 +1,18 @@
 #pragma once
 
 #include <any>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lodeline {
+
+/// What a sensor reports about a frame, in words and numbers for files and summaries.
+struct SensorRow {
+  std::string sensor;
+  std::string status;
+  std::vector<std::pair<std::string, std::string>> columns;  ///< of states.csv: name with unit, value
+};
 
 /// What the sensors report about a frame: one estimate of each kind at most.
 class SensorEstimates {

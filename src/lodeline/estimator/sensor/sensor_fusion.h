@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,10 @@ class SensorFusion {
 
   /// Adds its own kind of estimate of the newest frame.
   virtual void report(const Window& window, SensorEstimates* estimates) const = 0;
+
+  /// What files and summaries say of the newest frame; empty where they have code of their own, and without
+  /// the sensor. The columns never change.
+  virtual std::optional<SensorRow> row() const { return std::nullopt; }
 
   /// Number of changes since which earlier measurements are of no use for the batch solver.
   virtual int measurementEpoch() const { return 0; }

@@ -197,7 +197,7 @@ void Marginalizer::marginalizeOldestFrame(Window& window, const WindowOptions& w
   }
 }
 
-void Marginalizer::addMeasurements(const Window& window, Frame* before, Frame& frame,
+void Marginalizer::addMeasurements(Window& window, Frame* before, Frame& frame,
                                    NormalEquations* system) const {
   const auto isConcerned = [&](const Measurement& measurement) {
     return measurement.isRelative() == (before != nullptr);
@@ -205,14 +205,14 @@ void Marginalizer::addMeasurements(const Window& window, Frame* before, Frame& f
   for (const auto& measurement : frame.measurements) {
     if (!isConcerned(*measurement)) continue;
     measurement->fixLinearizationPoints(window);
-    for (const Factor& factor : measurement->factors({factors_, window, before, frame, true}))
+    for (const Factor& factor :
+         measurement->factors({factors_, window, before, frame, MeasurementContext::Scope::Prior}))
       system->add(factor);
   }
   frame.measurements.removeIf(isConcerned);
 }
 
-void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
-                              NormalEquations* system) const {
+void Marginalizer::addSensors(Window& window, Frame& oldest, Frame& next, NormalEquations* system) const {
   addMeasurements(window, &oldest, next, system);
   addMeasurements(window, nullptr, oldest, system);
   if (const auto factor = factors_.rest(oldest)) system->add(*factor);

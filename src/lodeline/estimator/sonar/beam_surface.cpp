@@ -38,8 +38,7 @@ Vec3 BeamSurface::derivatives(size_t index) const {
 
 double BeamSurface::leverage() const {
   double sum = 0.0;
-  for (const BeamPoint& point : points_)
-    sum += std::pow(point.weight * inverse_.row(0).dot(rowOf(point)), 2);
+  for (const BeamPoint& point : points_) sum += std::pow(point.weight * inverse_.row(0).dot(rowOf(point)), 2);
   return sum;
 }
 

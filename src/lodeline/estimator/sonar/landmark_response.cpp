@@ -71,8 +71,7 @@ EliminatedLandmarksFactor::EliminatedLandmarksFactor(Factor factor, std::vector<
   double variance = 1.0;
   for (size_t i = 0; i < sizes.size(); ++i) {
     if (response_of_[i])
-      variance +=
-          share * (derivatives[i] * response_of_[i]->covariance * derivatives[i].transpose()).value();
+      variance += share * (derivatives[i] * response_of_[i]->covariance * derivatives[i].transpose()).value();
   }
   scale_ = std::sqrt(variance);
 }

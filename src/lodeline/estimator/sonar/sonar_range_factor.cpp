@@ -69,7 +69,7 @@ SonarRangeFactor::Geometry SonarRangeFactor::geometryAt(double const* const* par
     return at_linearization_points && first ? first : parameters[block];
   };
   Geometry g;
-  g.pose = poseFromBlock(valueOf(0, first_.pose));
+  g.pose = poseFromBlock(valueOf(0, first_.pose ? first_.pose->data() : nullptr));
   for (size_t i = 0; i < hosts_; ++i) g.hosts.push_back(poseFromBlock(valueOf(1 + i, first_.hosts[i])));
   g.camera = is_camera_estimated_
                  ? correctedExtrinsics(body_from_camera_, valueOf(cameraBlock(), first_.camera))
@@ -81,8 +81,8 @@ SonarRangeFactor::Geometry SonarRangeFactor::geometryAt(double const* const* par
     const double rho = value[2];
     const Vec3 point_B = g.camera.rotation * landmark.base.direction(value) + rho * g.camera.translation;
     const Vec3 from_body_W = host.rotation * point_B + rho * (host.translation - g.pose.translation);
-    const Vec3 q = beam_.axes_B.transpose() *
-                   (g.pose.rotation.conjugate() * from_body_W - rho * beam_.origin_B);
+    const Vec3 q =
+        beam_.axes_B.transpose() * (g.pose.rotation.conjugate() * from_body_W - rho * beam_.origin_B);
     g.q.push_back(q);
     g.rho.push_back(rho);
     g.points.push_back({q[1] / q[0], q[2] / q[0], rho / q[0], landmark.weight});
@@ -134,7 +134,8 @@ void SonarRangeFactor::differentiate(const Geometry& g, double const* const* par
             joined(-by_B * so3::skew(direction_B) * so3::leftJacobian(turn), g.rho[i] * by_B));
     }
     const Vec3 by_rho_W = host.rotation * g.camera.translation + host.translation - g.pose.translation;
-    const double by_rho = by_W * by_rho_W - by_q * (beam_.axes_B.transpose() * beam_.origin_B) + by_point[2];
+    const Vec3 origin_in_beam = beam_.axes_B.transpose() * beam_.origin_B;
+    const double by_rho = by_W.dot(by_rho_W) - by_q.dot(origin_in_beam) + by_point[2];
     Eigen::RowVector3d by_landmark;
     by_landmark << by_B * g.camera.rotation.toRotationMatrix() * landmark.base.tangent_C, by_rho;
     addTo(jacobians[landmarkBlock(i)], by_landmark);

@@ -2,6 +2,7 @@
 
 #include <ceres/cost_function.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace lodeline {
 
 /// A beam in body axes.
 struct SonarBeam {
-  Vec3 origin_B = Vec3::Zero();     ///< the sonar's lever arm, m
-  Mat3 axes_B = Mat3::Identity();   ///< columns: along the beam, and two directions across
+  Vec3 origin_B = Vec3::Zero();    ///< the sonar's lever arm, m
+  Mat3 axes_B = Mat3::Identity();  ///< columns: along the beam, and two directions across
 };
 
 /// A landmark near the beam.
@@ -27,7 +28,7 @@ struct SurfaceLandmark {
 /// Linearization points of the blocks (factors/parameters.h); null: the Jacobian is taken at the current
 /// value.
 struct SonarLinearizationPoints {
-  const double* pose = nullptr;
+  std::optional<std::array<double, kPoseSize>> pose = std::nullopt;
   std::vector<const double*> hosts = {};
   const double* camera = nullptr;
 };
@@ -47,8 +48,8 @@ class SonarRangeFactor final : public ceres::CostFunction {
  public:
   static constexpr double kFarthest_m = 1e3;
 
-  /// `body_from_camera`: camera 0 by its file. `is_camera_estimated`: with the block of its extrinsics. Throws
-  /// InputError for a range or sigma that is not positive, and for fewer than three landmarks.
+  /// `body_from_camera`: camera 0 by its file. `is_camera_estimated`: with the block of its extrinsics.
+  /// Throws InputError for a range or sigma that is not positive, and for fewer than three landmarks.
   SonarRangeFactor(double range_m, double sigma_m, const SonarBeam& beam, const Rigid3& body_from_camera,
                    bool is_camera_estimated, size_t hosts, std::vector<SurfaceLandmark> landmarks,
                    SonarLinearizationPoints linearization_points = {});
@@ -60,7 +61,9 @@ class SonarRangeFactor final : public ceres::CostFunction {
   Geometry geometryAt(double const* const* parameters, bool at_linearization_points) const;
   void differentiate(const Geometry& geometry, double const* const* parameters, double** jacobians) const;
   size_t cameraBlock() const { return 1 + hosts_; }
-  size_t landmarkBlock(size_t landmark) const { return 1 + hosts_ + (is_camera_estimated_ ? 1 : 0) + landmark; }
+  size_t landmarkBlock(size_t landmark) const {
+    return 1 + hosts_ + (is_camera_estimated_ ? 1 : 0) + landmark;
+  }
 
   double range_m_, sigma_m_;
   SonarBeam beam_;

@@ -17,12 +17,15 @@ struct Frame;
 
 /// What a measurement needs to make its factors.
 struct MeasurementContext {
+  /// What the factors are for: the solution of the window, the marginalization prior, of which they become
+  /// part now, or the batch solution.
+  enum class Scope { Window, Prior, Batch };
+
   const FactorBuilder& builder;
-  const Window& window;
+  Window& window;
   Frame* before;  ///< the frame before; null for the first
   Frame& frame;
-  /// Whether the factors become part of the marginalization prior now.
-  bool is_marginalized = false;
+  Scope scope = Scope::Window;
 };
 
 /// Measurement of one sensor at a frame, until it becomes part of the prior. Each kind of sensor derives its
@@ -38,6 +41,8 @@ class Measurement {
   virtual std::vector<Factor> factors(const MeasurementContext& context) const = 0;
   /// Whether the factors contain the frame before. They are then marginalized with that frame.
   virtual bool isRelative() const { return false; }
+  /// Whether the factors contain the frames that observe the same landmarks as the frame.
+  virtual bool containsLandmarks() const { return false; }
   /// Called before the factors become part of the prior: sets the linearization points of shared states.
   virtual void fixLinearizationPoints(const Window&) const {}
 
