@@ -122,7 +122,7 @@ TEST_F(LiveSourceTest, DoesNotWaitForSilentSensors) {
   EXPECT_EQ(next().time, at(0.55));
   const FramePacket last = next();
   EXPECT_EQ(last.time, at(0.6));
-  EXPECT_TRUE(last.magnetometer.empty());
+  EXPECT_TRUE(last.readings.of<MagnetometerSample>().empty());
   EXPECT_TRUE(last.images[1].empty());
   EXPECT_EQ(diagnostics_.count("image_missing"), 3);
 }
