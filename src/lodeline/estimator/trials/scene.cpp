@@ -178,8 +178,7 @@ Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const D
 }
 
 Comparison ComparedEstimator::add(const SimulatedFrame& frame, const SensorReadings& readings) {
-  const FrameEstimate estimate = estimator_.add(
-      frame.tracks, frame.imu, SensorReadings(std::vector<DepthSample>(depth.begin(), depth.end())));
+  const FrameEstimate estimate = estimator_.add(frame.tracks, frame.imu, readings);
   Comparison comparison = comparison_.compare(frame, estimate, estimator_);
   comparison.time_s = scene_.secondsOf(frame.truth.time);
   return comparison;
