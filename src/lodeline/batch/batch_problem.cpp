@@ -66,15 +66,26 @@ std::vector<Factor> BatchProblem::motionFactors() {
   for (size_t k = 0; k < states(); ++k) {
     Frame& frame = *window_.frames()[k];
     if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));
-    addSensorFactors(k, &terms);
+    addSensorFactors(k, false, &terms);
   }
   return terms;
 }
 
-void BatchProblem::addSensorFactors(size_t k, std::vector<Factor>* terms) {
+void BatchProblem::forEachFactor(const std::function<void(const Factor&)>& visit) {
+  for (const Factor& factor : motionFactors()) visit(factor);
+  for (const Factor& factor : landmark_factors_) visit(factor);
+}
+
+void BatchProblem::renewLandmarkFactors() {
+  landmark_factors_.clear();
+  for (size_t k = 0; k < states(); ++k) addSensorFactors(k, true, &landmark_factors_);
+}
+
+void BatchProblem::addSensorFactors(size_t k, bool on_landmarks, std::vector<Factor>* terms) {
   Frame& frame = *window_.frames()[k];
   Frame* before = k > 0 ? window_.frames()[k - 1].get() : nullptr;
   for (const auto& measurement : frame.measurements) {
+    if (measurement->containsLandmarks() != on_landmarks) continue;
     for (Factor& factor :
          measurement->factors({factors_, window_, before, frame, MeasurementContext::Scope::Batch})) {
       for (double*& block : factor.blocks) {
@@ -91,7 +102,7 @@ void BatchProblem::addSensorFactors(size_t k, std::vector<Factor>* terms) {
 double BatchProblem::cost() {
   std::vector<double> residual;
   double sum = visual_.cost();
-  for (const Factor& factor : motionFactors()) sum += costOf(factor, residual);
+  forEachFactor([&](const Factor& factor) { sum += costOf(factor, residual); });
   return sum;
 }
 
@@ -120,11 +131,11 @@ void BatchProblem::scatter(const NormalEquations& local, BlockSkylineCholesky* h
 void BatchProblem::linearize(BlockSkylineCholesky* hessian, Eigen::VectorXd* gradient) {
   hessian->setZero();
   gradient->setZero(hessian->size());
-  for (const Factor& factor : motionFactors()) {
+  forEachFactor([&](const Factor& factor) {
     NormalEquations local;
     local.add(factor);
     scatter(local, hessian, gradient);
-  }
+  });
   visual_.linearize([&](const NormalEquations& local) { scatter(local, hessian, gradient); });
 }
 
@@ -209,6 +220,7 @@ double BatchProblem::renewLandmarks() {
   }
   adaptRobustLosses(window_, errors, options_.solver);
   visual_.arrange();
+  renewLandmarkFactors();
   return placed > 0.0 ? removed / placed : 0.0;
 }
 
@@ -231,6 +243,7 @@ TimeCorrelatedErrors BatchProblem::timeCorrelatedErrors() {
 
 void BatchProblem::weighObservations(double variance) {
   for (auto& [id, track] : window_.tracks()) track.weight /= variance;
+  renewLandmarkFactors();
 }
 
 Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string_view>
@@ -108,8 +109,13 @@ class BatchProblem {
   Chain makeChain(const EstimatorLog& record, const RecordedSensorState& recorded);
   void addWalk(const Chain& chain, double walk_per_sqrt_s);
   static double* nodeOf(const Chain& chain, size_t state);
-  /// Terms of a state's sensors, with the nodes of the chains that are valid for it.
-  void addSensorFactors(size_t k, std::vector<Factor>* terms);
+  /// Terms of a state's sensors, with the nodes of the chains that are valid for it: those on landmarks, or
+  /// the others.
+  void addSensorFactors(size_t k, bool on_landmarks, std::vector<Factor>* terms);
+  /// Makes the sensors' terms on landmarks. They stay the same while the cost is minimized.
+  void renewLandmarkFactors();
+  /// Calls `visit` with each term without reprojection terms.
+  void forEachFactor(const std::function<void(const Factor&)>& visit);
 
   EstimatorOptions options_;
   std::vector<std::shared_ptr<const Camera>> cameras_;
@@ -117,6 +123,7 @@ class BatchProblem {
   std::shared_ptr<const ceres::LossFunction> loss_;  ///< for the residuals of sensors
   Window window_;
   BatchLandmarks visual_;
+  std::vector<Factor> landmark_factors_;
   Tracks all_tracks_;  ///< with all their observations, without landmarks
   std::vector<Prior> priors_;
   std::vector<Chain> chains_;  ///< not empty; the first node has the name of the parameter block

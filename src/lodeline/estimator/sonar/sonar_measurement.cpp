@@ -29,7 +29,10 @@ class EchoFactors {
     if (!surface) return std::nullopt;
     Factor factor = rangeFactor(echo, *surface);
     std::vector<LandmarkResponse> responses;
-    for (const LocalSurface::Member& member : surface->members) responses.push_back(response(member.track));
+    for (const LocalSurface::Member& member : surface->members) {
+      responses.push_back(response(member.track));
+      if (!isPlaced(responses.back())) return std::nullopt;
+    }
     auto eliminated =
         std::make_unique<EliminatedLandmarksFactor>(std::move(factor), std::move(responses), echo.share);
     Factor result;
@@ -50,7 +53,19 @@ class EchoFactors {
   bool isChosen(const FeatureTrack& track) const {
     if (context_.scope == Scope::Batch && !track.seenIn(context_.frame.id)) return false;
     const Frame* host = context_.window.find(track.landmark->host);
-    return host != nullptr && !host->interpolated && isAllowed(*host);
+    if (host == nullptr || host->interpolated || !isAllowed(*host)) return false;
+    // The observations that are left must still tell where the landmark is.
+    constexpr int kLeastObservations = 3;
+    return std::count_if(track.observations.begin(), track.observations.end(), [&](const auto& observation) {
+             return isAllowed(*context_.window.find(observation.frame));
+           }) >= kLeastObservations;
+  }
+  /// Whether the observations tell the distance of a landmark. A response without that information has no
+  /// variance in this direction (landmarkInverseRoot).
+  static bool isPlaced(const LandmarkResponse& response) {
+    constexpr double kGreatestSigma = 0.5;  // relative
+    const double variance = response.covariance(2, 2);
+    return variance > 0.0 && variance < std::pow(kGreatestSigma * response.landmark[2], 2);
   }
 
   Factor rangeFactor(const SonarEcho& echo, const LocalSurface& surface) const {
