@@ -16,11 +16,14 @@ using Scope = MeasurementContext::Scope;
 class EchoFactors {
  public:
   EchoFactors(const SonarMeasurement& measurement, const MeasurementContext& context)
-      : measurement_(measurement), context_(context), cameras_(cameraStates(context.window)) {}
+      : measurement_(measurement),
+        context_(context),
+        is_attached_(context.scope == Scope::Batch),
+        cameras_(cameraStates(context.window)) {}
 
   std::optional<Factor> make(const SonarEcho& echo) {
     const Frame& frame = context_.frame;
-    const Rigid3 pose = measurement_.is_attached
+    const Rigid3 pose = is_attached_
                             ? frame.worldFromBody() * echo.frame_from_echo
                             : echo.between.pose(context_.before->worldFromBody(), frame.worldFromBody());
     const auto surface =
@@ -89,7 +92,7 @@ class EchoFactors {
     ParameterBlock* camera = cameras_ ? cameras_.camera0 : nullptr;
     if (camera) first.camera = camera->linearizationPoint();
     SonarBeam beam = echo.beam;
-    if (measurement_.is_attached) {
+    if (is_attached_) {
       beam.origin_B = echo.frame_from_echo * beam.origin_B;
       beam.axes_B = echo.frame_from_echo.rotation.toRotationMatrix() * beam.axes_B;
       first.pose = frame.first_pose;
@@ -103,11 +106,11 @@ class EchoFactors {
     factor.function =
         std::make_unique<SonarRangeFactor>(echo.range_m, sigma_m, beam, context_.builder.bodyFromCamera(0),
                                            camera != nullptr, hosts.size(), std::move(members), first);
-    factor.blocks = {measurement_.is_attached ? context_.frame.pose.data() : context_.before->pose.data()};
+    factor.blocks = {is_attached_ ? context_.frame.pose.data() : context_.before->pose.data()};
     factor.blocks.insert(factor.blocks.end(), hosts.begin(), hosts.end());
     if (camera) factor.blocks.push_back(camera->value.data());
     factor.blocks.insert(factor.blocks.end(), landmarks.begin(), landmarks.end());
-    if (measurement_.is_attached) return factor;
+    if (is_attached_) return factor;
     factor.function = std::make_unique<InterpolatedPoseFactor>(
         std::move(factor.function), 0, echo.between, context_.before->firstPose(), frame.firstPose());
     factor.blocks.push_back(context_.frame.pose.data());
@@ -130,6 +133,7 @@ class EchoFactors {
 
   const SonarMeasurement& measurement_;
   const MeasurementContext& context_;
+  bool is_attached_;  ///< the poses at the echoes follow the frame alone
   CameraStates cameras_;
   std::map<TrackId, LandmarkResponse> responses_;
 };
@@ -138,7 +142,7 @@ class EchoFactors {
 
 std::vector<Factor> SonarMeasurement::factors(const MeasurementContext& context) const {
   std::vector<Factor> factors;
-  if (!is_attached && context.before == nullptr) return factors;
+  if (context.before == nullptr && context.scope != Scope::Batch) return factors;
   EchoFactors maker(*this, context);
   for (const SonarEcho& echo : echoes) {
     if (auto factor = maker.make(echo)) factors.push_back(std::move(*factor));
@@ -149,7 +153,6 @@ std::vector<Factor> SonarMeasurement::factors(const MeasurementContext& context)
 std::shared_ptr<const Measurement> SonarMeasurement::weighted(int count) const {
   auto weighted = std::make_shared<SonarMeasurement>(*this);
   weighted->variance_scale /= count;
-  weighted->is_attached = true;
   return weighted;
 }
 

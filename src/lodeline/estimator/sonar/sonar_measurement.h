@@ -21,18 +21,17 @@ struct SonarEcho {
 
 /// Sonar measurement of a frame: the echoes since the frame before. Each one's factor is a SonarRangeFactor
 /// under a Cauchy loss, with its landmarks eliminated (EliminatedLandmarksFactor). The surface is formed anew
-/// for each solution by the landmarks that the window has then.
+/// for each solution by the landmarks that the window has then. In the batch solution, where the frame before
+/// may be no state, the poses at the echoes follow the frame alone.
 struct SonarMeasurement final : Measurement {
   std::vector<SonarEcho> echoes;
   SonarOptions options;
   double variance_scale = 1.0;
-  /// Whether the poses at the echoes follow the frame alone, because the frame before is no state.
-  bool is_attached = false;
 
   static constexpr std::string_view kSensor = "sonar";
   std::string_view sensor() const override { return kSensor; }
   std::vector<Factor> factors(const MeasurementContext& context) const override;
-  bool isRelative() const override { return !is_attached; }
+  bool isRelative() const override { return true; }
   bool containsLandmarks() const override { return true; }
   std::shared_ptr<const Measurement> weighted(int count) const override;
 };
