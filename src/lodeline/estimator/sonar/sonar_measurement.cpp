@@ -71,49 +71,66 @@ class EchoFactors {
     return variance > 0.0 && variance < std::pow(kGreatestSigma * response.landmark[2], 2);
   }
 
-  Factor rangeFactor(const SonarEcho& echo, const LocalSurface& surface) const {
-    Factor factor;
+  /// The blocks of a range factor beside the pose at the echo, and what the factor knows of them.
+  struct Blocks {
     std::vector<double*> hosts, landmarks;
     std::vector<SurfaceLandmark> members;
-    const Frame& frame = context_.frame;
     SonarLinearizationPoints first;
+  };
+
+  Blocks blocksOf(const LocalSurface& surface) const {
+    Blocks blocks;
     for (const LocalSurface::Member& member : surface.members) {
       Landmark& landmark = *context_.window.tracks().at(member.track).landmark;
       Frame& host = *context_.window.find(landmark.host);
-      const auto known = std::find(hosts.begin(), hosts.end(), host.pose.data());
-      const auto index = static_cast<size_t>(known - hosts.begin());
-      if (known == hosts.end()) {
-        hosts.push_back(host.pose.data());
-        first.hosts.push_back(host.firstPose());
-      }
-      landmarks.push_back(landmark.parameters.data());
-      members.push_back({landmark.base, index, member.weight});
+      const auto known = std::find(blocks.hosts.begin(), blocks.hosts.end(), host.pose.data());
+      blocks.members.push_back(
+          {landmark.base, static_cast<size_t>(known - blocks.hosts.begin()), member.weight});
+      blocks.landmarks.push_back(landmark.parameters.data());
+      if (known != blocks.hosts.end()) continue;
+      blocks.hosts.push_back(host.pose.data());
+      blocks.first.hosts.push_back(host.firstPose());
     }
+    return blocks;
+  }
+
+  SonarBeam beamOf(const SonarEcho& echo) const {
+    if (!is_attached_) return echo.beam;
+    return {echo.frame_from_echo * echo.beam.origin_B,
+            echo.frame_from_echo.rotation.toRotationMatrix() * echo.beam.axes_B};
+  }
+
+  /// Linearization point of the pose at the echo; empty while neither frame has one.
+  std::optional<PoseBlock> firstPoseOf(const SonarEcho& echo) const {
+    const Frame& frame = context_.frame;
+    if (is_attached_) return frame.first_pose;
+    if (!context_.before->first_pose && !frame.first_pose) return std::nullopt;
+    PoseBlock first;
+    poseToBlock(echo.between.pose(context_.before->firstWorldFromBody(), frame.firstWorldFromBody()),
+                first.data());
+    return first;
+  }
+
+  Factor rangeFactor(const SonarEcho& echo, const LocalSurface& surface) const {
+    Blocks blocks = blocksOf(surface);
     ParameterBlock* camera = cameras_ ? cameras_.camera0 : nullptr;
-    if (camera) first.camera = camera->linearizationPoint();
-    SonarBeam beam = echo.beam;
-    if (is_attached_) {
-      beam.origin_B = echo.frame_from_echo * beam.origin_B;
-      beam.axes_B = echo.frame_from_echo.rotation.toRotationMatrix() * beam.axes_B;
-      first.pose = frame.first_pose;
-    } else if (context_.before->first_pose || frame.first_pose) {
-      poseToBlock(echo.between.pose(context_.before->firstWorldFromBody(), frame.firstWorldFromBody()),
-                  first.pose.emplace().data());
-    }
-    const double sigma_m =
-        std::sqrt(measurement_.variance_scale *
-                  (echo.sigma_m * echo.sigma_m + echo.share * std::pow(surface.sigma_m, 2)));
-    factor.function =
-        std::make_unique<SonarRangeFactor>(echo.range_m, sigma_m, beam, context_.builder.bodyFromCamera(0),
-                                           camera != nullptr, hosts.size(), std::move(members), first);
-    factor.blocks = {is_attached_ ? context_.frame.pose.data() : context_.before->pose.data()};
-    factor.blocks.insert(factor.blocks.end(), hosts.begin(), hosts.end());
+    if (camera) blocks.first.camera = camera->linearizationPoint();
+    blocks.first.pose = firstPoseOf(echo);
+    const double variance_m2 = echo.sigma_m * echo.sigma_m + echo.share * surface.sigma_m * surface.sigma_m;
+    Factor factor;
+    factor.function = std::make_unique<SonarRangeFactor>(
+        echo.range_m, std::sqrt(measurement_.variance_scale * variance_m2), beamOf(echo),
+        context_.builder.bodyFromCamera(0), camera != nullptr, blocks.hosts.size(), std::move(blocks.members),
+        blocks.first);
+    Frame& frame = context_.frame;
+    factor.blocks = {is_attached_ ? frame.pose.data() : context_.before->pose.data()};
+    factor.blocks.insert(factor.blocks.end(), blocks.hosts.begin(), blocks.hosts.end());
     if (camera) factor.blocks.push_back(camera->value.data());
-    factor.blocks.insert(factor.blocks.end(), landmarks.begin(), landmarks.end());
+    factor.blocks.insert(factor.blocks.end(), blocks.landmarks.begin(), blocks.landmarks.end());
     if (is_attached_) return factor;
     factor.function = std::make_unique<InterpolatedPoseFactor>(
         std::move(factor.function), 0, echo.between, context_.before->firstPose(), frame.firstPose());
-    factor.blocks.push_back(context_.frame.pose.data());
+    factor.blocks.push_back(frame.pose.data());
     return factor;
   }
 
