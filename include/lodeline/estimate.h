@@ -1,8 +1,10 @@
 #pragma once
 
+#include <any>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lodeline/types.h"
@@ -180,6 +182,45 @@ struct ScaleInformation {
   double sum() const { return stereo + accelerometer + depth; }
 };
 
+/// What a sensor reports about a frame, in words and numbers for files and summaries.
+struct SensorRow {
+  std::string sensor;
+  std::string status;
+  std::vector<std::pair<std::string, std::string>> columns;  ///< of states.csv: name with unit, value
+};
+
+/// What the sensors report about a frame: one estimate of each kind at most.
+class SensorEstimates {
+ public:
+  /// The estimate of a kind; the default one where there is none.
+  template <typename Kind>
+  const Kind& of() const {
+    static const Kind none;
+    const Kind* found = find<Kind>();
+    return found ? *found : none;
+  }
+  /// The same to be changed; added where there is none.
+  template <typename Kind>
+  Kind& of() {
+    if (const Kind* found = find<Kind>()) return const_cast<Kind&>(*found);
+    return std::any_cast<Kind&>(items_.emplace_back(Kind()));
+  }
+  template <typename Kind>
+  void set(Kind estimate) {
+    of<Kind>() = std::move(estimate);
+  }
+
+ private:
+  template <typename Kind>
+  const Kind* find() const {
+    for (const std::any& item : items_) {
+      if (const auto* found = std::any_cast<Kind>(&item)) return found;
+    }
+    return nullptr;
+  }
+  std::vector<std::any> items_;
+};
+
 /// What is known right after a frame was added; never revised later.
 struct FrameEstimate {
   Time time;
@@ -201,6 +242,8 @@ struct FrameEstimate {
   std::optional<CameraCorrections> camera_corrections;
   std::optional<SensorAxes> gyroscope_axes;      ///< the same
   std::optional<SensorAxes> accelerometer_axes;  ///< the same
+  SensorEstimates sensors;                       ///< of the other sensors
+  std::vector<SensorRow> sensor_rows;            ///< SensorFusion::row() of each sensor that has one
   MagnetometerEstimate magnetometer;
   DepthEstimate depth;
   ScaleInformation scale;  ///< what carries it at present

@@ -120,7 +120,10 @@ struct PressureCalibration {
 struct SonarCalibration {
   double rate_hz = 50.0;
   double range_noise_std_m = 0.05;
+  /// The head turns about its z axis; the beam of the angle 0 points along x.
   Rigid3 body_from_sonar;
+  double beam_width_rad = 0.035;  ///< full width, where the power has fallen to a half
+  double max_range_m = 0.0;       ///< greater ranges are no echoes; 0: unlimited
 };
 
 /// All rigidly connected sensors with their extrinsics.

@@ -256,6 +256,22 @@ void bindDepth(Settings* settings, DepthOptions* options) {
                  "after which rejected readings, if steady, count from a new offset");
 }
 
+void bindSonar(Settings* settings, SonarOptions* options) {
+  settings->bind("sonar.use", &options->use, "whether sonar ranges are used");
+  settings->bind("sonar.noise_inflation", &options->noise_inflation,
+                 "factor on the range_noise_std of its file", Settings::Sign::Positive);
+  settings->bind("sonar.surface_angle_rad", &options->surface_angle_rad,
+                 "landmarks within this angle of the beam form the surface that it meets",
+                 Settings::Sign::Positive);
+  settings->bind("sonar.min_landmarks", &options->min_landmarks, "that form a surface", 4);
+  settings->bind("sonar.roughness", &options->roughness,
+                 "of walls beside the scatter of the landmarks, relative to the range");
+  settings->bind("sonar.correlated_noise_time_s", &options->correlated_noise_time_s,
+                 "for which errors of the surface last", Settings::Sign::Positive);
+  settings->bind("sonar.gate.max_sigmas", &options->max_sigmas, "of the innovation",
+                 Settings::Sign::Positive);
+}
+
 }  // namespace
 
 void bindRunSettings(Settings* settings, RunSettings* options) {
@@ -270,6 +286,7 @@ void bindRunSettings(Settings* settings, RunSettings* options) {
   bindMagnetometer(settings, &options->odometry.estimator.magnetometer);
   bindMagnetometerGate(settings, &options->odometry.estimator.magnetometer.gate);
   bindDepth(settings, &options->odometry.estimator.depth);
+  bindSonar(settings, &options->odometry.estimator.sonar);
   settings->bind("heading.reference", &options->odometry.estimator.magnetometer.heading_reference,
                  {{"automatic", HeadingReference::Automatic},
                   {"true", HeadingReference::True},

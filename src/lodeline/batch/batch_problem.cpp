@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "lodeline/batch/batch_structure.h"
+#include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/estimator/problem/robust_loss.h"
 #include "lodeline/estimator/problem/window_terms.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
 
 namespace lodeline {
@@ -26,7 +26,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addStates(rig, record);
   addTracks(record);
   addGlobals(record);
-  addStartPrior(rig, record);
+  addStartPrior(record);
   holdIntrinsics(record.globals());
   believeInFilesAsBefore(record);
   addImuAxes(record.globals());
@@ -47,10 +47,16 @@ size_t BatchProblem::observations() const {
 }
 
 double* BatchProblem::nodeOf(const Chain& chain, size_t state) {
-  if (chain.empty()) return nullptr;
   const auto after = std::upper_bound(chain.begin(), chain.end(), state,
                                       [](size_t k, const Node& node) { return k < node.first; });
   return std::prev(after)->state->value.data();
+}
+
+const double* BatchProblem::walkingValue(std::string_view name, size_t state) const {
+  for (const Chain& chain : chains_) {
+    if (chain.front().state->name == name) return nodeOf(chain, state);
+  }
+  return nullptr;
 }
 
 std::vector<Factor> BatchProblem::motionFactors() {
@@ -60,28 +66,43 @@ std::vector<Factor> BatchProblem::motionFactors() {
   for (size_t k = 0; k < states(); ++k) {
     Frame& frame = *window_.frames()[k];
     if (k > 0) terms.push_back(factors_.inertial(window_, *window_.frames()[k - 1], frame));
-    if (!field_offsets_.empty()) {
-      if (auto field = factors_.magnetometer(window_, nullptr, frame)) {
-        field->blocks[2] = nodeOf(field_offsets_, k);
-        field->loss = loss_;
-        terms.push_back(std::move(*field));
-      }
-    }
-    if (!depth_offsets_.empty()) {
-      if (auto depth = factors_.depth(window_, frame)) {
-        depth->blocks[1] = nodeOf(depth_offsets_, k);
-        depth->loss = loss_;
-        terms.push_back(std::move(*depth));
-      }
-    }
+    addSensorFactors(k, false, &terms);
   }
   return terms;
+}
+
+void BatchProblem::forEachFactor(const std::function<void(const Factor&)>& visit) {
+  for (const Factor& factor : motionFactors()) visit(factor);
+  for (const Factor& factor : landmark_factors_) visit(factor);
+}
+
+void BatchProblem::renewLandmarkFactors() {
+  landmark_factors_.clear();
+  for (size_t k = 0; k < states(); ++k) addSensorFactors(k, true, &landmark_factors_);
+}
+
+void BatchProblem::addSensorFactors(size_t k, bool on_landmarks, std::vector<Factor>* terms) {
+  Frame& frame = *window_.frames()[k];
+  Frame* before = k > 0 ? window_.frames()[k - 1].get() : nullptr;
+  for (const auto& measurement : frame.measurements) {
+    if (measurement->containsLandmarks() != on_landmarks) continue;
+    for (Factor& factor :
+         measurement->factors({factors_, window_, before, frame, MeasurementContext::Scope::Batch})) {
+      for (double*& block : factor.blocks) {
+        for (const Chain& chain : chains_) {
+          if (block == chain.front().state->value.data()) block = nodeOf(chain, k);
+        }
+      }
+      if (!factor.loss) factor.loss = loss_;
+      terms->push_back(std::move(factor));
+    }
+  }
 }
 
 double BatchProblem::cost() {
   std::vector<double> residual;
   double sum = visual_.cost();
-  for (const Factor& factor : motionFactors()) sum += costOf(factor, residual);
+  forEachFactor([&](const Factor& factor) { sum += costOf(factor, residual); });
   return sum;
 }
 
@@ -110,11 +131,11 @@ void BatchProblem::scatter(const NormalEquations& local, BlockSkylineCholesky* h
 void BatchProblem::linearize(BlockSkylineCholesky* hessian, Eigen::VectorXd* gradient) {
   hessian->setZero();
   gradient->setZero(hessian->size());
-  for (const Factor& factor : motionFactors()) {
+  forEachFactor([&](const Factor& factor) {
     NormalEquations local;
     local.add(factor);
     scatter(local, hessian, gradient);
-  }
+  });
   visual_.linearize([&](const NormalEquations& local) { scatter(local, hessian, gradient); });
 }
 
@@ -199,6 +220,7 @@ double BatchProblem::renewLandmarks() {
   }
   adaptRobustLosses(window_, errors, options_.solver);
   visual_.arrange();
+  renewLandmarkFactors();
   return placed > 0.0 ? removed / placed : 0.0;
 }
 
@@ -221,6 +243,7 @@ TimeCorrelatedErrors BatchProblem::timeCorrelatedErrors() {
 
 void BatchProblem::weighObservations(double variance) {
   for (auto& [id, track] : window_.tracks()) track.weight /= variance;
+  renewLandmarkFactors();
 }
 
 Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index,

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -65,10 +67,8 @@ class BatchProblem {
   /// Multiplies the variance of the observations by `variance`, until landmarks are renewed.
   void weighObservations(double variance);
 
-  /// Offset of the magnetometer's corrected readings (T) and depth at the origin (m) that are valid for a
-  /// state; null where there is no such sensor.
-  const double* fieldOffset(size_t state) const { return nodeOf(field_offsets_, state); }
-  const double* depthOffset(size_t state) const { return nodeOf(depth_offsets_, state); }
+  /// Value of a sensor's walking parameter block that is valid for a state; null where there is none.
+  const double* walkingValue(std::string_view name, size_t state) const;
 
   /// Covariance of a state's [dp, dtheta, dv, db_g, db_a], from the inverse of the system.
   Eigen::Matrix<double, 15, 15> covarianceOf(size_t state, const BlockSkylineCholesky& inverse) const;
@@ -80,7 +80,7 @@ class BatchProblem {
   void addStates(const Rig& rig, const EstimatorLog& record);
   void addTracks(const EstimatorLog& record);
   void addGlobals(const EstimatorLog& record);
-  void addStartPrior(const Rig& rig, const EstimatorLog& record);
+  void addStartPrior(const EstimatorLog& record);
   /// Holds the intrinsics at the final values of the run (`globals`). If they were free, they would follow
   /// points that slide in the images along a barely observable mode: a longer focal length with a camera
   /// further back.
@@ -89,7 +89,8 @@ class BatchProblem {
   void believeInFilesAsBefore(const EstimatorLog& record);
   void addImuAxes(const GlobalValues& globals);
   ParameterBlock* addGlobal(const EstimatorLog& record, const std::string& name, const std::string& as);
-  void addKnowledge(ParameterBlock* state, double sigma);
+  /// Adds the prior of a sensor's parameter block (BatchState::sigma).
+  void addKnowledge(ParameterBlock* state, const BatchState& of);
   void orderBlocks();
   void appendBlock(double* value, int tangent_size, int first);
   std::vector<Factor> motionFactors();
@@ -105,19 +106,27 @@ class BatchProblem {
     bool continues = false;  ///< whether the walk of the node before continues in it
   };
   using Chain = std::vector<Node>;
-  void addChain(const EstimatorLog& record, const char* name, bool restarts, Chain* chain);
+  Chain makeChain(const EstimatorLog& record, const RecordedSensorState& recorded);
   void addWalk(const Chain& chain, double walk_per_sqrt_s);
   static double* nodeOf(const Chain& chain, size_t state);
+  /// Terms of a state's sensors, with the nodes of the chains that are valid for it: those on landmarks, or
+  /// the others.
+  void addSensorFactors(size_t k, bool on_landmarks, std::vector<Factor>* terms);
+  /// Makes the sensors' terms on landmarks. They stay the same while the cost is minimized.
+  void renewLandmarkFactors();
+  /// Calls `visit` with each term without reprojection terms.
+  void forEachFactor(const std::function<void(const Factor&)>& visit);
 
   EstimatorOptions options_;
   std::vector<std::shared_ptr<const Camera>> cameras_;
   FactorBuilder factors_;
-  std::shared_ptr<const ceres::LossFunction> loss_;  ///< for magnetometer and depth residuals
+  std::shared_ptr<const ceres::LossFunction> loss_;  ///< for the residuals of sensors
   Window window_;
   BatchLandmarks visual_;
+  std::vector<Factor> landmark_factors_;
   Tracks all_tracks_;  ///< with all their observations, without landmarks
   std::vector<Prior> priors_;
-  Chain field_offsets_, depth_offsets_;
+  std::vector<Chain> chains_;  ///< not empty; the first node has the name of the parameter block
   // Blocks in the order of the system:
   std::unordered_map<const double*, int> rows_;
   std::vector<int> sizes_, first_;

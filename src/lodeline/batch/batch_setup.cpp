@@ -6,9 +6,7 @@
 #include "lodeline/batch/batch_problem.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/state/depth_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
 
 namespace lodeline {
 namespace {
@@ -31,7 +29,7 @@ Prior walkBetween(ParameterBlock* begin, ParameterBlock* end, double sigma) {
 }
 
 /// Removes a block that is not correlated with others from a prior.
-void remove(const char* name, Prior* prior, std::vector<std::string>* names) {
+void remove(const std::string& name, Prior* prior, std::vector<std::string>* names) {
   Prior rest;
   std::vector<std::string> rest_names;
   std::vector<int> kept;
@@ -60,8 +58,7 @@ void BatchProblem::addStates(const Rig& rig, const EstimatorLog& record) {
     frame->setState(recorded.state);
     frame->is_keyframe = true;  // any state may host landmarks
     frame->gyroscope_B = recorded.gyroscope_B;
-    frame->magnetometer = recorded.magnetometer;
-    frame->depth = recorded.depth;
+    frame->measurements = recorded.measurements;
     if (!window_.empty()) {
       const Frame& before = window_.newest();
       frame->from_previous = std::make_unique<Preintegration>(
@@ -104,50 +101,50 @@ ParameterBlock* BatchProblem::addGlobal(const EstimatorLog& record, const std::s
   return &window_.add({as, found->second, std::nullopt, 0.0, false});
 }
 
-void BatchProblem::addKnowledge(ParameterBlock* state, double sigma) {
+void BatchProblem::addKnowledge(ParameterBlock* state, const BatchState& of) {
   Prior& prior = priors_.emplace_back();
   const auto size = static_cast<Eigen::Index>(state->value.size());
-  prior.append(state->value.data(), static_cast<int>(size), Eigen::VectorXd::Constant(size, sigma));
+  const std::vector<double> initial = state->value;
+  if (!of.value.empty()) state->value = of.value;
+  prior.append(state->value.data(), static_cast<int>(size), Eigen::VectorXd::Constant(size, of.sigma));
+  std::copy(initial.begin(), initial.end(), state->value.begin());
 }
 
 void BatchProblem::addGlobals(const EstimatorLog& record) {
-  const MagnetometerOptions& magnetometer = options_.magnetometer;
-  const DepthOptions& depth = options_.depth;
-  addChain(record, MagnetometerStates::kOffset, false, &field_offsets_);
-  addWalk(field_offsets_, magnetometer.offset_walk_T_per_sqrt_s);
-  addGlobal(record, MagnetometerStates::kField, MagnetometerStates::kField);
-  addChain(record, DepthStates::kOffset, true, &depth_offsets_);
-  addWalk(depth_offsets_, depth.offset_walk_m_per_sqrt_s);
-  for (const Node& node : depth_offsets_) {
-    if (!node.continues) addKnowledge(node.state, depth.offset_sigma_m);
-  }
-  if (ParameterBlock* scale = addGlobal(record, DepthStates::kScale, DepthStates::kScale)) {
-    scale->value = {depth.density_ratio};
-    addKnowledge(scale, std::max(depth.density_ratio_sigma, 1e-7));
-    scale->value = record.globals().at(DepthStates::kScale);
-    const auto& gauge = record.frames().back().depth.gauge;
-    if (gauge && gauge->prior) scale->priors = {*gauge->prior};
-  }
-  if (ParameterBlock* lag = addGlobal(record, DepthStates::kLag, DepthStates::kLag)) {
-    lag->value = {depth.lag_s};
-    addKnowledge(lag, std::max(depth.lag_sigma_s, 1e-7));
-    lag->value = record.globals().at(DepthStates::kLag);
+  for (const RecordedSensorState& recorded : record.sensorStates()) {
+    const BatchState& state = recorded.state;
+    if (state.walk_per_sqrt_s) {
+      Chain chain = makeChain(record, recorded);
+      if (chain.empty()) continue;
+      addWalk(chain, *state.walk_per_sqrt_s);
+      for (const Node& node : chain) {
+        if (state.is_added_late && !node.continues) addKnowledge(node.state, state);
+      }
+      chains_.push_back(std::move(chain));
+    } else if (ParameterBlock* global = addGlobal(record, state.name, state.name)) {
+      if (state.is_added_late) addKnowledge(global, state);
+      global->priors = state.priors;
+    }
   }
 }
 
-void BatchProblem::addChain(const EstimatorLog& record, const char* name, bool restarts, Chain* chain) {
+BatchProblem::Chain BatchProblem::makeChain(const EstimatorLog& record, const RecordedSensorState& recorded) {
+  const std::string& name = recorded.state.name;
+  Chain chain;
   int epoch = 0;
   for (size_t k = 0; k < states(); ++k) {
-    const int now = restarts ? record.states()[k].gauge_epoch : 0;
-    const bool is_new = chain->empty() || now != epoch;
-    if (!is_new && (state(k).time - state(chain->back().first).time).seconds() < kNode_s) continue;
+    const std::vector<int>& restarts = record.states()[k].restarts;
+    const int now = recorded.state.restarts && !restarts.empty() ? restarts[recorded.sensor] : 0;
+    const bool is_new = chain.empty() || now != epoch;
+    if (!is_new && (state(k).time - state(chain.back().first).time).seconds() < kNode_s) continue;
     // The first keeps the plain name, which the factors use.
-    const std::string as = chain->empty() ? name : std::string(name) + "@" + std::to_string(chain->size());
+    const std::string as = chain.empty() ? name : name + "@" + std::to_string(chain.size());
     ParameterBlock* node = addGlobal(record, name, as);
-    if (node == nullptr) return;
-    chain->push_back({k, node, !is_new});
+    if (node == nullptr) return {};
+    chain.push_back({k, node, !is_new});
     epoch = now;
   }
+  return chain;
 }
 
 void BatchProblem::addWalk(const Chain& chain, double walk_per_sqrt_s) {
@@ -159,15 +156,13 @@ void BatchProblem::addWalk(const Chain& chain, double walk_per_sqrt_s) {
   }
 }
 
-void BatchProblem::addStartPrior(const Rig& rig, const EstimatorLog& record) {
+void BatchProblem::addStartPrior(const EstimatorLog& record) {
   const EstimatorLog::StartPrior& start = record.startPrior();
   const GlobalValues& globals = record.globals();
   Prior prior = start.prior;
   std::vector<std::string> names = start.names;
-  // The initial field has been replaced as the Earth's field.
-  if (record.frames().back().magnetometer.field_epoch > 0) {
-    remove(MagnetometerStates::kField, &prior, &names);
-    remove(MagnetometerStates::kOffset, &prior, &names);
+  for (const RecordedSensorState& recorded : record.sensorStates()) {
+    if (recorded.state.is_start_replaced) remove(recorded.state.name, &prior, &names);
   }
   Frame& first = *window_.frames().front();
   std::vector<const double*> known;
@@ -191,17 +186,12 @@ void BatchProblem::addStartPrior(const Rig& rig, const EstimatorLog& record) {
     known.push_back(value);
   }
   priors_.push_back(std::move(prior));
-  // A magnetometer with its first reading after the start has states that the start's prior does not contain.
-  const MagnetometerStates magnetometer(window_);
-  const auto isKnown = [&](const ParameterBlock* state) {
-    return std::find(known.begin(), known.end(), state->value.data()) != known.end();
-  };
-  if (magnetometer.field && !isKnown(magnetometer.field))
-    addKnowledge(magnetometer.field, options_.magnetometer.field_sigma_T);
-  if (magnetometer.offset && !isKnown(magnetometer.offset)) {
-    const std::vector<double> end = std::exchange(magnetometer.offset->value, {0.0, 0.0, 0.0});
-    addKnowledge(magnetometer.offset, offsetSigma(*rig.magnetometer, options_.magnetometer));
-    magnetometer.offset->value = end;
+  // A sensor with its first reading after the start has states that the start's prior does not contain.
+  for (const RecordedSensorState& recorded : record.sensorStates()) {
+    ParameterBlock* state = window_.findGlobal(recorded.state.name);
+    if (state == nullptr || recorded.state.is_added_late) continue;
+    if (std::find(known.begin(), known.end(), state->value.data()) == known.end())
+      addKnowledge(state, recorded.state);
   }
 }
 
@@ -254,6 +244,14 @@ void BatchProblem::orderBlocks() {
       first = std::min(first, oldest);
     }
   }
+  // A measurement on landmarks connects all states that share a landmark with its own.
+  for (size_t k = 0; k < states(); ++k) {
+    const Measurements& measurements = window_.frames()[k]->measurements;
+    if (std::none_of(measurements.begin(), measurements.end(),
+                     [](const auto& measurement) { return measurement->containsLandmarks(); }))
+      continue;
+    for (size_t i = first_seen[k]; i < k; ++i) first_seen[i] = std::min(first_seen[i], first_seen[k]);
+  }
   // A node of a chain comes after the states for which it is valid.
   const auto appendNodes = [&](const Chain& chain, size_t k) {
     for (size_t i = 0; i < chain.size(); ++i) {
@@ -270,8 +268,7 @@ void BatchProblem::orderBlocks() {
     const int first = k == 0 ? 0 : rowOf(state(first_seen[k]).pose.data());
     appendBlock(frame.pose.data(), kPoseTangentSize, first);
     appendBlock(frame.motion.data(), kMotionSize, k == 0 ? 0 : rowOf(state(k - 1).pose.data()));
-    appendNodes(field_offsets_, k);
-    appendNodes(depth_offsets_, k);
+    for (const Chain& chain : chains_) appendNodes(chain, k);
   }
   for (const auto& global : window_.globals()) {
     if (rows_.count(global->value.data()) == 0) appendBlock(global->value.data(), global->tangentSize(), 0);

@@ -2,20 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lodeline {
 namespace {
 
 constexpr double kLongestStart_s = 10.0;  // span of frames kept before the first pose
-
-/// Reduces the sigmas of one measurement that stands for `count` measurements, which the run took for
-/// independent.
-void weighAs(int count, FieldMeasurement* measurement) {
-  const double share = 1.0 / std::sqrt(static_cast<double>(count));
-  measurement->noise.sigma_T *= share;
-  measurement->noise.rotation_sigma_rad *= share;
-  measurement->noise.tilt_sigma_rad *= share;
-}
 
 }  // namespace
 
@@ -42,15 +34,13 @@ void EstimatorLog::add(const FrameTracks& tracks, std::span<const ImuSample> imu
     start(estimate, estimator);
     return;
   }
-  if (estimate.magnetometer.field_epoch != field_epoch_) forgetFields(estimate.magnetometer.field_epoch);
+  forgetEarlierEpochs(estimator);
   const Frame& newest = estimator.window().newest();
   state.state = estimate.state;
   state.is_keyframe = estimate.is_keyframe;
-  if (newest.magnetometer && !newest.magnetometer->disturbed && !newest.magnetometer->relative)
-    state.magnetometer = newest.magnetometer;
-  state.depth = newest.depth;
-  gauge_epoch_ += estimate.depth.status == DepthStatus::Restarted;
-  state.gauge_epoch = gauge_epoch_;
+  state.measurements = newest.measurements;
+  state.measurements.removeIf([](const Measurement& measurement) { return !measurement.isForBatch(); });
+  for (const auto& sensor : estimator.sensors()) state.restarts.push_back(sensor->restarts());
   append(std::move(state));
 }
 
@@ -69,11 +59,15 @@ void EstimatorLog::start(const FrameEstimate& estimate, const Estimator& estimat
   rememberPrior(estimator);
 }
 
-void EstimatorLog::forgetFields(int epoch) {
-  field_epoch_ = epoch;
-  fields_ = 0;
-  for (RecordedState& state : states_) state.magnetometer.reset();
-  if (newest_) newest_->magnetometer.reset();
+void EstimatorLog::forgetEarlierEpochs(const Estimator& estimator) {
+  for (const auto& sensor : estimator.sensors()) {
+    const std::string_view name = sensor->name();
+    if (std::exchange(epochs_[name], sensor->measurementEpoch()) == sensor->measurementEpoch()) continue;
+    used_[name] = 0;
+    const auto isEarlier = [&](const Measurement& measurement) { return measurement.sensor() == name; };
+    for (RecordedState& state : states_) state.measurements.removeIf(isEarlier);
+    if (newest_) newest_->measurements.removeIf(isEarlier);
+  }
 }
 
 void EstimatorLog::rememberPrior(const Estimator& estimator) {
@@ -95,27 +89,28 @@ bool EstimatorLog::isState(const RecordedState& candidate) const {
   const double since_s = (candidate.state.time - states_.back().state.time).seconds();
   // Times of images are not exactly evenly spaced.
   constexpr double kTolerance_s = 1e-3;
-  const double depth_interval_s = 0.4 * state_interval_s_;
+  const double short_interval_s = 0.4 * state_interval_s_;
+  const bool is_wanted = std::any_of(candidate.measurements.begin(), candidate.measurements.end(),
+                                     [](const auto& measurement) { return measurement->wantsBatchState(); });
   return candidate.is_keyframe || since_s > state_interval_s_ - kTolerance_s ||
-         (candidate.depth && since_s > depth_interval_s);
+         (is_wanted && since_s > short_interval_s);
+}
+
+void EstimatorLog::weighMeasurements(RecordedState* state) {
+  Measurements weighted;
+  for (const auto& measurement : state->measurements)
+    weighted.add(measurement->weighted(std::exchange(used_[measurement->sensor()], 0)));
+  state->measurements = std::move(weighted);
 }
 
 void EstimatorLog::append(RecordedState state) {
-  fields_ += state.magnetometer.has_value();
-  depths_ += state.depth.has_value();
+  for (const auto& measurement : state.measurements) ++used_[measurement->sensor()];
   if (!isState(state)) {
     newest_ = std::move(state);
     return;
   }
   newest_.reset();
-  if (state.magnetometer) {
-    weighAs(fields_, &*state.magnetometer);
-    fields_ = 0;
-  }
-  if (state.depth) {
-    state.depth->sigma_m /= std::sqrt(static_cast<double>(depths_));
-    depths_ = 0;
-  }
+  weighMeasurements(&state);
   states_.push_back(std::move(state));
 }
 
@@ -123,6 +118,10 @@ void EstimatorLog::finish(const Estimator& estimator) {
   if (newest_) states_.push_back(std::move(*newest_));
   newest_.reset();
   for (const auto& state : estimator.window().globals()) globals_[state->name] = state->value;
+  for (size_t i = 0; i < estimator.sensors().size(); ++i) {
+    for (BatchState& state : estimator.sensors()[i]->batchStates(estimator.window()))
+      sensor_states_.push_back({i, std::move(state)});
+  }
 }
 
 std::span<const ImuSample> EstimatorLog::imuBetween(Time begin, Time end) const {

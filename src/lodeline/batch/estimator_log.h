@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lodeline/estimator/estimator.h"
@@ -18,9 +19,14 @@ struct RecordedState {
   bool is_keyframe = false;
   Vec3 gyroscope_B = Vec3::Zero();  ///< reading at its time, rad/s
   std::vector<FeatureObservation> observations;
-  std::optional<FieldMeasurement> magnetometer;  ///< where the gate accepted it as the Earth's field
-  std::optional<DepthMeasurement> depth;
-  int gauge_epoch = 0;  ///< counts restarts of the pressure gauge's offset
+  Measurements measurements;  ///< of the sensors, those for the batch solution
+  std::vector<int> restarts;  ///< SensorFusion::restarts() of each sensor
+};
+
+/// A parameter block of a sensor, and the sensor's number in RecordedState::restarts.
+struct RecordedSensorState {
+  size_t sensor = 0;
+  BatchState state;
 };
 
 /// Record of a forward run for the batch solution: measurements of the states, all inertial readings, the
@@ -58,12 +64,16 @@ class EstimatorLog {
   const StartPrior& startPrior() const { return start_prior_; }
   /// Values of the parameter blocks at the end of the run.
   const std::map<std::string, std::vector<double>>& globals() const { return globals_; }
+  /// The sensors' parameter blocks at the end of the run.
+  const std::vector<RecordedSensorState>& sensorStates() const { return sensor_states_; }
 
  private:
   void start(const FrameEstimate& estimate, const Estimator& estimator);
   void rememberPrior(const Estimator& estimator);
-  /// Removes recorded fields, because the field taken for the Earth's was replaced.
-  void forgetFields(int epoch);
+  /// Removes recorded measurements that are of no use any more (SensorFusion::measurementEpoch).
+  void forgetEarlierEpochs(const Estimator& estimator);
+  /// Weighs the measurements of a state by those that were used since the last state that had one.
+  void weighMeasurements(RecordedState* state);
   bool isState(const RecordedState& candidate) const;
   void append(RecordedState state);
 
@@ -75,9 +85,10 @@ class EstimatorLog {
   std::map<std::string, std::vector<double>> globals_;
   std::vector<RecordedState> waiting_;   ///< frames before the first pose
   std::optional<RecordedState> newest_;  ///< the last frame, if it is not a state
-  int fields_ = 0, depths_ = 0;          ///< measurements used since the last state that had one
-  int gauge_epoch_ = 0;
-  int field_epoch_ = 0;
+  /// Measurements of each sensor that were used since the last state that had one.
+  std::map<std::string_view, int> used_;
+  std::map<std::string_view, int> epochs_;  ///< SensorFusion::measurementEpoch() of each sensor
+  std::vector<RecordedSensorState> sensor_states_;
 };
 
 }  // namespace lodeline

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "lodeline/estimator/state/depth_states.h"
+#include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
+#include "lodeline/estimator/pressure/depth_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
 #include "lodeline/estimator/uncertainty/covariance_inflation.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
 
@@ -112,14 +112,14 @@ class FrameMaker {
     const MagnetometerStates states(problem_.window());
     if (states.field == nullptr || !refined->magnetometer.field_W) return;
     refined->magnetometer.field_W = states.field_W();
-    refined->magnetometer.offset_B = Vec3(problem_.fieldOffset(state_));
+    refined->magnetometer.offset_B = Vec3(problem_.walkingValue(MagnetometerStates::kOffset, state_));
   }
 
   void describeDepth(FrameEstimate* refined) const {
     const DepthStates states(problem_.window());
     if (!states || !refined->depth.gauge) return;
     DepthEstimate::Gauge& gauge = *refined->depth.gauge;
-    gauge.depth_at_origin_m = *problem_.depthOffset(state_);
+    gauge.depth_at_origin_m = *problem_.walkingValue(DepthStates::kOffset, state_);
     gauge.density_ratio = states.density_ratio();
     gauge.lag_s = states.lag_s();
     gauge.body_depth_m =

@@ -21,7 +21,8 @@ FramePacket packetOf(int index) {
   }
   for (int i = 1; i <= 5; ++i) {
     const Vec3 noise = 1e-9 * Vec3(i, index % 7, 0);
-    packet.magnetometer.push_back({Time::fromSeconds(0.1 * index + 0.02 * i), kField_W + noise});
+    packet.readings.of<MagnetometerSample>().push_back(
+        {Time::fromSeconds(0.1 * index + 0.02 * i), kField_W + noise});
   }
   return packet;
 }
@@ -47,7 +48,7 @@ TEST(AttitudeTrack, HasNothingToSayWithoutReadings) {
   FramePacket packet;
   EXPECT_FALSE(track.add(packet));
   packet = packetOf(0);
-  packet.magnetometer.clear();
+  packet.readings.of<MagnetometerSample>().clear();
   const auto& estimate = track.add(packet);
   ASSERT_TRUE(estimate);
   EXPECT_EQ(estimate->status, HeadingStatus::NoMagnetometer);

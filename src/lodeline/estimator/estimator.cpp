@@ -11,6 +11,7 @@
 #include "lodeline/estimator/monitoring/inertial_monitor.h"
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/robust_loss.h"
+#include "lodeline/estimator/sensor_registry.h"
 #include "lodeline/estimator/solver/window_update.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
@@ -70,8 +71,7 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       factors_(rig_, options_),
       marginalizer_(factors_),
       mono_initializer_(rig_, options_, factors_),
-      magnetometer_(rig_, options_, diagnostics),
-      depth_(rig_, options_, diagnostics),
+      sensors_(makeSensorFusions(rig_, options_, diagnostics)),
       intrinsics_model_selection_(options_.camera_calibration),
       scale_(rig_, options_),
       linearization_cache_(options_.window.frozen_frames),
@@ -88,15 +88,14 @@ Estimator::~Estimator() = default;
 bool Estimator::isGyroscopeDoubted() const { return monitor_->isGyroscopeDoubted(); }
 
 FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSample> imu,
-                             std::span<const MagnetometerSample> magnetometer,
-                             std::span<const DepthSample> depth) {
+                             const SensorReadings& readings) {
   FrameEstimate estimate;
   estimate.time = tracks.time;
   checkOrder(tracks.time, imu);
   const ObservationList observations = observationsOf(tracks);
   const bool carries_on = initialized();
-  magnetometer_.take(magnetometer, imu, carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero());
-  depth_.take(depth);
+  const Vec3 gyroscope_bias_B = carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero();
+  for (const auto& sensor : sensors_) sensor->take(readings, imu, gyroscope_bias_B);
   rests_ = rest_.add(tracks, imu);
   if (carries_on) insertFrame(tracks.time, observations, imu);
   if (carries_on && rests_) window_.newest().rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
@@ -104,12 +103,14 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   if (carries_on) {
     optimize(&estimate);
   } else if (initialize(tracks, observations, imu, &estimate)) {
-    startMagnetometer();
+    startSensors();
     rememberCovariance(jointCovariance(window_, marginalizer_.prior(), factors_), &estimate);
   } else {
+    addSensorRows(&estimate);
     return estimate;
   }
   report(tracks, &estimate);
+  addSensorRows(&estimate);
   inertial_covariance_propagation_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
                                           estimate.magnetometer.field_W.has_value(), &estimate.covariance);
   requireCovariance(&estimate, diagnostics_);
@@ -132,6 +133,22 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   estimate.magnetometer.heading_sigma_rad =
       std::hypot(std::sqrt(estimate.covariance(5, 5)), estimate.magnetometer.declination_sigma_rad);
   return estimate;
+}
+
+void Estimator::addSensorRows(FrameEstimate* estimate) const {
+  for (const auto& sensor : sensors_) {
+    if (auto row = sensor->row()) estimate->sensor_rows.push_back(std::move(*row));
+  }
+}
+
+std::vector<std::string> Estimator::sensorColumns() const {
+  std::vector<std::string> names;
+  for (const auto& sensor : sensors_) {
+    const auto row = sensor->row();
+    if (!row) continue;
+    for (const auto& [name, value] : row->columns) names.push_back(name);
+  }
+  return names;
 }
 
 void Estimator::checkOrder(Time time, std::span<const ImuSample> imu) const {
@@ -277,18 +294,18 @@ void Estimator::insertFrame(Time time, const ObservationList& observations, std:
   window_.add(std::move(frame));
   for (const auto& [track, observation] : observations) window_.addObservation(track, observation);
   monitor_->check(window_, factors_, known_);
-  magnetometer_.addToNewest(window_, marginalizer_);
-  depth_.addToNewest(window_, marginalizer_);
+  for (const auto& sensor : sensors_) sensor->addToNewest(window_, marginalizer_);
 }
 
-void Estimator::startMagnetometer() {
+void Estimator::startSensors() {
   Prior prior = marginalizer_.prior();
   const Eigen::Matrix<double, 15, 15> known = newestCovariance(window_, prior, factors_);
-  magnetometer_.start(std::sqrt(0.5 * known.diagonal().segment<2>(3).sum()), &window_, &prior);
+  const double tilt_sigma_rad = std::sqrt(0.5 * known.diagonal().segment<2>(3).sum());
+  for (const auto& sensor : sensors_) sensor->start(tilt_sigma_rad, &window_, &prior);
   marginalizer_.start(std::move(prior));
 }
 
-void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* estimate) {
+void Estimator::rememberCovariance(const JointCovariance& covariance, FrameEstimate* estimate) {
   if (!mode_.isBlind() && !isCovariance(covariance.newest())) {
     diagnostics_->report(
         Severity::Serious, "covariance_unknown",
@@ -300,9 +317,8 @@ void Estimator::rememberCovariance(JointCovariance covariance, FrameEstimate* es
   }
   known_ = estimate->covariance = reportedCovariance(covariance, window_, options_, factors_);
   intrinsics_model_selection_.remember(covariance, window_);
-  depth_.remember(covariance, window_);
-  magnetometer_.remember(std::move(covariance));
-  magnetometer_.relateToNorth(window_, &estimate->covariance);
+  for (const auto& sensor : sensors_) sensor->remember(covariance, window_);
+  for (const auto& sensor : sensors_) sensor->relate(window_, &estimate->covariance);
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {
@@ -311,7 +327,7 @@ void Estimator::optimize(FrameEstimate* estimate) {
                                      {options_.solver.max_iterations, options_.solver.function_tolerance},
                                      linearization_cache_);
   const SolveSummary summary = update.summary;
-  rememberCovariance(std::move(update.covariance), estimate);
+  rememberCovariance(update.covariance, estimate);
   estimate->solver_iterations = summary.iterations;
   if (!summary.usable) {
     diagnostics_->report(
@@ -334,8 +350,9 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->camera_corrections = cameraCorrections(window_);
   estimate->gyroscope_axes = gyroscopeAxes(window_);
   estimate->accelerometer_axes = accelerometerAxes(window_);
-  estimate->magnetometer = magnetometer_.estimate(window_);
-  estimate->depth = depth_.estimate(window_);
+  for (const auto& sensor : sensors_) sensor->report(window_, &estimate->sensors);
+  estimate->magnetometer = estimate->sensors.of<MagnetometerEstimate>();
+  estimate->depth = estimate->sensors.of<DepthEstimate>();
   const auto& gauge = estimate->depth.gauge;
   estimate->scale = scale_.add(window_, gauge ? gauge->told_sigma : options_.depth.density_ratio_sigma);
   estimate->landmarks = statistics.landmarks;

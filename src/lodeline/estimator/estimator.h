@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimate.h"
@@ -14,6 +15,7 @@
 #include "lodeline/estimator/pressure/depth_fusion.h"
 #include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
+#include "lodeline/estimator/sensor/sensor_fusion.h"
 #include "lodeline/estimator/solver/marginalizer.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/window.h"
@@ -34,12 +36,11 @@ class Estimator {
   ~Estimator();
 
   /// Adds one frame: what the front end tracked, and the inertial readings since the frame before (both ends
-  /// on the frames' times; for the first frame all readings there are), and the magnetometer's and the
-  /// pressure sensor's since the frame before. Throws InputError, and leaves the estimator as it was, where
+  /// on the frames' times; for the first frame all readings there are), and the other sensors' since the
+  /// frame before. Throws InputError, and leaves the estimator as it was, where
   /// frame or inertial readings do not follow on the frame before.
   FrameEstimate add(const FrameTracks& tracks, std::span<const ImuSample> imu,
-                    std::span<const MagnetometerSample> magnetometer = {},
-                    std::span<const DepthSample> depth = {});
+                    const SensorReadings& readings = {});
 
   bool initialized() const { return !window_.empty(); }
   /// Whether images contradict the gyroscope at the newest frame.
@@ -48,6 +49,10 @@ class Estimator {
   const Rig& rig() const { return rig_; }
   const EstimatorOptions& options() const { return options_; }
   const Prior& prior() const { return marginalizer_.prior(); }
+  /// One for each kind of sensor beside cameras and IMU, in the order of their terms.
+  const std::vector<std::unique_ptr<SensorFusion>>& sensors() const { return sensors_; }
+  /// Names of the columns in FrameEstimate::sensor_rows.
+  std::vector<std::string> sensorColumns() const;
 
   /// Landmarks that left the window since the last call, in order.
   std::vector<MapPoint> takeMapPoints() { return marginalizer_.takeMapPoints(); }
@@ -59,6 +64,7 @@ class Estimator {
   ObservationList observationsOf(const FrameTracks& tracks) const;
   bool initialize(const FrameTracks& tracks, const ObservationList& observations,
                   std::span<const ImuSample> imu, FrameEstimate* estimate);
+  void addSensorRows(FrameEstimate* estimate) const;
   bool startMonocular(Time time, ObservationList observations, std::span<const ImuSample> imu);
   bool startAtOnce(Time time, const ObservationList& observations, FrameEstimate* estimate);
   /// The states of the calibration, for a window that starts.
@@ -72,9 +78,9 @@ class Estimator {
   void marginalizeWindow(const FrameEstimate& estimate);
   /// Lets the intrinsics, which are fixed at first, be estimated.
   void freeIntrinsics();
-  /// Turns a window that has just started to north.
-  void startMagnetometer();
-  void rememberCovariance(JointCovariance covariance, FrameEstimate* estimate);
+  /// Adds the sensors to a window that has just started. The magnetometer turns it to north.
+  void startSensors();
+  void rememberCovariance(const JointCovariance& covariance, FrameEstimate* estimate);
   void report(const FrameTracks& tracks, FrameEstimate* estimate);
 
   Rig rig_;
@@ -86,8 +92,7 @@ class Estimator {
   MonoInitializer mono_initializer_;
   std::vector<Vec3>
       camera_rotations_;  ///< FrameTracks::camera_rotations of the newest frame before the start
-  MagnetometerFusion magnetometer_;
-  DepthFusion depth_;
+  std::vector<std::unique_ptr<SensorFusion>> sensors_;
   IntrinsicsModelSelection intrinsics_model_selection_;
   ScaleObservability scale_;
   LandmarkLinearizationCache linearization_cache_;

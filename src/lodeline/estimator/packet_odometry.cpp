@@ -68,7 +68,7 @@ FrameEstimate PacketOdometry::add(const FramePacket& packet) {
   reportStaticImageMask(packet.time);
   reportTurnedCameras();
   const double tracked_s = threadSeconds();
-  const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.magnetometer, packet.depth);
+  const FrameEstimate estimate = estimator_.add(tracks_, packet.imu, packet.readings);
   times_.front_end_s += tracked_s - start_s;
   times_.estimator_s += threadSeconds() - tracked_s;
   if (estimate.status != Status::Waiting) follow(estimate.state);

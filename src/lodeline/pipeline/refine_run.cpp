@@ -26,7 +26,7 @@ RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& reco
                         "refinement: its last round ended before the cost had settled");
   }
   {
-    StateWriter states(folder, kSuffix);
+    StateWriter states(folder, kSuffix, estimator.sensorColumns());
     std::optional<Time> last;
     for (FrameEstimate frame : refinement.frames) {
       if (const auto stamp = result_stamps.find(frame.time); stamp != result_stamps.end())

@@ -56,7 +56,8 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
     removeRefinedFiles(folder_);
     if (request.refine_interval_s) loop_.record(*request.refine_interval_s);
     writeSettings(folder_, settings);
-    output_.emplace(folder_, source->rig(), RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
+    output_.emplace(folder_, odometry_.estimator(),
+                    RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
   }
   start_ = Clock::now();
   start_processor_s_ = ProcessUsage::now().processor_s;

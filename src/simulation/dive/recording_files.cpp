@@ -71,8 +71,8 @@ void writeCalibration(const Rig& rig, const std::filesystem::path& mav0) {
   if (rig.sonar) {
     writeText(mav0 / "sonar0" / "sensor.yaml",
               "sensor_type: sonar\n" + transform(rig.sonar->body_from_sonar) +
-                  fmt::format("rate_hz: {}\nrange_noise_std: {}  # m\n", rig.sonar->rate_hz,
-                              rig.sonar->range_noise_std_m));
+                  fmt::format("rate_hz: {}\nrange_noise_std: {}  # m\nbeam_width: {}  # rad\n",
+                              rig.sonar->rate_hz, rig.sonar->range_noise_std_m, rig.sonar->beam_width_rad));
   }
 }
 

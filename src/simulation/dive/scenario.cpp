@@ -139,6 +139,7 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   if (c.camera_model) changeCameraModel(*c.camera_model, s);
   s.starts_at_rest = !c.starts_moving;
   if (c.no_images) s.images = false;
+  s.rig.sonar_scans_ahead = c.sonar_ahead;
   return s;
 }
 
@@ -162,6 +163,7 @@ std::string describe(const Scenario& s) {
     text += fmt::format("  {}: {}\n", d.name, s.effects.has(d.effect) ? "on" : "off");
   }
   if (!s.rig.camera_model.empty()) text += fmt::format("camera_model: {}\n", s.rig.camera_model);
+  if (s.rig.sonar_scans_ahead) text += "sonar_scans_ahead: true\n";
   if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
   return text;
 }

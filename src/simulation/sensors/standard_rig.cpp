@@ -18,8 +18,9 @@ Quat diverFromCamera() {
   return Quat(rotation);
 }
 
-// The sonar rotates its beam in its x-y plane: across the view, x to the left.
-Quat diverFromSonar() {
+// The sonar rotates its beam in its x-y plane: across the view, x to the left; or through the view, x ahead.
+Quat diverFromSonar(bool scans_ahead) {
+  if (scans_ahead) return Quat::Identity();
   Mat3 rotation;
   rotation << 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
   return Quat(rotation);
@@ -77,8 +78,9 @@ MountedRig standardRig(const StandardRigOptions& o) {
   mounted.rig.magnetometer = MagnetometerCalibration{o.magnetometer_rate_hz, 1e-8, Rigid3()};
   mounted.rig.pressure = PressureCalibration{
       o.pressure_rate_hz, 0.02, body_from_diver * Rigid3(Quat::Identity(), Vec3(-0.12, 0.0, 0.03))};
-  mounted.rig.sonar = SonarCalibration{o.sonar_rate_hz, 0.03,
-                                       body_from_diver * Rigid3(diverFromSonar(), Vec3(0.05, 0.0, -0.12))};
+  mounted.rig.sonar =
+      SonarCalibration{o.sonar_rate_hz, 0.03,
+                       body_from_diver * Rigid3(diverFromSonar(o.sonar_scans_ahead), Vec3(0.05, 0.0, -0.12))};
   return mounted;
 }
 

@@ -82,11 +82,11 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
   }
 }
 
-void MagnetometerFusion::take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
+void MagnetometerFusion::take(const SensorReadings& readings, std::span<const ImuSample> imu,
                               const Vec3& gyroscope_bias_B) {
   // Faults are reported even when the magnetometer is not used, because the attitude filter beside the
   // odometry may use it.
-  const std::vector<FieldSample> fields = readings_.add(readings);
+  const std::vector<FieldSample> fields = readings_.add(readings.of<MagnetometerSample>());
   if (use_ == MagnetometerUse::Off || imu.empty()) return;
   const std::span<const FieldSample> samples = recent(fields, imu);
   const Time time = imu.back().time;
@@ -103,7 +103,7 @@ void MagnetometerFusion::start(double tilt_sigma_rad, Window* window, Prior* pri
   for (const auto& frame : window->frames()) {
     const auto mean = means_.find(frame->time);
     if (mean == means_.end()) continue;
-    frame->magnetometer = measurementOf(mean->second, 1.0, false);
+    frame->measurements.set(measurementOf(mean->second, 1.0, false));
     status_ = MagnetometerStatus::Used;
   }
   means_.clear();
@@ -139,8 +139,8 @@ double MagnetometerFusion::whiteVariance(const MagnetometerMean& mean) const {
   return density * density * calibration_.rate_hz / mean.readings;
 }
 
-void MagnetometerFusion::remember(JointCovariance covariance) {
-  covariance_ = std::move(covariance);
+void MagnetometerFusion::remember(const JointCovariance& covariance, Window&) {
+  covariance_ = covariance;
   tilt_variance_rad2_ = 0.5 * covariance_.newest().diagonal().segment<2>(3).sum();
 }
 
@@ -199,7 +199,7 @@ void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer)
   if (!absolute()) {
     findNorth(newest.worldFromBody().rotation * mean.field_B, newest.time);
     status_ = MagnetometerStatus::Used;
-    newest.magnetometer = measurementOf(mean, 1.0, false);
+    newest.measurements.set(measurementOf(mean, 1.0, false));
     return;
   }
   if (MagnetometerStates(window).field == nullptr) startLate(mean, window, marginalizer);
@@ -264,7 +264,7 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
     return;
   }
   const bool disturbed = status_ == MagnetometerStatus::Readmitted;
-  newest.magnetometer = measurementOf(mean, decision.variance_scale, disturbed);
+  newest.measurements.set(measurementOf(mean, decision.variance_scale, disturbed));
 }
 
 void MagnetometerFusion::learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window) {
@@ -295,7 +295,8 @@ void MagnetometerFusion::beginDisturbance(const MagnetometerMean& mean, Window& 
 
 void MagnetometerFusion::endDisturbance(Window& window, Marginalizer& marginalizer) {
   for (const auto& frame : window.frames()) {
-    if (frame->magnetometer && frame->magnetometer->disturbed) frame->magnetometer.reset();
+    const auto* measured = frame->measurements.find<FieldMeasurement>();
+    if (measured && measured->disturbed) frame->measurements.remove<FieldMeasurement>();
   }
   ParameterBlock& disturbance = *MagnetometerStates(window).disturbance;
   marginalizer.forget(window, disturbance);

@@ -9,46 +9,42 @@
 #include "lodeline/estimate.h"
 #include "lodeline/estimator/magnetometer/earth_field_search.h"
 #include "lodeline/estimator/magnetometer/field/field_innovation.h"
+#include "lodeline/estimator/magnetometer/field/field_measurement.h"
 #include "lodeline/estimator/magnetometer/field/magnetic_noise_estimator.h"
 #include "lodeline/estimator/magnetometer/field/magnetic_step_detector.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_gate.h"
+#include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/estimator/magnetometer/field/student_t_weight.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/estimator/sensor/sensor_fusion.h"
 #include "lodeline/estimator/solver/marginalizer.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
 
 namespace lodeline {
 
 /// Adds the magnetometer to a window. It assigns readings to frames, rotates the world to north at the start,
 /// and maintains the parameter blocks. It applies the gate and gives each frame its mean field
-/// (Frame::magnetometer), from which FactorBuilder makes a factor. Without a magnetometer, or with the use
-/// Off, it changes nothing.
-class MagnetometerFusion {
+/// (FieldMeasurement).
+class MagnetometerFusion final : public SensorFusion {
  public:
   /// `options` and `diagnostics` must outlive it. Reports a magnetometer on board that is not used.
   MagnetometerFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
-  /// Adds the readings that belong to the frame at the end of `imu`; `imu` as in Estimator::add.
-  void take(std::span<const MagnetometerSample> readings, std::span<const ImuSample> imu,
-            const Vec3& gyroscope_bias_B);
-
-  /// Called when the window has just started, with `prior` on its first frame. Rotates both to north where
-  /// the field allows it, adds the parameter blocks to both and assigns the fields to the frames.
-  /// `tilt_sigma_rad`: sigma of the window's roll and pitch.
-  void start(double tilt_sigma_rad, Window* window, Prior* prior);
-
-  /// Adds the field to the newest frame, which has just been added to the window.
-  void addToNewest(Window& window, Marginalizer& marginalizer);
-
-  /// Stores the joint covariance of the solved window; the next frame's field is gated with it.
-  void remember(JointCovariance covariance);
-
-  /// Converts the covariance of the newest frame's state to one relative to north, where north was found
-  /// after the first pose. `covariance`: of [dp, dtheta, dv, db_g, db_a] as Estimator reports it. Call
-  /// remember() before.
-  void relateToNorth(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const;
+  std::string_view name() const override { return FieldMeasurement::kSensor; }
+  void take(const SensorReadings& readings, std::span<const ImuSample> imu,
+            const Vec3& gyroscope_bias_B) override;
+  /// Rotates window and prior to north where the field allows it, adds the parameter blocks to both and
+  /// assigns the fields to the frames.
+  void start(double tilt_sigma_rad, Window* window, Prior* prior) override;
+  void addToNewest(Window& window, Marginalizer& marginalizer) override;
+  void remember(const JointCovariance& covariance, Window& window) override;
+  /// Converts the covariance to one relative to north, where north was found after the first pose.
+  void relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const override;
+  void report(const Window& window, SensorEstimates* estimates) const override;
+  /// Counts replacements of the field that is taken for the Earth's.
+  int measurementEpoch() const override { return field_epoch_; }
+  std::vector<BatchState> batchStates(const Window& window) const override;
 
   MagnetometerEstimate estimate(const Window& window) const;
 

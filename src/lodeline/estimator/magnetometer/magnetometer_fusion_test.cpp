@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "lodeline/estimator/initialization/start.h"
-#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/trials/heading_trial.h"
+#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
@@ -51,8 +51,9 @@ double yawInformationAfter(int frames, bool relative, bool keep_linearization_po
   for (int k = 0; k < frames; ++k) {
     const SimulatedFrame simulated = *scene.next();
     Frame& frame = test.add(simulated, k % 2 == 0);
-    frame.magnetometer = measurementOf(simulated);
-    frame.magnetometer->relative = relative;
+    FieldMeasurement measured = measurementOf(simulated);
+    measured.relative = relative;
+    frame.measurements.set(measured);
     createLandmarks(test.window, test.factors, test.options.landmark);
     if (k < 3) continue;
     EXPECT_TRUE(solveWithCeres(test.window, marginalizer.prior(), test.factors, {4, 1e-6}).usable);
@@ -191,7 +192,8 @@ TEST(MagnetometerFusion, OffChangesNotABit) {
     while (const auto frame = scene.next()) {
       const Quat& rotation = frame->truth.motion.world_from_body.rotation;
       const MagnetometerSample reading{frame->truth.time, rotation.conjugate() * kField_W};
-      estimate = estimator.add(frame->tracks, frame->imu, std::span(&reading, on_board ? 1 : 0));
+      estimate = estimator.add(frame->tracks, frame->imu,
+                               on_board ? SensorReadings(std::vector{reading}) : SensorReadings());
     }
     last.push_back(estimate);
     EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Off);
@@ -236,7 +238,7 @@ class SpoiltMagnetometer : public testing::Test {
         spoil(reading, &sample);
         readings.push_back(sample);
       }
-      estimate = estimator.add(frame->tracks, frame->imu, readings);
+      estimate = estimator.add(frame->tracks, frame->imu, SensorReadings(readings));
       ++statuses_[estimate.magnetometer.status];
     }
     EXPECT_EQ(estimate.status, Status::Tracking);

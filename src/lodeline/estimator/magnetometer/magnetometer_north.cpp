@@ -127,7 +127,7 @@ void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& 
           "the Earth's at the start (a boat or tanks nearby?); north is moved by {:.1f} degrees, from "
           "the first pose on",
           mean.time.nanoseconds(), moved_rad * kDegreesPerRadian));
-  for (const auto& frame : window.frames()) frame->magnetometer.reset();
+  for (const auto& frame : window.frames()) frame->measurements.remove<FieldMeasurement>();
   for (ParameterBlock* state : {states.field, states.offset, states.disturbance}) {
     marginalizer.forget(window, *state);
     std::fill(state->value.begin(), state->value.end(), 0.0);
@@ -147,7 +147,7 @@ void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& 
   ++field_epoch_;
   heading_reference_ = HeadingReference::Start;
   findNorth(field_W, mean.time);
-  window.newest().magnetometer = measurementOf(mean, 1.0, false);
+  window.newest().measurements.set(measurementOf(mean, 1.0, false));
   status_before_ = MagnetometerStatus::Used;
 }
 
@@ -181,10 +181,25 @@ void MagnetometerFusion::describeNorth(const Window& window, MagnetometerEstimat
   estimate->north_from_world_sigma_rad = std::sqrt(azimuth(window).variance_rad2);
 }
 
-void MagnetometerFusion::relateToNorth(const Window& window,
-                                       Eigen::Matrix<double, 15, 15>* covariance) const {
+void MagnetometerFusion::relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const {
   if (!north_found_) return;
-  lodeline::relateToNorth(window.newest().state(), azimuth(window), covariance);
+  relateToNorth(window.newest().state(), azimuth(window), covariance);
+}
+
+void MagnetometerFusion::report(const Window& window, SensorEstimates* estimates) const {
+  estimates->set(estimate(window));
+}
+
+std::vector<BatchState> MagnetometerFusion::batchStates(const Window& window) const {
+  if (MagnetometerStates(window).field == nullptr) return {};
+  BatchState field{MagnetometerStates::kField};
+  field.sigma = options_.magnetometer.field_sigma_T;
+  BatchState offset{MagnetometerStates::kOffset};
+  offset.walk_per_sqrt_s = options_.magnetometer.offset_walk_T_per_sqrt_s;
+  offset.sigma = offsetSigma();
+  offset.value = {0.0, 0.0, 0.0};
+  field.is_start_replaced = offset.is_start_replaced = field_epoch_ > 0;
+  return {field, offset};
 }
 
 }  // namespace lodeline

@@ -111,7 +111,8 @@ double headingErrorAfterRest_sigmas(uint64_t seed, int* used) {
     const Quat& rotation = frame->truth.motion.world_from_body.rotation;
     const MagnetometerSample reading{
         frame->truth.time, rotation.conjugate() * kField_W + hard_iron_B + 0.02e-6 * random.normal3()};
-    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, std::span(&reading, 1));
+    const FrameEstimate estimate =
+        estimator.add(frame->tracks, frame->imu, SensorReadings(std::vector{reading}));
     *used += estimate.magnetometer.status == MagnetometerStatus::Used;
     const Quat magnetic_from_true = so3::exp(north * Vec3::UnitZ());
     sigmas = headingBetween(magnetic_from_true * rotation, estimate.state.world_from_body.rotation) /

@@ -4,6 +4,7 @@
 
 #include "lodeline/estimator/options/depth_options.h"
 #include "lodeline/estimator/options/magnetometer_options.h"
+#include "lodeline/estimator/options/sonar_options.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/imu/gravity_alignment.h"
 #include "lodeline/imu/preintegration.h"
@@ -184,6 +185,7 @@ struct EstimatorOptions {
   PreintegrationOptions preintegration;
   MagnetometerOptions magnetometer;
   DepthOptions depth;
+  SonarOptions sonar;
   GravityAlignmentOptions gravity_alignment;
   int min_landmarks_for_vision = 8;  ///< with fewer in view, a frame is propagated by inertial readings
 };

@@ -50,10 +50,10 @@ DepthFusion::DepthFusion(const Rig& rig, const EstimatorOptions& options, Diagno
   status_ = DepthStatus::NoData;
 }
 
-void DepthFusion::take(std::span<const DepthSample> readings) {
+void DepthFusion::take(const SensorReadings& readings, std::span<const ImuSample>, const Vec3&) {
   waiting_.clear();
   if (!gauge_) return;
-  for (const DepthSample& reading : readings) {
+  for (const DepthSample& reading : readings.of<DepthSample>()) {
     if (std::isfinite(reading.depth_m)) {
       waiting_.push_back(reading);
       continue;
@@ -105,7 +105,8 @@ void DepthFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
     used.push_back(depth);
     variance_scale = std::max(variance_scale, decision.variance_scale);
   }
-  if (!used.empty()) newest.depth = measurementOf(used, variance_scale, newest.time);
+  restarts_ += status_ == DepthStatus::Restarted;
+  if (!used.empty()) newest.measurements.set(measurementOf(used, variance_scale, newest.time));
 }
 
 DepthDecision DepthFusion::judge(const DepthSample& reading, const CarriedDepth& depth, Window& window,
@@ -210,7 +211,7 @@ void DepthFusion::begin(const CarriedDepth& depth, Window& window, Marginalizer&
 }
 
 void DepthFusion::restart(const CarriedDepth& depth, Window& window, Marginalizer& marginalizer) {
-  for (const auto& frame : window.frames()) frame->depth.reset();
+  for (const auto& frame : window.frames()) frame->measurements.remove<DepthMeasurement>();
   ParameterBlock& offset = *DepthStates(window).offset;
   marginalizer.forget(window, offset);
   offset.value[0] += innovate(depth, window).value_m;
@@ -222,6 +223,7 @@ DepthMeasurement DepthFusion::measurementOf(const std::vector<CarriedDepth>& dep
                                             Time time) {
   DepthMeasurement measurement;
   measurement.depth = meanOf(depths);
+  measurement.port_B = gauge_->body_from_pressure.translation;
   const double shared = timeCorrelatedShare(time, last_used_, options_.correlated_noise_time_s);
   const double variance_m2 = std::pow(health_.readingSigma(), 2) / measurement.depth.readings +
                              shared * std::pow(options_.floor_m, 2);
@@ -253,6 +255,26 @@ void DepthFusion::report(DepthStatus status, const DepthSample& reading) {
          fmt::format("at {} ns its readings change by {:.3g} for each metre that the rig sinks; not used. {}",
                      now_ns, slope, explainSlope(slope)));
   }
+}
+
+void DepthFusion::report(const Window& window, SensorEstimates* estimates) const {
+  estimates->set(estimate(window));
+}
+
+std::vector<BatchState> DepthFusion::batchStates(const Window& window) const {
+  const DepthStates states(window);
+  if (!states) return {};
+  BatchState offset{DepthStates::kOffset}, scale{DepthStates::kScale}, lag{DepthStates::kLag};
+  offset.is_added_late = scale.is_added_late = lag.is_added_late = true;
+  offset.walk_per_sqrt_s = options_.offset_walk_m_per_sqrt_s;
+  offset.restarts = true;
+  offset.sigma = options_.offset_sigma_m;
+  scale.value = {options_.density_ratio};
+  scale.sigma = std::max(options_.density_ratio_sigma, 1e-7);
+  scale.priors = states.scale->priors;
+  lag.value = {options_.lag_s};
+  lag.sigma = std::max(options_.lag_sigma_s, 1e-7);
+  return {offset, scale, lag};
 }
 
 DepthEstimate DepthFusion::estimate(const Window& window) const {

@@ -8,30 +8,33 @@
 #include "lodeline/estimate.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/pressure/depth_gate.h"
+#include "lodeline/estimator/pressure/depth_measurement.h"
+#include "lodeline/estimator/pressure/depth_states.h"
 #include "lodeline/estimator/pressure/gauge_monitor.h"
 #include "lodeline/estimator/pressure/vertical_motion.h"
 #include "lodeline/estimator/pressure/water_density_prior.h"
 #include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/estimator/sensor/sensor_fusion.h"
 #include "lodeline/estimator/solver/marginalizer.h"
-#include "lodeline/estimator/state/depth_states.h"
 
 namespace lodeline {
 
 /// Adds the pressure sensor to a window. It maintains the parameter blocks, carries readings to their frame,
-/// and applies monitor and gate. It gives the frame its depth (Frame::depth), from which FactorBuilder makes
-/// a factor. Without a sensor, or switched off, it changes nothing.
-class DepthFusion {
+/// and applies monitor and gate. It gives the frame its depth (DepthMeasurement).
+class DepthFusion final : public SensorFusion {
  public:
   /// `diagnostics` must outlive it.
   DepthFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
 
-  /// Stores the readings that belong to the next frame.
-  void take(std::span<const DepthSample> readings);
-  /// Adds the depth to the newest frame, which has just been added to the window with its predicted state.
-  void addToNewest(Window& window, Marginalizer& marginalizer);
-  /// Stores the joint covariance of the solved window, with which the next reading is gated. Updates the
-  /// prior of the density ratio by known waters for the next solution.
-  void remember(const JointCovariance& covariance, Window& window);
+  std::string_view name() const override { return DepthMeasurement::kSensor; }
+  void take(const SensorReadings& readings, std::span<const ImuSample> imu,
+            const Vec3& gyroscope_bias_B) override;
+  void addToNewest(Window& window, Marginalizer& marginalizer) override;
+  /// Also updates the prior of the density ratio by known waters for the next solution.
+  void remember(const JointCovariance& covariance, Window& window) override;
+  void report(const Window& window, SensorEstimates* estimates) const override;
+  int restarts() const override { return restarts_; }
+  std::vector<BatchState> batchStates(const Window& window) const override;
 
   DepthEstimate estimate(const Window& window) const;
 
@@ -73,6 +76,7 @@ class DepthFusion {
   DepthGate gate_;
   JointCovariance covariance_;
   bool is_slope_wrong_ = false;
+  int restarts_ = 0;  ///< frames with the status Restarted
   std::optional<Time> last_used_;
 };
 

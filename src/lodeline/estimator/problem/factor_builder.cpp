@@ -2,13 +2,10 @@
 
 #include <ceres/normal_prior.h>
 
-#include "lodeline/estimator/state/depth_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
-#include "lodeline/factors/sensors/magnetometer_relative_factor.h"
 
 namespace lodeline {
 
@@ -42,22 +39,11 @@ Factor zeroPrior(ParameterBlock& state, double sigma) {
 
 }  // namespace
 
-double costOf(const Factor& factor, std::vector<double>& residual) {
-  residual.resize(factor.function->num_residuals());
-  factor.function->Evaluate(factor.blocks.data(), residual.data(), nullptr);
-  const double squared = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()).squaredNorm();
-  if (!factor.loss) return 0.5 * squared;
-  double rho[3];
-  factor.loss->Evaluate(squared, rho);
-  return 0.5 * rho[0];
-}
-
 FactorBuilder::FactorBuilder(const Rig& rig, const EstimatorOptions& options)
     : gravity_W_(options.gravity_W),
       imu_axes_(options.imu_axes),
       placement_sigma_m_(options.camera_calibration.stereo_position_sigma_m),
       robust_scale_(options.solver.robust_scale_sigmas) {
-  if (rig.pressure) port_B_ = rig.pressure->body_from_pressure.translation;
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);
     camera0_from_camera_.push_back(body_from_camera_.front().inverse() * camera.body_from_camera);
@@ -96,43 +82,6 @@ std::vector<Factor> FactorBuilder::imuAxes(const Window& window) const {
   add(axes.gyroscope, imu_axes_.gyroscope_sigma);
   add(axes.accelerometer, imu_axes_.accelerometer_sigma);
   return priors;
-}
-
-std::optional<Factor> FactorBuilder::magnetometer(const Window& window, Frame* before, Frame& frame) const {
-  if (!frame.magnetometer) return std::nullopt;
-  const FieldMeasurement& measured = *frame.magnetometer;
-  Factor factor;
-  if (measured.relative) {
-    if (!before || !frame.from_previous) return std::nullopt;
-    const Quat gamma =
-        frame.from_previous->correctedFor(before->gyroscopeBias(), before->accelerometerBias()).gamma;
-    factor.function = std::make_unique<MagnetometerRelativeFactor>(
-        measured.mean.newest_B, gamma * measured.mean.field_B, measured.mean.readings, measured.noise.sigma_T,
-        before->firstPose(), frame.firstPose());
-    factor.blocks = {before->pose.data(), frame.pose.data()};
-    return factor;
-  }
-  const MagnetometerStates states(window);
-  const double* first_pose = frame.firstPose();
-  const Quat reference = poseFromBlock(first_pose ? first_pose : frame.pose.data()).rotation;
-  const Vec3 field_W = states.field_W() + (measured.disturbed ? states.disturbance_W() : Vec3::Zero());
-  factor.function = std::make_unique<MagnetometerFieldFactor>(
-      measured.mean.field_B, measured.mean.carried, reference, field_W, measured.noise, measured.disturbed,
-      first_pose, states.field->linearizationPoint());
-  factor.blocks = {frame.pose.data(), states.field->value.data(), states.offset->value.data()};
-  if (measured.disturbed) factor.blocks.push_back(states.disturbance->value.data());
-  return factor;
-}
-
-std::optional<Factor> FactorBuilder::depth(const Window& window, Frame& frame) const {
-  if (!frame.depth) return std::nullopt;
-  const DepthStates states(window);
-  Factor factor;
-  factor.function = std::make_unique<DepthFactor>(frame.depth->depth, port_B_, frame.depth->sigma_m,
-                                                  frame.firstPose(), states.scale->linearizationPoint());
-  factor.blocks = {frame.pose.data(), states.offset->value.data(), states.scale->value.data(),
-                   states.lag->value.data()};
-  return factor;
 }
 
 std::optional<Factor> FactorBuilder::priorOf(ParameterBlock& state) const {

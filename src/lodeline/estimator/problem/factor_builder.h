@@ -1,8 +1,5 @@
 #pragma once
 
-#include <ceres/cost_function.h>
-#include <ceres/loss_function.h>
-
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,29 +7,14 @@
 #include "lodeline/cameras/camera.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/estimator/state/factor.h"
 #include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
 
 namespace lodeline {
 
-/// One term of the cost: a function, its blocks in order, and a robust loss (null for none).
-struct Factor {
-  std::unique_ptr<ceres::CostFunction> function;
-  std::shared_ptr<const ceres::LossFunction> loss;
-  std::vector<double*> blocks;
-};
-
-/// Cost of a factor at its blocks' values; `residual` is a work buffer.
-double costOf(const Factor& factor, std::vector<double>& residual);
-
-/// The terms that contain one landmark.
-struct LandmarkFactors {
-  double* landmark = nullptr;
-  std::vector<Factor> factors;
-};
-
-/// Makes factors from the contents of the window. Solver, marginalizer and covariance all get their terms
-/// here, so that a new kind of measurement is added in one place.
+/// Makes the factors of images, inertial readings and priors from the contents of the window, for solver,
+/// marginalizer and covariance. Every other sensor makes its own factors (Measurement::factors).
 class FactorBuilder {
  public:
   FactorBuilder(const Rig& rig, const EstimatorOptions& options);
@@ -43,10 +25,6 @@ class FactorBuilder {
   /// together stands for a calibrated sensor with heavy tails, and a second prior for the worst sensors on
   /// the market. They are not part of the marginalization prior, which could not represent their shape.
   std::vector<Factor> imuAxes(const Window& window) const;
-  /// Term of the frame's magnetometer, if it has one; `before` is the frame before (null for the first).
-  std::optional<Factor> magnetometer(const Window& window, Frame* before, Frame& frame) const;
-  /// Term of the frame's depth readings, if it has any.
-  std::optional<Factor> depth(const Window& window, Frame& frame) const;
   /// Prior of a state beside all measurements (ParameterBlock::priors), if there is one.
   std::optional<Factor> priorOf(ParameterBlock& state) const;
   /// Prior of a secondary camera's position, where it is estimated, with residual xi / sigma: the position of
@@ -75,7 +53,6 @@ class FactorBuilder {
 
   std::vector<Rigid3> body_from_camera_;
   std::vector<Rigid3> camera0_from_camera_;
-  Vec3 port_B_ = Vec3::Zero();  ///< pressure port, m
   Vec3 gravity_W_;
   ImuAxesOptions imu_axes_;
   double placement_sigma_m_;

@@ -37,8 +37,10 @@ std::vector<Factor> collectMotionTerms(Window& window, const FactorBuilder& fact
   }
   before = nullptr;
   for (const auto& frame : window.frames()) {
-    if (auto factor = factors.magnetometer(window, before, *frame)) terms.push_back(std::move(*factor));
-    if (auto factor = factors.depth(window, *frame)) terms.push_back(std::move(*factor));
+    for (const auto& measurement : frame->measurements) {
+      for (Factor& factor : measurement->factors({factors, window, before, *frame}))
+        terms.push_back(std::move(factor));
+    }
     if (auto factor = factors.rest(*frame)) terms.push_back(std::move(*factor));
     before = frame.get();
   }

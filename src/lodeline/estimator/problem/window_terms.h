@@ -9,7 +9,7 @@ namespace lodeline {
 
 /// Every term of the window's cost.
 struct WindowTerms {
-  std::vector<Factor> dense;  ///< prior, inertial, magnetometer and depth terms
+  std::vector<Factor> dense;  ///< prior, inertial terms and those of the sensors
   std::vector<LandmarkFactors> landmarks;
 };
 
@@ -22,8 +22,8 @@ std::vector<Factor> collectGlobalTerms(Window& window, const FactorBuilder& fact
 /// are integrated again.
 std::vector<Factor> collectMotionTerms(Window& window, const FactorBuilder& factors);
 
-/// All terms in a fixed order: prior, inertial terms by time, magnetometer and depth terms by time, landmarks
-/// by track. First, inertial terms whose biases have changed too much are integrated again.
+/// All terms in a fixed order: prior, inertial terms by time, those of the sensors by time, landmarks by
+/// track. First, inertial terms whose biases have changed too much are integrated again.
 WindowTerms collectTerms(Window& window, const Prior& prior, const FactorBuilder& factors);
 
 /// The linear system of all terms at the window's present values, landmarks eliminated.

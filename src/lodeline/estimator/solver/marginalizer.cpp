@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "lodeline/estimator/problem/prior_terms.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
 #include "lodeline/estimator/visual/keyframe_policy.h"
 #include "lodeline/estimator/visual/landmark_host.h"
 
@@ -198,21 +197,24 @@ void Marginalizer::marginalizeOldestFrame(Window& window, const WindowOptions& w
   }
 }
 
-void Marginalizer::addSensors(const Window& window, Frame& oldest, Frame& next,
-                              NormalEquations* system) const {
-  for (Frame* frame : {&oldest, &next}) {
-    // A term relative to the frame before is removed with that frame, one relative to the field with its own
-    // frame.
-    if (!frame->magnetometer || frame->magnetometer->relative != (frame == &next)) continue;
-    Frame* before = frame == &next ? &oldest : nullptr;
-    // Its Jacobian must be taken at the linearization point that the field has from now on.
-    if (ParameterBlock* field = MagnetometerStates(window).field; field && !field->first)
-      field->first = field->value;
-    if (const auto factor = factors_.magnetometer(window, before, *frame)) system->add(*factor);
-    frame->magnetometer.reset();
+void Marginalizer::addMeasurements(Window& window, Frame* before, Frame& frame,
+                                   NormalEquations* system) const {
+  const auto isConcerned = [&](const Measurement& measurement) {
+    return measurement.isRelative() == (before != nullptr);
+  };
+  for (const auto& measurement : frame.measurements) {
+    if (!isConcerned(*measurement)) continue;
+    measurement->fixLinearizationPoints(window);
+    for (const Factor& factor :
+         measurement->factors({factors_, window, before, frame, MeasurementContext::Scope::Prior}))
+      system->add(factor);
   }
-  if (const auto factor = factors_.depth(window, oldest)) system->add(*factor);
-  oldest.depth.reset();
+  frame.measurements.removeIf(isConcerned);
+}
+
+void Marginalizer::addSensors(Window& window, Frame& oldest, Frame& next, NormalEquations* system) const {
+  addMeasurements(window, &oldest, next, system);
+  addMeasurements(window, nullptr, oldest, system);
   if (const auto factor = factors_.rest(oldest)) system->add(*factor);
   oldest.rest_sigma_m_per_s.reset();
 }

@@ -44,6 +44,8 @@ class Marginalizer {
   /// the window may contain the state any more. The state can be added again later.
   void forget(Window& window, ParameterBlock& state);
 
+  const FactorBuilder& factors() const { return factors_; }
+
   /// Returns the landmarks that left the window since the last call, in order.
   std::vector<MapPoint> takeMapPoints() { return std::exchange(map_points_, {}); }
 
@@ -52,9 +54,12 @@ class Marginalizer {
   /// removed, so that the prior stays small. Its observations stay where its pose can be interpolated
   /// (keyframe_policy.h); otherwise they are dropped.
   void marginalizeOldestFrame(Window& window, const WindowOptions& wanted);
-  /// Adds the magnetometer, depth and rest terms that contain the oldest of two frames to `system`, and
-  /// removes them from the frames.
-  void addSensors(const Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
+  /// Adds the terms of sensors and rest that contain the oldest of two frames to `system`, and removes them
+  /// from the frames.
+  void addSensors(Window& window, Frame& oldest, Frame& next, NormalEquations* system) const;
+  /// The same for the measurements of one frame, those relative to `before`, or the others where that is
+  /// null.
+  void addMeasurements(Window& window, Frame* before, Frame& frame, NormalEquations* system) const;
   /// Removes the oldest keyframe. Landmarks that the newest keyframe does not observe are marginalized with
   /// all their observations. The others are marginalized with their observations before a cut
   /// (WindowOptions). Where that would leave too few observations on either side, they lose those in the

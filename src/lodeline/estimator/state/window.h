@@ -11,13 +11,12 @@
 
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/estimate.h"
+#include "lodeline/estimator/state/measurement.h"
 #include "lodeline/estimator/state/parameter_block.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/interpolated_pose.h"
 #include "lodeline/factors/parameters.h"
 #include "lodeline/factors/reprojection_factor.h"
-#include "lodeline/factors/sensors/depth_factor.h"
-#include "lodeline/factors/sensors/magnetometer_field_factor.h"
 #include "lodeline/frontend/tracking/tracks.h"
 #include "lodeline/imu/preintegration.h"
 #include "lodeline/imu/propagation.h"
@@ -28,20 +27,6 @@ namespace lodeline {
 using FrameId = int64_t;
 using PoseBlock = std::array<double, kPoseSize>;
 using MotionBlock = std::array<double, kMotionSize>;
-
-/// Magnetometer measurement of a frame.
-struct FieldMeasurement {
-  MagnetometerMean mean;
-  bool relative = false;  ///< relative to the frame before (MagnetometerRelativeFactor), not to the field
-  FieldNoise noise;
-  bool disturbed = false;  ///< the field has a disturbance to be estimated
-};
-
-/// Depth measurement of a frame.
-struct DepthMeasurement {
-  CarriedDepth depth;
-  double sigma_m = 0.0;
-};
 
 /// Pose of a frame without a state of its own: the keyframes between which it is interpolated.
 struct Interpolated {
@@ -67,9 +52,7 @@ struct Frame {
   std::optional<MotionBlock> first_motion;
   /// Inertial readings since the frame before, while that frame has its motion block too.
   std::unique_ptr<Preintegration> from_previous;
-  /// Measurements, until they become part of the prior.
-  std::optional<FieldMeasurement> magnetometer;
-  std::optional<DepthMeasurement> depth;
+  Measurements measurements;                 ///< of the sensors, until they become part of the prior
   std::optional<double> rest_sigma_m_per_s;  ///< sigma of a zero-velocity update, where the rig rests
   /// Width of the robust loss on the frame's reprojection residuals, in standard deviations. Empty: the value
   /// of the options, until there are residuals to compute it from.

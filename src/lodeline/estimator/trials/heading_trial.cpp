@@ -228,7 +228,8 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
     const bool is_silent = options.magnetometer_pause && options.magnetometer_pause->contains(time_s);
     if (time_s < options.magnetometer_from_s || is_silent) frame->magnetometer.clear();
     const double before_s = threadSeconds();
-    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, frame->magnetometer);
+    const FrameEstimate estimate =
+        estimator.add(frame->tracks, frame->imu, SensorReadings(frame->magnetometer));
     estimator_s += threadSeconds() - before_s;
     observe(*frame, estimate, estimator);
   }

@@ -60,7 +60,7 @@ LandmarkField room(const TestSceneOptions& options, const Vec3& centre) {
   for (int i = 0; i < 2000; ++i) {
     const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
     const Vec3 inward(-std::cos(angle), -std::sin(angle), 0.0);
-    const double radius = kRoomRadius_m + random.uniform(-1.0, 1.0);
+    const double radius = kRoomRadius_m + options.wall_roughness_m * random.uniform(-1.0, 1.0);
     const double height = random.uniform(-kRoomHalfHeight_m, kRoomHalfHeight_m);
     points.push_back({centre - radius * inward + height * Vec3::UnitZ(), inward});
   }
@@ -109,6 +109,13 @@ TestScene::TestScene(const TestSceneOptions& options)
       motion_(swaying(options)),
       landmarks_(room(options, motion_.worldShift())),
       simulation_(motion_, landmarks_, rig_, pointOptions(options, rig_)) {}
+
+double TestScene::distanceToWall_m(const Vec3& origin_W, const Vec3& direction_W) const {
+  const Vec2 from = (origin_W - motion_.worldShift()).head<2>(), along = direction_W.head<2>();
+  const double a = along.squaredNorm(), b = from.dot(along);
+  const double c = from.squaredNorm() - kRoomRadius_m * kRoomRadius_m;
+  return (std::sqrt(b * b - a * c) - b) / a;
+}
 
 std::vector<SimulatedFrame> TestScene::all() {
   std::vector<SimulatedFrame> frames;
@@ -167,7 +174,11 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
 }
 
 Comparison ComparedEstimator::add(const SimulatedFrame& frame, std::span<const DepthSample> depth) {
-  const FrameEstimate estimate = estimator_.add(frame.tracks, frame.imu, {}, depth);
+  return add(frame, SensorReadings(std::vector<DepthSample>(depth.begin(), depth.end())));
+}
+
+Comparison ComparedEstimator::add(const SimulatedFrame& frame, const SensorReadings& readings) {
+  const FrameEstimate estimate = estimator_.add(frame.tracks, frame.imu, readings);
   Comparison comparison = comparison_.compare(frame, estimate, estimator_);
   comparison.time_s = scene_.secondsOf(frame.truth.time);
   return comparison;

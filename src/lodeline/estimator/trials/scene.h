@@ -20,6 +20,7 @@ struct TestSceneOptions {
   double hurry_rad_per_s = 0.0;
   Vec3 drift_m_per_s = Vec3::Zero();  ///< constant velocity on top
   std::vector<TimeSpan> still;        ///< the sway fades within 3 s of their borders
+  double wall_roughness_m = 1.0;      ///< greatest distance of the points from the wall of the room
   std::vector<TimeSpan> on_the_spot;  ///< only the sway of the position fades
   PointSimulationOptions points;      ///< seed, end and IMU errors are filled in by the scene
   /// Sigmas, per axis, of the distribution of the initial biases.
@@ -37,6 +38,9 @@ class TestScene {
   std::optional<SimulatedFrame> next() { return simulation_.next(); }
   std::vector<SimulatedFrame> all();
   Vec3 landmark(TrackId track) const { return simulation_.landmark(track); }
+  const Motion& motion() const { return motion_; }
+  /// Distance from a point along a unit direction to the wall of the room, m; floor and ceiling are missing.
+  double distanceToWall_m(const Vec3& origin_W, const Vec3& direction_W) const;
   /// Seconds since the start of the motion.
   double secondsOf(Time time) const { return (time - start_).seconds(); }
 
@@ -90,9 +94,13 @@ class TruthComparison {
 class ComparedEstimator {
  public:
   ComparedEstimator(const TestScene& scene, const EstimatorOptions& options)
-      : scene_(scene), estimator_(scene.rig(), options, &diagnostics_) {}
+      : ComparedEstimator(scene, options, scene.rig()) {}
+  /// With further sensors in the rig.
+  ComparedEstimator(const TestScene& scene, const EstimatorOptions& options, const Rig& rig)
+      : scene_(scene), estimator_(rig, options, &diagnostics_) {}
 
   Comparison add(const SimulatedFrame& frame, std::span<const DepthSample> depth = {});
+  Comparison add(const SimulatedFrame& frame, const SensorReadings& readings);
 
   const Estimator& estimator() const { return estimator_; }
   const Diagnostics& diagnostics() const { return diagnostics_; }

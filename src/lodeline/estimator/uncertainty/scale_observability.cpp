@@ -59,9 +59,10 @@ ScaleInformation ScaleObservability::add(const Window& window, double density_si
     const Vec3 acceleration_W = (newest.velocity_W() - before.velocity_W()) / elapsed_s;
     accelerations_.add(acceleration_W, elapsed_s * elapsed_s / speed_variance);
   }
-  if (newest.depth)
-    heights_.add(newest.worldFromBody().translation.z() * Vec3::UnitZ(),
-                 1.0 / std::pow(newest.depth->sigma_m, 2));
+  for (const auto& measurement : newest.measurements) {
+    if (const auto sigma_m = measurement->heightSigma_m())
+      heights_.add(newest.worldFromBody().translation.z() * Vec3::UnitZ(), 1.0 / std::pow(*sigma_m, 2));
+  }
   ScaleInformation information;
   information.stereo = stereoInformation(window);
   information.accelerometer =

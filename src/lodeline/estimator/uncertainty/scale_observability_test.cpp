@@ -35,7 +35,9 @@ ScaleInformation informationAfter(int cameras, double liveliness, double depth_s
   ScaleInformation information;
   while (const auto simulated = scene.next()) {
     Frame& frame = test.add(*simulated, true);
-    if (depth_sigma_m > 0.0) frame.depth = DepthMeasurement{CarriedDepth(), depth_sigma_m};
+    DepthMeasurement depth;
+    depth.sigma_m = depth_sigma_m;
+    if (depth_sigma_m > 0.0) frame.measurements.set(depth);
     createLandmarks(test.window, test.factors, test.options.landmark);
     information = budget.add(test.window, options.depth.density_ratio_sigma);
   }

@@ -86,8 +86,11 @@ PressureCalibration readEurocPressure(CalibrationMap* map) {
 
 SonarCalibration readEurocSonar(CalibrationMap* map) {
   using Calibration = SonarCalibration;
-  return readSmallSensor(&Calibration::body_from_sonar, "range_noise_std", &Calibration::range_noise_std_m,
-                         map);
+  Calibration calibration =
+      readSmallSensor(&Calibration::body_from_sonar, "range_noise_std", &Calibration::range_noise_std_m, map);
+  if (map->has("beam_width")) calibration.beam_width_rad = positive("beam_width", map);
+  if (map->has("max_range")) calibration.max_range_m = positive("max_range", map);
+  return calibration;
 }
 
 }  // namespace lodeline

@@ -114,7 +114,10 @@ std::string rigText(const RigFile& file) {
   if (rig.sonar) {
     begin("sonar0");
     text += transformText(rig.sonar->body_from_sonar) +
-            fmt::format("  range_noise_std: {}  # m\n", rig.sonar->range_noise_std_m) +
+            fmt::format("  range_noise_std: {}  # m\n  beam_width: {}  # rad\n", rig.sonar->range_noise_std_m,
+                        rig.sonar->beam_width_rad) +
+            (rig.sonar->max_range_m > 0.0 ? fmt::format("  max_range: {}  # m\n", rig.sonar->max_range_m)
+                                          : std::string()) +
             rateText(rig.sonar->rate_hz);
   }
   return text;
@@ -179,6 +182,7 @@ imu0:                               # continuous noise densities: a datasheet's,
 #   topic: /sonar
 #   T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]
 #   range_noise_std: 0.05                   # m
+#   beam_width: 0.035                       # rad, full width
 )";
 }
 

@@ -119,7 +119,7 @@ TEST_P(StreamingBounds, HalfAnHourNeedsNoMoreMemoryThanAMinute) {
     EXPECT_LE(source.image_count[0] - packets, 2 + packets_ahead);
     EXPECT_LE(source.image_count[1] - packets, 2 + packets_ahead);
     EXPECT_LE(packet->imu.size(), packets == 1 ? 2010u : 20u);
-    EXPECT_LE(packet->magnetometer.size(), packets == 1 ? 1010u : 10u);
+    EXPECT_LE(packet->readings.of<MagnetometerSample>().size(), packets == 1 ? 1010u : 10u);
     most_held = std::max(most_held, synchronizer.bufferedReadings());
   }
   EXPECT_GT(packets, 26'000);

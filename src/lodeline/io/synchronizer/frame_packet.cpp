@@ -20,9 +20,7 @@ void FramePacket::prepend(FramePacket before) {
   if (!before.imu.empty() && !imu.empty() && before.imu.back().time == imu.front().time)
     before.imu.pop_back();
   putBefore(std::move(before.imu), &imu);
-  putBefore(std::move(before.magnetometer), &magnetometer);
-  putBefore(std::move(before.depth), &depth);
-  putBefore(std::move(before.sonar), &sonar);
+  readings.prepend(std::move(before.readings));
   longest_imu_gap_s = std::max(longest_imu_gap_s, before.longest_imu_gap_s);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lodeline/rig.h"
+#include "lodeline/sensors/sensor_readings.h"
 #include "lodeline/types.h"
 
 namespace lodeline {
@@ -27,10 +28,8 @@ struct FramePacket {
   /// than a few nominal periods means that data was lost and interpolation bridges it.
   double longest_imu_gap_s = 0.0;
 
-  /// Readings in (time of the previous packet, time].
-  std::vector<MagnetometerSample> magnetometer;
-  std::vector<DepthSample> depth;
-  std::vector<SonarSample> sonar;
+  /// Readings of the other sensors in (time of the previous packet, time].
+  SensorReadings readings;
 
   /// Inserts the readings of the previous packet, which is not used, before those of this one.
   void prepend(FramePacket before);

@@ -103,7 +103,8 @@ TEST_F(LiveSourceTest, MakesThePacketsOfARecording) {
     ASSERT_TRUE(same.has_value());
     EXPECT_EQ(same->time, packet->time);
     EXPECT_EQ(timesOf(same->imu), timesOf(packet->imu));
-    EXPECT_EQ(timesOf(same->magnetometer), timesOf(packet->magnetometer));
+    EXPECT_EQ(timesOf(same->readings.of<MagnetometerSample>()),
+              timesOf(packet->readings.of<MagnetometerSample>()));
     for (size_t i = 0; i < 2; ++i) EXPECT_EQ(cv::norm(same->images[i], packet->images[i], cv::NORM_INF), 0.0);
     ++packets;
   }
@@ -121,7 +122,7 @@ TEST_F(LiveSourceTest, DoesNotWaitForSilentSensors) {
   EXPECT_EQ(next().time, at(0.55));
   const FramePacket last = next();
   EXPECT_EQ(last.time, at(0.6));
-  EXPECT_TRUE(last.magnetometer.empty());
+  EXPECT_TRUE(last.readings.of<MagnetometerSample>().empty());
   EXPECT_TRUE(last.images[1].empty());
   EXPECT_EQ(diagnostics_.count("image_missing"), 3);
 }
@@ -138,7 +139,7 @@ TEST_F(LiveSourceTest, DropsAndReportsWhatComesTooLate) {
   pushImage(0, 0.55);
   const FramePacket packet = next();
   EXPECT_EQ(packet.time, at(0.55));
-  EXPECT_EQ(timesOf(packet.magnetometer), std::vector<Time>{at(0.52)});
+  EXPECT_EQ(timesOf(packet.readings.of<MagnetometerSample>()), std::vector<Time>{at(0.52)});
   EXPECT_EQ(diagnostics_.count("magnetometer_late"), 1);
   EXPECT_EQ(diagnostics_.count("image_late"), 1);
 }

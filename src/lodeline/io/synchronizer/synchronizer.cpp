@@ -144,9 +144,11 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     draft.packet.imu = imu_.cut(reference.time, &draft.packet.longest_imu_gap_s);
     const Time oldest =
         last_packet_time_ ? *last_packet_time_ : reference.time - Duration::fromSeconds(options_.history_s);
-    draft.packet.magnetometer = takeUntil(reference.time, oldest, &magnetometer_, &magnetometer_span_);
-    draft.packet.depth = takeUntil(reference.time, oldest, &depth_, &depth_span_);
-    draft.packet.sonar = takeUntil(reference.time, oldest, &sonar_, &sonar_span_);
+    SensorReadings& readings = draft.packet.readings;
+    readings.of<MagnetometerSample>() =
+        takeUntil(reference.time, oldest, &magnetometer_, &magnetometer_span_);
+    readings.of<DepthSample>() = takeUntil(reference.time, oldest, &depth_, &depth_span_);
+    readings.of<SonarSample>() = takeUntil(reference.time, oldest, &sonar_, &sonar_span_);
     draft.packet.image_delays_s = {0.0};
     double latest_s = 0.0;
     for (size_t i = 1; i < cameras_.size(); ++i) {

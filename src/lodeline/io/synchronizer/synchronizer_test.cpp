@@ -63,7 +63,7 @@ TEST_F(SynchronizerTest, GivesOneCompletePacketPerImage) {
     EXPECT_EQ(packet.imu.back().time, packet.time);
     EXPECT_NEAR(packet.longest_imu_gap_s, 0.005, 1e-12);
     EXPECT_EQ(packet.imu.size(), i == 0 ? 101u : 11u);
-    for (const MagnetometerSample& sample : packet.magnetometer) {
+    for (const MagnetometerSample& sample : packet.readings.of<MagnetometerSample>()) {
       EXPECT_LE(sample.time, packet.time);
       EXPECT_TRUE(i == 0 || sample.time > packets[i - 1].time);
     }

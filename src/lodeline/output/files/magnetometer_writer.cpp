@@ -14,8 +14,9 @@ MagnetometerWriter::MagnetometerWriter(const std::filesystem::path& folder,
 }
 
 void MagnetometerWriter::write(const FramePacket& packet) {
-  if (packet.magnetometer.empty()) return;
-  const MagnetometerSample& sample = packet.magnetometer.back();
+  const std::vector<MagnetometerSample>& readings = packet.readings.of<MagnetometerSample>();
+  if (readings.empty()) return;
+  const MagnetometerSample& sample = readings.back();
   const Vec3& read = sample.field_M;
   const Vec3 corrected = calibration_.corrected_B(read);
   fmt::print(stream_, "{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", sample.time.nanoseconds(), read.x(),

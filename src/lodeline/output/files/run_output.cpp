@@ -4,8 +4,11 @@
 
 namespace lodeline {
 
-RunOutput::RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options)
-    : folder_(folder), states_(folder), landmarks_(folder), timings_(folder) {
+RunOutput::RunOutput(const std::filesystem::path& folder, const Estimator& estimator,
+                     const RunOutputOptions& options)
+    : folder_(folder), landmarks_(folder), timings_(folder) {
+  states_.emplace(folder, "", estimator.sensorColumns());
+  const Rig& rig = estimator.rig();
   if (rig.magnetometer) magnetometer_.emplace(folder, *rig.magnetometer);
   if (options.draw_tracks_s) track_pictures_.emplace(folder, *options.draw_tracks_s);
   if (options.sample_pictures) sample_pictures_.emplace(folder);

@@ -22,7 +22,7 @@ struct RunOutputOptions {
 class RunOutput {
  public:
   /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
-  RunOutput(const std::filesystem::path& folder, const Rig& rig, const RunOutputOptions& options);
+  RunOutput(const std::filesystem::path& folder, const Estimator& estimator, const RunOutputOptions& options);
 
   /// To be called after each packet with its results; `estimate` is null where it has no stamp of its own.
   /// Returns the landmarks that left the window and were written. Throws InputError where writing fails.

@@ -121,14 +121,15 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
 
 }  // namespace
 
-StateWriter::StateWriter(const std::filesystem::path& folder, const std::string& suffix)
+StateWriter::StateWriter(const std::filesystem::path& folder, const std::string& suffix,
+                         const std::vector<std::string>& sensor_columns)
     : file_(folder / ("trajectory" + suffix + ".tum")),
       trajectory_(openOutput(file_)),
       states_(openOutput(folder / ("states" + suffix + ".csv"))) {
   trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
-  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader
-          << "\n"
-          << std::flush;
+  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader;
+  for (const std::string& name : sensor_columns) states_ << "," << name;
+  states_ << "\n" << std::flush;
 }
 
 void StateWriter::write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude) {
@@ -139,6 +140,9 @@ void StateWriter::write(const FrameEstimate& estimate, const std::optional<Attit
                                      : stateLine(withAttitudeOnly(estimate, *attitude), "attitude");
   appendAttitude(line, attitude);
   appendDepth(line, estimate.depth);
+  for (const SensorRow& row : estimate.sensor_rows) {
+    for (const auto& [name, value] : row.columns) fmt::format_to(std::back_inserter(line), ",{}", value);
+  }
   states_ << fmt::to_string(line) << "\n" << std::flush;
   if (!trajectory_ || !states_) {
     throw InputError(file_.string() + ": writing failed at " + std::to_string(estimate.time.nanoseconds()) +

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lodeline/ahrs/attitude_filter.h"
 #include "lodeline/estimate.h"
@@ -14,9 +15,10 @@ namespace lodeline {
 /// frame, flushed after each so that an interrupted run keeps its results.
 class StateWriter {
  public:
-  /// `suffix` is added to the names of both files, before the dot. Throws InputError where the folder cannot
-  /// be written to.
-  explicit StateWriter(const std::filesystem::path& folder, const std::string& suffix = "");
+  /// `suffix` is added to the names of both files, before the dot. `sensor_columns`: names of the columns in
+  /// FrameEstimate::sensor_rows. Throws InputError where the folder cannot be written to.
+  explicit StateWriter(const std::filesystem::path& folder, const std::string& suffix = "",
+                       const std::vector<std::string>& sensor_columns = {});
 
   /// `attitude`: estimate of the attitude filter at the same time, for its own columns. A frame without a
   /// pose has no line in the trajectory. In the states it has the status `attitude` and nan for unknown

@@ -186,6 +186,7 @@ void RunSummary::add(const FrameEstimate& estimate) {
     ++magnetometer_frames_[estimate.magnetometer.status];
   const DepthStatus depth = estimate.depth.status;
   if (depth != DepthStatus::Off && depth != DepthStatus::NoData) ++depth_frames_[depth];
+  sensor_frames_.add(estimate.sensor_rows);
   scale_.stereo += estimate.scale.stereo;
   scale_.accelerometer += estimate.scale.accelerometer;
   scale_.depth += estimate.scale.depth;
@@ -288,6 +289,7 @@ void RunSummary::addDetails(SummaryLines* lines) const {
   if (last_.accelerometer_axes) lines->add("inertial", describe("accelerometer", *last_.accelerometer_axes));
   if (hasMagnetometer()) lines->add("magnetometer", magnetometerText());
   if (!depth_frames_.empty()) lines->add("pressure", depthText());
+  sensor_frames_.describe(lines);
   if (const auto scale = scaleInformation()) lines->add("scale", describe(*scale));
   lines->add(
       "time",
@@ -383,6 +385,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
   }
   for (const auto& [status, frames] : depth_frames_) json["pressure"]["frames"][toString(status)] = frames;
   if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);
+  sensor_frames_.addTo(&json);
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   if (refinement) json["refinement"] = toJson(*refinement);
   json["findings"] = findingsJson(diagnostics, [this](const std::string& m) { return readable(m); });

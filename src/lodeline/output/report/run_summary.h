@@ -10,6 +10,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimate.h"
 #include "lodeline/output/report/blind_stretches.h"
+#include "lodeline/output/report/sensor_frames.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {
@@ -118,7 +119,8 @@ class RunSummary {
   int reprojected_frames_ = 0;
   std::map<MagnetometerStatus, int> magnetometer_frames_;
   std::map<DepthStatus, int> depth_frames_;  ///< of frames with readings
-  ScaleInformation scale_;                   ///< summed over the frames
+  SensorFrames sensor_frames_;
+  ScaleInformation scale_;  ///< summed over the frames
 };
 
 }  // namespace lodeline

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lodeline/ahrs/field_gate.h"
-#include "lodeline/estimator/state/magnetometer_states.h"
+#include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
 #include "lodeline/geometry/so3.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "lodeline/estimator/state/magnetometer_states.h"
+#include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/geometry/so3.h"
 #include "simulation/shared/random.h"
 

@@ -58,7 +58,7 @@ FramePacket packetAt(double t_s) {
   FramePacket packet;
   packet.time = timeAt(t_s);
   const Vec3 field_W(-2.7e-6, 24e-6, -38.6e-6);
-  packet.magnetometer.push_back({packet.time, poseAt(t_s).rotation.inverse() * field_W});
+  packet.readings.of<MagnetometerSample>().push_back({packet.time, poseAt(t_s).rotation.inverse() * field_W});
   return packet;
 }
 
