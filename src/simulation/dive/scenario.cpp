@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "simulation/sensors/imu_model.h"
 
 namespace lodeline {
