@@ -6,6 +6,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "simulation/dive/dive_world.h"
+#include "simulation/dive/image_recording.h"
 #include "simulation/dive/recording_files.h"
 #include "simulation/dive/sensor_recording.h"
 #include "simulation/dive/truth_recording.h"

@@ -6,6 +6,7 @@
 
 #include "lodeline/cameras/camera_model.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "simulation/sensors/imu_model.h"
 
 namespace lodeline {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "simulation/dive/recording_files.h"
 
 namespace lodeline {

@@ -9,6 +9,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/yaml_file.h"
+#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/csv_fields.h"
 #include "lodeline/util/files/file_kind.h"
