@@ -8,8 +8,7 @@ Usage: scripts/generate_reference.py [--program FILE] [--config FILE] [--check]
 --check         write nothing; end with exit code 1 where a page is not up to date
 
 Commands come from `lodeline --help` and `lodeline COMMAND --help`. Settings and their defaults come from the config.yaml
-of a run on a small simulated recording. What a setting means is told by scripts/reference/settings.txt; for a setting
-that is missing there, the program's own words are used and a warning is printed.
+of a run on a small simulated recording. scripts/reference/settings.txt has the titles of the sections.
 """
 
 import argparse
@@ -22,7 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ROOT / "docs" / "reference"
-MEANINGS = ROOT / "scripts" / "reference" / "settings.txt"
+SECTIONS = ROOT / "scripts" / "reference" / "settings.txt"
 WIDTH = 100  # of help texts on the page
 
 
@@ -96,28 +95,44 @@ def settings_of(config):
     return settings
 
 
-def read_meanings():
-    """Introductions by section, and meanings by setting."""
-    sections, meanings = [], {}
-    for number, line in enumerate(MEANINGS.read_text(encoding="utf-8").splitlines(), 1):
+def read_sections():
+    """Name, title and introduction of each section."""
+    sections = []
+    for number, line in enumerate(SECTIONS.read_text(encoding="utf-8").splitlines(), 1):
         if line.startswith("## "):
             name, _, title = line[3:].partition(": ")
             sections.append([name, title, ""])
         elif line.startswith("> "):
             sections[-1][2] = line[2:]
         elif line.strip() and not line.startswith("#"):
-            name, colon, meaning = line.partition(": ")
-            if not colon:
-                sys.exit(f"{MEANINGS}:{number}: neither a section nor `setting: meaning`")
-            meanings[name] = meaning
-    return sections, meanings
+            sys.exit(f"{SECTIONS}:{number}: neither a section nor an introduction")
+    return sections
+
+
+def section_of(name, sections):
+    name = name.removeprefix("expert.")
+    fitting = [section for section, _, _ in sections if name == section or name.startswith(section + ".")]
+    if not fitting:
+        sys.exit(f"{SECTIONS.name}: no section for {name}")
+    return max(fitting, key=len)
+
+
+def tables(settings, sections, level):
+    page = []
+    for section, title, introduction in sections:
+        rows = [setting for setting in settings if section_of(setting[0], sections) == section]
+        if not rows:
+            continue
+        page += ["", f"{level} {title}", ""] + ([*textwrap.wrap(introduction, 118), ""] if introduction else [])
+        page += ["| setting | default | meaning |", "| --- | --- | --- |"]
+        page += [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in rows]
+    return page
 
 
 def settings_page(config):
-    settings = settings_of(config)
-    sections, meanings = read_meanings()
-    for name in sorted(set(meanings) - {name for name, _, _ in settings}):
-        print(f"{MEANINGS.name}: the program has no setting {name}", file=sys.stderr)
+    settings, sections = settings_of(config), read_sections()
+    common = [setting for setting in settings if not setting[0].startswith("expert.")]
+    expert = [setting for setting in settings if setting[0].startswith("expert.")]
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
             "The defaults serve all recordings. Change a setting on the command line, `--set front_end.max_tracks=300`,",
@@ -125,23 +140,10 @@ def settings_page(config):
             "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
             "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",
             "deviation. An unknown setting is an error that names the nearest known one."]
-    def section_of(name):
-        fitting = [section for section, _, _ in sections if name == section or name.startswith(section + ".")]
-        return max(fitting, key=len) if fitting else ""
-    told = set()
-    for section, title, introduction in sections:
-        rows = [setting for setting in settings if section_of(setting[0]) == section]
-        if not rows:
-            continue
-        page += ["", f"## {title}", ""] + ([*textwrap.wrap(introduction, 118), ""] if introduction else [])
-        page += ["| setting | default | meaning |", "| --- | --- | --- |"]
-        for name, default, words in rows:
-            told.add(name)
-            if name not in meanings:
-                print(f"{MEANINGS.name}: no meaning of {name}", file=sys.stderr)
-            page.append(f"| `{name}` | `{default}` | {meanings.get(name, words).replace('|', '/')} |")
-    for name in [name for name, _, _ in settings if name not in told]:
-        sys.exit(f"{MEANINGS.name}: no section for {name}")
+    page += tables(common, sections, "##")
+    page += ["", "## Expert settings", "",
+             "Experiments need these settings; users do not. `expert.` may be left out: `--set window.keyframes=10`."]
+    page += tables(expert, sections, "###")
     return "\n".join(page) + "\n"
 
 

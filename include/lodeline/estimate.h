@@ -230,6 +230,9 @@ struct FrameEstimate {
   /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position,
   /// and to north or, while that is unknown, to the first pose's heading.
   Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
+  /// The same as the stated model gives it, without the inflation for errors that have no state
+  /// (docs/theory/covariance.md).
+  Eigen::Matrix<double, 15, 15> posterior_covariance = Eigen::Matrix<double, 15, 15>::Zero();
   InertialDoubt inertial_doubt;  ///< of the readings since the frame before
   bool is_keyframe = false;
   int tracks = 0;     ///< seen in this frame

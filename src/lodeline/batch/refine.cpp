@@ -74,6 +74,28 @@ std::string refusalOf(const RefinementSummary& summary, const RefinementOptions&
   return {};
 }
 
+/// Covariances of the stated model at the solution.
+BatchCovariances posteriorCovariances(BatchProblem& problem, BlockSkylineCholesky& hessian) {
+  Eigen::VectorXd gradient;
+  problem.linearize(&hessian, &gradient);
+  if (!hessian.factorize()) return {};
+  hessian.invert();
+  return covariancesOf(problem, hessian);
+}
+
+/// The same without the information that the estimate uses and the reported covariance leaves out. They must
+/// also include errors that all tracks have in common, such as those of intrinsics or a port.
+BatchCovariances reportedCovariances(BatchProblem& problem, const RefinementSummary& summary,
+                                     BlockSkylineCholesky& hessian) {
+  Eigen::VectorXd gradient;
+  problem.weighObservations(std::max(1.0, summary.design_effect / summary.observation_variance));
+  problem.linearize(&hessian, &gradient);
+  problem.subtractRemoved(&hessian);
+  if (!hessian.factorize()) return {};
+  hessian.invert();
+  return covariancesOf(problem, hessian);
+}
+
 }  // namespace
 
 Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const EstimatorLog& record,
@@ -116,17 +138,13 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
   summary.observations = static_cast<int64_t>(problem.observations());
   summary.refusal = refusalOf(summary, wanted);
   if (!summary.usable()) return result;
+  BatchCovariances posterior, reported;
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
-    Eigen::VectorXd gradient;
-    // The reported covariance must also include errors that all tracks have in common, such as those of
-    // intrinsics or a port.
-    problem.weighObservations(std::max(1.0, summary.design_effect / summary.observation_variance));
-    problem.linearize(&hessian, &gradient);
-    problem.subtractRemoved(&hessian);
-    summary.has_covariance = hessian.factorize();
-    if (summary.has_covariance) hessian.invert();
+    posterior = posteriorCovariances(problem, hessian);
+    reported = reportedCovariances(problem, summary, hessian);
   }
-  result.frames = refinedFrames(problem, rig, options, record, summary.has_covariance ? &hessian : nullptr);
+  summary.has_covariance = !reported.empty();
+  result.frames = refinedFrames(problem, rig, options, record, posterior, reported);
   result.landmarks = mapPoints(problem);
   measureMoves(record.frames(), result.frames, &summary);
   summary.processor_s = processSeconds() - start_s;

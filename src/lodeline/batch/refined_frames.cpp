@@ -17,13 +17,14 @@ using Mat15 = Eigen::Matrix<double, 15, 15>;
 class FrameMaker {
  public:
   FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
-             const EstimatorLog& record, const BlockSkylineCholesky* inverse)
-      : problem_(problem), rig_(rig), options_(options), record_(record), covariance_inflation_(options) {
-    for (size_t k = 0; inverse && k < problem.states(); ++k) {
-      covariances_.push_back(problem.covarianceOf(k, *inverse));
-      azimuths_.push_back(problem.azimuth(k, *inverse));
-    }
-  }
+             const EstimatorLog& record, const BatchCovariances& posterior, const BatchCovariances& reported)
+      : problem_(problem),
+        rig_(rig),
+        options_(options),
+        record_(record),
+        covariance_inflation_(options),
+        posterior_(posterior),
+        reported_(reported) {}
 
   FrameEstimate make(const FrameEstimate& forward) {
     while (state_ + 1 < problem_.states() && problem_.state(state_ + 1).time <= forward.time) ++state_;
@@ -35,7 +36,8 @@ class FrameMaker {
                              : (forward.time - begin.time).seconds() /
                                    (problem_.state(state_ + 1).time - begin.time).seconds();
     refined.state = is_state ? begin.state() : between(begin, forward.time, share);
-    refined.covariance = covarianceAt(share);
+    refined.covariance = covarianceAt(reported_, share);
+    refined.posterior_covariance = covarianceAt(posterior_, share);
     describeNorth(share, &refined);
     addDoubtAboutUp(options_.imu_axes, &refined.covariance);
     refined.camera_corrections = cameraCorrections(problem_.window());
@@ -73,10 +75,10 @@ class FrameMaker {
     return state;
   }
 
-  Mat15 covarianceAt(double share) const {
-    if (covariances_.empty()) return Mat15::Constant(std::numeric_limits<double>::quiet_NaN());
-    if (share == 0.0) return covariances_[state_];
-    return (1.0 - share) * covariances_[state_] + share * covariances_[state_ + 1];
+  Mat15 covarianceAt(const BatchCovariances& known, double share) const {
+    if (known.empty()) return Mat15::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (share == 0.0) return known.states[state_];
+    return (1.0 - share) * known.states[state_] + share * known.states[state_ + 1];
   }
 
   /// A north that the run found late applies from the first frame on.
@@ -89,22 +91,24 @@ class FrameMaker {
     magnetometer.axes_sigma_rad = last.axes_sigma_rad;
     magnetometer.north_found = last.north_found;
     magnetometer.north_from_world_rad = last.north_from_world_rad;
-    AzimuthCovariance azimuth;
-    azimuth.variance_rad2 = std::pow(last.north_from_world_sigma_rad, 2);
+    AzimuthCovariance azimuth, posterior;
+    posterior.variance_rad2 = azimuth.variance_rad2 = std::pow(last.north_from_world_sigma_rad, 2);
     const MagnetometerStates states(problem_.window());
     if (states.field) {
       magnetometer.field_W = states.field_W();
       magnetometer.north_from_world_rad =
           northFromWorld(states.field_W(), last.heading_reference, options_.magnetometer);
-      if (!azimuths_.empty()) azimuth = azimuthAt(share);
+      if (!reported_.empty()) azimuth = azimuthAt(reported_, share);
+      if (!posterior_.empty()) posterior = azimuthAt(posterior_, share);
     }
     magnetometer.north_from_world_sigma_rad = std::sqrt(azimuth.variance_rad2);
     relateToNorth(refined->state, azimuth, &refined->covariance);
+    relateToNorth(refined->state, posterior, &refined->posterior_covariance);
   }
 
-  AzimuthCovariance azimuthAt(double share) const {
-    AzimuthCovariance at = azimuths_[state_];
-    if (share > 0.0) at.with_state += share * (azimuths_[state_ + 1].with_state - at.with_state);
+  AzimuthCovariance azimuthAt(const BatchCovariances& known, double share) const {
+    AzimuthCovariance at = known.azimuths[state_];
+    if (share > 0.0) at.with_state += share * (known.azimuths[state_ + 1].with_state - at.with_state);
     return at;
   }
 
@@ -131,17 +135,27 @@ class FrameMaker {
   const EstimatorOptions& options_;
   const EstimatorLog& record_;
   CovarianceInflation covariance_inflation_;
-  std::vector<Mat15> covariances_;
-  std::vector<AzimuthCovariance> azimuths_;
+  const BatchCovariances& posterior_;
+  const BatchCovariances& reported_;
   size_t state_ = 0;  ///< the last one at or before the frame
 };
 
 }  // namespace
 
+BatchCovariances covariancesOf(const BatchProblem& problem, const BlockSkylineCholesky& inverse) {
+  BatchCovariances covariances;
+  for (size_t k = 0; k < problem.states(); ++k) {
+    covariances.states.push_back(problem.covarianceOf(k, inverse));
+    covariances.azimuths.push_back(problem.azimuth(k, inverse));
+  }
+  return covariances;
+}
+
 std::vector<FrameEstimate> refinedFrames(const BatchProblem& problem, const Rig& rig,
                                          const EstimatorOptions& options, const EstimatorLog& record,
-                                         const BlockSkylineCholesky* inverse) {
-  FrameMaker maker(problem, rig, options, record, inverse);
+                                         const BatchCovariances& posterior,
+                                         const BatchCovariances& reported) {
+  FrameMaker maker(problem, rig, options, record, posterior, reported);
   std::vector<FrameEstimate> frames;
   for (const FrameEstimate& forward : record.frames()) frames.push_back(maker.make(forward));
   return frames;

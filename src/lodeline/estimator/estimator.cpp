@@ -316,9 +316,13 @@ void Estimator::rememberCovariance(const JointCovariance& covariance, FrameEstim
             estimate->time.nanoseconds()));
   }
   known_ = estimate->covariance = reportedCovariance(covariance, window_, options_, factors_);
+  estimate->posterior_covariance = covariance.newest();
   intrinsics_model_selection_.remember(covariance, window_);
   for (const auto& sensor : sensors_) sensor->remember(covariance, window_);
-  for (const auto& sensor : sensors_) sensor->relate(window_, &estimate->covariance);
+  for (const auto& sensor : sensors_) {
+    sensor->relate(window_, &estimate->covariance);
+    sensor->relate(window_, &estimate->posterior_covariance);
+  }
 }
 
 void Estimator::optimize(FrameEstimate* estimate) {

@@ -40,6 +40,10 @@ constexpr const char* kMagnetometerHeader =
 
 constexpr const char* kDepthHeader = ",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s]";
 
+constexpr const char* kPosteriorHeader =
+    ",posterior_sigma_p_x [m],posterior_sigma_p_y [m],posterior_sigma_p_z [m],posterior_sigma_theta_x [rad],"
+    "posterior_sigma_theta_y [rad],posterior_sigma_theta_z [rad]";
+
 /// Header of the pose covariance's upper triangle, [p, theta] in world axes, and of the covariance of v_x and
 /// v_y.
 std::string covarianceHeader() {
@@ -89,6 +93,7 @@ FrameEstimate withAttitudeOnly(const FrameEstimate& frame, const AttitudeEstimat
   known.state.accelerometer_bias_B.setConstant(kUnknown);
   known.state.gyroscope_bias_B = attitude.gyroscope_bias_B;
   known.covariance.setConstant(kUnknown);
+  known.posterior_covariance.setConstant(kUnknown);
   known.covariance(5, 5) = attitude.heading_sigma_rad * attitude.heading_sigma_rad;
   known.magnetometer.heading_sigma_rad = attitude.heading_sigma_rad;
   return known;
@@ -127,7 +132,8 @@ StateWriter::StateWriter(const std::filesystem::path& folder, const std::string&
       trajectory_(openOutput(file_)),
       states_(openOutput(folder / ("states" + suffix + ".csv"))) {
   trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
-  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader;
+  states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader
+          << kPosteriorHeader;
   for (const std::string& name : sensor_columns) states_ << "," << name;
   states_ << "\n" << std::flush;
 }
@@ -140,6 +146,8 @@ void StateWriter::write(const FrameEstimate& estimate, const std::optional<Attit
                                      : stateLine(withAttitudeOnly(estimate, *attitude), "attitude");
   appendAttitude(line, attitude);
   appendDepth(line, estimate.depth);
+  for (int i = 0; i < 6; i += 3)
+    append(line, estimate.posterior_covariance.diagonal().segment<3>(i).unaryExpr(&sigma));
   for (const SensorRow& row : estimate.sensor_rows) {
     for (const auto& [name, value] : row.columns) fmt::format_to(std::back_inserter(line), ",{}", value);
   }

@@ -15,6 +15,9 @@
 namespace lodeline {
 namespace {
 
+/// Names may be given without this first part.
+const std::string kExpert = "expert.";
+
 template <typename Number>
 bool parseNumber(const std::string& text, Number* number) {
   const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
@@ -148,14 +151,16 @@ void Settings::apply(const Assignment& assignment) {
 }
 
 const Settings::Entry* Settings::find(const std::string& key) const {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key == key; });
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.key == key || entry.key == kExpert + key;
+  });
   return found == entries_.end() ? nullptr : &*found;
 }
 
 bool Settings::isSection(const std::string& path) const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const Entry& entry) { return entry.key.starts_with(path + "."); });
+  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.key.starts_with(path + ".") || entry.key.starts_with(kExpert + path + ".");
+  });
 }
 
 std::string Settings::nearestKey(const std::string& key) const {

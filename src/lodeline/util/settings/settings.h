@@ -21,6 +21,8 @@ namespace lodeline {
 ///     settings.set("front_end.max_features", "400");  // the command line is applied last and wins
 ///     settings.write(stream);  // the values in effect, as a valid configuration
 ///
+/// Keys that begin with "expert." are the second tier of settings; that part may be left out.
+///
 /// A wrong key or value throws UsageError. The message has the place (file and line, or command line), the
 /// key and a correction: the nearest known key, or the expected kind of value.
 class Settings {

@@ -185,5 +185,23 @@ TEST(EditDistance, CountsEdits) {
   EXPECT_EQ(editDistance("same", "same"), 0u);
 }
 
+TEST_F(SettingsTest, TheFirstPartOfExpertNamesMayBeLeftOut) {
+  double radius_px = 3.0;
+  settings_.bind("expert.front_end.blur.radius_px", &radius_px, "blur");
+  settings_.set("expert.front_end.blur.radius_px", "4");
+  EXPECT_EQ(radius_px, 4.0);
+  settings_.set("front_end.blur.radius_px", "5");
+  EXPECT_EQ(radius_px, 5.0);
+  settings_.load(file("front_end:\n  max_features: 7\n  blur: {radius_px: 6}\n"));
+  EXPECT_EQ(radius_px, 6.0);
+  EXPECT_EQ(max_features_, 7);
+  settings_.load(file("expert: {front_end: {blur: {radius_px: 8}}}\n"));
+  EXPECT_EQ(radius_px, 8.0);
+  std::ostringstream written;
+  settings_.write(written);
+  EXPECT_THAT(written.str(), HasSubstr("expert:\n  front_end:\n    blur:\n"));
+  EXPECT_THROW(settings_.bind("front_end.blur.radius_px", &radius_px, "again"), std::logic_error);
+}
+
 }  // namespace
 }  // namespace lodeline

@@ -1,0 +1,177 @@
+#include "lodeline/api/expert_settings.h"
+
+namespace lodeline {
+namespace {
+
+void bindSource(Settings* settings, SynchronizerOptions* synchronizer) {
+  settings->bind("expert.source.camera_match_tolerance_s", &synchronizer->match_tolerance_s,
+                 "An image of a secondary camera belongs to an image of the first camera when their times "
+                 "differ by no more than this. Half a frame period is the limit in any case.");
+  settings->bind("expert.source.prefetch", &synchronizer->prefetch,
+                 "Decode the next images on other threads while the estimator works. The results are the "
+                 "same without it.");
+}
+
+void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
+  settings->bind("expert.front_end.min_distance_px", &options->detector.min_distance_px,
+                 "Least distance between two points.");
+  settings->bind("expert.front_end.max_stereo_epipolar_px", &options->stereo.max_epipolar_px,
+                 "Largest distance of a stereo match from its epipolar line. A quarter of a degree is used "
+                 "where that is more.");
+  settings->bind("expert.front_end.min_depth_m", &options->stereo.min_depth_m,
+                 "Least distance of a point that stereo matching searches for.");
+  settings->bind("expert.front_end.max_epipolar_px", &options->consensus.max_error_px,
+                 "Points that disagree with the motion of the other points by more than this are outliers.");
+  settings->bind("expert.front_end.seed", &options->consensus.seed,
+                 "Seed of the random choices of the outlier test.");
+  settings->bind("expert.front_end.sigma_px", &options->sigma_px,
+                 "Standard deviation of the image position of a point.", Settings::Sign::Positive);
+  settings->bind("expert.front_end.learn_stereo_rotation", &options->stereo.learn_rotation,
+                 "Estimate the rotation of a secondary camera against its file from stereo matches. Works "
+                 "only while the camera calibration is estimated.");
+}
+
+void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOptions* calibration) {
+  settings->bind("expert.inertial.gyroscope_axes_sigma", &calibration->gyroscope_sigma,
+                 "Relative scale errors and misalignment of the axes of a calibrated gyroscope. `0` does not "
+                 "estimate the axes.");
+  settings->bind("expert.inertial.accelerometer_axes_sigma", &calibration->accelerometer_sigma,
+                 "Relative scale errors and misalignment of the axes of a calibrated accelerometer. `0` does "
+                 "not estimate the axes.");
+  settings->bind("expert.inertial.noise_inflation", &options->noise_inflation,
+                 "Factor on all noise densities of the IMU calibration.", Settings::Sign::Positive);
+}
+
+void bindStart(Settings* settings, InitialStateOptions* start) {
+  settings->bind("expert.start.velocity_sigma_m_per_s", &start->velocity_sigma_m_per_s,
+                 "Uncertainty of the first velocity.");
+  settings->bind("expert.start.gyroscope_bias_sigma_rad_per_s", &start->gyroscope_bias_sigma_rad_per_s,
+                 "Uncertainty of the first gyroscope bias.");
+  settings->bind("expert.start.accelerometer_bias_sigma_m_per_s2", &start->accelerometer_bias_sigma_m_per_s2,
+                 "Uncertainty of the first accelerometer bias.");
+}
+
+void bindWindow(Settings* settings, EstimatorOptions* options) {
+  settings->bind("expert.window.recent_frames", &options->window.recent_frames,
+                 "Number of newest frames that keep velocity and biases.", 2);
+  settings->bind("expert.window.keyframes", &options->window.keyframes, "Number of older keyframes.");
+  settings->bind("expert.window.frozen_frames", &options->window.frozen_frames,
+                 "Number of frames after which landmarks that no recent frame sees are linearized again. `0` "
+                 "linearizes them in every frame.");
+  settings->bind("expert.window.interpolated_gap_s", &options->window.interpolated_gap_s,
+                 "The window keeps observations of frames between two keyframes that are no further apart "
+                 "than this. `0` keeps none.");
+  settings->bind("expert.window.split_at_keyframe", &options->window.split_at_keyframe,
+                 "A landmark that outlives the oldest keyframe is split. Its observations in this number of "
+                 "the newest older keyframes stay in the window. The others go into the prior.");
+  settings->bind(
+      "expert.keyframe.min_parallax_rad", &options->keyframe.min_parallax_rad,
+      "A frame becomes a keyframe when the median shift of the points, with rotation removed, is larger.");
+  settings->bind("expert.landmark.max_count", &options->landmark.max_landmarks,
+                 "Largest number of landmarks in the window.");
+  settings->bind("expert.landmark.min_distance_m", &options->landmark.min_distance_m,
+                 "Least distance of a landmark. Nearer points are discarded.");
+}
+
+void bindCameraCalibration(Settings* settings, CameraCalibrationOptions* cameras) {
+  settings->bind("expert.camera_calibration.rotation_sigma_rad", &cameras->rotation_sigma_rad,
+                 "Rotation of camera 0 against the IMU. `0` keeps it fixed.");
+  settings->bind("expert.camera_calibration.position_sigma_m", &cameras->position_sigma_m,
+                 "Position of camera 0 against the IMU. `0` keeps it fixed.");
+  settings->bind("expert.camera_calibration.time_offset_sigma_s", &cameras->time_offset_sigma_s,
+                 "Time offset of the images against the IMU. `0` keeps it fixed.");
+  settings->bind("expert.camera_calibration.stereo_rotation_sigma_rad", &cameras->stereo_rotation_sigma_rad,
+                 "Rotation of secondary cameras against camera 0. `0` keeps it fixed.");
+  settings->bind("expert.camera_calibration.stereo_position_sigma_m", &cameras->stereo_position_sigma_m,
+                 "Position of secondary cameras against camera 0. `0` keeps it fixed.");
+  settings->bind("expert.camera_calibration.intrinsics", &cameras->intrinsics,
+                 "Estimate the intrinsics too.");
+  settings->bind("expert.camera_calibration.focal_length_sigma", &cameras->focal_length_sigma,
+                 "Relative error of both focal lengths. `0` keeps them fixed.");
+  settings->bind("expert.camera_calibration.principal_point_sigma_px", &cameras->principal_point_sigma_px,
+                 "Error of the principal point. `0` keeps it fixed.");
+  settings->bind("expert.camera_calibration.radial_sigma", &cameras->radial_sigma,
+                 "Error of the first two radial distortion coefficients. `0` keeps them fixed.");
+  settings->bind("expert.camera_calibration.trust_confirmed_files", &cameras->trust_confirmed_files,
+                 "Keep intrinsics and stereo rotation fixed at the values of their files while the images "
+                 "confirm them.");
+}
+
+void bindSolver(Settings* settings, EstimatorOptions* options) {
+  settings->bind("expert.solver.max_iterations", &options->solver.max_iterations,
+                 "Largest number of iterations for a frame.", 1);
+  settings->bind("expert.solver.function_tolerance", &options->solver.function_tolerance,
+                 "Iterations end when the relative decrease of the cost is smaller than this.");
+  settings->bind("expert.solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas,
+                 "Upper limit of the width of the Cauchy loss, in standard deviations of an observation.");
+  settings->bind("expert.solver.track_weights", &options->solver.track_weights,
+                 "Weight the observations of a track by the errors of that track.");
+  settings->bind("expert.zero_velocity.enabled", &options->rest.enabled,
+                 "Detect a rig at rest and use a velocity of zero as a measurement.");
+  settings->bind("expert.min_landmarks_for_vision", &options->min_landmarks_for_vision,
+                 "A frame with fewer landmarks in view has the status `inertial`.");
+}
+
+void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
+  settings->bind("expert.magnetometer.correlated_noise_sigma_T", &options->correlated_noise_sigma_T,
+                 "First value of the time-correlated field error, per axis.");
+  settings->bind("expert.magnetometer.noise_inflation", &options->noise_inflation,
+                 "Factor on the noise density of the magnetometer.");
+  settings->bind("expert.magnetometer.student_dof", &options->student_dof,
+                 "Degrees of freedom of the Student distribution of the time-correlated field error.");
+  settings->bind("expert.magnetometer.offset_sigma_T", &options->offset_sigma_T,
+                 "Hard iron that appears between calibration and dive.");
+  settings->bind("expert.magnetometer.uncalibrated_offset_sigma_T", &options->uncalibrated_offset_sigma_T,
+                 "Hard iron of a magnetometer that was never calibrated.");
+  settings->bind("expert.magnetometer.step.enabled", &options->step.enabled,
+                 "Correct the readings by the field of switched currents.");
+}
+
+void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
+  settings->bind("expert.magnetometer.gate.max_norm_error", &gate->max_norm_error,
+                 "Largest relative error of the size of the field.");
+  settings->bind("expert.magnetometer.gate.max_dip_error_rad", &gate->max_dip_error_rad,
+                 "Largest error of the dip.");
+  settings->bind("expert.magnetometer.gate.max_sigmas", &gate->max_sigmas,
+                 "Largest innovation of the heading, in standard deviations.");
+}
+
+void bindDepth(Settings* settings, DepthOptions* options) {
+  settings->bind("expert.pressure.density_ratio_sigma", &options->density_ratio_sigma,
+                 "Uncertainty of `pressure.density_ratio`. `0` keeps it fixed.");
+  settings->bind(
+      "expert.pressure.water_density_prior", &options->water_density_prior,
+      "Use the knowledge that most water is fresh or salt, and most sensors are set to one of both.");
+  settings->bind("expert.pressure.lag_s", &options->lag_s, "Time constant of the pressure sensor.");
+  settings->bind("expert.pressure.noise_inflation", &options->noise_inflation,
+                 "Factor on `depth_noise_std` of the calibration of the pressure sensor.");
+  settings->bind("expert.pressure.gate.max_sigmas", &options->gate.max_sigmas,
+                 "A jump of the depth is accepted below this number of standard deviations.");
+}
+
+void bindSonar(Settings* settings, SonarOptions* options) {
+  settings->bind("expert.sonar.noise_inflation", &options->noise_inflation,
+                 "Factor on `range_noise_std` of the calibration of the sonar.", Settings::Sign::Positive);
+  settings->bind("expert.sonar.gate.max_sigmas", &options->max_sigmas,
+                 "A range is rejected when its innovation is larger, in standard deviations.",
+                 Settings::Sign::Positive);
+}
+
+}  // namespace
+
+void bindExpertSettings(Settings* settings, RunSettings* options) {
+  EstimatorOptions* estimator = &options->odometry.estimator;
+  bindSource(settings, &options->synchronizer);
+  bindFrontEnd(settings, &options->odometry.front_end);
+  bindInertial(settings, &estimator->preintegration, &estimator->imu_axes);
+  bindStart(settings, &estimator->initial_state);
+  bindWindow(settings, estimator);
+  bindCameraCalibration(settings, &estimator->camera_calibration);
+  bindSolver(settings, estimator);
+  bindMagnetometer(settings, &estimator->magnetometer);
+  bindMagnetometerGate(settings, &estimator->magnetometer.gate);
+  bindDepth(settings, &estimator->depth);
+  bindSonar(settings, &estimator->sonar);
+}
+
+}  // namespace lodeline
