@@ -2,6 +2,7 @@
 //   example_1_run_recording FOLDER [SECONDS] > trajectory.tum
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "lodeline/odometry.h"
@@ -32,8 +33,10 @@ int main(int argc, char** argv) try {
     const lodeline::Rigid3& pose = estimate->state.world_from_body;
     const lodeline::Vec3& p = pose.translation;
     const lodeline::Quat& q = pose.rotation;
-    std::printf("%.9f %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", estimate->time.seconds(), p.x(), p.y(), p.z(),
-                q.x(), q.y(), q.z(), q.w());
+    // A double would round the nanoseconds of a time since 1970.
+    const std::lldiv_t stamp = std::lldiv(estimate->time.nanoseconds(), 1'000'000'000);
+    std::printf("%lld.%09lld %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", stamp.quot, stamp.rem, p.x(), p.y(),
+                p.z(), q.x(), q.y(), q.z(), q.w());
     ++poses;
   }
   for (const lodeline::Finding& finding : diagnostics.ranked()) {

@@ -50,10 +50,11 @@ double schmidtFactor(int degree, int order) {
 
 /// a grad of the term c cosine[n][m] + s sine[n][m].
 Vec3 gradient(const SolidHarmonics& f, int n, int m, double c, double s) {
+  // The sine of order zero is zero, whatever its coefficient.
+  if (m == 0) return -c * Vec3(f.cosine[n + 1][1], f.sine[n + 1][1], (n + 1) * f.cosine[n + 1][0]);
   const double z = -(n - m + 1) * (c * f.cosine[n + 1][m] + s * f.sine[n + 1][m]);
   const double x_up = -c * f.cosine[n + 1][m + 1] - s * f.sine[n + 1][m + 1];
   const double y_up = -c * f.sine[n + 1][m + 1] + s * f.cosine[n + 1][m + 1];
-  if (m == 0) return Vec3(x_up, y_up, z);
   const double weight = (n - m + 2) * (n - m + 1);
   const double x_down = c * f.cosine[n + 1][m - 1] + s * f.sine[n + 1][m - 1];
   const double y_down = -c * f.sine[n + 1][m - 1] + s * f.cosine[n + 1][m - 1];
