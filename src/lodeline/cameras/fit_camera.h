@@ -20,9 +20,9 @@ struct Sighting {
 /// A grid of pixels over the image of a camera with their rays.
 std::vector<Sighting> imageSightings(const Camera& camera);
 
-/// Least-squares parameters of a camera model for sightings. `start` names the model and is the initial value.
-/// Rays that `start` does not see have no part. Method: K. Levenberg, "A method for the solution of certain
-/// non-linear problems in least squares", 1944. Throws InputError where `start` is no camera.
+/// Least-squares parameters of a camera model for sightings. `start` names the model and is the initial
+/// value. Rays that `start` does not see have no part. Method: K. Levenberg, "A method for the solution of
+/// certain non-linear problems in least squares", 1944. Throws InputError where `start` is no camera.
 CameraFit fitCamera(const CameraCalibration& start, std::vector<Sighting> sightings);
 
 /// The camera of another model with the least distances between the pixels.
