@@ -75,7 +75,7 @@ const CameraModel& cameraModel(const CameraCalibration& calibration);
 std::string cameraModelNames();
 
 /// Pixels per radian on the axis of a calibrated camera, along u. Zero for a camera without calibration
-/// (width 0).
+/// (width or focal length 0). Throws InputError for invalid parameters.
 double focalLengthOnAxis_px(const CameraCalibration& calibration);
 
 }  // namespace lodeline

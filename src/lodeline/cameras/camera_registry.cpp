@@ -114,7 +114,8 @@ std::string cameraModelNames() {
 }
 
 double focalLengthOnAxis_px(const CameraCalibration& calibration) {
-  return calibration.width_px > 0 ? makeCamera(calibration)->focalLengthsOnAxis_px().x() : 0.0;
+  const bool is_calibrated = calibration.width_px > 0 && calibration.fx_px != 0.0;
+  return is_calibrated ? makeCamera(calibration)->focalLengthsOnAxis_px().x() : 0.0;
 }
 
 Camera::Camera(const CameraCalibration& calibration)

@@ -100,7 +100,7 @@ CameraModel unifiedModel() {
       .make = [](const CameraCalibration& c) -> std::shared_ptr<const Camera> {
         return std::make_shared<UnifiedCamera>(c);
       },
-      .typical = {0.55, {1.2, -0.05, 0.02, 3e-4, -2e-4}},
+      .typical = {0.55, {1.2, -0.15, 0.05, 3e-4, -2e-4}},
   };
 }
 

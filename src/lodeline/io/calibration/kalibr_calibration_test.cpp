@@ -171,8 +171,8 @@ TEST_F(KalibrModels, AreRefusedWithTheKeyThatIsWrong) {
        {std::pair(swapped, "xi of the double-sphere model is 301"), std::pair(odd, "camera_model 'cubic'"),
         std::pair(short_list, "must be 6 finite numbers (xi, alpha, fx, fy, cx, cy in px)"),
         std::pair(wide, "shares of the image's size")}) {
-    EXPECT_THAT([&, &model = model] { readChain(chain(model)); },
-                ThrowsMessage<InputError>(HasSubstr(complaint)));
+    const std::string text = chain(model);
+    EXPECT_THAT([&] { readChain(text); }, ThrowsMessage<InputError>(HasSubstr(complaint)));
   }
   KalibrModel impossible = good;
   impossible.intrinsics = "[-0.2, 1.6, 301, 302, 370, 240]";

@@ -18,7 +18,9 @@ Rig rigOf(size_t cameras) {
   for (size_t i = 0; i < cameras; ++i) {
     CameraCalibration camera;
     camera.name = "cam" + std::to_string(i);
-    camera.fx_px = 100.0;
+    camera.width_px = 96;
+    camera.height_px = 64;
+    camera.fx_px = camera.fy_px = 100.0;
     rig.cameras.push_back(camera);
   }
   return rig;
