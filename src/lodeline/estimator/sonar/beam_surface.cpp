@@ -11,7 +11,7 @@ namespace {
 
 // Added to the normal equations of the slopes, relative to the sum of the weights. It keeps points on a line
 // from dividing by zero. Directions across are at most a few tenths, so that it does not matter otherwise.
-constexpr double kLeastSpread = 1e-8;
+constexpr double kLeastSpread = 1e-11;
 
 }  // namespace
 
