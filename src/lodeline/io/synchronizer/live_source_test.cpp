@@ -132,7 +132,7 @@ TEST_F(LiveSourceTest, DropsAndReportsWhatComesTooLate) {
   pushImage(0, 0.5);
   pushImu(0.0, 0.7);
   source_->push(MagnetometerSample{at(0.45), Vec3::UnitX()});
-  EXPECT_EQ(next().magnetometer.size(), 1U);
+  EXPECT_EQ(next().readings.of<MagnetometerSample>().size(), 1U);
   source_->push(MagnetometerSample{at(0.48), Vec3::UnitX()});  // belongs to a returned packet
   source_->push(MagnetometerSample{at(0.52), Vec3::UnitX()});
   pushImage(0, 0.5);  // a duplicate

@@ -125,7 +125,8 @@ TEST_F(SynchronizerClocksTest, ClockOfAllSensorsSetAheadLeavesAShortPause) {
   EXPECT_NEAR((packets[20].time - packets[10].time).seconds(), 0.5, 1e-9);
   EXPECT_FALSE(packets[10].images[1].empty());
   EXPECT_NEAR(packets[20].imu.back().angular_velocity_B.x(), 2.0, 1e-6);
-  EXPECT_EQ(packets[20].magnetometer.size(), 2u + packets[20].magnetometer.size() % 2);
+  EXPECT_EQ(packets[20].readings.of<MagnetometerSample>().size(),
+            2u + packets[20].readings.of<MagnetometerSample>().size() % 2);
 }
 
 TEST_F(SynchronizerClocksTest, PausesAndLostDataAreNoJumps) {

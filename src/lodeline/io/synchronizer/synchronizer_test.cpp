@@ -68,9 +68,9 @@ TEST_F(SynchronizerTest, GivesOneCompletePacketPerImage) {
       EXPECT_TRUE(i == 0 || sample.time > packets[i - 1].time);
     }
   }
-  EXPECT_EQ(packets[0].magnetometer.size(), 26u);
-  EXPECT_EQ(packets[1].magnetometer.size(), 2u);
-  EXPECT_EQ(packets[2].magnetometer.size(), 3u);
+  EXPECT_EQ(packets[0].readings.of<MagnetometerSample>().size(), 26u);
+  EXPECT_EQ(packets[1].readings.of<MagnetometerSample>().size(), 2u);
+  EXPECT_EQ(packets[2].readings.of<MagnetometerSample>().size(), 3u);
 }
 
 TEST_F(SynchronizerTest, MovesCameraStampsToTheImuClock) {
@@ -95,8 +95,10 @@ TEST_F(SynchronizerTest, MovesMagnetometerStampsToTheImuClock) {
   Synchronizer synchronizer(&source, {}, &diagnostics_);
   const std::optional<FramePacket> late = synchronizer.next();
   ASSERT_TRUE(late);
-  EXPECT_EQ(late->magnetometer[1].time, packets[0].magnetometer[1].time - Duration::fromSeconds(0.015));
-  EXPECT_EQ(late->magnetometer[1].field_M, packets[0].magnetometer[1].field_M);
+  EXPECT_EQ(late->readings.of<MagnetometerSample>()[1].time,
+            packets[0].readings.of<MagnetometerSample>()[1].time - Duration::fromSeconds(0.015));
+  EXPECT_EQ(late->readings.of<MagnetometerSample>()[1].field_M,
+            packets[0].readings.of<MagnetometerSample>()[1].field_M);
 }
 
 TEST_F(SynchronizerTest, CrlfChangesNothing) {
@@ -192,7 +194,7 @@ TEST_F(SynchronizerTest, ARepeatedImageGivesItsReadingsToTheNextPacket) {
   for (size_t j = 1; j < packets[8].imu.size(); ++j) {
     EXPECT_LT(packets[8].imu[j - 1].time, packets[8].imu[j].time);
   }
-  EXPECT_EQ(packets[8].magnetometer.size(), 5u);
+  EXPECT_EQ(packets[8].readings.of<MagnetometerSample>().size(), 5u);
   EXPECT_EQ(diagnostics_.count("images_repeated"), 2) << "of each camera";
 }
 
@@ -285,7 +287,7 @@ TEST_F(SynchronizerTest, SkipsAndEndsWhereAsked) {
   ASSERT_EQ(packets.size(), 7u);
   EXPECT_EQ(packets.front().time, testTime(1.2));
   EXPECT_EQ(packets.front().imu.front().time, testTime(1.1));
-  EXPECT_GE(packets.front().magnetometer.front().time, testTime(1.1));
+  EXPECT_GE(packets.front().readings.of<MagnetometerSample>().front().time, testTime(1.1));
   EXPECT_EQ(diagnostics_.count("image_without_partner"), 0);
 }
 
@@ -300,7 +302,7 @@ TEST_F(SynchronizerTest, OneCameraAlone) {
 
 TEST_F(SynchronizerTest, MissingMagnetometerIsNormal) {
   std::filesystem::remove_all(recording_.path("mag0"));
-  EXPECT_TRUE(readAll()[0].magnetometer.empty());
+  EXPECT_TRUE(readAll()[0].readings.of<MagnetometerSample>().empty());
   EXPECT_TRUE(diagnostics_.ranked().empty());
 }
 
