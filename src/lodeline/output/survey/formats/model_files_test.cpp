@@ -10,6 +10,7 @@
 #include "lodeline/output/survey/formats/map_files.h"
 #include "lodeline/output/survey/formats/point_normals.h"
 #include "lodeline/output/survey/formats/test_outside_program.h"
+#include "lodeline/output/survey/formats/write_formats.h"
 #include "lodeline/output/survey/map/test_dive.h"
 #include "lodeline/trajectory.h"
 
@@ -104,6 +105,21 @@ TEST(TumAndColmap, GiveTheSamePosesBack) {
     EXPECT_LT((colmap.poses[i].world_from_body.translation - expected.translation).norm(), 1e-6);
     EXPECT_LT(colmap.poses[i].world_from_body.rotation.angularDistance(expected.rotation), 1e-6);
   }
+}
+
+TEST(Colmap, HasAModelForEveryCamera) {
+  const DiveMap map = windingMap();
+  MapImages images = twoCameras(map);
+  images.cameras[0].model = "field-of-view";
+  images.cameras[0].distortion = {0.9};
+  images.cameras[1].model = "double-sphere";
+  images.cameras[1].distortion = {-0.2, 0.6};
+  images.cameras[1].name = "cam1";
+  const std::string cameras = colmapModel(map, images.cameras, images.images).cameras;
+  EXPECT_THAT(cameras, HasSubstr("\n1 FOV 800 600 400 400 400 300 0.9\n"));
+  EXPECT_THAT(cameras,
+              HasSubstr("# cam1: COLMAP has no double-sphere model; the fisheye model below deviates by"));
+  EXPECT_THAT(cameras, HasSubstr("\n2 OPENCV_FISHEYE 800 600 "));
 }
 
 TEST(Colmap, TakesTheModel) {
