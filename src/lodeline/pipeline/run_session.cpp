@@ -56,7 +56,7 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
     removeRefinedFiles(folder_);
     if (request.refine_interval_s) loop_.record(*request.refine_interval_s);
     writeSettings(folder_, settings);
-    output_.emplace(folder_, odometry_.estimator(),
+    output_.emplace(folder_, loop_.odometry().estimator(),
                     RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
   }
   start_ = Clock::now();
