@@ -19,7 +19,7 @@ struct StandardRigOptions {
   double magnetometer_rate_hz = 50.0;
   double pressure_rate_hz = 2.0;
   double sonar_rate_hz = 20.0;
-  /// Whether the sonar scans the horizontal plane, through the view, and not across the view.
+  /// Whether the sonar scans a horizontal sector of the view, and not all around across the view.
   bool sonar_scans_ahead = false;
 };
 
