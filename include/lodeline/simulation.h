@@ -95,7 +95,7 @@ struct StandardRigOptions {
   double magnetometer_rate_hz = 50.0;
   double pressure_rate_hz = 2.0;
   double sonar_rate_hz = 20.0;
-  /// Whether the sonar scans the horizontal plane, through the view, and not across the view.
+  /// Whether the sonar scans a horizontal sector of the view, and not all around across the view.
   bool sonar_scans_ahead = false;
   /// Name of a camera model (cameras/camera_model.h). Empty: the radial-tangential lenses of the rig itself.
   std::string camera_model;
@@ -104,7 +104,7 @@ struct StandardRigOptions {
 /// The hand-held rig of the simulator. Its cameras are side by side with a baseline of 14 cm, look ahead, are
 /// 70 degrees wide (as behind glass in water) and have barrel distortion. The IMU is between them, upside
 /// down and rotated; the magnetometer is inside the IMU. A pressure port is behind, and a sonar head below
-/// scans across the view, or the horizontal plane. As in any rig, the extrinsics differ a little from the
+/// scans across the view, or a horizontal sector of it. As in any rig, the extrinsics differ a little from the
 /// drawing. The IMU noise has its default. A `camera_model` gives both cameras that model's typical lens,
 /// with focal lengths 0.3 % apart.
 MountedRig standardRig(const StandardRigOptions& options);

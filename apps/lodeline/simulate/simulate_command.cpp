@@ -89,7 +89,7 @@ void addSimulateCommand(CLI::App& program) {
   addScenarioOptions(command, &c);
   command->add_option("--cameras", c.cameras, "1 or 2");
   command->add_flag("--sonar-ahead", c.sonar_ahead,
-                    "the sonar scans the horizontal plane, not the plane across the view");
+                    "the sonar scans a sector of the view, not the plane across it");
   command->add_flag("--no-images", c.no_images, "write everything but the images");
   command->add_option("--threads", arguments->threads, "for rendering (all cores)");
   command->add_flag("--quiet", arguments->quiet, "no progress");

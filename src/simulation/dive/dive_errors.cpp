@@ -94,6 +94,7 @@ void drawDepthAndSonar(const Scenario& s, DiveErrors& errors) {
     errors.pressure.lag_s = lag_s;
     errors.pressure.density_ratio = density_ratio;
   }
+  if (s.rig.sonar_scans_ahead) errors.sonar.sector_rad = 30.0 * kDegree;
   if (s.effects.has(Effect::SonarNoise)) {
     errors.sonar.noise_m = 0.03;
     errors.sonar.dropout_share = 0.10;

@@ -87,6 +87,23 @@ TEST_F(SmallSensorsTest, SonarMeasuresTheDistanceAlongItsBeam) {
   EXPECT_LT(echoes, 400);  // no echoes while looking up
 }
 
+TEST_F(SmallSensorsTest, SonarScansASectorToAndFro) {
+  SonarErrors errors;
+  errors.sector_rad = 0.5;
+  const RangeFunction wall = [](const Vec3&, const Vec3&) -> std::optional<double> { return 4.0; };
+  SonarModel model(dive_.motion, Rigid3(), wall, errors, 1);
+  double least = 0.0, greatest = 0.0, last = model.measure(0.0)->angle_rad;
+  for (double t = 0.01; t < 10.0; t += 0.01) {
+    const double angle_rad = model.measure(t)->angle_rad;
+    EXPECT_LE(std::abs(angle_rad - last), errors.turn_rad_per_s * 0.01 + 1e-9);
+    least = std::min(least, angle_rad);
+    greatest = std::max(greatest, angle_rad);
+    last = angle_rad;
+  }
+  EXPECT_NEAR(least, -0.5, 0.01);
+  EXPECT_NEAR(greatest, 0.5, 0.01);
+}
+
 TEST_F(SmallSensorsTest, SonarLosesAndFalsifiesEchoesByTheirShares) {
   SonarErrors errors;
   errors.dropout_share = 0.2;

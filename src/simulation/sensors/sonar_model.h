@@ -13,8 +13,8 @@ namespace lodeline {
 /// none.
 using RangeFunction = std::function<std::optional<double>(const Vec3& origin_W, const Vec3& direction_W)>;
 
-/// A pencil-beam sonar whose head rotates at a constant rate about its z axis; at angle 0 the beam points
-/// along x.
+/// A pencil-beam sonar whose head rotates at a constant rate about its z axis, all around or within a sector;
+/// at angle 0 the beam points along x.
 struct SonarErrors {
   double noise_m = 0.0;
   double dropout_share = 0.0;   ///< fraction of randomly lost echoes
@@ -23,6 +23,8 @@ struct SonarErrors {
   double farthest_m = 6.0;
   double resolution_m = 0.0;  ///< 0: continuous
   double turn_rad_per_s = 0.63;
+  /// The head turns to and fro within this angle of its x axis; 0: all around.
+  double sector_rad = 0.0;
 };
 
 class SonarModel {
@@ -35,6 +37,8 @@ class SonarModel {
   std::optional<SonarSample> measure(double time_s);
 
  private:
+  double angleAt_rad(double time_s) const;
+
   const Motion& motion_;
   Rigid3 body_from_sonar_;
   RangeFunction range_;

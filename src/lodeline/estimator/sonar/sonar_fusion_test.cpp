@@ -157,7 +157,7 @@ TEST(SonarFusion, BeamWithoutLandmarksIsNotUsed) {
         Rigid3(Quat(Eigen::AngleAxisd(M_PI, Vec3::UnitZ())), rig->sonar->body_from_sonar.translation);
   });
   EXPECT_EQ(behind.used, 0);
-  EXPECT_GT(behind.echoes, 500);
+  EXPECT_GT(behind.echoes, 400) << "of 600, one camera starts late";
   EXPECT_EQ(countOf("sonar_rejected", behind), 0);
 }
 

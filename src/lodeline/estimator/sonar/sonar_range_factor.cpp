@@ -13,8 +13,6 @@
 namespace lodeline {
 namespace {
 
-using Row = Eigen::Matrix<double, 1, Eigen::Dynamic>;
-
 /// Adds to a row of derivatives; nothing where the block's derivatives are not wanted.
 template <int kSize>
 void addTo(double* row, const Eigen::Matrix<double, 1, kSize>& derivatives) {
