@@ -69,6 +69,21 @@ struct ImuCalibration {
   ImuNoise noise;
 };
 
+/// The window of a camera's housing towards the water: a flat plate, or a dome of two concentric spheres. C
+/// is the frame of the lens, with its centre of projection as origin.
+struct Port {
+  enum class Type { Flat, Dome };
+  Type type = Type::Flat;
+  Vec3 normal_C = Vec3::UnitZ();  ///< flat: unit normal of the plate, towards the water
+  double distance_m = 0.0;        ///< flat: from the lens to the inner face, along the normal
+  Vec3 centre_C = Vec3::Zero();   ///< dome: centre of the spheres, m
+  double radius_m = 0.0;          ///< dome: radius of the inner face
+  double thickness_m = 0.0;
+  double index_air = 1.0;  ///< refractive indices of the housing's content, the plate and the water
+  double index_glass = 1.49;
+  double index_water = 1.333;
+};
+
 /// A camera as described by a calibration file; `makeCamera` creates the projection model from it.
 struct CameraCalibration {
   std::string name;  ///< e.g. "cam0"
@@ -85,6 +100,8 @@ struct CameraCalibration {
   /// Offset added to camera stamps to obtain the IMU clock (Kalibr's timeshift_cam_imu).
   double time_offset_to_imu_s = 0.0;
   std::string mask_file;  ///< 8-bit image, zero where the rig itself covers the view; empty for none
+  /// Behind a port, the model and its parameters are those of the lens in air.
+  std::optional<Port> port = std::nullopt;
 };
 
 struct MagnetometerCalibration {

@@ -12,10 +12,19 @@ struct CameraModel;
 /// Derivative of a pixel by the parameters of its camera: fx, fy, cx, cy, then CameraCalibration::distortion.
 using PixelByParameters = Eigen::Matrix<double, 2, Eigen::Dynamic>;
 
+/// Line on which the points of a pixel lie, in C.
+struct ViewRay {
+  Vec3 origin_C = Vec3::Zero();      ///< the lens centre; behind a port the point of the outer face, m
+  Vec3 direction_C = Vec3::UnitZ();  ///< unit, in the water
+};
+
 /// Projects points of the camera frame C (z forward, x right, y down; m) to pixels and back. Implementations
 /// are immutable, so threads can share them.
 class Camera {
  public:
+  /// Distance of the points for which a direction alone is exact behind a port.
+  static constexpr double kNominalDistance_m = 1.0;
+
   explicit Camera(const CameraCalibration& calibration);
   virtual ~Camera() = default;
 
@@ -26,7 +35,15 @@ class Camera {
                                       PixelByParameters* pixel_by_parameters = nullptr) const = 0;
 
   /// Unit viewing ray of a pixel in C, exact to 1e-10 rad. Returns nothing outside the range of the model.
+  /// Behind a port, the lines of the pixels have no common point. The ray is then that from the lens centre
+  /// to the point of the line at kNominalDistance_m from that centre.
   virtual std::optional<Vec3> unproject(const Vec2& pixel) const = 0;
+
+  /// Line of a pixel, exact at every distance.
+  virtual std::optional<ViewRay> viewRay(const Vec2& pixel) const;
+
+  /// Pixel of the point `point_C` / `inverse_scale`. An inverse scale of zero is a point at infinity.
+  virtual std::optional<Vec2> projectHomogeneous(const Vec3& point_C, double inverse_scale) const;
 
   /// Largest angle to the optical axis at which the model is valid, rad. Up to it the distance of the pixel
   /// from the principal point grows with the angle.

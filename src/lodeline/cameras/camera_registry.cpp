@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodeline/cameras/camera_model.h"
+#include "lodeline/cameras/ports/refractive_camera.h"
 #include "lodeline/diagnostics.h"
 
 // The registration: one line for each model. NAME_camera.cpp defines the function.
@@ -121,6 +122,14 @@ double focalLengthOnAxis_px(const CameraCalibration& calibration) {
 Camera::Camera(const CameraCalibration& calibration)
     : calibration_(calibration), model_(&cameraModel(calibration)) {}
 
+std::optional<ViewRay> Camera::viewRay(const Vec2& pixel) const {
+  const std::optional<Vec3> direction_C = unproject(pixel);
+  if (!direction_C) return std::nullopt;
+  return ViewRay{Vec3::Zero(), *direction_C};
+}
+
+std::optional<Vec2> Camera::projectHomogeneous(const Vec3& point_C, double) const { return project(point_C); }
+
 Vec2 Camera::focalLengthsOnAxis_px() const {
   Mat23 pixel_by_point;
   project(Vec3::UnitZ(), &pixel_by_point);
@@ -130,7 +139,12 @@ Vec2 Camera::focalLengthsOnAxis_px() const {
 std::shared_ptr<const Camera> makeCamera(const CameraCalibration& calibration) {
   const CameraModel& model = cameraModel(calibration);
   check(model, calibration);
-  return model.make(calibration);
+  if (!calibration.port) return model.make(calibration);
+  const std::string fault = portFault(*calibration.port);
+  if (!fault.empty()) throw InputError(fmt::format("camera '{}': {}", calibration.name, fault));
+  CameraCalibration lens = calibration;
+  lens.port.reset();
+  return std::make_shared<RefractiveCamera>(calibration, model.make(lens));
 }
 
 }  // namespace lodeline
