@@ -86,8 +86,8 @@ void BatchProblem::addTracks(const EstimatorLog& record) {
       Observation observation;
       observation.frame = static_cast<FrameId>(k);
       observation.camera = seen.camera;
-      observation.measurement = DirectionMeasurement::fromBearing(*cameras_[static_cast<size_t>(seen.camera)],
-                                                                  seen.bearing_C, seen.sigma_px);
+      observation.measurement = DirectionMeasurement::fromRay(*cameras_[static_cast<size_t>(seen.camera)],
+                                                              {seen.origin_C, seen.bearing_C}, seen.sigma_px);
       all_tracks_[entry->second.id].observations.push_back(observation);
     }
   }

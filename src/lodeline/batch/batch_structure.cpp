@@ -75,8 +75,9 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
   const auto viewOf = [&](const Observation& observation) {
     // Pixels per angle, geometric mean of both axes.
     const double pixels = std::sqrt(std::abs(observation.measurement.sqrt_information.determinant()));
-    return BearingView{factors.worldFromCamera(window, *window.find(observation.frame), observation.camera),
-                       rayOf(observation, cameras), 1.0 / pixels};
+    Rigid3 world_from_ray = factors.worldFromCamera(window, *window.find(observation.frame), observation.camera);
+    world_from_ray.translation += world_from_ray.rotation * observation.measurement.origin_C;
+    return BearingView{world_from_ray, rayOf(observation, cameras), 1.0 / pixels};
   };
   std::vector<BearingView> views = {viewOf(*host)};
   for (const Observation& observation : track->observations) {
@@ -91,7 +92,7 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
   const bool is_usable =
       point.good() || (point.status == TriangulationStatus::LowParallax && is_known && rho > 1e-4);
   if (!is_usable || rho > 1.0 / options.min_distance_m || rho < 1e-4) return;
-  const Vec3 point_C = views.front().world_from_camera.inverse() * point.point_W;
+  const Vec3 point_C = views.front().world_from_camera.inverse() * point.point_W + host->measurement.origin_C;
   Landmark landmark;
   landmark.host = host->frame;
   landmark.base = LandmarkBase(views.front().bearing_C);

@@ -208,7 +208,7 @@ ObservationList Estimator::observationsOf(const FrameTracks& tracks) const {
     observation.frame = next_frame_id_;
     observation.camera = seen.camera;
     observation.measurement =
-        DirectionMeasurement::fromBearing(*cameras_[seen.camera], seen.bearing_C, seen.sigma_px);
+        DirectionMeasurement::fromRay(*cameras_[seen.camera], {seen.origin_C, seen.bearing_C}, seen.sigma_px);
     observations.emplace_back(seen.track, observation);
   }
   return observations;

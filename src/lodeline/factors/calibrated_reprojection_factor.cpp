@@ -95,7 +95,8 @@ bool CalibratedReprojectionFactor::Evaluate(double const* const* parameters, dou
   Chain chain(*this, parameters);
   Mat23 by_point;
   Eigen::Map<Vec2> residual(residuals);
-  residual = directionResidual(measurement_, chain.point_C, jacobians ? &by_point : nullptr);
+  const double rho = parameters[kPoint][2];
+  residual = directionResidual(measurement_, measurement_.fromOrigin(chain.point_C, rho), jacobians ? &by_point : nullptr);
   if (!jacobians) return true;
 
   const CalibratedLinearizationPoints& first = linearization_points_;
@@ -109,9 +110,8 @@ bool CalibratedReprojectionFactor::Evaluate(double const* const* parameters, dou
     if (placement_.camera0_from_target)
       at[kTargetCamera] = first.target_camera ? first.target_camera : parameters[kTargetCamera];
     chain = Chain(*this, at);
-    directionResidual(measurement_, chain.point_C, &by_point);
+    directionResidual(measurement_, measurement_.fromOrigin(chain.point_C, rho), &by_point);
   }
-  const double rho = parameters[kPoint][2];
   const Mat23 by_body = by_point * chain.camera_from_body;
   const Mat23 by_world = by_body * chain.target_rotation.transpose();
   const Mat23 by_host_turn = -by_world * so3::skew(chain.host_arm_W);
@@ -129,7 +129,7 @@ bool CalibratedReprojectionFactor::Evaluate(double const* const* parameters, dou
       body_by_rho -= chain.camera0_rotation * chain.camera0_from_target.translation;
     Eigen::Map<RowMajor2<kLandmarkSize>>(jacobians[kPoint])
         << by_body * chain.target_from_host * chain.camera0_rotation * base_.tangent_C,
-        by_body * body_by_rho;
+        by_body * body_by_rho - by_point * measurement_.origin_C;
   }
   if (jacobians[kCamera0]) {
     const double* correction = first.camera0 ? first.camera0 : parameters[kCamera0];
@@ -167,8 +167,8 @@ bool CalibratedStereoFactor::Evaluate(double const* const* parameters, double* r
   const double rho = landmark[2];
   const Vec3 point_C0 = base_.direction(landmark);
   const auto seen = [&](const Rigid3& camera0_from_target) {
-    return Vec3(camera0_from_target.rotation.conjugate() *
-                (point_C0 - rho * camera0_from_target.translation));
+    const Vec3 point_C = camera0_from_target.rotation.conjugate() * (point_C0 - rho * camera0_from_target.translation);
+    return measurement_.fromOrigin(point_C, rho);
   };
   Rigid3 camera0_from_target = correctedExtrinsics(camera0_from_target_, correction);
   Mat23 by_point;
@@ -183,7 +183,7 @@ bool CalibratedStereoFactor::Evaluate(double const* const* parameters, double* r
   const Mat23 by_camera0 = by_point * camera0_from_target.rotation.toRotationMatrix().transpose();
   if (jacobians[0]) {
     Eigen::Map<RowMajor2<kLandmarkSize>>(jacobians[0]) << by_camera0 * base_.tangent_C,
-        -by_camera0 * camera0_from_target.translation;
+        -by_camera0 * camera0_from_target.translation - by_point * measurement_.origin_C;
   }
   if (jacobians[1]) {
     Eigen::Map<RowMajor2<kExtrinsicsSize>> by_camera(jacobians[1]);

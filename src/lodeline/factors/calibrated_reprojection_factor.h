@@ -57,7 +57,7 @@ struct CalibratedLinearizationPoints {
 /// Camera 0 has the pose R_0, p_0 in the body, the target camera the pose R_r, p_r in camera 0. Then
 ///   m   = R_t^T (R_h (R_0 d + rho p_0) + rho (p_h - p_t)) - rho p_0
 ///   q_0 = R_0^T m,   q = R_r^T (q_0 - rho p_r)
-///   e   = directionResidual(q).
+///   e   = directionResidual(q - rho o)        with the origin o of the measured ray
 class CalibratedReprojectionFactor final : public ceres::CostFunction {
  public:
   CalibratedReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,

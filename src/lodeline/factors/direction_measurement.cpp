@@ -13,14 +13,24 @@ namespace {
 constexpr double kMinCosine = 0.1;
 constexpr double kOutlierResidual = 1e4;
 
+/// Pixel of the nominal point of a ray whose direction is changed by `offset`, and its derivative by the
+/// direction.
+std::optional<Vec2> projectAlong(const Camera& camera, const ViewRay& ray, const Vec3& offset,
+                                 Mat23* by_direction) {
+  const auto pixel = camera.project(
+      ray.origin_C + Camera::kNominalDistance_m * (ray.direction_C + offset), by_direction);
+  *by_direction *= Camera::kNominalDistance_m;
+  return pixel;
+}
+
 /// Second derivative d^2(pixel) / d(offset)^2, columns aa, ab, bb, by finite differences of the first
 /// derivative. Zero where the camera cannot project the neighbouring ray.
-Mat23 imageCurvature(const Camera& camera, const Vec3& ray, const Mat32& tangent, const Mat2& by_offset) {
+Mat23 imageCurvature(const Camera& camera, const ViewRay& ray, const Mat32& tangent, const Mat2& by_offset) {
   constexpr double kStep = 1e-4;
   Mat23 curvature = Mat23::Zero();
   for (int axis = 0; axis < 2; ++axis) {
     Mat23 by_point;
-    if (!camera.project(ray + kStep * tangent.col(axis), &by_point)) return Mat23::Zero();
+    if (!projectAlong(camera, ray, kStep * tangent.col(axis), &by_point)) return Mat23::Zero();
     const Mat2 change = (by_point * tangent - by_offset) / kStep;
     curvature.col(2 * axis) = change.col(axis);
     curvature.col(1) += 0.5 * change.col(1 - axis);
@@ -69,14 +79,21 @@ Vec2 placeInPlane(RadialPlane plane, const Vec3& ray, Mat23* by_ray) {
 
 DirectionMeasurement DirectionMeasurement::fromBearing(const Camera& camera, const Vec3& bearing_C,
                                                        double sigma_px) {
+  return fromRay(camera, {Vec3::Zero(), bearing_C}, sigma_px);
+}
+
+DirectionMeasurement DirectionMeasurement::fromRay(const Camera& camera, const ViewRay& ray,
+                                                   double sigma_px) {
+  const Vec3& bearing_C = ray.direction_C;
   DirectionMeasurement measurement;
   measurement.bearing_C = bearing_C;
+  measurement.origin_C = ray.origin_C;
   measurement.tangent_C = tangentBasis(bearing_C);
   Mat23 pixel_by_point;
-  const auto pixel = camera.project(bearing_C, &pixel_by_point);
+  const auto pixel = projectAlong(camera, ray, Vec3::Zero(), &pixel_by_point);
   const Mat2 by_offset = pixel_by_point * measurement.tangent_C;
   measurement.sqrt_information = by_offset / sigma_px;
-  measurement.curvature = imageCurvature(camera, bearing_C, measurement.tangent_C, by_offset) / sigma_px;
+  measurement.curvature = imageCurvature(camera, ray, measurement.tangent_C, by_offset) / sigma_px;
   Mat23 in_plane_by_ray;
   measurement.in_plane = placeInPlane(camera.model().plane, bearing_C, &in_plane_by_ray);
   measurement.in_plane_by_sigmas =

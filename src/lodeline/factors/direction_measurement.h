@@ -13,6 +13,8 @@ namespace lodeline {
 /// calibration would absorb that bias as a shorter focal length.
 struct DirectionMeasurement {
   Vec3 bearing_C = Vec3::UnitZ();
+  /// Point from which the ray comes, m. Behind a port, it differs from pixel to pixel.
+  Vec3 origin_C = Vec3::Zero();
   Mat32 tangent_C = Mat32::Identity();
   Mat2 sqrt_information = Mat2::Identity();
   /// d^2(pixel) / d(offset a, b)^2 / sigma_px; columns aa, ab, bb.
@@ -27,6 +29,13 @@ struct DirectionMeasurement {
 
   /// Measurement of a pixel whose ray is `bearing_C`. The camera must be able to project that ray.
   static DirectionMeasurement fromBearing(const Camera& camera, const Vec3& bearing_C, double sigma_px);
+
+  /// Measurement of a pixel whose points are on the line `ray`, whatever their distance. The weight is that
+  /// of a point at Camera::kNominalDistance_m.
+  static DirectionMeasurement fromRay(const Camera& camera, const ViewRay& ray, double sigma_px);
+
+  /// The point q of inverse scale rho as seen from the ray's origin, q - rho origin.
+  Vec3 fromOrigin(const Vec3& point_C, double rho) const { return point_C - rho * origin_C; }
 };
 
 /// Position of a unit ray in a RadialPlane (DirectionMeasurement::in_plane) and its derivative by the ray.

@@ -90,7 +90,8 @@ CameraCalibration correctedIntrinsics(const CameraCalibration& file, const doubl
   const double k_1 = intrinsics[4], k_2 = intrinsics[5];
   if (k_1 == 0.0 && k_2 == 0.0) return lens;
   const CameraModel* radial = findCameraModel(cameraModel(file).radial_model);
-  if (radial == nullptr) return withProfile(lens, k_1, k_2);
+  // Behind a port, the corrections are those of directions in the water and not of the lens.
+  if (radial == nullptr || file.port) return withProfile(lens, k_1, k_2);
   lens.model = radial->name;
   lens.distortion.resize(std::max(lens.distortion.size(), radial->counts.front()), 0.0);
   lens.distortion[0] += k_1;

@@ -58,14 +58,15 @@ bool ReprojectionFactor::Evaluate(double const* const* parameters, double* resid
   Chain chain(*this, poseFromBlock(parameters[0]), poseFromBlock(parameters[1]), landmark);
   Mat23 by_point;
   Eigen::Map<Vec2> residual(residuals);
-  residual = directionResidual(measurement_, chain.point_C, jacobians ? &by_point : nullptr);
+  residual = directionResidual(measurement_, measurement_.fromOrigin(chain.point_C, landmark[2]),
+                               jacobians ? &by_point : nullptr);
   if (!jacobians) return true;
 
   if (host_linearization_point_ || target_linearization_point_) {
     chain = Chain(*this, poseFromBlock(host_linearization_point_ ? host_linearization_point_ : parameters[0]),
                   poseFromBlock(target_linearization_point_ ? target_linearization_point_ : parameters[1]),
                   landmark);
-    directionResidual(measurement_, chain.point_C, &by_point);
+    directionResidual(measurement_, measurement_.fromOrigin(chain.point_C, landmark[2]), &by_point);
   }
   const double rho = landmark[2];
   const Mat23 by_world = by_point * chain.camera_rotation_world;
@@ -79,7 +80,7 @@ bool ReprojectionFactor::Evaluate(double const* const* parameters, double* resid
   }
   if (jacobians[2]) {
     Eigen::Map<RowMajor2<kLandmarkSize>> point(jacobians[2]);
-    point << by_world * chain.world_rotation_host * base_.tangent_C, by_world * chain.baseline_W;
+    point << by_world * chain.world_rotation_host * base_.tangent_C, by_world * chain.baseline_W - by_point * measurement_.origin_C;
   }
   return true;
 }
@@ -100,10 +101,10 @@ bool HostReprojectionFactor::Evaluate(double const* const* parameters, double* r
   const bool wanted = jacobians && jacobians[0];
   Mat23 by_point;
   Eigen::Map<Vec2> residual(residuals);
-  residual = directionResidual(measurement_, point_C, wanted ? &by_point : nullptr);
+  residual = directionResidual(measurement_, measurement_.fromOrigin(point_C, landmark[2]), wanted ? &by_point : nullptr);
   if (wanted) {
     Eigen::Map<RowMajor2<kLandmarkSize>> point(jacobians[0]);
-    point << by_point * target_rotation_host_ * base_.tangent_C, by_point * target_translation_host_;
+    point << by_point * target_rotation_host_ * base_.tangent_C, by_point * (target_translation_host_ - measurement_.origin_C);
   }
   return true;
 }

@@ -30,7 +30,8 @@ constexpr int kLandmarkSize = 3;
 /// R_t, p_t and extrinsics R_BC, p_BC of host and target camera,
 ///   P = R_h (R_BC d + rho p_BC) + rho p_h                  (rho times the point in the world)
 ///   q = R_BC'^T (R_t^T (P - rho p_t) - rho p_BC')          (rho times the point in the target camera)
-///   e = directionResidual(q).
+///   e = directionResidual(q - rho o)
+/// with the origin o of the measured ray, which is zero for a camera without a port.
 /// A point that falls behind the target's image plane is a gross outlier: constant error, zero Jacobian.
 class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandmarkSize> {
  public:
@@ -54,7 +55,7 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandm
 
 /// Reprojection error in an image of the host frame itself, taken by the host camera or by a secondary
 /// camera. It depends on the landmark alone: with the extrinsics R, p of the host camera in the target
-/// camera, e = directionResidual(R d + rho p).
+/// camera, e = directionResidual(R d + rho (p - o)).
 class HostReprojectionFactor final : public ceres::SizedCostFunction<2, kLandmarkSize> {
  public:
   HostReprojectionFactor(const DirectionMeasurement& measurement, const LandmarkBase& base,

@@ -55,7 +55,9 @@ TEST(PortLimits, APlateAtTheLensIsACentralCameraOfSnellsLaw) {
       for (const double range_m : {0.1, 2.0, 50.0}) {
         const auto pixel = camera->project(range_m * at(water_rad));
         ASSERT_EQ(pixel.has_value(), expected.has_value());
-        if (pixel) EXPECT_LT((*pixel - *expected).norm(), 1e-9) << water_rad << ", " << range_m;
+        if (pixel) {
+          EXPECT_LT((*pixel - *expected).norm(), 1e-9) << water_rad << ", " << range_m;
+        }
       }
     }
   }

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "lodeline/cameras/image_place.h"
+
 namespace lodeline {
 namespace {
 
@@ -86,7 +88,8 @@ double RefractiveCamera::widestAngle_rad() const {
     }
     result = std::min(result, std::acos(std::clamp(last_C.z(), -1.0, 1.0)));
   }
-  return result;
+  // Between the sides that are compared, the angle may be slightly smaller.
+  return result - kMarginToTheEnd_rad;
 }
 
 }  // namespace lodeline

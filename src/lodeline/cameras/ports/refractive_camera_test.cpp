@@ -181,7 +181,9 @@ TEST_P(EveryPort, IsTheLensWhereAllIndicesAreEqual) {
   for (const Vec3& point_C : points(60)) {
     const auto pixel = camera->project(point_C, nullptr, nullptr), expected = lens_->project(point_C);
     ASSERT_EQ(pixel.has_value(), expected.has_value());
-    if (pixel) EXPECT_LT((*pixel - *expected).norm(), 1e-9);
+    if (pixel) {
+      EXPECT_LT((*pixel - *expected).norm(), 1e-9);
+    }
   }
 }
 
@@ -196,7 +198,9 @@ TEST_P(EveryPort, GivesNothingForWhatNoLightReaches) {
   }
   for (double angle = 0.0; angle < 3.2; angle += 0.01) {
     const auto pixel = camera_->project(3.0 * Vec3(std::sin(angle), 0.0, std::cos(angle)), nullptr, nullptr);
-    if (pixel) EXPECT_TRUE(pixel->allFinite());
+    if (pixel) {
+      EXPECT_TRUE(pixel->allFinite());
+    }
   }
   for (const Vec2& pixel : {Vec2(nan, 0.0), Vec2(infinity, 0.0), Vec2(-1e20, 1e20)}) {
     EXPECT_FALSE(camera_->unproject(pixel));
@@ -220,7 +224,9 @@ TEST_P(EveryPort, SeesPointsAtInfinityAsVeryFarOnes) {
     const auto at_infinity = camera_->projectHomogeneous(point_C, 0.0);
     const auto far = camera_->project(1e6 / point_C.norm() * point_C, nullptr, nullptr);
     ASSERT_EQ(at_infinity.has_value(), far.has_value());
-    if (far) EXPECT_LT((*at_infinity - *far).norm(), 1e-3);
+    if (far) {
+      EXPECT_LT((*at_infinity - *far).norm(), 1e-3);
+    }
     const auto scaled = camera_->projectHomogeneous(0.25 * point_C, 0.25);
     EXPECT_LT((*scaled - *camera_->project(point_C, nullptr, nullptr)).norm(), 1e-9);
   }

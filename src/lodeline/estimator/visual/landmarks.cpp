@@ -55,7 +55,10 @@ InverseDistance solveInverseDistance(const Window& window, const FeatureTrack& t
     const Rigid3 target_from_host =
         factors.worldFromCamera(window, *window.find(observation.frame), observation.camera).inverse() *
         world_from_host;
-    equations.push_back({target_from_host.rotation * host_ray, target_from_host.translation,
+    // From the origin of the observed ray to that of the host's.
+    const Vec3 baseline = target_from_host.rotation * host.measurement.origin_C +
+                          target_from_host.translation - observation.measurement.origin_C;
+    equations.push_back({target_from_host.rotation * host_ray, baseline,
                          shiftByIntrinsics(observation, cameras), &observation.measurement});
   }
   InverseDistance result;
@@ -145,7 +148,10 @@ int createLandmarks(Window& window, const FactorBuilder& factors, const Landmark
     Landmark landmark;
     landmark.host = host->frame;
     landmark.base = LandmarkBase(rayOf(*host, cameras));
-    landmark.parameters = {0.0, 0.0, std::max(rho.value, 1e-4)};
+    const double inverse_distance_per_m = std::max(rho.value, 1e-4);
+    // The origin of the ray is the point of it next to the lens, so it has no part along the ray.
+    const Vec2 aside = inverse_distance_per_m * landmark.base.tangent_C.transpose() * host->measurement.origin_C;
+    landmark.parameters = {aside.x(), aside.y(), inverse_distance_per_m};
     track->landmark = landmark;
     ++created;
   }

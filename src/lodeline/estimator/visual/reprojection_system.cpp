@@ -148,7 +148,8 @@ void ReprojectionSystem::update() {
       const Observation& observation = observations_[i];
       const CameraViews::Relative& seen =
           values_.relative(landmark.host, observation.frame, observation.camera);
-      const Vec3 point_C = seen.rotation * direction + rho * seen.translation;
+      const Vec3 point_C =
+          observation.measurement->fromOrigin(seen.rotation * direction + rho * seen.translation, rho);
       Residual& residual = residuals_[i];
       residual.by_file = residual.by_intrinsics =
           directionResidual(*observation.measurement, point_C, nullptr);
@@ -194,7 +195,8 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
   const CameraViews::Relative& seen = first_.relative(landmark.host, observation.frame, observation.camera);
   Linearized term;
   Mat23 by_point;
-  directionResidual(*observation.measurement, seen.rotation * direction + rho * seen.translation, &by_point);
+  const DirectionMeasurement& measurement = *observation.measurement;
+  directionResidual(measurement, measurement.fromOrigin(seen.rotation * direction + rho * seen.translation, rho), &by_point);
   if (!states_.intrinsics.empty()) {
     const IntrinsicsEffect lens =
         intrinsicsEffect(*observation.measurement, residual.by_file, intrinsicsOf(observation.camera));
@@ -206,7 +208,7 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
   term.by_nodes.col(Columns::kResidual) = weight * residual.by_intrinsics;
   by_point *= weight;
   const Mat23 by_direction = by_point * seen.rotation;
-  term.by_landmark << by_direction * landmark.base.tangent_C, by_point * seen.translation;
+  term.by_landmark << by_direction * landmark.base.tangent_C, by_point * (seen.translation - measurement.origin_C);
 
   term.by(Columns::kIntrinsics) *= weight;
   if (observation.camera > 0) {
