@@ -16,6 +16,11 @@ using PixelByParameters = Eigen::Matrix<double, 2, Eigen::Dynamic>;
 struct ViewRay {
   Vec3 origin_C = Vec3::Zero();      ///< the lens centre; behind a port the point of the outer face, m
   Vec3 direction_C = Vec3::UnitZ();  ///< unit, in the water
+
+  /// The same line, with its point next to the lens centre as origin.
+  ViewRay fromNearestPoint() const {
+    return {origin_C - origin_C.dot(direction_C) * direction_C, direction_C};
+  }
 };
 
 /// Projects points of the camera frame C (z forward, x right, y down; m) to pixels and back. Implementations

@@ -281,17 +281,20 @@ FrameTracks FrontEnd::observations(Time time) const {
     result.camera_rotations.push_back(matcher.rotationCorrection());
   for (const Track& track : tracks_) {
     const Vec2 pixel = track.warp.position.cast<double>();
-    const auto bearing = cameras_.front()->unproject(pixel);
-    if (bearing) result.observations.push_back({track.id, 0, pixel, *bearing, options_.sigma_px});
+    const auto first = cameras_.front()->viewRay(pixel);
+    if (first) {
+      const Vec3 origin_C = first->fromNearestPoint().origin_C;
+      result.observations.push_back({track.id, 0, pixel, first->direction_C, options_.sigma_px, origin_C});
+    }
     for (size_t m = 0; m < track.matches.size(); ++m) {
       if (!track.matches[m]) continue;
       const Vec2 matched = track.matches[m]->position.cast<double>();
-      const auto ray = cameras_[m + 1]->unproject(matched);
+      const auto ray = cameras_[m + 1]->viewRay(matched);
       if (!ray) continue;
-      const Vec3 at_frame =
-          bearing ? matchers_[m].rayAtFrame({*bearing, *ray}, *track.inverse_depth_per_m) : *ray;
-      result.observations.push_back(
-          {track.id, static_cast<int>(m) + 1, matched, at_frame, options_.sigma_px});
+      const Vec3 at_frame = first ? matchers_[m].rayAtFrame(rayPair(*first, *ray), *track.inverse_depth_per_m)
+                                  : ray->direction_C;
+      result.observations.push_back({track.id, static_cast<int>(m) + 1, matched, at_frame, options_.sigma_px,
+                                     ray->fromNearestPoint().origin_C});
     }
   }
   return result;

@@ -163,13 +163,14 @@ void PointSimulation::addObservation(TrackId track, int camera, const Vec2& true
     const double angle = pixel_noise_.uniform(0.0, 6.283185307179586);
     pixel += pixel_noise_.uniform(5.0, 50.0) * Vec2(std::cos(angle), std::sin(angle));
   }
-  const auto bearing = given_cameras_[camera]->unproject(pixel);
-  if (!bearing) return;
+  const auto ray = given_cameras_[camera]->viewRay(pixel);
+  if (!ray) return;
   FeatureObservation observation;
   observation.track = track;
   observation.camera = camera;
   observation.pixel = pixel;
-  observation.bearing_C = *bearing;
+  observation.bearing_C = ray->direction_C;
+  observation.origin_C = ray->fromNearestPoint().origin_C;
   observation.sigma_px = std::max(options_.pixel_sigma_px, 1e-3);
   tracks.observations.push_back(observation);
 }

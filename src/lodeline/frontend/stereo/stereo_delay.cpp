@@ -26,14 +26,15 @@ void StereoDelay::add(const std::vector<RayPair>& pairs, const Rigid3& second_fr
   ++frames_;
   const size_t every = std::max<size_t>(1, pairs.size() / kEquationsOfFrame);
   for (size_t i = 0; i < pairs.size(); i += every) {
-    const std::optional<Vec3> normal = epipolarNormal(second_from_first, pairs[i].first);
+    const Rigid3 between = pairs[i].betweenOrigins(second_from_first);
+    const std::optional<Vec3> normal = epipolarNormal(between, pairs[i].first);
     if (!normal) continue;
     const Vec3& ray = pairs[i].second;
     const double error_px = focal_px * normal->dot(ray);
     if (std::abs(error_px) > kNoMatch_px) continue;
     // Solves ray x (R first + rho t) = 0 by least squares.
-    const Vec3 a = ray.cross(second_from_first.translation);
-    const Vec3 b = ray.cross(second_from_first.rotation * pairs[i].first);
+    const Vec3 a = ray.cross(between.translation);
+    const Vec3 b = ray.cross(between.rotation * pairs[i].first);
     const double rho_per_m = std::clamp(-a.dot(b) / std::max(a.squaredNorm(), 1e-12), 0.0, 1.0 / kNearest_m);
     const Vec3 by_turn = focal_px * ray.cross(*normal);
     const double by_delay = -by_turn.dot(rate_C) - focal_px * rho_per_m * normal->dot(velocity_C);

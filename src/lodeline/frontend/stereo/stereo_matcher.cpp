@@ -59,45 +59,49 @@ void StereoMatcher::setMotion(const RigMotion& motion, size_t camera) {
 Vec3 StereoMatcher::rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const {
   if (!frame_from_image_C_) return rays.second;
   // The point times its inverse depth, which is also valid for points at infinity.
-  const Vec3 point_C =
-      second_from_first_.rotation * rays.first + inverse_depth_per_m * second_from_first_.translation;
-  return (frame_from_image_C_->rotation * (point_C.norm() * rays.second) +
-          inverse_depth_per_m * frame_from_image_C_->translation)
+  const Rigid3 between = rays.betweenOrigins(second_from_first_);
+  const Vec3 from_origin_C = between.rotation * rays.first + inverse_depth_per_m * between.translation;
+  const Vec3 origin_C = inverse_depth_per_m * rays.second_origin;
+  return (frame_from_image_C_->rotation * (origin_C + from_origin_C.norm() * rays.second) +
+          inverse_depth_per_m * frame_from_image_C_->translation - origin_C)
       .normalized();
 }
 
-std::optional<Vec2> StereoMatcher::projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const {
-  return second_->project(second_from_first_.rotation * first_bearing +
-                          inverse_depth_per_m * second_from_first_.translation);
+std::optional<Vec2> StereoMatcher::projectAt(const ViewRay& first, double inverse_depth_per_m) const {
+  const Vec3 homogeneous_C = first.direction_C + inverse_depth_per_m * first.origin_C;
+  return second_->projectHomogeneous(
+      second_from_first_.rotation * homogeneous_C + inverse_depth_per_m * second_from_first_.translation,
+      inverse_depth_per_m);
 }
 
 double StereoMatcher::epipolarErrorPx(const RayPair& rays) const {
-  const std::optional<Vec3> normal = epipolarNormal(second_from_first_, rays.first);
+  const std::optional<Vec3> normal = epipolarNormal(rays.betweenOrigins(second_from_first_), rays.first);
   return normal ? focal_length_px_ * std::abs(normal->dot(rays.second)) : 0.0;
 }
 
 std::optional<double> StereoMatcher::inverseDepth(const RayPair& rays) const {
   // Solves second x (R first + inverse_depth t) = 0 by least squares.
-  const Vec3 a = rays.second.cross(second_from_first_.translation);
-  const Vec3 b = rays.second.cross(second_from_first_.rotation * rays.first);
+  const Rigid3 between = rays.betweenOrigins(second_from_first_);
+  const Vec3 a = rays.second.cross(between.translation);
+  const Vec3 b = rays.second.cross(between.rotation * rays.first);
   const double parallax2 = a.squaredNorm();
   if (parallax2 < 1e-12) return std::nullopt;
   return -a.dot(b) / parallax2;
 }
 
-std::optional<PatchWarp> StereoMatcher::search(const ImagePyramid& second, const Vec3& first_bearing,
+std::optional<PatchWarp> StereoMatcher::search(const ImagePyramid& second, const ViewRay& first,
                                                const PatchTemplate& looks) const {
   const double nearest_per_m = 1.0 / options_.min_depth_m;
-  const auto far_end = projectAt(first_bearing, 0.0);
+  const auto far_end = projectAt(first, 0.0);
   if (!far_end) return std::nullopt;
-  const auto near_end = projectAt(first_bearing, nearest_per_m);
+  const auto near_end = projectAt(first, nearest_per_m);
   const double length_px = near_end ? (*near_end - *far_end).norm() : 200.0;
   const int steps = std::clamp(static_cast<int>(length_px / (1 << kSearchLevel)), 1, 200);
 
   std::optional<PatchWarp> best;
   float best_correlation = 0.0F;
   for (int i = 0; i <= steps; ++i) {
-    const auto pixel = projectAt(first_bearing, nearest_per_m * i / steps);
+    const auto pixel = projectAt(first, nearest_per_m * i / steps);
     if (!pixel) continue;
     const PatchWarp candidate{pixel->cast<float>(), Eigen::Matrix2f::Identity()};
     const auto correlation = looks.correlate(second, kSearchLevel, candidate);
@@ -132,8 +136,9 @@ std::optional<PatchWarp> StereoMatcher::align(const ImagePyramid& second, const 
 std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, const ImagePyramid& second,
                                                    const std::optional<PatchWarp>& hint,
                                                    const Track& track) const {
-  const auto first_bearing = first_->unproject(track.warp.position.cast<double>());
-  if (!first_bearing) return std::nullopt;
+  auto first_ray = first_->viewRay(track.warp.position.cast<double>());
+  if (!first_ray) return std::nullopt;
+  first_ray = first_ray->fromNearestPoint();
 
   std::optional<PatchWarp> warp;
   int coarsest = options_.coarsest_level;
@@ -141,12 +146,12 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
   // Otherwise a point that the other camera does not observe would be searched in every frame.
   const bool search_again = !hint && (track.id + track.observations) % kFramesBetweenSearches == 0;
   if (track.inverse_depth_per_m && !search_again) {
-    const auto expected = projectAt(*first_bearing, *track.inverse_depth_per_m);
+    const auto expected = projectAt(*first_ray, *track.inverse_depth_per_m);
     if (expected) warp = PatchWarp{expected->cast<float>(), Eigen::Matrix2f::Identity()};
     if (warp && hint) warp->linear = hint->linear;
     is_near = hint.has_value();
   } else if (track.observations == 1 || search_again) {
-    warp = search(second, *first_bearing, track.current);
+    warp = search(second, *first_ray, track.current);
     coarsest = kSearchLevel;
   }
   if (!warp) return std::nullopt;
@@ -154,9 +159,9 @@ std::optional<StereoCandidate> StereoMatcher::find(const ImagePyramid& first, co
   if (!warp) return std::nullopt;
   if (!second_->contains(warp->position.cast<double>(), options_.border_px)) return std::nullopt;
 
-  const auto second_bearing = second_->unproject(warp->position.cast<double>());
-  if (!second_bearing) return std::nullopt;
-  const RayPair rays{*first_bearing, *second_bearing};
+  const auto second_ray = second_->viewRay(warp->position.cast<double>());
+  if (!second_ray) return std::nullopt;
+  const RayPair rays = rayPair(*first_ray, *second_ray);
   const double widest_px =
       options_.learn_rotation ? std::max(limit_px_, options_.max_rotation_rad * focal_length_px_) : limit_px_;
   if (epipolarErrorPx(rays) > widest_px || !returns(first, second, *warp, track)) return std::nullopt;

@@ -35,6 +35,12 @@ struct RigMotion {
   Vec3 velocity_B = Vec3::Zero();  ///< m/s
 };
 
+/// Pair of the rays of two pixels.
+inline RayPair rayPair(const ViewRay& first, const ViewRay& second) {
+  const ViewRay near_first = first.fromNearestPoint(), near_second = second.fromNearestPoint();
+  return {first.direction_C, second.direction_C, near_first.origin_C, near_second.origin_C};
+}
+
 /// A patch match in another camera, not yet checked against the epipolar geometry.
 struct StereoCandidate {
   PatchWarp warp;
@@ -63,7 +69,7 @@ class StereoMatcher {
   std::optional<double> accept(const RayPair& candidate) const;
 
   /// Ray of the second camera at the frame's time for a point that it observed on `second` at its own time,
-  /// at `inverse_depth_per_m` on the ray `first`.
+  /// at `inverse_depth_per_m` on the ray `first`. It has the origin of `second`.
   Vec3 rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const;
 
   /// Estimator of the second camera's delay relative to the assumed time.
@@ -79,8 +85,8 @@ class StereoMatcher {
   void place();
   /// Distance of a candidate from the epipolar plane, px of the second camera.
   double epipolarErrorPx(const RayPair& rays) const;
-  std::optional<Vec2> projectAt(const Vec3& first_bearing, double inverse_depth_per_m) const;
-  std::optional<PatchWarp> search(const ImagePyramid& second, const Vec3& first_bearing,
+  std::optional<Vec2> projectAt(const ViewRay& first, double inverse_depth_per_m) const;
+  std::optional<PatchWarp> search(const ImagePyramid& second, const ViewRay& first,
                                   const PatchTemplate& looks) const;
   /// Searches for `looks` from the fine levels if it `is_near` the expected position, and from level
   /// `coarsest` where that fails.

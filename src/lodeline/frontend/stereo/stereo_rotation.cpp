@@ -24,7 +24,7 @@ std::optional<Vec3> epipolarNormal(const Rigid3& second_from_first, const Vec3& 
 }
 
 void StereoRotation::remember(const RayPair& pair, const Rigid3& second_from_first) {
-  const std::optional<Vec3> normal = epipolarNormal(second_from_first, pair.first);
+  const std::optional<Vec3> normal = epipolarNormal(pair.betweenOrigins(second_from_first), pair.first);
   if (!normal) return;
   newest_.push_back({focal_px_ * normal->dot(pair.second), focal_px_ * pair.second.cross(*normal)});
   if (newest_.size() > kMost) newest_.pop_front();

@@ -12,6 +12,14 @@ namespace lodeline {
 /// Unit rays of a point that two cameras observed at the same time.
 struct RayPair {
   Vec3 first, second;
+  /// Points of the rays in the frames of their cameras, m; away from the lens centres only behind ports.
+  Vec3 first_origin = Vec3::Zero(), second_origin = Vec3::Zero();
+
+  /// Transformation between the frames of the cameras moved to the origins of the rays.
+  Rigid3 betweenOrigins(const Rigid3& second_from_first) const {
+    return {second_from_first.rotation,
+            second_from_first.rotation * first_origin + second_from_first.translation - second_origin};
+  }
 };
 
 /// Unit normal, in the second camera's frame, of the plane through both cameras and a ray of the first one.

@@ -14,9 +14,9 @@ struct FeatureObservation {
   int camera = 0;                  ///< index into Rig::cameras
   Vec2 pixel = Vec2::Zero();       ///< in the image as recorded (distorted)
   Vec3 bearing_C = Vec3::UnitZ();  ///< unit ray in the camera frame
+  double sigma_px = 1.0;           ///< standard deviation of the pixel along each axis
   /// Point of the ray next to the centre of the lens, m; away from it only behind a port.
   Vec3 origin_C = Vec3::Zero();
-  double sigma_px = 1.0;           ///< standard deviation of the pixel along each axis
 };
 
 /// All observations of one time. Sorted by track, then camera; a track occurs at most once per camera.

@@ -9,6 +9,7 @@
 #include "lodeline/cameras/camera.h"
 #include "lodeline/cameras/camera_file_keys.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/calibration/port_keys.h"
 
 namespace lodeline {
 namespace {
@@ -126,6 +127,7 @@ void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, C
     throw InputError(fmt::format(
         "{}: {}", map->at(model.before_focal_lengths > 0 ? "intrinsics" : coefficients_key), fault));
   }
+  camera->port = readPort(map);
   checkPlausible(*map, *camera);
   checkDistortion(coefficients_key, *map, *camera);
 }

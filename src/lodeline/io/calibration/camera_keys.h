@@ -9,9 +9,9 @@
 namespace lodeline {
 
 /// Reads the camera keys common to EuRoC's sensor.yaml and Kalibr's camchain: `camera_model` (pinhole where
-/// it is missing), `resolution`, `intrinsics`, `distortion_model` and the coefficients under
-/// `coefficients_key`. Throws InputError for a model that is not registered, and for parameters that no lens
-/// has.
+/// it is missing), `resolution`, `intrinsics`, `distortion_model` the coefficients under
+/// `coefficients_key`, and `port` where the camera looks through one. Throws InputError for a model that is
+/// not registered, and for parameters that no lens has.
 void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera);
 
 }  // namespace lodeline

@@ -16,7 +16,7 @@ namespace lodeline {
 namespace {
 
 /// Keys that Kalibr does not write but that may be given beside its own.
-constexpr std::array kBesideKalibr = {"rate_hz", "mask", "topic"};
+constexpr std::array kBesideKalibr = {"rate_hz", "mask", "topic", "port"};
 
 void refuseUnknownSensor(const std::filesystem::path& file, const std::string& key, int line) {
   std::string nearest = "cam0";

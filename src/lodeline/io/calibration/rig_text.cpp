@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "lodeline/cameras/camera_file_keys.h"
+#include "lodeline/io/calibration/port_keys.h"
 
 namespace lodeline {
 namespace {
@@ -45,6 +46,7 @@ std::string cameraText(const CameraCalibration& camera, bool has_extrinsics) {
   if (!keys.distortion_coefficients.empty()) {
     text += fmt::format("  distortion_coefficients: [{}]\n", fmt::join(keys.distortion_coefficients, ", "));
   }
+  if (camera.port) text += fmt::format("  port: {}\n", portText(*camera.port));
   if (camera.time_offset_to_imu_s != 0.0) {
     text += fmt::format("  timeshift_cam_imu: {}\n", camera.time_offset_to_imu_s);
   }
@@ -139,6 +141,7 @@ cam0:                               # cameras: cam0, cam1, … without gaps; cam
   # camera_model: ds                # pinhole where it is missing; omni, ds, eucm: intrinsics as Kalibr's
   distortion_model: radial-tangential       # radial-tangential (4, 5 or 8 numbers), equidistant (4), fov (1) or none
   distortion_coefficients: [-0.28, 0.07, 0.0002, 0.00002]  # k1, k2, p1, p2 [, k3 [, k4, k5, k6]]
+  # port: {type: flat, distance_m: 0.015, thickness_m: 0.008}  # a housing's window; intrinsics are those in air
   timeshift_cam_imu: 0.0            # s; stamp of an image + this = IMU clock
   rate_hz: 20
   # mask: cam0_mask.png             # beside this file; zero where the camera sees its own rig
