@@ -104,6 +104,7 @@ CameraFit convertedCamera(const CameraCalibration& calibration, const CameraMode
   const auto camera = makeCamera(calibration);
   const Vec2 focal_lengths_px = camera->focalLengthsOnAxis_px();
   CameraCalibration start = calibration;
+  start.port.reset();
   start.model = to.name;
   start.distortion = to.typical.parameters;
   start.distortion.resize(to.counts.front(), 0.0);

@@ -25,7 +25,8 @@ std::vector<Sighting> imageSightings(const Camera& camera);
 /// certain non-linear problems in least squares", 1944. Throws InputError where `start` is no camera.
 CameraFit fitCamera(const CameraCalibration& start, std::vector<Sighting> sightings);
 
-/// The camera of another model with the least distances between the pixels.
+/// The camera of another model with the least distances between the pixels. It has no port: behind a port, it
+/// is the camera with the rays of Camera::unproject.
 CameraFit convertedCamera(const CameraCalibration& calibration, const CameraModel& to);
 
 }  // namespace lodeline

@@ -52,7 +52,17 @@ void misstateExtrinsics(const EffectSet& effects, uint64_t seed, Rig& given) {
   }
 }
 
-void putBehindPort(uint64_t seed, DiveErrors& errors) {
+Port described(const FlatPort& window) {
+  Port port;
+  port.normal_C = window.normal_C;
+  port.distance_m = window.distance_m;
+  port.thickness_m = window.thickness_m;
+  port.index_glass = window.index_glass;
+  port.index_water = window.index_water;
+  return port;
+}
+
+void putBehindPort(uint64_t seed, bool in_files, DiveErrors& errors) {
   Random random(seed, "port");
   FlatPort port;
   port.normal_C = (Vec3::UnitZ() + 0.6 * kDegree * random.normal3()).normalized();
@@ -64,6 +74,10 @@ void putBehindPort(uint64_t seed, DiveErrors& errors) {
     camera = airCameraFor(camera, port);
     const PortFit fit = fitRadialTangential(camera, port);
     errors.in_water.cameras[i] = fit.calibration;
+    if (in_files) {
+      errors.in_water.cameras[i] = camera;
+      errors.in_water.cameras[i].port = described(port);
+    }
     errors.port_fit_rms_px = std::max(errors.port_fit_rms_px, fit.rms_px);
   }
 }
@@ -123,7 +137,7 @@ DiveErrors drawErrors(const Scenario& s) {
   drawClocks(s, errors);
 
   errors.in_water = errors.truth.rig;
-  if (on.has(Effect::FlatPort)) putBehindPort(s.seed, errors);
+  if (on.has(Effect::FlatPort)) putBehindPort(s.seed, on.has(Effect::PortInFiles), errors);
   errors.given = errors.in_water;
   if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
   misstateExtrinsics(on, s.seed, errors.given);

@@ -14,9 +14,9 @@ namespace lodeline {
 
 /// The true rig, the rig in the calibration files, and all errors of its sensors.
 struct DiveErrors {
-  MountedRig truth;              ///< behind a flat port, the cameras are those in air
-  Rig in_water;                  ///< effective rig in water: the true rig, with a port the best fit to it
-  Rig given;                     ///< content of the calibration files
+  MountedRig truth;  ///< behind a flat port, the cameras are those in air
+  Rig in_water;  ///< effective rig in water: the true rig, with a port the best fit to it or the port itself
+  Rig given;     ///< content of the calibration files
   std::optional<FlatPort> port;  ///< in front of every camera
   double port_fit_rms_px = 0.0;  ///< residual that a radial-tangential model cannot represent
 

@@ -106,6 +106,21 @@ TEST(DiveErrors, ThePortBendsTheRaysBeyondItsBestFit) {
   EXPECT_EQ(errors.given.cameras[0].fx_px, errors.in_water.cameras[0].fx_px);
 }
 
+TEST(DiveErrors, FilesWithThePortDescribeTheRenderedCamera) {
+  const DiveErrors errors = drawErrors(scenario("demo", "clean", {"flat_port=on", "port_in_files=on"}));
+  const CameraCalibration& in_air = errors.truth.rig.cameras[0];
+  const auto camera = makeCamera(errors.given.cameras[0]), lens = makeCamera(in_air);
+  EXPECT_FALSE(in_air.port);
+  for (const Vec2& pixel : {Vec2(5.0, 8.0), Vec2(200.0, 160.0), Vec2(310.0, 20.0)}) {
+    const auto ray = throughPort(*errors.port, *lens->unproject(pixel));
+    for (const double length_m : {0.3, 2.0, 15.0}) {
+      const auto back = camera->project(ray->origin_C + length_m * ray->direction_C);
+      ASSERT_TRUE(back);
+      EXPECT_LT((*back - pixel).norm(), 1e-8);
+    }
+  }
+}
+
 TEST(Dive, HasTheDisturbancesAndTheWaterThatItsEffectsAskFor) {
   const Dive clean = makeDive(scenario("cave1_short", "clean"));
   EXPECT_TRUE(clean.disturbances.lying.empty());

@@ -29,6 +29,8 @@ const std::array<EffectDescription, kEffectCount>& effectDescriptions() {
        "files leave the magnetometer's misalignment to the IMU out"},
       {Effect::FlatPort, "flat_port", false, true,
        "a flat window refracts the rays; files hold the best radial-tangential fit"},
+      {Effect::PortInFiles, "port_in_files", false, false,
+       "files hold the window of flat_port and the lens in air instead"},
       {Effect::CameraDelay, "camera_delay", false, true, "image stamps 3-8 ms late, unknown to the files"},
       {Effect::StampJitter, "stamp_jitter", false, true, "image stamps scatter by 0.5 ms"},
       {Effect::DroppedFrames, "dropped_frames", false, true, "1-3 % of images missing"},

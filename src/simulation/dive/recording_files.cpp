@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "lodeline/cameras/camera_file_keys.h"
+#include "lodeline/io/calibration/camera_keys.h"
 
 namespace lodeline {
 namespace {
@@ -27,6 +28,7 @@ std::string cameraText(const CameraCalibration& c) {
                       intrinsicsNames(cameraModel(c)));
   text += fmt::format("distortion_model: {}\ndistortion_coefficients: [{}]\n", keys.distortion_model,
                       fmt::join(keys.distortion_coefficients, ", "));
+  if (c.port) text += fmt::format("port: {}\n", portText(*c.port));
   if (c.time_offset_to_imu_s != 0.0) text += fmt::format("timeshift_cam_imu: {}\n", c.time_offset_to_imu_s);
   return text;
 }

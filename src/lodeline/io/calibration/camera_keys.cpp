@@ -9,7 +9,6 @@
 #include "lodeline/cameras/camera.h"
 #include "lodeline/cameras/camera_file_keys.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/calibration/port_keys.h"
 
 namespace lodeline {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,5 +14,12 @@ namespace lodeline {
 /// `coefficients_key`, and `port` where the camera looks through one. Throws InputError for a model that is
 /// not registered, and for parameters that no lens has.
 void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera);
+
+/// Reads the map `port` of a camera (docs/reference/file-formats.md); nothing where the camera has none.
+/// Throws InputError for an unknown type or key, and for values that no port has.
+std::optional<Port> readPort(CalibrationMap* camera);
+
+/// The map `port` as text in one line, with all digits of the numbers.
+std::string portText(const Port& port);
 
 }  // namespace lodeline

@@ -1,9 +1,8 @@
-#include "lodeline/io/calibration/port_keys.h"
-
 #include <fmt/core.h>
 
 #include "lodeline/cameras/ports/port_refraction.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/calibration/camera_keys.h"
 
 namespace lodeline {
 namespace {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/calibration/camera_keys.h"
+#include "lodeline/io/calibration/rig_text.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/euroc/test_recording.h"
 
@@ -113,6 +115,58 @@ TEST_F(RigFileTest, DepthInDecimalsSurvivesBeingAPressure) {
   for (const double depth_m : {0.0, 7.48, 12.345678, -0.25, 101.000001}) {
     EXPECT_EQ(water.depth_m(water.pressure_Pa(depth_m)), depth_m);
   }
+}
+
+TEST_F(RigFileTest, ReadsPortsAndWritesThemAgain) {
+  const std::string flat =
+      "  port: {type: flat, normal: [0.02, 0, 2], distance_m: 0.015, thickness_m: 0.008}\n";
+  const std::string dome =
+      "  port: {type: dome, centre_m: [0, 0.001, 0.002], radius_m: 0.05, thickness_m: 0.006, indices: [1, "
+      "1.52, "
+      "1.34]}\n";
+  const RigFile one = read({imu_ + camera_ + flat});
+  const Port& plate = one.rig.cameras[0].port.value();
+  EXPECT_EQ(plate.type, Port::Type::Flat);
+  EXPECT_LT((plate.normal_C - Vec3(0.01, 0.0, 1.0).normalized()).norm(), 1e-15);
+  EXPECT_EQ(plate.distance_m, 0.015);
+  EXPECT_EQ(plate.thickness_m, 0.008);
+  EXPECT_EQ(plate.index_glass, 1.49);
+  EXPECT_EQ(plate.index_water, 1.333);
+  const RigFile other = read({imu_ + camera_ + dome});
+  const Port& sphere = other.rig.cameras[0].port.value();
+  EXPECT_EQ(sphere.type, Port::Type::Dome);
+  EXPECT_EQ(sphere.centre_C, Vec3(0.0, 0.001, 0.002));
+  EXPECT_EQ(sphere.radius_m, 0.05);
+  EXPECT_EQ(sphere.index_glass, 1.52);
+  EXPECT_EQ(sphere.index_water, 1.34);
+  for (const RigFile* file : {&one, &other}) {
+    const RigFile again = read({rigText(*file)});
+    const Port &before = *file->rig.cameras[0].port, &after = again.rig.cameras[0].port.value();
+    EXPECT_EQ(portText(after), portText(before));
+  }
+  EXPECT_FALSE(read({imu_ + camera_}).rig.cameras[0].port);
+}
+
+TEST_F(RigFileTest, NamesWhatIsWrongWithAPort) {
+  const auto with = [this](const std::string& port) {
+    return refusal({imu_ + camera_ + "  port: " + port + "\n"});
+  };
+  const std::string plate = "distance_m: 0.01, thickness_m: 0.01";
+  EXPECT_THAT(with("{type: bent, " + plate + "}"), HasSubstr("must be flat or dome"));
+  EXPECT_THAT(with("{" + plate + "}"), HasSubstr("'cam0.port.type' is missing"));
+  EXPECT_THAT(with("{type: flat, thickness_m: 0.01}"), HasSubstr("distance_m"));
+  EXPECT_THAT(with("{type: flat, " + plate + ", normal: [0, 0, -1]}"),
+              HasSubstr("points away from the view"));
+  EXPECT_THAT(with("{type: flat, " + plate + ", normal: [0, 0, 0]}"), HasSubstr("is no direction"));
+  EXPECT_THAT(with("{type: flat, " + plate + ", normal: [0, 1]}"), HasSubstr("has 2 numbers"));
+  EXPECT_THAT(with("{type: flat, " + plate + ", indices: [1, 1.5]}"), HasSubstr("air, glass and water"));
+  EXPECT_THAT(with("{type: flat, " + plate + ", indices: [1, 1.5, 0.9]}"),
+              HasSubstr("index of water is 0.9"));
+  EXPECT_THAT(with("{type: flat, " + plate + ", radius_m: 0.05}"),
+              HasSubstr("unknown key 'cam0.port.radius_m'"));
+  EXPECT_THAT(with("{type: dome, centre_m: [0, 0, 0.06], radius_m: 0.05, thickness_m: 0.005}"),
+              HasSubstr("outside of it"));
+  EXPECT_THAT(with("flat"), HasSubstr("holds no keys"));
 }
 
 }  // namespace

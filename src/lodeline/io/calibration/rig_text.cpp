@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "lodeline/cameras/camera_file_keys.h"
-#include "lodeline/io/calibration/port_keys.h"
+#include "lodeline/io/calibration/camera_keys.h"
 
 namespace lodeline {
 namespace {

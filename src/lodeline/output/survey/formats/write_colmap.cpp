@@ -9,8 +9,10 @@
 namespace lodeline {
 namespace {
 
-/// COLMAP's form of a camera with at least its number of parameters; null where COLMAP has none.
+/// COLMAP's form of a camera with at least its number of parameters; null where COLMAP has none, as for a
+/// camera behind a port.
 const ColmapForm* colmapForm(const CameraCalibration& camera) {
+  if (camera.port) return nullptr;
   for (const ColmapForm& form : cameraModel(camera).colmap) {
     if (form.parameters >= camera.distortion.size()) return &form;
   }
@@ -34,8 +36,10 @@ std::string cameraLines(size_t id, const CameraCalibration& camera) {
     return fmt::format("{} {}\n", id, cameraLine(camera, *form));
   const CameraFit fit = convertedCamera(camera, *findCameraModel("equidistant"));
   return fmt::format(
-      "# {}: COLMAP has no {} model; the fisheye model below deviates by {:.2g} px rms\n{} {}\n", camera.name,
-      camera.model, fit.rms_px, id, cameraLine(fit.calibration, *colmapForm(fit.calibration)));
+      "# {}: COLMAP has no {} model{}; the fisheye model below deviates by {:.2g} px rms\n{} {}\n",
+      camera.name, camera.model,
+      camera.port ? fmt::format(" behind a port; at {} m", Camera::kNominalDistance_m) : "", fit.rms_px, id,
+      cameraLine(fit.calibration, *colmapForm(fit.calibration)));
 }
 
 }  // namespace
