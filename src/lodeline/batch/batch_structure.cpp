@@ -75,7 +75,8 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
   const auto viewOf = [&](const Observation& observation) {
     // Pixels per angle, geometric mean of both axes.
     const double pixels = std::sqrt(std::abs(observation.measurement.sqrt_information.determinant()));
-    Rigid3 world_from_ray = factors.worldFromCamera(window, *window.find(observation.frame), observation.camera);
+    Rigid3 world_from_ray =
+        factors.worldFromCamera(window, *window.find(observation.frame), observation.camera);
     world_from_ray.translation += world_from_ray.rotation * observation.measurement.origin_C;
     return BearingView{world_from_ray, rayOf(observation, cameras), 1.0 / pixels};
   };

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lodeline/cameras/camera_model.h"
-#include "lodeline/cameras/ports/refractive_camera.h"
+#include "lodeline/cameras/port_camera.h"
 #include "lodeline/diagnostics.h"
 
 // The registration: one line for each model. NAME_camera.cpp defines the function.
@@ -144,7 +144,7 @@ std::shared_ptr<const Camera> makeCamera(const CameraCalibration& calibration) {
   if (!fault.empty()) throw InputError(fmt::format("camera '{}': {}", calibration.name, fault));
   CameraCalibration lens = calibration;
   lens.port.reset();
-  return std::make_shared<RefractiveCamera>(calibration, model.make(lens));
+  return makeRefractiveCamera(calibration, model.make(lens));
 }
 
 }  // namespace lodeline

@@ -96,7 +96,8 @@ bool CalibratedReprojectionFactor::Evaluate(double const* const* parameters, dou
   Mat23 by_point;
   Eigen::Map<Vec2> residual(residuals);
   const double rho = parameters[kPoint][2];
-  residual = directionResidual(measurement_, measurement_.fromOrigin(chain.point_C, rho), jacobians ? &by_point : nullptr);
+  residual = directionResidual(measurement_, measurement_.fromOrigin(chain.point_C, rho),
+                               jacobians ? &by_point : nullptr);
   if (!jacobians) return true;
 
   const CalibratedLinearizationPoints& first = linearization_points_;
@@ -167,7 +168,8 @@ bool CalibratedStereoFactor::Evaluate(double const* const* parameters, double* r
   const double rho = landmark[2];
   const Vec3 point_C0 = base_.direction(landmark);
   const auto seen = [&](const Rigid3& camera0_from_target) {
-    const Vec3 point_C = camera0_from_target.rotation.conjugate() * (point_C0 - rho * camera0_from_target.translation);
+    const Vec3 point_C =
+        camera0_from_target.rotation.conjugate() * (point_C0 - rho * camera0_from_target.translation);
     return measurement_.fromOrigin(point_C, rho);
   };
   Rigid3 camera0_from_target = correctedExtrinsics(camera0_from_target_, correction);

@@ -17,8 +17,8 @@ constexpr double kOutlierResidual = 1e4;
 /// direction.
 std::optional<Vec2> projectAlong(const Camera& camera, const ViewRay& ray, const Vec3& offset,
                                  Mat23* by_direction) {
-  const auto pixel = camera.project(
-      ray.origin_C + Camera::kNominalDistance_m * (ray.direction_C + offset), by_direction);
+  const auto pixel =
+      camera.project(ray.origin_C + Camera::kNominalDistance_m * (ray.direction_C + offset), by_direction);
   *by_direction *= Camera::kNominalDistance_m;
   return pixel;
 }

@@ -80,7 +80,8 @@ bool ReprojectionFactor::Evaluate(double const* const* parameters, double* resid
   }
   if (jacobians[2]) {
     Eigen::Map<RowMajor2<kLandmarkSize>> point(jacobians[2]);
-    point << by_world * chain.world_rotation_host * base_.tangent_C, by_world * chain.baseline_W - by_point * measurement_.origin_C;
+    point << by_world * chain.world_rotation_host * base_.tangent_C,
+        by_world * chain.baseline_W - by_point * measurement_.origin_C;
   }
   return true;
 }
@@ -101,10 +102,12 @@ bool HostReprojectionFactor::Evaluate(double const* const* parameters, double* r
   const bool wanted = jacobians && jacobians[0];
   Mat23 by_point;
   Eigen::Map<Vec2> residual(residuals);
-  residual = directionResidual(measurement_, measurement_.fromOrigin(point_C, landmark[2]), wanted ? &by_point : nullptr);
+  residual = directionResidual(measurement_, measurement_.fromOrigin(point_C, landmark[2]),
+                               wanted ? &by_point : nullptr);
   if (wanted) {
     Eigen::Map<RowMajor2<kLandmarkSize>> point(jacobians[0]);
-    point << by_point * target_rotation_host_ * base_.tangent_C, by_point * (target_translation_host_ - measurement_.origin_C);
+    point << by_point * target_rotation_host_ * base_.tangent_C,
+        by_point * (target_translation_host_ - measurement_.origin_C);
   }
   return true;
 }

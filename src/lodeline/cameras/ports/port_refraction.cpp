@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
+
+#include "lodeline/cameras/port_camera.h"
 
 namespace lodeline {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "lodeline/cameras/camera.h"
 
@@ -40,8 +39,5 @@ std::unique_ptr<const PortRefraction> makeDomePort(const Port& port);
 /// Direction behind a surface by Snell's law, unit. `direction` and `normal` are unit vectors with a positive
 /// product. `index_ratio` is the index before the surface over that behind. Nothing at total reflection.
 std::optional<Vec3> refractedDirection(const Vec3& direction, const Vec3& normal, double index_ratio);
-
-/// States what is wrong with the parameters of a port. Empty where nothing is.
-std::string portFault(const Port& port);
 
 }  // namespace lodeline

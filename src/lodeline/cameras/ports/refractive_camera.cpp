@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lodeline/cameras/image_place.h"
+#include "lodeline/cameras/port_camera.h"
 
 namespace lodeline {
 namespace {
@@ -15,6 +16,11 @@ std::unique_ptr<const PortRefraction> makePort(const Port& port) {
 }
 
 }  // namespace
+
+std::shared_ptr<const Camera> makeRefractiveCamera(const CameraCalibration& calibration,
+                                                   std::shared_ptr<const Camera> in_air) {
+  return std::make_shared<RefractiveCamera>(calibration, std::move(in_air));
+}
 
 RefractiveCamera::RefractiveCamera(const CameraCalibration& calibration, std::shared_ptr<const Camera> in_air)
     : Camera(calibration), in_air_(std::move(in_air)), port_(makePort(*calibration.port)) {

@@ -109,7 +109,8 @@ class Resection {
   }
 
   Vec2 residualOf(const Seen& seen, const Vec3& point_C, Mat23* by_point) const {
-    Vec2 residual = directionResidual(*seen.measurement, seen.measurement->fromOrigin(point_C, seen.rho), by_point);
+    Vec2 residual =
+        directionResidual(*seen.measurement, seen.measurement->fromOrigin(point_C, seen.rho), by_point);
     if (!states_.intrinsics.empty())
       residual += intrinsicsShift(*seen.measurement, residual, states_.intrinsics.front()->value.data());
     return residual;

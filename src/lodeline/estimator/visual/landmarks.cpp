@@ -150,7 +150,8 @@ int createLandmarks(Window& window, const FactorBuilder& factors, const Landmark
     landmark.base = LandmarkBase(rayOf(*host, cameras));
     const double inverse_distance_per_m = std::max(rho.value, 1e-4);
     // The origin of the ray is the point of it next to the lens, so it has no part along the ray.
-    const Vec2 aside = inverse_distance_per_m * landmark.base.tangent_C.transpose() * host->measurement.origin_C;
+    const Vec2 aside =
+        inverse_distance_per_m * landmark.base.tangent_C.transpose() * host->measurement.origin_C;
     landmark.parameters = {aside.x(), aside.y(), inverse_distance_per_m};
     track->landmark = landmark;
     ++created;

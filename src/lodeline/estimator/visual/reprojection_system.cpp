@@ -196,7 +196,9 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
   Linearized term;
   Mat23 by_point;
   const DirectionMeasurement& measurement = *observation.measurement;
-  directionResidual(measurement, measurement.fromOrigin(seen.rotation * direction + rho * seen.translation, rho), &by_point);
+  directionResidual(measurement,
+                    measurement.fromOrigin(seen.rotation * direction + rho * seen.translation, rho),
+                    &by_point);
   if (!states_.intrinsics.empty()) {
     const IntrinsicsEffect lens =
         intrinsicsEffect(*observation.measurement, residual.by_file, intrinsicsOf(observation.camera));
@@ -208,7 +210,8 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
   term.by_nodes.col(Columns::kResidual) = weight * residual.by_intrinsics;
   by_point *= weight;
   const Mat23 by_direction = by_point * seen.rotation;
-  term.by_landmark << by_direction * landmark.base.tangent_C, by_point * (seen.translation - measurement.origin_C);
+  term.by_landmark << by_direction * landmark.base.tangent_C,
+      by_point * (seen.translation - measurement.origin_C);
 
   term.by(Columns::kIntrinsics) *= weight;
   if (observation.camera > 0) {

@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "lodeline/cameras/ports/port_refraction.h"
+#include "lodeline/cameras/port_camera.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/camera_keys.h"
 
