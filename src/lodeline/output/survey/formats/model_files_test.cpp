@@ -122,6 +122,16 @@ TEST(Colmap, HasAModelForEveryCamera) {
   EXPECT_THAT(cameras, HasSubstr("\n2 OPENCV_FISHEYE 800 600 "));
 }
 
+TEST(Colmap, HasACameraOfLikeRaysForOneBehindAPort) {
+  const DiveMap map = windingMap();
+  MapImages images = twoCameras(map);
+  images.cameras[0].name = "cam0";
+  images.cameras[0].port = Port{.distance_m = 0.02, .thickness_m = 0.01};
+  const std::string cameras = colmapModel(map, images.cameras, images.images).cameras;
+  EXPECT_THAT(cameras, HasSubstr("# cam0: COLMAP has no radial-tangential model behind a port; the fisheye"));
+  EXPECT_THAT(cameras, HasSubstr("\n1 OPENCV_FISHEYE 800 600 5")) << "water magnifies by a third";
+}
+
 TEST(Colmap, TakesTheModel) {
   LODELINE_NEEDS_PROGRAM("colmap", "colmap");
   const test::TemporaryFolder folder;

@@ -37,8 +37,7 @@ std::string cameraLines(size_t id, const CameraCalibration& camera) {
   const CameraFit fit = convertedCamera(camera, *findCameraModel("equidistant"));
   return fmt::format(
       "# {}: COLMAP has no {} model{}; the fisheye model below deviates by {:.2g} px rms\n{} {}\n",
-      camera.name, camera.model,
-      camera.port ? fmt::format(" behind a port; at {} m", Camera::kNominalDistance_m) : "", fit.rms_px, id,
+      camera.name, camera.model, camera.port ? " behind a port" : "", fit.rms_px, id,
       cameraLine(fit.calibration, *colmapForm(fit.calibration)));
 }
 
