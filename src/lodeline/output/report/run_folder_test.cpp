@@ -107,8 +107,10 @@ TEST_F(RunFolder, StatesHaveThePressureSensor) {
   estimate.depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
   writer.write(estimate);
   const std::string states = read("states.csv");
-  EXPECT_NE(states.find(",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s],posterior_sigma_p_x [m],"),
-            std::string::npos);
+  EXPECT_NE(
+      states.find(
+          ",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s],posterior_sigma_p_x [m],"),
+      std::string::npos);
   EXPECT_NE(states.find(",off,nan,nan,nan,nan,"), std::string::npos);
   EXPECT_NE(states.find(",jump,9.25,7.5,0.975,0.5,"), std::string::npos);
 }
