@@ -78,7 +78,7 @@ void SolverOptions::check() const {
 void CameraCalibrationOptions::check() const {
   OptionCheck("camera_calibration")
       .notNegative("rotation_sigma_rad", rotation_sigma_rad)
-      .positive("position_sigma_m", position_sigma_m)
+      .notNegative("position_sigma_m", position_sigma_m)
       .notNegative("time_offset_sigma_s", time_offset_sigma_s)
       .notNegative("stereo_rotation_sigma_rad", stereo_rotation_sigma_rad)
       .notNegative("stereo_position_sigma_m", stereo_position_sigma_m)
