@@ -104,8 +104,8 @@ struct StandardRigOptions {
 /// The hand-held rig of the simulator. Its cameras are side by side with a baseline of 14 cm, look ahead, are
 /// 70 degrees wide (as behind glass in water) and have barrel distortion. The IMU is between them, upside
 /// down and rotated; the magnetometer is inside the IMU. A pressure port is behind, and a sonar head below
-/// scans across the view, or a horizontal sector of it. As in any rig, the extrinsics differ a little from the
-/// drawing. The IMU noise has its default. A `camera_model` gives both cameras that model's typical lens,
+/// scans across the view, or a horizontal sector of it. As in any rig, the extrinsics differ a little from
+/// the drawing. The IMU noise has its default. A `camera_model` gives both cameras that model's typical lens,
 /// with focal lengths 0.3 % apart.
 MountedRig standardRig(const StandardRigOptions& options);
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "lodeline/estimator/initialization/start.h"
-#include "lodeline/estimator/trials/heading_trial.h"
 #include "lodeline/estimator/solver/window_solver.h"
+#include "lodeline/estimator/trials/heading_trial.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
