@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized bench install package format check-format clean
+.PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized test-sanitized-all bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = include src apps studies examples ros fuzz
 
@@ -36,13 +36,16 @@ test: everything check-format
 # Built with Clang under address and undefined-behaviour sanitizers: the fast tests of these layers, and the fuzzers of
 # all readers, each for ten seconds on its corpus. The layers are those that read what others wrote, and those that the
 # rest computes with. The layers from the estimator up take longer to build so than all of these, and the estimator's
-# tests work through whole simulated scenes.
+# tests work through whole simulated scenes: `make test-sanitized-all` adds them.
 SANITIZED = util tables streams geometry cameras magnetometer imu ahrs io rosbag1 frontend factors evaluation
 test-sanitized: test-dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers $(SANITIZED:%=%_test)
 	ctest --test-dir build/sanitized --output-on-failure -j2 -L 'fast|fuzz' \
 	  -R "^(fuzz\.|($$(echo $(SANITIZED) | tr ' ' '|'))_test)"
+
+test-sanitized-all:
+	$(MAKE) test-sanitized SANITIZED="$(SANITIZED) estimator batch calibration survey"
 
 # Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
 faults: build

@@ -48,19 +48,25 @@ struct ImuNoise {
   double gyroscope_random_walk_rad_per_s2_sqrtHz = 2.0e-5;
   double accelerometer_density_m_per_s2_sqrtHz = 2.0e-3;
   double accelerometer_random_walk_m_per_s3_sqrtHz = 3.0e-3;
+  /// One sigma of the scale errors (relative) and the misalignment (rad) of the axes. Empty where the
+  /// calibration does not state it.
+  std::optional<double> axes_sigma = std::nullopt;
 };
 
-/// Prior standard deviation of the scale errors (relative) and misalignment (rad) of IMU axes, one sigma.
-/// Manufacturers calibrate the axes of their better sensors; the gyroscope's white noise identifies these.
+/// Standard deviation of the scale errors (relative) and misalignment (rad) of IMU axes, as stated or by
+/// default. Manufacturers calibrate the axes of their better sensors; by default, the gyroscope's white noise
+/// identifies these.
 namespace imu_axes {
 constexpr double kCalibratedBelow_rad_per_s_sqrtHz = 1.2e-4;
 constexpr double kCalibratedSigma = 0.001;
 constexpr double kUncalibratedSigma = 0.007;  ///< for a sensor that may never have been calibrated
 
 inline double sigmaFor(const ImuNoise& noise) {
-  return noise.gyroscope_density_rad_per_s_sqrtHz < kCalibratedBelow_rad_per_s_sqrtHz ? kCalibratedSigma
-                                                                                      : kUncalibratedSigma;
+  const bool is_quiet = noise.gyroscope_density_rad_per_s_sqrtHz < kCalibratedBelow_rad_per_s_sqrtHz;
+  return noise.axes_sigma.value_or(is_quiet ? kCalibratedSigma : kUncalibratedSigma);
 }
+/// Whether the maker calibrated the axes.
+inline bool areCalibrated(const ImuNoise& noise) { return sigmaFor(noise) < 0.002; }
 }  // namespace imu_axes
 
 /// The IMU defines the body frame B.

@@ -223,10 +223,7 @@ TEST(Refine, LeavesLensesAsTheRunFoundThem) {
 // The window reports as much: InertialStates.ClaimLessOfWhatWasPerhapsNeverCalibrated.
 TEST(Refine, ClaimsLessOfWhatWasPerhapsNeverCalibrated) {
   ForwardRun run(smallScene(2));
-  run.options.imu_axes = {.gyroscope_sigma = 0.001,
-                          .calibrated_below_rad_per_s_sqrtHz = 0.0,
-                          .uncalibrated_sigma = 0.0,
-                          .accelerometer_sigma = 0.0};
+  run.options.imu_axes = {.gyroscope_sigma = 0.001, .uncalibrated_sigma = 0.0, .accelerometer_sigma = 0.0};
   const Refinement taken_for_calibrated = run.refined();
   run.options.imu_axes.uncalibrated_sigma = 0.007;
   const Refinement in_doubt = run.refined();

@@ -8,10 +8,9 @@ namespace {
 TEST(PacketOdometry, FollowsMorePointsWithAnImuThatMayNeverHaveBeenCalibrated) {
   Rig rig;
   EstimatorOptions options;
-  const double limit = options.imu_axes.calibrated_below_rad_per_s_sqrtHz;
-  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * limit;
+  rig.imu.noise.axes_sigma = 0.001;
   const int calibrated = tracksFor(rig, options);
-  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * limit;
+  rig.imu.noise.axes_sigma = 0.007;
   EXPECT_GT(tracksFor(rig, options), calibrated);
   options.imu_axes.gyroscope_sigma = 0.0;
   EXPECT_EQ(tracksFor(rig, options), calibrated);

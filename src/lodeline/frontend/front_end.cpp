@@ -8,6 +8,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/frontend/detection/mask.h"
+#include "lodeline/util/settings/option_check.h"
 
 namespace lodeline {
 namespace {
@@ -26,6 +27,21 @@ bool isMasked(const cv::Mat& mask, const Eigen::Vector2f& pixel) {
 
 }  // namespace
 
+void FrontEndOptions::check() const {
+  OptionCheck("front_end")
+      .atLeast("pyramid_levels", pyramid_levels, 1)
+      .atLeast("max_tracks", detector.max_tracks, 1)
+      .positive("min_distance_px", detector.min_distance_px)
+      .notNegative("min_gradient_grey_per_px", detector.min_gradient_grey_per_px)
+      .positive("max_forward_backward_px", tracker.max_forward_backward_px)
+      .positive("max_stereo_epipolar_px", stereo.max_epipolar_px)
+      .positive("min_depth_m", stereo.min_depth_m)
+      .positive("max_epipolar_px", consensus.max_error_px)
+      .atLeast("hypotheses", consensus.hypotheses, 1)
+      .positive("max_gap_s", max_gap_s)
+      .positive("sigma_px", sigma_px);
+}
+
 FrontEnd::FrontEnd(const Rig& rig, const FrontEndOptions& options)
     : options_(options),
       cameras_(makeCameras(rig)),
@@ -33,6 +49,7 @@ FrontEnd::FrontEnd(const Rig& rig, const FrontEndOptions& options)
       tracker_(cameras_.front(), options.tracker),
       detector_(options.detector),
       static_image_masks_(cameras_.size(), StaticImageMask(options.static_image_mask)) {
+  options.check();
   for (const CameraCalibration& calibration : rig.cameras) masks_.push_back(loadMask(calibration));
   for (size_t i = 1; i < cameras_.size(); ++i) {
     matchers_.emplace_back(cameras_.front(), cameras_[i], options.stereo);

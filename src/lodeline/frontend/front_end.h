@@ -32,6 +32,9 @@ struct FrontEndOptions {
   double max_gap_s = 1.0;
   /// Standard deviation of an observation.
   double sigma_px = 1.0;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 /// Result of one frame's tracking.

@@ -10,7 +10,7 @@
 #include "lodeline/estimator/initialization/visual_inertial_alignment.h"
 #include "lodeline/estimator/initialization/visual_structure.h"
 #include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/solver/window_update.h"
+#include "lodeline/estimator/solver/window_solver.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/imu/gravity_alignment.h"
 
@@ -171,7 +171,7 @@ bool MonoInitializer::refine() {
     if (interval != intervals_.end()) frame->from_previous = std::move(interval->second);
   }
   const SolveSummary summary =
-      updateWindow(window_, prior_, factors_, {options_.mono_initialization.max_iterations, 1e-8}).summary;
+      solveWithCeres(window_, prior_, factors_, {options_.mono_initialization.max_iterations, 1e-8});
   const double disagreement = inertialDisagreement(window_, factors_);
   const double share = scaleUncertainty(window_.newest(), newestCovariance(window_, prior_, factors_));
   const double bias_sigmas =

@@ -4,7 +4,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
-#include "lodeline/estimator/solver/window_update.h"
+#include "lodeline/estimator/solver/window_solver.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/frontend/stereo/triangulation.h"
 #include "lodeline/geometry/so3.h"
@@ -82,35 +82,6 @@ std::vector<Quat> gyroscopeRotations(const std::vector<Preintegration*>& interva
   return rotations;
 }
 
-/// Holds what images of one camera cannot show: the pose of the oldest frame, and the distance from there to
-/// the newest one, which is the unit of length.
-Prior gaugePrior(Frame& oldest, Frame& newest) {
-  constexpr double kSigma = 1e-6;
-  Prior gauge;
-  gauge.append(oldest.pose.data(), kPoseSize, Eigen::VectorXd::Constant(kPoseTangentSize, kSigma));
-  gauge.append(newest.pose.data(), kPoseSize, Eigen::VectorXd::Ones(kPoseTangentSize));
-  const Vec3 direction =
-      (newest.worldFromBody().translation - oldest.worldFromBody().translation).normalized();
-  gauge.sqrt_information.bottomRightCorner<kPoseTangentSize, kPoseTangentSize>().setZero();
-  gauge.sqrt_information.block<1, 3>(kPoseTangentSize, kPoseTangentSize) = direction.transpose() / kSigma;
-  return gauge;
-}
-
-/// Takes velocity and biases out of a window's problem for as long as it exists: no term of images has them.
-class WithoutMotion {
- public:
-  explicit WithoutMotion(Window& window) : window_(window) { set(false); }
-  ~WithoutMotion() { set(true); }
-  WithoutMotion(const WithoutMotion&) = delete;
-  WithoutMotion& operator=(const WithoutMotion&) = delete;
-
- private:
-  void set(bool has_motion) {
-    for (const auto& frame : window_.frames()) frame->has_motion = has_motion;
-  }
-  Window& window_;
-};
-
 }  // namespace
 
 std::vector<BearingPair> commonTracks(const Window& window, const Frame& a, const Frame& b) {
@@ -160,12 +131,12 @@ bool estimateStructure(Window& window, const std::vector<Preintegration*>& inter
   LandmarkOptions landmark_options;
   landmark_options.min_distance_m = 0.1;  // in units of the baseline here, not in metres
   landmark_options.max_inverse_distance_sigma_per_m = 0.05;
-  const Prior gauge = gaugePrior(oldest, newest);
-  const WithoutMotion without_motion(window);
+  Prior gauge;
+  gauge.append(oldest.pose.data(), kPoseSize, Eigen::VectorXd::Constant(kPoseTangentSize, 1e-6));
   int landmarks = 0;
   for (int pass = 0; pass < 2; ++pass) {
     landmarks += createLandmarks(window, factors, landmark_options);
-    if (!updateWindow(window, gauge, factors, {20, 1e-6}).summary.usable) return false;
+    if (!solveWithCeres(window, gauge, factors, {20, 1e-6}).usable) return false;
     removeOutliers(window, factors, landmark_options);
   }
   const ReprojectionStatistics statistics = reprojectionStatistics(window, factors, newest.id);

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "lodeline/estimator/initialization/start.h"
+#include "lodeline/estimator/solver/window_solver.h"
 #include "lodeline/estimator/trials/heading_trial.h"
-#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
@@ -218,7 +218,7 @@ class SpoiltMagnetometer : public testing::Test {
     rig.magnetometer->rate_hz = rate_hz;
     EstimatorOptions options;
     options.magnetometer.use = use;
-    options.imu_axes.calibrated_below_rad_per_s_sqrtHz = calibrated_below_rad_per_s_sqrtHz_;
+    rig.imu.noise.axes_sigma = axes_sigma_;
     Estimator estimator(rig, options, &diagnostics_);
     FrameEstimate estimate;
     int64_t reading = 0;
@@ -250,7 +250,7 @@ class SpoiltMagnetometer : public testing::Test {
   SpoiltMagnetometer() { calibration_.is_calibrated = true; }
 
   MagnetometerCalibration calibration_;
-  double calibrated_below_rad_per_s_sqrtHz_ = 1.0;  // any gyroscope
+  double axes_sigma_ = 0.001;
   Diagnostics diagnostics_;
   std::map<MagnetometerStatus, int> statuses_;
 };
@@ -375,7 +375,7 @@ TEST_F(SpoiltMagnetometer, WithoutCalibrationIsUsedOnlyWhenAskedTo) {
 TEST_F(SpoiltMagnetometer, OnAnImuThatWasPerhapsNeverCalibratedClaimsLess) {
   const FrameEstimate believed = run(leave);
   EXPECT_EQ(believed.magnetometer.axes_sigma_rad, 0.0);
-  calibrated_below_rad_per_s_sqrtHz_ = 0.0;
+  axes_sigma_ = 0.007;
   const FrameEstimate doubted = run(leave);
   const Vec3 field_W = doubted.magnetometer.field_W.value();
   EXPECT_NEAR(doubted.magnetometer.axes_sigma_rad, 0.007 * field_W.norm() / field_W.head<2>().norm(), 1e-12);

@@ -13,6 +13,9 @@ struct DepthGateOptions {
   /// do not measure the water pressure at all.
   double least_slope = 0.6;
   double greatest_slope = 1.4;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 /// Options of the fusion of depth readings. The model of the gauge is that of factors/sensors/depth_factor.h.
@@ -41,6 +44,9 @@ struct DepthOptions {
   double floor_m = 0.01;
   double correlated_noise_time_s = 5.0;
   DepthGateOptions gate;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 }  // namespace lodeline

@@ -41,6 +41,9 @@ struct MagnetometerGateOptions {
   double max_correlated_sigma_rad = 0.015;
   /// After this time it is tried again.
   double retry_after_s = 1800.0;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 /// Limits of MagneticStepDetector, which detects that a current on board was switched.
@@ -63,6 +66,9 @@ struct MagneticStepDetectorOptions {
   /// for `return_s`.
   double returned_share = 0.3;
   double return_s = 5.0;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct MagnetometerOptions {
@@ -106,6 +112,9 @@ struct MagnetometerOptions {
 
   MagnetometerGateOptions gate;
   MagneticStepDetectorOptions step;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 }  // namespace lodeline

@@ -22,6 +22,9 @@ struct InitialStateOptions {
   double velocity_sigma_m_per_s = 1.0;
   double gyroscope_bias_sigma_rad_per_s = 0.1;
   double accelerometer_bias_sigma_m_per_s2 = 0.2;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct MonoInitializationOptions {
@@ -40,6 +43,9 @@ struct MonoInitializationOptions {
   double max_inertial_disagreement = 1.5;
   double max_scale_sigma = 0.1;  ///< relative; the initialization waits while the scale sigma is larger
   double retry_after_s = 0.2;    ///< a failed initialization has cost a second of computing
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct WindowOptions {
@@ -63,6 +69,9 @@ struct WindowOptions {
   int startup_frames_mono = 45;
   int startup_max_frames = 60;
   double startup_scale_sigma = 0.03;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct KeyframeOptions {
@@ -75,6 +84,9 @@ struct KeyframeOptions {
   /// A frame with few observations becomes a keyframe only when this share of its tracks is new since the
   /// last one.
   double min_fresh_share = 0.2;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct LandmarkOptions {
@@ -94,6 +106,9 @@ struct LandmarkOptions {
   /// ...or absolute, for points that are far away.
   double max_inverse_distance_sigma_per_m = 0.02;
   double max_error_sigmas = 4.0;  ///< observations with larger whitened errors are outliers
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct SolverOptions {
@@ -102,6 +117,9 @@ struct SolverOptions {
   double robust_scale_sigmas = 2.0;   ///< width of the Cauchy loss on reprojection residuals, at most...
   double robust_scale_medians = 2.5;  ///< ...and in medians of the residuals of a frame (robust_loss.h)
   bool track_weights = true;          ///< weight each track by its own residuals (robust_loss.h)
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 /// Sigma of the calibration files' errors; a sigma of 0 holds the parameter. Without `intrinsics` the
@@ -127,6 +145,9 @@ struct CameraCalibrationOptions {
   /// Whether the intrinsics and the rotations of secondary cameras are held at their files while images
   /// confirm these; see IntrinsicsModelSelection.
   bool trust_confirmed_files = true;
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 /// Sigma of the errors in the calibration of the IMU.
@@ -135,11 +156,9 @@ struct ImuAxesOptions {
   /// (SensorAxes); 0 holds them. Some gyroscopes are calibrated to less than a thousandth, others never were
   /// and are wrong by one or two per cent. No single Gaussian describes both, see FactorBuilder::imuAxes().
   double gyroscope_sigma = imu_axes::kCalibratedSigma;
-  /// Noise density that separates calibrated from doubtful IMUs, because makers calibrate the axes of their
-  /// better sensors. An IMU whose gyroscope has less white noise than this has the sigma `gyroscope_sigma`.
-  double calibrated_below_rad_per_s_sqrtHz = imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
-  /// Sigma of the axes of an IMU above that limit, which may never have been calibrated; 0: as for the
-  /// others. It is also part of the reported tilt covariance throughout. Relative, and rad.
+  /// Sigma of the axes of an IMU that may never have been calibrated (imu_axes::areCalibrated), where its
+  /// calibration does not state one; 0: as for the others. It is also part of the reported tilt covariance
+  /// throughout. Relative, and rad.
   double uncalibrated_sigma = imu_axes::kUncalibratedSigma;
   /// Reported sigma of such an IMU's initial accelerometer bias. Data sheets allow 0.6 to 0.8 m/s^2 (60 to 80
   /// mg, e.g. InvenSense MPU-9250, PS-MPU-9250A-01 rev. 1.1), here two sigmas. Most parts are far better, and
@@ -158,6 +177,9 @@ struct ImuAxesOptions {
   bool areDoubted() const { return uncalibrated_sigma > 0.0; }
   /// Tilt error of an accelerometer beside its states, rad: makers calibrate both sensors or none.
   double accelerometerSigma() const { return std::max(gyroscope_sigma, uncalibrated_sigma); }
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 /// Limits of StationaryDetector.
@@ -169,6 +191,9 @@ struct RestOptions {
   double rate_deviation_rad_per_s = 0.02;  ///< deviation of readings from their means, beyond their noise
   double force_deviation_m_per_s2 = 0.1;
   double velocity_sigma_m_per_s = 0.03;  ///< sigma of the zero-velocity update
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 struct EstimatorOptions {
@@ -188,6 +213,9 @@ struct EstimatorOptions {
   SonarOptions sonar;
   GravityAlignmentOptions gravity_alignment;
   int min_landmarks_for_vision = 8;  ///< with fewer in view, a frame is propagated by inertial readings
+
+  /// Throws UsageError where a value is out of its range.
+  void check() const;
 };
 
 }  // namespace lodeline

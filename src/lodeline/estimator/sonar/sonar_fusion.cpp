@@ -42,7 +42,6 @@ const char* toString(SonarStatus status) {
 
 SonarFusion::SonarFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
     : options_(options.sonar), diagnostics_(diagnostics), scale_sigma_(options.sonar.greatest_scale_sigma) {
-  options_.check();
   if (!options_.use || !rig.sonar) return;
   sonar_ = rig.sonar;
   options_.surface_angle_rad = std::max(options_.surface_angle_rad, 0.5 * sonar_->beam_width_rad);
@@ -103,7 +102,7 @@ void SonarFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
   if (!sonar_) return;
   estimate_ = {SonarStatus::NoData};
   const Frame& newest = window.newest();
-  const Frame& before = **std::prev(window.frames().end(), 2);
+  Frame& before = **std::prev(window.frames().end(), 2);
   if (!before.has_motion) return;
   SonarMeasurement measurement;
   measurement.options = options_;
@@ -122,18 +121,20 @@ void SonarFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
       continue;
     }
     if (!agrees(echo, *surface)) {
-      if (estimate_.used == 0) estimate_.status = SonarStatus::Rejected;
+      estimate_.status = SonarStatus::Rejected;
       reportRejections(sample.time);
       continue;
     }
-    estimate_.status = SonarStatus::Used;
     estimate_.innovation_m += echo.range_m - surface->range_m;
-    ++estimate_.used;
     last_used_ = sample.time;
     measurement.echoes.push_back(echo);
   }
-  if (estimate_.used == 0) return;
-  estimate_.innovation_m /= estimate_.used;
+  if (measurement.echoes.empty()) return;
+  estimate_.innovation_m /= static_cast<double>(measurement.echoes.size());
+  // Echoes of landmarks whose distances are not known yet make no factor, or make it later.
+  estimate_.used = static_cast<int>(
+      measurement.factors({marginalizer.factors(), window, &before, window.newest()}).size());
+  estimate_.status = estimate_.used > 0 ? SonarStatus::Used : SonarStatus::NoSurface;
   window.newest().measurements.set(std::move(measurement));
 }
 

@@ -18,9 +18,11 @@ std::optional<SensorAxes> valueOf(const ParameterBlock* axes) {
 }  // namespace
 
 EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options) {
+  options.check();
   ImuAxesOptions& axes = options.imu_axes;
-  const bool is_calibrated =
-      rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz < axes.calibrated_below_rad_per_s_sqrtHz;
+  const bool is_calibrated = imu_axes::areCalibrated(rig.imu.noise);
+  if (axes.uncalibrated_sigma > 0.0)
+    axes.uncalibrated_sigma = rig.imu.noise.axes_sigma.value_or(axes.uncalibrated_sigma);
   if (is_calibrated || axes.gyroscope_sigma <= 0.0) axes.uncalibrated_sigma = 0.0;
   for (double* sigma : {&axes.gyroscope_sigma, &axes.accelerometer_sigma})
     if (*sigma > 0.0) *sigma = std::max(*sigma, axes.uncalibrated_sigma);

@@ -33,10 +33,7 @@ struct Outcome {
 
 /// Options with the given sigma of the gyroscope's axes; the accelerometer's axes are held.
 ImuAxesOptions forGyroscope(double sigma, double uncalibrated_sigma = 0.0) {
-  return {.gyroscope_sigma = sigma,
-          .calibrated_below_rad_per_s_sqrtHz = 0.0,
-          .uncalibrated_sigma = uncalibrated_sigma,
-          .accelerometer_sigma = 0.0};
+  return {.gyroscope_sigma = sigma, .uncalibrated_sigma = uncalibrated_sigma, .accelerometer_sigma = 0.0};
 }
 
 ImuAxesOptions forAccelerometer(double sigma) {
@@ -121,12 +118,23 @@ TEST(InertialStates, AreDoubtedOfALoudGyroscopeThatIsNotHeld) {
   Rig rig;
   EstimatorOptions options;
   ImuAxesOptions& axes = options.imu_axes;
-  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * axes.calibrated_below_rad_per_s_sqrtHz;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
   EXPECT_FALSE(optionsFor(rig, options).imu_axes.areDoubted());
-  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * axes.calibrated_below_rad_per_s_sqrtHz;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
   EXPECT_TRUE(optionsFor(rig, options).imu_axes.areDoubted());
   axes.gyroscope_sigma = 0.0;
   EXPECT_FALSE(optionsFor(rig, options).imu_axes.areDoubted());
+}
+
+TEST(InertialStates, AreDoubtedAsTheCalibrationStates) {
+  Rig rig;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 2.0 * imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
+  rig.imu.noise.axes_sigma = 0.001;
+  EXPECT_FALSE(optionsFor(rig, {}).imu_axes.areDoubted());
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.5 * imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
+  rig.imu.noise.axes_sigma = 0.02;
+  EXPECT_EQ(optionsFor(rig, {}).imu_axes.uncalibrated_sigma, 0.02);
+  EXPECT_EQ(optionsFor(rig, {}).imu_axes.gyroscope_sigma, 0.02);
 }
 
 // An estimated error must not be part of the noise as well.
@@ -137,7 +145,7 @@ TEST(InertialStates, LeaveLittleToTheMotionNoiseOfACalibratedImu) {
   const double beside = options.imu_axes.error_beside_states;
   const auto axisError = [&] { return optionsFor(rig, options).preintegration.motion_noise.axis_error; };
   ASSERT_LT(beside, doubted);
-  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * options.imu_axes.calibrated_below_rad_per_s_sqrtHz;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 0.9 * imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
   EXPECT_EQ(axisError(), beside);
   options.imu_axes.accelerometer_sigma = 0.0;
   EXPECT_EQ(axisError(), doubted) << "these axes are no states";
@@ -145,7 +153,7 @@ TEST(InertialStates, LeaveLittleToTheMotionNoiseOfACalibratedImu) {
   options.preintegration.motion_noise.axis_error = 0.5 * beside;
   EXPECT_EQ(axisError(), 0.5 * beside) << "less was asked for";
   options.preintegration.motion_noise.axis_error = doubted;
-  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * options.imu_axes.calibrated_below_rad_per_s_sqrtHz;
+  rig.imu.noise.gyroscope_density_rad_per_s_sqrtHz = 1.1 * imu_axes::kCalibratedBelow_rad_per_s_sqrtHz;
   EXPECT_EQ(axisError(), doubted) << "perhaps never calibrated";
 }
 
@@ -221,7 +229,6 @@ ConsistencyRow biasedStarts(double uncalibrated_sigma) {
   options.estimator = honestOptions(options.scene);
   options.estimator.initial_state.accelerometer_bias_sigma_m_per_s2 = 0.25 * kBias_m_per_s2;
   options.estimator.imu_axes = {.gyroscope_sigma = 0.001,
-                                .calibrated_below_rad_per_s_sqrtHz = 0.0,
                                 .uncalibrated_sigma = uncalibrated_sigma,
                                 .uncalibrated_bias_sigma_m_per_s2 = kBias_m_per_s2,
                                 .accelerometer_sigma = 0.0};

@@ -8,8 +8,8 @@
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/problem/window_terms.h"
 #include "lodeline/estimator/solver/marginalizer.h"
+#include "lodeline/estimator/solver/window_solver.h"
 #include "lodeline/estimator/solver/window_update.h"
-#include "lodeline/estimator/trials/test_ceres.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/geometry/so3.h"
 

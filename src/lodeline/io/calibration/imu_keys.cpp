@@ -116,6 +116,13 @@ ImuNoise readImuNoise(CalibrationMap* map) {
   noise.gyroscope_random_walk_rad_per_s2_sqrtHz = density("gyroscope_random_walk", map);
   noise.accelerometer_density_m_per_s2_sqrtHz = density("accelerometer_noise_density", map);
   noise.accelerometer_random_walk_m_per_s3_sqrtHz = density("accelerometer_random_walk", map);
+  if (map->has("axes_sigma")) {
+    noise.axes_sigma = map->number("axes_sigma");
+    if (!(*noise.axes_sigma > 0.0) || *noise.axes_sigma > 0.2) {
+      throw InputError(fmt::format("{} is {:g}; it must be a relative error above 0 and below 0.2",
+                                   map->atLine("axes_sigma"), *noise.axes_sigma));
+    }
+  }
   return noise;
 }
 

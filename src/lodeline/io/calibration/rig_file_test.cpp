@@ -61,6 +61,16 @@ TEST_F(RigFileTest, ReadsOurOwnKeys) {
   EXPECT_NEAR(file.water.depth_m(101325.0 + 1025.0 * 9.80665 * 12.5), 12.5, 1e-9);
 }
 
+TEST_F(RigFileTest, SaysHowWellTheAxesOfTheImuAreKnown) {
+  EXPECT_FALSE(read({imu_ + camera_}).rig.imu.noise.axes_sigma);
+  const RigFile file = read({imu_ + "  axes_sigma: 0.02\n" + camera_});
+  EXPECT_EQ(file.rig.imu.noise.axes_sigma, 0.02);
+  EXPECT_EQ(read({rigText(file)}).rig.imu.noise.axes_sigma, 0.02);
+  for (const char* wrong : {"0", "-0.01", "2", "nan"})
+    EXPECT_THAT(refusal({imu_ + "  axes_sigma: " + wrong + "\n" + camera_}), HasSubstr("axes_sigma"))
+        << wrong;
+}
+
 TEST_F(RigFileTest, IsReadAsARigOfCamerasAndImu) {
   const auto readAsRig = [&](const std::string& text) {
     place_.write("rig.yaml", text);

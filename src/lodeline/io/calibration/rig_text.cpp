@@ -74,6 +74,9 @@ std::string imuText(const ImuCalibration& imu, const std::optional<ImuCorrection
       "m/s^3/sqrt(Hz)\n",
       noise.gyroscope_density_rad_per_s_sqrtHz, noise.gyroscope_random_walk_rad_per_s2_sqrtHz,
       noise.accelerometer_density_m_per_s2_sqrtHz, noise.accelerometer_random_walk_m_per_s3_sqrtHz);
+  if (noise.axes_sigma)
+    text += fmt::format("  axes_sigma: {}  # scale errors and misalignment of the axes, relative and rad\n",
+                        *noise.axes_sigma);
   if (correction) text += correctionText(*correction);
   return text + rateText(imu.rate_hz);
 }

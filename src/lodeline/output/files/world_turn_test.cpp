@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/output/files/landmark_writer.h"
 #include "lodeline/output/files/run_table.h"
 #include "lodeline/output/files/state_writer.h"
-#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/angles.h"
 

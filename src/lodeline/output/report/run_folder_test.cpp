@@ -99,7 +99,7 @@ TEST_F(RunFolder, SummaryTellsWhatBecameOfTheMagnetometer) {
   EXPECT_NE(text.find("used 33.3 %, norm 66.7 %; heading owes little to it"), std::string::npos);
 }
 
-TEST_F(RunFolder, StatesEndWithThePressureSensor) {
+TEST_F(RunFolder, StatesHaveThePressureSensor) {
   StateWriter writer(folder_);
   FrameEstimate estimate = estimateAt(5, Vec3::Zero());
   writer.write(estimate);
@@ -107,10 +107,12 @@ TEST_F(RunFolder, StatesEndWithThePressureSensor) {
   estimate.depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
   writer.write(estimate);
   const std::string states = read("states.csv");
-  EXPECT_NE(states.find(",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s]\n"),
-            std::string::npos);
-  EXPECT_NE(states.find(",off,nan,nan,nan,nan\n"), std::string::npos);
-  EXPECT_NE(states.find(",jump,9.25,7.5,0.975,0.5\n"), std::string::npos);
+  EXPECT_NE(
+      states.find(
+          ",pressure,depth [m],depth_at_origin [m],density_ratio,pressure_lag [s],posterior_sigma_p_x [m],"),
+      std::string::npos);
+  EXPECT_NE(states.find(",off,nan,nan,nan,nan,"), std::string::npos);
+  EXPECT_NE(states.find(",jump,9.25,7.5,0.975,0.5,"), std::string::npos);
 }
 
 TEST_F(RunFolder, SummaryTellsOfDepthAndWhatCarriedTheScale) {

@@ -119,7 +119,7 @@ void Settings::addChoice(const std::string& key, const std::string& documentatio
                          std::vector<std::string> names, std::function<void(size_t)> store,
                          std::function<size_t()> current) {
   const std::string choices = fmt::format("one of {}", fmt::join(names, ", "));
-  add({key, documentation + " (" + choices + ")", choices,
+  add({key, documentation + " O" + choices.substr(1) + ".", choices,
        [names, store](const Text& text) {
          const auto found = std::find_if(names.begin(), names.end(), [&text](const std::string& name) {
            return !text.is_list && equalIgnoringCase(name, text.scalars[0]);

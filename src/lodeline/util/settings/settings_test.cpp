@@ -112,7 +112,7 @@ TEST_F(SettingsTest, WritesSectionsTogetherWithDocumentation) {
             "  # local contrast\n  equalize: true\n"
             "  # pyramid\n  scales: [1, 0.1]\n"
             "magnetometer:\n"
-            "  # residual (one of paper, absolute, off)\n  model: absolute\n"
+            "  # residual One of paper, absolute, off.\n  model: absolute\n"
             "  prior:\n    # offset\n    # prior\n    sigma_T: 3e-07\n"
             "# of the dive\nname: \"a \\\"deep\\\" one\"\n");
 }

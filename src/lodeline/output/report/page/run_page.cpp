@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/output/report/page/base64.h"
 #include "lodeline/output/report/page/row_choice.h"
 #include "lodeline/output/report/page/table_json.h"
-#include "lodeline/output/files/landmark_file.h"
 #include "lodeline/util/csv_fields.h"
 
 namespace lodeline {

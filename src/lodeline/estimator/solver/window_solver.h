@@ -5,8 +5,9 @@
 
 namespace lodeline {
 
-/// Minimizes the cost over all variables of the window with Ceres: an independent solver that tests compare
-/// updateWindow() with. It uses one thread.
+/// Minimizes the cost over all variables of the window with Ceres, on one thread. It damps landmarks as well
+/// as frames, which a start of one camera needs: its scale changes by factors on the way. Tests compare
+/// updateWindow() with it.
 SolveSummary solveWithCeres(Window& window, const Prior& prior, const FactorBuilder& factors,
                             const SolveLimits& limits);
 

@@ -1,4 +1,4 @@
-#include "lodeline/estimator/trials/test_ceres.h"
+#include "lodeline/estimator/solver/window_solver.h"
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
