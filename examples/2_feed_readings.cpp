@@ -1,5 +1,5 @@
-// Feeds readings to the odometry as the drivers of a rig do, while it estimates on a thread of its own. Here
-// the readings come from a recording, faster than they were measured:
+// Feeds live readings to the odometry, which estimates on a second thread. The readings come from a recording
+// and are fed faster than in real time:
 //   example_2_feed_readings FOLDER [SECONDS]
 
 #include <chrono>

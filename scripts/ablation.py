@@ -108,6 +108,10 @@ def geometric_mean(values):
     return math.exp(sum(map(math.log, values)) / len(values))
 
 
+def row(cells):
+    return "| " + " | ".join(cells) + " |"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("work", type=Path)
@@ -123,7 +127,8 @@ def main():
         with ThreadPoolExecutor(arguments.jobs) as pool:
             return list(pool.map(lambda dive: errors(arguments.program, arguments.work, *dive, settings), dives))
 
-    lines = ["| mechanism left out | position, ratio | rotation, ratio | worst position | worst rotation |", "| --- | --- | --- | --- | --- |"]
+    columns = ["mechanism left out", "position, ratio", "rotation, ratio", "worst position", "worst rotation"]
+    lines = [row(columns), row(["---"] * len(columns))]
     references = {False: measure(["magnetometer.model=off"]), True: measure([])}
     for name, settings, magnetic in MECHANISMS:
         if not settings or (arguments.only and name not in arguments.only):
@@ -131,7 +136,8 @@ def main():
         tried = settings if magnetic else ["magnetometer.model=off", *settings]
         pairs = list(zip(measure(tried), references[magnetic]))
         ratios = [[without[i] / reference[i] for without, reference in pairs] for i in range(2)]
-        lines.append("| " + " | ".join([name, *(f"{geometric_mean(r):.3f}" for r in ratios), *(f"{max(r):.2f}" for r in ratios)]) + " |")
+        means, worst = [f"{geometric_mean(r):.3f}" for r in ratios], [f"{max(r):.2f}" for r in ratios]
+        lines.append(row([name, *means, *worst]))
         print(lines[-1], flush=True)
         if arguments.markdown:
             arguments.markdown.write_text("\n".join(lines) + "\n")

@@ -48,7 +48,7 @@ class OdometrySettings {
 };
 
 /// Estimates the state of a rig at every image of its first camera, from a recording (openEuroc(), openBag())
-/// or from readings as they are measured (LiveSource):
+/// or from live readings (LiveSource):
 ///
 ///     Odometry odometry(source.get(), {}, &diagnostics);
 ///     while (const auto estimate = odometry.next()) use(estimate->state, estimate->covariance);

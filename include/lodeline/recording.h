@@ -60,7 +60,7 @@ class MeasurementSource {
   /// The sensors, with the cameras in the order of the index of nextImage().
   virtual const Rig& rig() const = 0;
 
-  /// Whether readings arrive as they are measured, so that reading in advance means waiting.
+  /// Whether the source is live: reading ahead then waits for the sensors.
   virtual bool isLive() const { return false; }
 
   virtual std::optional<ImuSample> nextImu() = 0;

@@ -9,7 +9,8 @@ class App;
 
 namespace lodeline {
 
-/// `help COMMAND` as `COMMAND --help`, and `help` alone as `--help`; other words as they are.
+/// Replaces `help COMMAND` by `COMMAND --help`, and `help` alone by `--help`. Returns other arguments
+/// unchanged.
 std::vector<std::string> withHelpAsOption(std::vector<std::string> words);
 
 /// The words of the command line with each position (`--site`, `--entrance`) as one word LAT,LON,HEIGHT. Its

@@ -118,6 +118,7 @@ void EstimatorLog::finish(const Estimator& estimator) {
   if (newest_) states_.push_back(std::move(*newest_));
   newest_.reset();
   for (const auto& state : estimator.window().globals()) globals_[state->name] = state->value;
+  sensor_states_.clear();
   for (size_t i = 0; i < estimator.sensors().size(); ++i) {
     for (BatchState& state : estimator.sensors()[i]->batchStates(estimator.window()))
       sensor_states_.push_back({i, std::move(state)});

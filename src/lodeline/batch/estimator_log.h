@@ -42,7 +42,7 @@ class EstimatorLog {
   /// To be called after every Estimator::add() with its input and output.
   void add(const FrameTracks& tracks, std::span<const ImuSample> imu, const FrameEstimate& estimate,
            const Estimator& estimator);
-  /// To be called after the last frame.
+  /// To be called after the last frame; may be called again after further ones.
   void finish(const Estimator& estimator);
 
   /// Estimates of all frames that have a pose.
