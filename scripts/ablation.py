@@ -3,7 +3,8 @@
 
 Runs a fixed set of dives with the default settings and with each mechanism switched off, and prints a table: geometric
 means over the dives of error without the mechanism / error with it, in position and rotation. A value above 1 means that
-the mechanism helps. The dives: three IMUs, clean and field realism, stereo and one camera; and a real recording if there is one.
+the mechanism helps. The dives have three IMUs, clean and field realism, and two cameras or one. A real recording is added if
+there is one.
 
     ablation.py WORK [--program build/release/bin/lodeline] [--only NAME ...] [--markdown FILE]
 
@@ -94,7 +95,8 @@ def errors(program, work, recording, mono, settings):
         if calibration and "magnetometer.calibration=" not in settings:
             command += ["--mag-calibration", calibration]
         call(command | Text())
-        truth = next(f for f in (folder / "mav0/state_groundtruth_estimate0").iterdir() if f.name in ("data.csv", "gt_tum.txt"))
+        truths = [folder / "mav0/state_groundtruth_estimate0" / name for name in ("data.csv", "gt_tum.txt")]
+        truth = next(file for file in truths if file.exists())
         call([program, "evaluate", out, truth, "--interpolate", "--align", "se3", "--json", figures] | Text())
     read = json.loads(figures.read_text())
     return position_and_rotation(read)
