@@ -76,12 +76,16 @@ enum class Mode {
 };
 const char* toString(Mode mode);
 
+/// Changes of a camera's intrinsics: both focal lengths (relative), principal point (px), two radial and two
+/// tangential coefficients, two of a tilted port. docs/theory/self-calibration.md has the formula.
+using IntrinsicsCorrection = Eigen::Matrix<double, 10, 1>;
+
 /// Present values of the camera calibration states.
 struct CameraCorrections {
   std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m
   double time_offset_s = 0.0;                           ///< to be added to the images' time stamps
   /// Of each camera as in factors/intrinsics_factor.h; empty where the intrinsics are not estimated.
-  std::vector<Eigen::Matrix<double, 6, 1>> intrinsics;
+  std::vector<IntrinsicsCorrection> intrinsics;
   bool are_files_held = false;  ///< of intrinsics and secondary rotations, see IntrinsicsModelSelection
 };
 

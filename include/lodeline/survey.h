@@ -34,7 +34,7 @@ struct RunFolder {
   /// [phi, xi] (rad, m) of each camera of the run, as in factors/calibrated_reprojection_factor.h; empty
   /// where they were not estimated.
   std::vector<Eigen::Matrix<double, 6, 1>> camera_corrections;
-  std::vector<Eigen::Matrix<double, 6, 1>>
+  std::vector<IntrinsicsCorrection>
       intrinsics_corrections;  ///< as in factors/intrinsics_factor.h; may be empty
 };
 

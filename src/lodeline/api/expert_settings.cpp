@@ -92,6 +92,12 @@ void bindCameraCalibration(Settings* settings, CameraCalibrationOptions* cameras
                  "Error of the principal point. `0` keeps it fixed.");
   settings->bind("expert.camera_calibration.radial_sigma", &cameras->radial_sigma,
                  "Error of the first two radial distortion coefficients. `0` keeps them fixed.");
+  settings->bind("expert.camera_calibration.tangential_sigma", &cameras->tangential_sigma,
+                 "Error of both tangential distortion coefficients. `0` keeps them fixed.");
+  settings->bind(
+      "expert.camera_calibration.port_tilt_sigma", &cameras->port_tilt_sigma,
+      "Effect of a tilted port that the lens of the file does not contain. `0.012` is a tilt of 0.8 "
+      "degrees, `0` none.");
   settings->bind("expert.camera_calibration.trust_confirmed_files", &cameras->trust_confirmed_files,
                  "Keep intrinsics and stereo rotation fixed at the values of their files while the images "
                  "confirm them.");

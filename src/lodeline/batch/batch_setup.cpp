@@ -198,6 +198,7 @@ void BatchProblem::addStartPrior(const EstimatorLog& record) {
 void BatchProblem::holdIntrinsics(const GlobalValues& globals) {
   CameraCalibrationOptions held = options_.camera_calibration;
   held.focal_length_sigma = held.principal_point_sigma_px = held.radial_sigma = 0.0;
+  held.tangential_sigma = held.port_tilt_sigma = 0.0;
   Prior prior;
   addIntrinsicsStates(window_, prior, static_cast<int>(cameras_.size()), held);
   if (prior.empty()) return;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,8 @@ struct CameraModel {
   /// Name of the model whose first two parameters are coefficients of the second and fourth power of the
   /// radius in `plane`, and which contains this model. Empty where there is none.
   std::string_view radial_model = {};
+  /// Place of the first of two tangential coefficients among the parameters, if the model has any.
+  std::optional<size_t> tangential_at = {};
   std::vector<ColmapForm> colmap = {};  ///< by ascending number of parameters
   TypicalLens typical;
 

@@ -67,6 +67,7 @@ CameraModel radialTangentialModel() {
       },
       .plane = RadialPlane::Tangent,
       .radial_model = "radial-tangential",
+      .tangential_at = 2,
       .colmap = {{"OPENCV", 4}, {"FULL_OPENCV", 8}},
       .typical = {0.7, {-0.172, 0.058, 3e-4, -2e-4}},
   };

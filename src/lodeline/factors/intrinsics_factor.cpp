@@ -8,10 +8,42 @@
 namespace lodeline {
 namespace {
 
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+/// Coefficients [k_1, k_2, p_1, p_2, q_1, q_2] of an intrinsics block.
+Eigen::Map<const Vec6> distortionOf(const double* intrinsics) {
+  return Eigen::Map<const Vec6>(intrinsics + 4);
+}
+
+// Part of the effect of a tilt that points outwards, see the header.
+constexpr double kTiltOutwards = 1.5;
+
+/// Derivatives of the shift d(p), in the plane, by these coefficients.
+Eigen::Matrix<double, 2, 6> shapesAt(const Vec2& p) {
+  const double squared = p.squaredNorm();
+  Eigen::Matrix<double, 2, 6> shapes;
+  shapes << squared * p, squared * squared * p, squared * Vec2::UnitY() + 2.0 * p.y() * p,
+      squared * Vec2::UnitX() + 2.0 * p.x() * p,
+      squared * (squared * Mat2::Identity() + kTiltOutwards * p * p.transpose());
+  return shapes;
+}
+
+/// Derivative of the shift d(p) by p.
+Mat2 shiftByPlace(const Vec2& p, const Vec6& distortion) {
+  const double squared = p.squaredNorm();
+  const Vec2 tangential(distortion[3], distortion[2]), tilt = distortion.tail<2>();
+  const double tilted = kTiltOutwards * tilt.dot(p);
+  const double along =
+      (distortion[0] + distortion[1] * squared) * squared + 2.0 * tangential.dot(p) + squared * tilted;
+  const double outwards = 2.0 * (distortion[0] + 2.0 * distortion[1] * squared + tilted);
+  return along * Mat2::Identity() + outwards * p * p.transpose() +
+         2.0 * (tangential * p.transpose() + p * tangential.transpose()) +
+         squared * (4.0 * tilt * p.transpose() + kTiltOutwards * p * tilt.transpose());
+}
+
 /// Predicted position of a point in the image.
 struct Place {
-  Vec2 from_centre_sigmas, in_plane, outwards_sigmas;
-  double radius_squared;
+  Vec2 from_centre_sigmas, in_plane;
 
   Place(const DirectionMeasurement& measurement, const Vec2& residual) {
     // A point behind the camera has no predicted pixel; the observed pixel stands in for it.
@@ -19,30 +51,24 @@ struct Place {
     const Vec2 moved = residual.squaredNorm() < kFar_sigmas * kFar_sigmas ? residual : Vec2::Zero();
     from_centre_sigmas = measurement.from_centre_sigmas + moved;
     in_plane = measurement.in_plane + measurement.in_plane_by_sigmas * moved;
-    outwards_sigmas = measurement.focal_lengths_sigmas.cwiseProduct(in_plane);
-    radius_squared = in_plane.squaredNorm();
   }
-  /// Change of the radial polynomial at this position, k_1 |p|^2 + k_2 |p|^4.
-  double profile(const double* intrinsics) const {
-    return intrinsics[4] * radius_squared + intrinsics[5] * radius_squared * radius_squared;
-  }
-  Vec2 shift(const DirectionMeasurement& measurement, const double* intrinsics) const {
-    return Vec2(intrinsics[0], intrinsics[1]).cwiseProduct(from_centre_sigmas) +
-           measurement.sigmas_per_px * Vec2(intrinsics[2], intrinsics[3]) +
-           profile(intrinsics) * outwards_sigmas;
+  Eigen::Matrix<double, 2, kIntrinsicsSize> shapes(const DirectionMeasurement& measurement) const {
+    Eigen::Matrix<double, 2, kIntrinsicsSize> shapes;
+    shapes << Mat2(from_centre_sigmas.asDiagonal()), measurement.sigmas_per_px * Mat2::Identity(),
+        measurement.focal_lengths_sigmas.asDiagonal() * shapesAt(in_plane);
+    return shapes;
   }
 };
 
-/// The lens of the same model that is closest to `lens` with the profile k_1 |p|^2 + k_2 |p|^4 added.
-CameraCalibration withProfile(const CameraCalibration& lens, double k_1, double k_2) {
+/// The lens of the same model that is closest to `lens` with the shift d(p) added.
+CameraCalibration withDistortion(const CameraCalibration& lens, const Vec6& distortion) {
   const auto camera = makeCamera(lens);
   const Vec2 focal_lengths_px = camera->focalLengthsOnAxis_px();
   std::vector<Sighting> sightings = imageSightings(*camera);
   for (Sighting& sighting : sightings) {
     Mat23 by_ray;
     const Vec2 place = placeInPlane(camera->model().plane, sighting.ray_C, &by_ray);
-    const double squared = place.squaredNorm();
-    sighting.pixel += (k_1 * squared + k_2 * squared * squared) * focal_lengths_px.cwiseProduct(place);
+    sighting.pixel += focal_lengths_px.cwiseProduct(shapesAt(place) * distortion);
   }
   return fitCamera(lens, std::move(sightings)).calibration;
 }
@@ -51,22 +77,20 @@ CameraCalibration withProfile(const CameraCalibration& lens, double k_1, double 
 
 Vec2 intrinsicsShift(const DirectionMeasurement& measurement, const Vec2& residual,
                      const double* intrinsics) {
-  return Place(measurement, residual).shift(measurement, intrinsics);
+  return Place(measurement, residual).shapes(measurement) *
+         Eigen::Map<const Eigen::Matrix<double, kIntrinsicsSize, 1>>(intrinsics);
 }
 
 IntrinsicsEffect intrinsicsEffect(const DirectionMeasurement& measurement, const Vec2& residual,
                                   const double* intrinsics) {
   const Place place(measurement, residual);
-  const double squared = place.radius_squared;
   IntrinsicsEffect effect;
-  effect.by_intrinsics << Mat2(place.from_centre_sigmas.asDiagonal()),
-      measurement.sigmas_per_px * Mat2::Identity(), squared * place.outwards_sigmas,
-      squared * squared * place.outwards_sigmas;
-  effect.shift = place.shift(measurement, intrinsics);
-  Mat2 by_place = 2.0 * (intrinsics[4] + 2.0 * intrinsics[5] * squared) * place.outwards_sigmas *
-                  place.in_plane.transpose();
-  by_place.diagonal() += place.profile(intrinsics) * measurement.focal_lengths_sigmas;
-  effect.by_residual = by_place * measurement.in_plane_by_sigmas;
+  effect.by_intrinsics = place.shapes(measurement);
+  effect.shift =
+      effect.by_intrinsics * Eigen::Map<const Eigen::Matrix<double, kIntrinsicsSize, 1>>(intrinsics);
+  effect.by_residual = measurement.focal_lengths_sigmas.asDiagonal() *
+                       shiftByPlace(place.in_plane, distortionOf(intrinsics)) *
+                       measurement.in_plane_by_sigmas;
   effect.by_residual.diagonal() += Vec2(1.0 + intrinsics[0], 1.0 + intrinsics[1]);
   return effect;
 }
@@ -87,15 +111,20 @@ CameraCalibration correctedIntrinsics(const CameraCalibration& file, const doubl
   lens.fy_px *= 1.0 + intrinsics[1];
   lens.cx_px += intrinsics[2];
   lens.cy_px += intrinsics[3];
-  const double k_1 = intrinsics[4], k_2 = intrinsics[5];
-  if (k_1 == 0.0 && k_2 == 0.0) return lens;
+  const Vec6 distortion = distortionOf(intrinsics);
+  if (distortion.isZero(0.0)) return lens;
   const CameraModel* radial = findCameraModel(cameraModel(file).radial_model);
+  const bool is_in_model = radial && distortion.tail<2>().isZero(0.0) &&
+                           (radial->tangential_at || distortion.segment<2>(2).isZero(0.0));
   // Behind a port, the corrections are those of directions in the water and not of the lens.
-  if (radial == nullptr || file.port) return withProfile(lens, k_1, k_2);
+  if (!is_in_model || file.port) return withDistortion(lens, distortion);
   lens.model = radial->name;
   lens.distortion.resize(std::max(lens.distortion.size(), radial->counts.front()), 0.0);
-  lens.distortion[0] += k_1;
-  lens.distortion[1] += k_2;
+  for (size_t i = 0; i < 2; ++i) {
+    lens.distortion[i] += distortion[static_cast<Eigen::Index>(i)];
+    if (radial->tangential_at)
+      lens.distortion[*radial->tangential_at + i] += distortion[static_cast<Eigen::Index>(i + 2)];
+  }
   return lens;
 }
 

@@ -14,11 +14,14 @@ namespace {
 using Intrinsics = Eigen::VectorXd;
 
 Intrinsics intrinsics(double focal_u, double focal_v, double centre_u_px, double centre_v_px,
-                      double k_1 = 0.0, double k_2 = 0.0) {
-  return (Intrinsics(kIntrinsicsSize) << focal_u, focal_v, centre_u_px, centre_v_px, k_1, k_2).finished();
+                      double k_1 = 0.0, double k_2 = 0.0, double p_1 = 0.0, double p_2 = 0.0,
+                      const Vec2& tilt = Vec2::Zero()) {
+  return (Intrinsics(kIntrinsicsSize) << focal_u, focal_v, centre_u_px, centre_v_px, k_1, k_2, p_1, p_2, tilt)
+      .finished();
 }
 
-const Intrinsics kWrongLens = intrinsics(0.006, -0.004, 2.5, -1.5, 0.008, -0.01);
+const Intrinsics kWrongLens =
+    intrinsics(0.006, -0.004, 2.5, -1.5, 0.008, -0.01, 0.002, -0.001, Vec2(0.004, -0.003));
 
 /// Pixel of a point by the formula in intrinsics_factor.h.
 Vec2 correctedPixel(const CameraCalibration& file, const Intrinsics& lens, const Vec3& point_C) {
@@ -27,19 +30,24 @@ Vec2 correctedPixel(const CameraCalibration& file, const Intrinsics& lens, const
   Mat23 by_ray;
   const Vec2 place = placeInPlane(camera->model().plane, point_C.normalized(), &by_ray);
   const double squared = place.squaredNorm();
+  const double u = place.x(), v = place.y();
+  const Vec2 tangential(2.0 * lens[6] * u * v + lens[7] * (squared + 2.0 * u * u),
+                        lens[6] * (squared + 2.0 * v * v) + 2.0 * lens[7] * u * v);
   return pixel + lens.head<2>().cwiseProduct(pixel - Vec2(file.cx_px, file.cy_px)) + lens.segment<2>(2) +
-         (lens[4] * squared + lens[5] * squared * squared) *
-             camera->focalLengthsOnAxis_px().cwiseProduct(place);
+         camera->focalLengthsOnAxis_px().cwiseProduct(
+             (lens[4] * squared + lens[5] * squared * squared) * place + tangential +
+             squared * (squared * lens.tail<2>() + 1.5 * lens.tail<2>().dot(place) * place));
 }
 
 /// Measurement of the scene's landmark by a camera with corrected intrinsics `lens`, interpreted with the
-/// intrinsics of the file. A model without radial coefficients cannot describe every such lens; the formula
+/// intrinsics of the file. A model without these coefficients cannot describe every such lens; the formula
 /// then gives the pixel.
 DirectionMeasurement seenThrough(const CameraCalibration& file, const Intrinsics& lens, const Vec3& point_C,
                                  double sigma_px) {
-  const Vec2 pixel = cameraModel(file).radial_model.empty()
-                         ? correctedPixel(file, lens, point_C)
-                         : *makeCamera(correctedIntrinsics(file, lens.data()))->project(point_C);
+  const CameraModel* corrected = findCameraModel(cameraModel(file).radial_model);
+  const bool has_all = corrected && corrected->tangential_at && lens.tail<2>().isZero();
+  const Vec2 pixel = has_all ? *makeCamera(correctedIntrinsics(file, lens.data()))->project(point_C)
+                             : correctedPixel(file, lens, point_C);
   const auto camera = makeCamera(file);
   return DirectionMeasurement::fromBearing(*camera, *camera->unproject(pixel), sigma_px);
 }
@@ -68,7 +76,7 @@ TEST_P(IntrinsicsOfAModel, LeaveNothingAtTheTrueLens) {
 // unexplained there.
 TEST_P(IntrinsicsOfAModel, ExplainAWrongProfileOutToTheBorder) {
   constexpr double kBorder_rad = 0.75;
-  const Intrinsics profile = intrinsics(0.0, 0.0, 0.0, 0.0, 0.01, -0.012);
+  const Intrinsics profile = intrinsics(0.0, 0.0, 0.0, 0.0, 0.01, -0.012, 0.002, -0.001);
   for (double angle_rad = 0.05; angle_rad < kBorder_rad; angle_rad += 0.05) {
     const Vec3 ray(0.6 * std::sin(angle_rad), -0.8 * std::sin(angle_rad), std::cos(angle_rad));
     const DirectionMeasurement seen = seenThrough(file_, profile, ray, 1.0);
@@ -83,12 +91,14 @@ TEST_P(IntrinsicsOfAModel, GiveTheRayThatTheTrueLensMakesOfAPixel) {
   const double by_file_rad = (seen.bearing_C - truth).norm();
   ASSERT_GT(by_file_rad, 0.002);
   EXPECT_LT((rayThrough(seen, kWrongLens.data()) - truth).norm(), 0.03 * by_file_rad);
-  EXPECT_LT((rayThrough(seen, Intrinsics::Zero(6).eval().data()) - seen.bearing_C).norm(), 1e-12);
+  EXPECT_LT((rayThrough(seen, Intrinsics::Zero(kIntrinsicsSize).eval().data()) - seen.bearing_C).norm(),
+            1e-12);
 }
 
 TEST_P(IntrinsicsOfAModel, AreNothingToARightLens) {
-  const IntrinsicsFactor right = factor(seenThrough(file_, Intrinsics::Zero(6), scene_.point_host_C, 0.5));
-  EXPECT_LT(evaluate(right, {scene_.landmark(), Intrinsics::Zero(6)}).norm(), 1e-6);
+  const IntrinsicsFactor right =
+      factor(seenThrough(file_, Intrinsics::Zero(kIntrinsicsSize), scene_.point_host_C, 0.5));
+  EXPECT_LT(evaluate(right, {scene_.landmark(), Intrinsics::Zero(kIntrinsicsSize)}).norm(), 1e-6);
 }
 
 TEST_P(IntrinsicsOfAModel, HaveTheJacobianOfTheirResidual) {
@@ -117,7 +127,8 @@ Intrinsics blockFor(const CameraCalibration& file, const CameraCalibration& trut
   for (const Sighting& sighting : imageSightings(*camera)) {
     const auto measurement = DirectionMeasurement::fromBearing(*camera, sighting.ray_C, 1.0);
     const auto by_block =
-        intrinsicsEffect(measurement, Vec2::Zero(), Intrinsics::Zero(6).eval().data()).by_intrinsics;
+        intrinsicsEffect(measurement, Vec2::Zero(), Intrinsics::Zero(kIntrinsicsSize).eval().data())
+            .by_intrinsics;
     information += by_block.transpose() * by_block;
     gradient += by_block.transpose() * (*true_camera->project(sighting.ray_C) - sighting.pixel);
   }

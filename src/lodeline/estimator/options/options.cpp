@@ -84,7 +84,9 @@ void CameraCalibrationOptions::check() const {
       .notNegative("stereo_position_sigma_m", stereo_position_sigma_m)
       .notNegative("focal_length_sigma", focal_length_sigma)
       .notNegative("principal_point_sigma_px", principal_point_sigma_px)
-      .notNegative("radial_sigma", radial_sigma);
+      .notNegative("radial_sigma", radial_sigma)
+      .notNegative("tangential_sigma", tangential_sigma)
+      .notNegative("port_tilt_sigma", port_tilt_sigma);
 }
 
 void ImuAxesOptions::check() const {

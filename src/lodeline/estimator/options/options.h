@@ -142,6 +142,8 @@ struct CameraCalibrationOptions {
   double focal_length_sigma = 0.003;  ///< relative
   double principal_point_sigma_px = 1.5;
   double radial_sigma = 0.005;  ///< of the first two coefficients
+  double tangential_sigma = 0.003;
+  double port_tilt_sigma = 0.012;  ///< of the coefficients of a tilted port; 0.012 for a tilt of 0.8 degrees
   /// Whether the intrinsics and the rotations of secondary cameras are held at their files while images
   /// confirm these; see IntrinsicsModelSelection.
   bool trust_confirmed_files = true;

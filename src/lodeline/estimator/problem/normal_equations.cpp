@@ -8,7 +8,6 @@ namespace lodeline {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Mat63 = Eigen::Matrix<double, 6, 3>;
 
 // Eigenvalues of a landmark's scaled 3x3 system below this share of the largest count as unobserved.
 constexpr double kRankTolerance = 1e-10;
@@ -129,7 +128,7 @@ struct NormalEquations::LandmarkTerm {
   static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, intrinsics
   struct Part {
     int offset, size;
-    Eigen::Matrix<double, 2, 6> jacobian;  // columns beyond `size` are zero
+    Eigen::Matrix<double, 2, kMostCoordinates> jacobian;  // columns beyond `size` are zero
   };
   Vec2 residual;
   Eigen::Matrix<double, 2, kLandmarkSize, Eigen::RowMajor> by_landmark;
@@ -140,7 +139,7 @@ struct NormalEquations::LandmarkTerm {
 NormalEquations::LandmarkTerm NormalEquations::linearized(const Factor& factor, const double* landmark) {
   const std::vector<int>& sizes = factor.function->parameter_block_sizes();
   LandmarkTerm term;
-  Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor> by_block[LandmarkTerm::kMaxBlocks];
+  Eigen::Matrix<double, 2, kMostCoordinates, Eigen::RowMajor> by_block[LandmarkTerm::kMaxBlocks];
   double* pointers[LandmarkTerm::kMaxBlocks];
   for (size_t b = 0; b < sizes.size(); ++b)
     pointers[b] = factor.blocks[b] == landmark ? term.by_landmark.data() : by_block[b].data();
@@ -152,11 +151,11 @@ NormalEquations::LandmarkTerm NormalEquations::linearized(const Factor& factor, 
     if (factor.blocks[b] == landmark) continue;
     LandmarkTerm::Part& part = term.parts[term.part_count++];
     part.offset = offsetOf(factor.blocks[b], sizes[b]);
-    part.size = std::min(sizes[b], kPoseTangentSize);
+    part.size = sizes[b] == kPoseSize ? kPoseTangentSize : sizes[b];
     part.jacobian.setZero();
     const Eigen::Map<RowMajor> given(pointers[b], 2, sizes[b]);
     if (part.size == kPoseTangentSize) {
-      part.jacobian = scale * given.leftCols<kPoseTangentSize>();
+      part.jacobian.leftCols<kPoseTangentSize>() = scale * given.leftCols<kPoseTangentSize>();
     } else {
       part.jacobian.leftCols(part.size) = scale * given.leftCols(part.size);
     }
@@ -164,9 +163,10 @@ NormalEquations::LandmarkTerm NormalEquations::linearized(const Factor& factor, 
   return term;
 }
 
-void NormalEquations::addProduct(int row, int row_size, int column, int column_size, const Mat6& product) {
+void NormalEquations::addProduct(int row, int row_size, int column, int column_size, const Product& product) {
   if (row_size == kPoseTangentSize && column_size == kPoseTangentSize) {
-    h_.block<kPoseTangentSize, kPoseTangentSize>(row, column) += product;
+    h_.block<kPoseTangentSize, kPoseTangentSize>(row, column) +=
+        product.topLeftCorner<kPoseTangentSize, kPoseTangentSize>();
   } else {
     h_.block(row, column, row_size, column_size) += product.topLeftCorner(row_size, column_size);
   }
@@ -202,7 +202,7 @@ void NormalEquations::addEliminated(const LandmarkFactors& landmark) {
   const Mat3 inverse_root = landmarkInverseRoot(h_landmark);
   const Mat3 inverse = inverse_root * inverse_root.transpose();
   for (const Coupling& row : couplings) {
-    const Mat63 weighted = row.by_landmark * inverse;
+    const BlockByLandmark weighted = row.by_landmark * inverse;
     g_.segment(row.offset, row.size) -= (weighted * g_landmark).head(row.size);
     for (const Coupling& column : couplings) {
       if (column.offset > row.offset) continue;

@@ -27,7 +27,7 @@ class NormalEquations {
   void add(const Factor& factor);
 
   /// Adds the terms of one landmark and eliminates it (Schur complement). Apart from the landmark, its
-  /// factors may have blocks of at most 6 tangent coordinates.
+  /// factors may have blocks of at most kMostCoordinates tangent coordinates.
   void addEliminated(const LandmarkFactors& landmark);
 
   /// Adds 1/2 d^T h d + g^T d, where d stacks the tangent coordinates of `blocks`, each at its offset; only
@@ -54,11 +54,14 @@ class NormalEquations {
   const Eigen::VectorXd gradient() const { return g_.head(size_); }
 
  private:
+  static constexpr int kMostCoordinates = 10;  ///< of a block of a landmark's factors
+  using BlockByLandmark = Eigen::Matrix<double, kMostCoordinates, 3>;
+  using Product = Eigen::Matrix<double, kMostCoordinates, kMostCoordinates>;
   struct LandmarkTerm;
   /// Hessian block between a block and the landmark; rows beyond the block's size are zero.
   struct Coupling {
     int offset, size;
-    Eigen::Matrix<double, 6, 3> by_landmark = Eigen::Matrix<double, 6, 3>::Zero();
+    BlockByLandmark by_landmark = BlockByLandmark::Zero();
   };
   /// Data for back-substitution.
   struct EliminatedLandmark {
@@ -69,7 +72,7 @@ class NormalEquations {
   };
   int offsetOf(double* value, int ambient_size);
   LandmarkTerm linearized(const Factor& factor, const double* landmark);
-  void addProduct(int row, int row_size, int column, int column_size, const Mat6& product);
+  void addProduct(int row, int row_size, int column, int column_size, const Product& product);
 
   std::vector<Block> blocks_;
   std::vector<EliminatedLandmark> eliminated_;

@@ -53,7 +53,8 @@ double placementLossWidth(const ParameterBlock& secondary) { return secondary.pr
 Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options) {
   Eigen::VectorXd sigmas(kIntrinsicsSize);
   sigmas << Vec2::Constant(options.focal_length_sigma), Vec2::Constant(options.principal_point_sigma_px),
-      Vec2::Constant(options.radial_sigma);
+      Vec2::Constant(options.radial_sigma), Vec2::Constant(options.tangential_sigma),
+      Vec2::Constant(options.port_tilt_sigma);
   return sigmas.cwiseMax(kHeld);
 }
 
@@ -95,7 +96,7 @@ Vec3 rayOf(const Observation& observation, const CameraStates& states) {
 }
 
 std::optional<CameraCorrections> cameraCorrections(const Window& window) {
-  using Correction = Eigen::Matrix<double, 6, 1>;
+  using Correction = Eigen::Matrix<double, kExtrinsicsSize, 1>;
   const CameraStates states = cameraStates(window);
   if (!states) return std::nullopt;
   CameraCorrections corrections;
@@ -104,7 +105,7 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
     corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(secondary->value.data()));
   corrections.time_offset_s = states.timeOffset_s();
   for (const ParameterBlock* lens : states.intrinsics)
-    corrections.intrinsics.emplace_back(Eigen::Map<const Correction>(lens->value.data()));
+    corrections.intrinsics.emplace_back(Eigen::Map<const IntrinsicsCorrection>(lens->value.data()));
   corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->priors.empty();
   return corrections;
 }

@@ -8,12 +8,12 @@
 namespace lodeline {
 
 CameraToBodyChainRule::CameraToBodyChainRule(const Window& window, const CameraStates& states,
-                                             const CameraViews& first, int nodes)
+                                             const CameraViews& first, int rows)
     : window_(window),
       states_(states),
       first_(first),
       frames_(static_cast<int>(window.frames().size())),
-      nodes_(nodes) {
+      rows_(rows) {
   for (const auto& frame : window.frames()) {
     if (frame->interpolated) continue;
     append(frame->pose.data(), kPoseSize);
@@ -22,7 +22,7 @@ CameraToBodyChainRule::CameraToBodyChainRule(const Window& window, const CameraS
   if (!states_) return;
   for (ParameterBlock* state : states_.secondary) append(state->value.data(), kExtrinsicsSize);
   for (ParameterBlock* state : states_.intrinsics) append(state->value.data(), kIntrinsicsSize);
-  others_ = 6 * (nodes_ - frames_);
+  others_ = rows_ - 6 * frames_;
   append(states_.camera0->value.data(), kExtrinsicsSize);
   append(states_.time_offset->value.data(), kTimeOffsetSize);
   calibration_ = kExtrinsicsSize + kTimeOffsetSize;
@@ -101,9 +101,9 @@ int CameraToBodyChainRule::firstTouching(int column) const {
 
 void CameraToBodyChainRule::addCalibration(const Eigen::MatrixXd& of_nodes, const Eigen::VectorXd& g_nodes,
                                            Eigen::MatrixXd* h, Eigen::VectorXd* g) const {
-  Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
+  Eigen::MatrixXd by_calibration = Eigen::MatrixXd::Zero(rows_, calibration_);
   for (int i = 0; i < frames_; ++i) by_calibration.middleRows<6>(6 * i) = first_.placement(i).by_calibration;
-  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6 * nodes_, calibration_);
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(rows_, calibration_);
   subtractProduct(of_nodes, by_calibration.transpose(), half);
   half = -half;
   auto rows = h->bottomRows(calibration_);
@@ -123,7 +123,7 @@ Eigen::VectorXd CameraToBodyChainRule::stepOfNodes(const NormalEquations& system
     const int size = block.tangentSize();
     of_blocks.segment(block.offset, size) = step.segment(system.find(block.value)->offset, size);
   }
-  Eigen::VectorXd steps = Eigen::VectorXd::Zero(6 * nodes_);
+  Eigen::VectorXd steps = Eigen::VectorXd::Zero(rows_);
   for (int i = 0; i < frames_; ++i) {
     auto of_frame = steps.segment<6>(6 * i);
     if (calibration_ > 0)

@@ -15,9 +15,8 @@ namespace lodeline {
 /// is interpolated between them) and on the calibration. The other nodes are blocks themselves.
 class CameraToBodyChainRule {
  public:
-  /// All must outlive this object. `nodes`: number of nodes; those of the frames come first.
-  CameraToBodyChainRule(const Window& window, const CameraStates& states, const CameraViews& first,
-                        int nodes);
+  /// All must outlive this object. `rows`: number of coordinates of all nodes; frames come first, six each.
+  CameraToBodyChainRule(const Window& window, const CameraStates& states, const CameraViews& first, int rows);
 
   /// Computes T at the present camera poses.
   void update();
@@ -55,7 +54,7 @@ class CameraToBodyChainRule {
   const Window& window_;
   const CameraStates& states_;
   const CameraViews& first_;
-  int frames_, nodes_;
+  int frames_, rows_;
   int poses_ = 0;        ///< columns of the bodies' poses, which come first...
   int others_ = 0;       ///< ...then those of nodes that are blocks themselves...
   int calibration_ = 0;  ///< ...and last those of the calibration that moves all frames' nodes

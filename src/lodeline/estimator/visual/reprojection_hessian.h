@@ -2,14 +2,17 @@
 
 #include <Eigen/Core>
 
+#include "lodeline/factors/intrinsics_factor.h"
+
 namespace lodeline {
 
 /// Columns of the two rows of an observation: its derivatives by the intrinsics of its camera, by the
 /// extrinsics of a secondary camera and by the pose of its landmark's host (zero where there is none). The
-/// residual is one more column, because gradients are summed like Hessians. The last column is empty, so that
-/// rows are whole SIMD vectors.
+/// residual is one more column, because gradients are summed like Hessians. The last columns are empty, so
+/// that rows are whole SIMD vectors.
 struct ObservationColumns {
-  static constexpr int kIntrinsics = 0, kSecondary = 6, kResidual = 12, kHost = 13, kCount = 20;
+  static constexpr int kIntrinsics = 0, kSecondary = kIntrinsicsSize, kResidual = kSecondary + 6,
+                       kHost = kResidual + 1, kCount = (kHost + 6 + 3) / 4 * 4;
 };
 using ObservationRows = Eigen::Matrix<double, 2, ObservationColumns::kCount, Eigen::RowMajor>;
 

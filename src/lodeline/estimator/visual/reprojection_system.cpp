@@ -54,10 +54,12 @@ std::vector<int> hostsOf(const Window& window, ReprojectionSystem::Of which) {
 
 /// Converts derivatives by the pose of a host's camera (columns) to those by the pose of a target's camera,
 /// at the given baseline from target to host. A motion of one is the reverse motion of the other.
-Mat6 byTarget(const Mat6& by_host, const Vec3& baseline_W) {
-  const Eigen::Matrix<double, 6, 3> by_position = by_host.leftCols<3>();
-  Mat6 by_target;
-  by_target << -by_position, by_position * so3::skew(baseline_W) - by_host.rightCols<3>();
+template <int kRows>
+Eigen::Matrix<double, kRows, 6> byTarget(const Eigen::Matrix<double, kRows, 6>& by_host,
+                                         const Vec3& baseline_W) {
+  const Eigen::Matrix<double, kRows, 3> by_position = by_host.template leftCols<3>();
+  Eigen::Matrix<double, kRows, 6> by_target;
+  by_target << -by_position, by_position * so3::skew(baseline_W) - by_host.template rightCols<3>();
   return by_target;
 }
 
@@ -69,8 +71,14 @@ struct ReprojectionSystem::Linearized {
   Mat23 by_landmark;
 
   auto residual() const { return by_nodes.col(Columns::kResidual); }
-  auto by(int column) const { return by_nodes.middleCols<6>(column); }
-  auto by(int column) { return by_nodes.middleCols<6>(column); }
+  template <int kSize = 6>
+  auto by(int column) const {
+    return by_nodes.middleCols<kSize>(column);
+  }
+  template <int kSize = 6>
+  auto by(int column) {
+    return by_nodes.middleCols<kSize>(column);
+  }
 };
 
 ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& factors, Of which,
@@ -80,8 +88,8 @@ ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& fact
       first_(window, states_, factors, CameraViews::At::kLinearizationPoints, values_.hosts()),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
-      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())),
-      blocks_(window, states_, first_, nodes_) {
+      rows_(6 * (frames_ + cameras_ - 1) + kIntrinsicsSize * static_cast<int>(states_.intrinsics.size())),
+      blocks_(window, states_, first_, rows_) {
   const std::vector<FrameId> ids = idsOf(window);
   std::vector<double> scales;
   for (const auto& frame : window.frames()) scales.push_back(factors.robustScale(*frame));
@@ -203,7 +211,7 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
     const IntrinsicsEffect lens =
         intrinsicsEffect(*observation.measurement, residual.by_file, intrinsicsOf(observation.camera));
     by_point = (lens.by_residual * by_point).eval();
-    term.by(Columns::kIntrinsics) = lens.by_intrinsics;
+    term.by<kIntrinsicsSize>(Columns::kIntrinsics) = lens.by_intrinsics;
   }
   const double weight =
       std::sqrt(landmark.weight / (1.0 + residual.by_intrinsics.squaredNorm() / observation.scale_squared));
@@ -213,7 +221,7 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
   term.by_landmark << by_direction * landmark.base.tangent_C,
       by_point * (seen.translation - measurement.origin_C);
 
-  term.by(Columns::kIntrinsics) *= weight;
+  term.by<kIntrinsicsSize>(Columns::kIntrinsics) *= weight;
   if (observation.camera > 0) {
     const CameraViews::Further& secondary = first_.secondary(observation.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, observation.frame, 0);
@@ -239,17 +247,19 @@ void ReprojectionSystem::eliminate(Landmark* of) {
     const Linearized term = linearize(landmark, observation, residuals_[i]);
     h_landmark.noalias() += term.by_landmark.transpose() * term.by_landmark;
     g_landmark.noalias() += term.by_landmark.transpose() * term.residual();
-    const auto couple = [&](int node, int columns) {
-      coupling.middleRows<6>(6 * node).noalias() += term.by(columns).transpose() * term.by_landmark;
+    const auto couple = [&](int row, const auto& by_node) {
+      coupling.middleRows<std::decay_t<decltype(by_node)>::ColsAtCompileTime>(row).noalias() +=
+          by_node.transpose() * term.by_landmark;
     };
     if (observation.frame != landmark.host) {
       addProducts(term.by_nodes, &by_host_[indexOf(landmark.host, observation.frame, observation.camera)]);
-      couple(observation.frame, Columns::kHost);
+      couple(6 * observation.frame, term.by(Columns::kHost));
     }
     if (!states_) continue;
     addProducts(term.by_nodes, &by_calibration_[static_cast<size_t>(observation.camera)]);
-    if (observation.camera > 0) couple(secondaryNode(observation.camera), Columns::kSecondary);
-    if (!states_.intrinsics.empty()) couple(intrinsicsNode(observation.camera), Columns::kIntrinsics);
+    if (observation.camera > 0) couple(secondaryRow(observation.camera), term.by(Columns::kSecondary));
+    if (!states_.intrinsics.empty())
+      couple(intrinsicsRow(observation.camera), term.by<kIntrinsicsSize>(Columns::kIntrinsics));
   }
   // The effect of the targets' poses follows from the host's effect with each target alone.
   auto of_host = coupling.middleRows<6>(6 * landmark.host);
@@ -263,7 +273,7 @@ void ReprojectionSystem::eliminate(Landmark* of) {
   landmark.inverse_root = landmarkInverseRoot(h_landmark);
   const auto root = [&](auto rows) { rows *= landmark.inverse_root; };
   root(coupling.middleRows(6 * landmark.first_frame, 6 * (landmark.end_frame - landmark.first_frame)));
-  root(coupling.bottomRows(6 * (nodes_ - frames_)));
+  root(coupling.bottomRows(rows_ - 6 * frames_));
   rooted_gradients_.segment<kLandmarkSize>(landmark.column) = landmark.inverse_root.transpose() * g_landmark;
 }
 
@@ -271,22 +281,24 @@ void ReprojectionSystem::addPair(int host, int target) {
   const auto block = [&](int row, int column) { return hessian_.block<6, 6>(6 * row, 6 * column); };
   const Vec3 baseline_W = this->baseline_W(host, target);
   HostProducts sum = HostProducts::Zero();
-  const auto addCalibration = [&](int node, const auto& by_host) {
-    block(node, host) += by_host;
-    block(node, target) += byTarget(by_host, baseline_W);
+  const auto addCalibration = [&](int row, const auto& by_host) {
+    constexpr int kRows = std::decay_t<decltype(by_host)>::RowsAtCompileTime;
+    hessian_.block<kRows, 6>(row, 6 * host) += by_host;
+    hessian_.block<kRows, 6>(row, 6 * target) += byTarget<kRows>(by_host, baseline_W);
   };
   for (int camera = 0; camera < cameras_; ++camera) {
     const HostProducts& of_camera = by_host_[indexOf(host, target, camera)];
     sum += of_camera;
     if (camera > 0 && states_)
-      addCalibration(secondaryNode(camera), of_camera.middleCols<6>(Columns::kSecondary).transpose());
+      addCalibration(secondaryRow(camera), of_camera.middleCols<6>(Columns::kSecondary).transpose());
     if (!states_.intrinsics.empty())
-      addCalibration(intrinsicsNode(camera), of_camera.middleCols<6>(Columns::kIntrinsics).transpose());
+      addCalibration(intrinsicsRow(camera),
+                     of_camera.middleCols<kIntrinsicsSize>(Columns::kIntrinsics).transpose());
   }
   const Mat6 by_host = sum.middleCols<6>(Columns::kHost);
-  const Mat6 by_both = byTarget(by_host, baseline_W);
+  const Mat6 by_both = byTarget<6>(by_host, baseline_W);
   block(host, host) += by_host;
-  block(target, target) += byTarget(by_both.transpose(), baseline_W);
+  block(target, target) += byTarget<6>(by_both.transpose(), baseline_W);
   if (host > target) {
     block(host, target) += by_both;
   } else {
@@ -300,29 +312,26 @@ void ReprojectionSystem::addPair(int host, int target) {
 
 void ReprojectionSystem::addCalibration(int camera) {
   const CalibrationProducts& sum = by_calibration_[static_cast<size_t>(camera)];
-  const auto add = [&](int row, int row_columns, int column, int columns) {
-    hessian_.block<6, 6>(6 * row, 6 * column) += sum.block<6, 6>(row_columns, columns);
+  const auto addNode = [&](int row, int columns, int size) {
+    hessian_.block(row, row, size, size) += sum.block(columns, columns, size, size);
+    gradient_.segment(row, size) += sum.col(Columns::kResidual).segment(columns, size);
   };
-  const auto addNode = [&](int node, int columns) {
-    add(node, columns, node, columns);
-    gradient_.segment<6>(6 * node) += sum.col(Columns::kResidual).segment<6>(columns);
-  };
-  if (camera > 0) addNode(secondaryNode(camera), Columns::kSecondary);
+  if (camera > 0) addNode(secondaryRow(camera), Columns::kSecondary, kExtrinsicsSize);
   if (states_.intrinsics.empty()) return;
-  addNode(intrinsicsNode(camera), Columns::kIntrinsics);
-  if (camera > 0)
-    add(intrinsicsNode(camera), Columns::kIntrinsics, secondaryNode(camera), Columns::kSecondary);
+  addNode(intrinsicsRow(camera), Columns::kIntrinsics, kIntrinsicsSize);
+  if (camera == 0) return;
+  hessian_.block<kIntrinsicsSize, kExtrinsicsSize>(intrinsicsRow(camera), secondaryRow(camera)) +=
+      sum.block<kIntrinsicsSize, kExtrinsicsSize>(Columns::kIntrinsics, Columns::kSecondary);
 }
 
 void ReprojectionSystem::addTo(NormalEquations* system) {
   first_.update();
   blocks_.update();
-  const int rows = 6 * nodes_;
   by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
   by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
-  hessian_.setZero(rows, rows);
-  gradient_.setZero(rows);
-  couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
+  hessian_.setZero(rows_, rows_);
+  gradient_.setZero(rows_);
+  couplings_.resize(rows_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
   rooted_gradients_.resize(kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
   // Done here while a stretch's couplings are in the cache.
   for (const Stretch& stretch : stretches_) {
@@ -344,7 +353,7 @@ void ReprojectionSystem::addTo(NormalEquations* system) {
 }
 
 void ReprojectionSystem::subtractEliminated(const Stretch& stretch) {
-  const int calibration = 6 * (nodes_ - frames_);
+  const int calibration = rows_ - 6 * frames_;
   const int first = 6 * stretch.first_frame, rows = 6 * stretch.end_frame - first;
   const auto by_frames = couplingsOfFrames(stretch);
   const auto by_calibration = couplingsOfCalibration(stretch);

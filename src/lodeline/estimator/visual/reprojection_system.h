@@ -92,16 +92,15 @@ class ReprojectionSystem {
                             6 * (stretch.end_frame - stretch.first_frame), stretch.columns);
   }
   auto couplingsOfCalibration(const Stretch& stretch) {
-    return couplings_.block(6 * frames_, stretch.column, 6 * (nodes_ - frames_), stretch.columns);
+    return couplings_.block(6 * frames_, stretch.column, rows_ - 6 * frames_, stretch.columns);
   }
   /// Vector from a target's camera 0 to a host's.
   Vec3 baseline_W(int host, int target) const {
     return first_.placement(host).position_W - first_.placement(target).position_W;
   }
-  int secondaryNode(int camera) const { return frames_ + camera - 1; }
-  int intrinsicsNode(int camera) const {
-    return frames_ + static_cast<int>(states_.secondary.size()) + camera;
-  }
+  /// First rows of a camera's extrinsics and intrinsics.
+  int secondaryRow(int camera) const { return 6 * (frames_ + camera - 1); }
+  int intrinsicsRow(int camera) const { return secondaryRow(cameras_) + kIntrinsicsSize * camera; }
   const double* intrinsicsOf(int camera) const {
     return states_.intrinsics[static_cast<size_t>(camera)]->value.data();
   }
@@ -111,15 +110,15 @@ class ReprojectionSystem {
   CameraViews first_;
   int frames_;
   int cameras_;
-  int nodes_;
+  int rows_;
   CameraToBodyChainRule blocks_;
   std::vector<Landmark> landmarks_;
   std::vector<Stretch> stretches_;
   std::vector<Observation> observations_;
   std::vector<Residual> residuals_;  ///< of the observations
-  // Nodes are the variables with respect to which landmarks are eliminated, six coordinates each: the camera
-  // poses of the frames in the window's order, then the extrinsics of secondary cameras, then the intrinsics
-  // where they are estimated.
+  // Nodes are the variables with respect to which landmarks are eliminated, `rows_` coordinates in all: the
+  // camera poses of the frames in the window's order, then the extrinsics of secondary cameras, then the
+  // intrinsics where they are estimated.
   std::vector<HostProducts> by_host_;                ///< by indexOf()
   std::vector<CalibrationProducts> by_calibration_;  ///< by camera
   Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle

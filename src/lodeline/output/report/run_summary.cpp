@@ -74,6 +74,8 @@ nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
     json["cameras"][i]["focal_length"] = {lens[0], lens[1]};
     json["cameras"][i]["principal_point_px"] = {lens[2], lens[3]};
     json["cameras"][i]["radial"] = {lens[4], lens[5]};
+    json["cameras"][i]["tangential"] = {lens[6], lens[7]};
+    json["cameras"][i]["port_tilt"] = {lens[8], lens[9]};
   }
   return json;
 }

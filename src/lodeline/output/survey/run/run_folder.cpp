@@ -127,13 +127,16 @@ void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
     }
     run->camera_corrections.push_back(correction);
     if (!camera.contains("focal_length")) continue;
+    IntrinsicsCorrection intrinsics = IntrinsicsCorrection::Zero();
     for (size_t i = 0; i < 2; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      correction[row] = camera["focal_length"].at(i).get<double>();
-      correction[row + 2] = camera.at("principal_point_px").at(i).get<double>();
-      correction[row + 4] = camera.at("radial").at(i).get<double>();
+      intrinsics[row] = camera["focal_length"].at(i).get<double>();
+      intrinsics[row + 2] = camera.at("principal_point_px").at(i).get<double>();
+      intrinsics[row + 4] = camera.at("radial").at(i).get<double>();
+      intrinsics[row + 6] = camera.at("tangential").at(i).get<double>();
+      intrinsics[row + 8] = camera.at("port_tilt").at(i).get<double>();
     }
-    run->intrinsics_corrections.push_back(correction);
+    run->intrinsics_corrections.push_back(intrinsics);
   }
 }
 
