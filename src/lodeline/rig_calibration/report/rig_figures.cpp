@@ -15,7 +15,8 @@ using Rows = std::vector<std::vector<double>>;
 std::string imageAxes(const CameraCalibration& c) {
   return fmt::format(
       "set xrange [0:{}]\nset yrange [{}:0]\nset size ratio -1\nset xlabel 'x (px)'\nset ylabel 'y (px)'\n"
-      "set tics out nomirror\nset grid lc '#dddddd' lt 1 lw 0.7\n",
+      "set tics out nomirror\nset rmargin at screen 0.80\nset format cb '%.3g'\nset grid lc '#dddddd' lt 1 "
+      "lw 0.7\n",
       c.width_px, c.height_px);
 }
 

@@ -11,7 +11,8 @@
 namespace lodeline {
 namespace {
 
-constexpr double kLeastSigma_px = 0.03;
+// Errors that many corners share, by the pixel grid, the print and the lens, do not average out.
+constexpr double kLeastSigma_px = 0.05;
 constexpr double kMedianOfNormal = 0.6745;
 constexpr double kOutlier_sigmas = 5.0;
 
