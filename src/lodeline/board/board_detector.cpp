@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "lodeline/board/corner_refinement.h"
 #include "lodeline/board/tag_family.h"
@@ -21,6 +22,7 @@ constexpr float kLeastMargin = 20.0f;             ///< contrast of the bits, gre
 /// A tag in an image, its corners in the library's order.
 struct FoundTag {
   int id = 0;
+  double border_share = 0.2;  ///< width of the black border over the edge
   Vec2 corners[4];
 
   double edge_px() const {
@@ -104,6 +106,7 @@ struct BoardDetector::Library {
       if (detection->id >= tag_count || detection->decision_margin < kLeastMargin) continue;
       FoundTag tag;
       tag.id = detection->id;
+      tag.border_share = detection->family == narrow.get() ? 1.0 / narrow.width() : 2.0 / wide.width();
       // The library puts the centre of the first pixel at (0.5, 0.5).
       for (int k = 0; k < 4; ++k) tag.corners[k] = Vec2(detection->p[k][0] - 0.5, detection->p[k][1] - 0.5);
       tags.push_back(tag);
@@ -117,14 +120,37 @@ BoardDetector::BoardDetector(const CalibrationBoard& board)
     : board_(board), library_(std::make_unique<Library>()) {}
 BoardDetector::~BoardDetector() = default;
 
+namespace {
+
+/// The tags of a second search that the first one missed. Their corners were drawn in by `inset_px`.
+void addMissed(std::vector<FoundTag> more, double inset_px, std::vector<FoundTag>* tags) {
+  const std::vector<FoundTag> before = *tags;
+  for (FoundTag& tag : more) {
+    if (std::any_of(before.begin(), before.end(), [&](const FoundTag& known) { return known.id == tag.id; }))
+      continue;
+    const Vec2 centre = 0.25 * (tag.corners[0] + tag.corners[1] + tag.corners[2] + tag.corners[3]);
+    for (Vec2& corner : tag.corners) corner += inset_px * std::sqrt(2.0) * (corner - centre).normalized();
+    tags->push_back(tag);
+  }
+}
+
+}  // namespace
+
 std::vector<BoardCorner> BoardDetector::detect(const cv::Mat& image) const {
   std::vector<FoundTag> tags = library_->find(image, board_.tagCount());
+  if (static_cast<int>(tags.size()) < board_.tagCount()) {
+    // In a blurred image, the squares at the crossings join the tags to one black area. Thinner black parts
+    // them.
+    cv::Mat thinned;
+    cv::dilate(image, thinned, cv::getStructuringElement(cv::MORPH_CROSS, cv::Size(3, 3)));
+    addMissed(library_->find(thinned, board_.tagCount()), 1.0, &tags);
+  }
   if (tags.size() < kLeastTags) return {};
   const int turn = keepFittingTags(board_, &tags);
   if (tags.size() < kLeastTags) return {};
   std::vector<BoardCorner> corners;
   for (const FoundTag& tag : tags) {
-    const double gap_px = board_.spacing * tag.edge_px();
+    const double gap_px = std::min(board_.spacing, tag.border_share) * tag.edge_px();
     for (int k = 0; k < 4; ++k) {
       const auto pixel = refinedCorner(image, tag.corners[k], gap_px);
       if (pixel) corners.push_back({4 * tag.id + (k + turn) % 4, *pixel});

@@ -9,7 +9,7 @@ namespace lodeline {
 
 std::optional<Vec2> refinedCorner(const cv::Mat& image, const Vec2& start, double gap_px) {
   // The window must not see the next corner, and its blur.
-  const int reach = std::clamp(static_cast<int>(std::lround(0.55 * gap_px)), 2, 7);
+  const int reach = std::clamp(static_cast<int>(std::lround(0.75 * gap_px)), 2, 7);
   const double border_px = reach + 2.0;
   if (!(start.x() > border_px && start.y() > border_px && start.x() < image.cols - 1 - border_px &&
         start.y() < image.rows - 1 - border_px)) {
