@@ -156,11 +156,6 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
     }
   }
   for (const std::string& assignment : c.effects) s.effects.set(assignment);
-  if (!s.in_water && s.effects.has(Effect::FlatPort)) {
-    throw UsageError(
-        fmt::format("{} is in air, where a port has no effect; take {}_in_water or --effect flat_port=off",
-                    s.name, s.name));
-  }
   if (c.camera_model) changeCameraModel(*c.camera_model, s);
   s.starts_at_rest = !c.starts_moving;
   if (c.no_images) s.images = false;

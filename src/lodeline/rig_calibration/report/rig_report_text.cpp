@@ -106,6 +106,8 @@ std::string rigCalibrationText(const RigCalibrationResult& result) {
           rowOfThree("accelerometer bias", imu.accelerometer_bias_B, std::nullopt, "m/s^2", 4);
   text += fmt::format("  {:<22}{:.2f} times what the noise densities say\n", "error of readings",
                       imu.inertial_error);
+  text += fmt::format("  {:<22}+- {:.3f} degrees each against the body, beyond the sigmas; no motion tells\n",
+                      "axes of the IMU", imu_axes::sigmaFor(result.rig.imu.noise) / kDegree);
   text += fmt::format("  {:<22}{:.2f} rad/s and {:.2f} m/s^2 about and along the axis with the least\n",
                       "motion", imu.least_rate_rad_per_s, imu.least_acceleration_m_per_s2);
   return text;

@@ -97,7 +97,7 @@ RigCalibrationResult calibrateRig(const BoardRecord& given, const RigCalibration
                                   Diagnostics* diagnostics) {
   const BoardRecord record = prepared(given, options);
   const FixedParameters fixed{options.keeps_lens, options.keeps_port};
-  RigState state = startCameras(record, options.model, diagnostics);
+  RigState state = startCameras(record, {options.model, options.keeps_lens}, diagnostics);
   solveCameras(record.board, fixed, &state);
   RigCalibrationResult result;
   result.board = record.board;

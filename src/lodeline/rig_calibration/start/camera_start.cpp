@@ -70,7 +70,7 @@ CameraCalibration guessedLens(const CameraCalibration& sized, const CameraModel&
   return best;
 }
 
-CameraCalibration firstLens(size_t camera, const BoardRecord& record, const std::string& model_name,
+CameraCalibration firstLens(size_t camera, const BoardRecord& record, const LensStart& lens_start,
                             Diagnostics* diagnostics) {
   const CameraCalibration& stated = record.rig.cameras[camera];
   const std::vector<const BoardView*> views = viewsOf(record, camera);
@@ -80,6 +80,11 @@ CameraCalibration firstLens(size_t camera, const BoardRecord& record, const std:
                     "show it the board",
                     stated.name, record.searched[camera], boardWords(record.board)));
   }
+  if (lens_start.keeps_lens) {
+    if (record.has_lens[camera]) return stated;
+    throw InputError(stated.name + ": no file states a lens to keep; give one with --rig");
+  }
+  const std::string& model_name = lens_start.model;
   const CameraModel* model = findCameraModel(model_name.empty() ? stated.model : model_name);
   const bool keeps_model = record.has_lens[camera] && (model_name.empty() || model->name == stated.model);
   if (keeps_model) {
@@ -169,10 +174,10 @@ void placeCameras(const ViewPoses& poses, std::vector<CameraState>* cameras) {
 
 }  // namespace
 
-RigState startCameras(const BoardRecord& record, const std::string& model, Diagnostics* diagnostics) {
+RigState startCameras(const BoardRecord& record, const LensStart& lens_start, Diagnostics* diagnostics) {
   RigState state;
   for (size_t camera = 0; camera < record.rig.cameras.size(); ++camera) {
-    CameraCalibration lens = firstLens(camera, record, model, diagnostics);
+    CameraCalibration lens = firstLens(camera, record, lens_start, diagnostics);
     lens.body_from_camera = Rigid3();
     state.cameras.emplace_back(lens);
   }
