@@ -67,7 +67,7 @@ CornerFactor::CornerFactor(const RigState* rig, const CameraState* camera, const
   set_num_residuals(2);
   *mutable_parameter_block_sizes() = {kPoseSize, kMotionSize, kPoseSize,
                                       1,         2,           static_cast<int>(camera->lens.size())};
-  if (camera->base.port) mutable_parameter_block_sizes()->push_back(3);
+  if (camera->base.port) mutable_parameter_block_sizes()->push_back(kPortSize);
 }
 
 bool CornerFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
@@ -96,8 +96,8 @@ bool CornerFactor::Evaluate(double const* const* parameters, double* residuals, 
   if (camera_->base.port && jacobians[kPort]) {
     PixelByPort by_port;
     if (!camera_->behind_port->projectByPort(path.corner_C, &by_port)) return false;
-    Rows2<3> block(jacobians[kPort]);
-    block = per_sigma * by_port.leftCols<3>();
+    Rows2<kPortSize> block(jacobians[kPort]);
+    block << per_sigma * by_port.leftCols<3>(), per_sigma * by_port.rightCols<1>();
   }
   return true;
 }

@@ -19,6 +19,10 @@ constexpr double kVelocitySigma_m_per_s = 10.0;
 // What is known of any housing before its calibration.
 constexpr double kPortTiltSigma_rad = 5.0 * kDegree;
 constexpr double kPortLengthSigma_m = 0.02;
+// Fresh water to salt water. Beside an unknown focal length, the index cannot be observed: the stated one
+// counts.
+constexpr double kWaterIndexSigma = 0.01;
+constexpr double kStatedIndexSigma = 1e-7;
 
 }  // namespace
 
@@ -30,7 +34,7 @@ RigProblem::RigProblem(RigState* state, const CalibrationBoard& board, const Fix
   problem_ = std::make_unique<ceres::Problem>(options);
   addCorners(board);
   if (!links.empty()) addLinks(links);
-  addPortPriors();
+  addPortPriors(fixed.lens);
   settleConstants(fixed, !links.empty());
 }
 
@@ -79,13 +83,17 @@ void RigProblem::addLinks(const InertialLinks& links) {
   }
 }
 
-void RigProblem::addPortPriors() {
+void RigProblem::addPortPriors(bool keeps_lens) {
   for (CameraState& camera : state_->cameras) {
     if (!camera.base.port || !problem_->HasParameterBlock(camera.port.data())) continue;
-    const bool is_flat = camera.base.port->type == Port::Type::Flat;
-    Eigen::VectorXd sigmas = Vec3::Constant(kPortLengthSigma_m);
-    if (is_flat) sigmas.head<2>().setConstant(kPortTiltSigma_rad);
-    priors_.emplace_back().append(camera.port.data(), 3, sigmas);
+    Eigen::VectorXd sigmas(kPortSize);
+    sigmas.setConstant(kPortLengthSigma_m);
+    if (camera.base.port->type == Port::Type::Flat) sigmas.head<2>().setConstant(kPortTiltSigma_rad);
+    sigmas[3] = keeps_lens ? kWaterIndexSigma : kStatedIndexSigma;
+    const std::array<double, kPortSize> now = camera.port;
+    camera.port.fill(0.0);
+    priors_.emplace_back().append(camera.port.data(), kPortSize, sigmas);
+    camera.port = now;
     without_frame_.push_back(
         problem_->AddResidualBlock(new PriorFactor(priors_.back()), nullptr, camera.port.data()));
   }

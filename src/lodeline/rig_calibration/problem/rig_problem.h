@@ -61,7 +61,7 @@ class RigProblem final : public ceres::EvaluationCallback {
  private:
   void addCorners(const CalibrationBoard& board);
   void addLinks(const InertialLinks& links);
-  void addPortPriors();
+  void addPortPriors(bool keeps_lens);
   void settleConstants(const FixedParameters& fixed, bool has_links);
 
   RigState* state_;

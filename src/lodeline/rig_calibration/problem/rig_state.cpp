@@ -21,6 +21,7 @@ CameraCalibration CameraState::calibration() const {
   c.distortion.assign(lens.begin() + 4, lens.end());
   c.body_from_camera = poseFromBlock(body_from_camera.data());
   if (!c.port) return c;
+  c.port->index_water += port[3];
   if (c.port->type == Port::Type::Flat) {
     c.port->normal_C = so3::exp(Vec3(port[0], port[1], 0.0)) * c.port->normal_C;
     c.port->distance_m += port[2];

@@ -10,6 +10,8 @@
 
 namespace lodeline {
 
+constexpr int kPortSize = 4;
+
 /// Parameters of one camera as blocks for the solver.
 struct CameraState {
   explicit CameraState(const CameraCalibration& calibration);
@@ -17,8 +19,8 @@ struct CameraState {
   CameraCalibration base;    ///< all that is not estimated, and the port from which `port` counts
   std::vector<double> lens;  ///< fx, fy, cx, cy (px) and the parameters of the model
   /// Change of the port from `base`: flat: tilts of the normal about x and y of C (rad), distance (m); dome:
-  /// centre (m).
-  std::array<double, 3> port = {};
+  /// centre (m). Then that of the refractive index of the water.
+  std::array<double, kPortSize> port = {};
   std::array<double, kPoseSize> body_from_camera = {};
   double delay_change_s = 0.0;  ///< to add to RigState::delay_s
   double sigma_px = 1.0;        ///< of a corner, per axis

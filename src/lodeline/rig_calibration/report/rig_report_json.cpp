@@ -49,6 +49,8 @@ Json cameraJson(const CameraCalibrationResult& camera, bool has_imu) {
   json["lens"] = lens;
   json["lens_sigma"] = camera.lens_sigmas;
   if (c.port) json["port"] = portJson(*c.port, camera.port_sigmas);
+  if (c.port) json["port"]["index_water"] = c.port->index_water;
+  if (camera.index_sigma) json["port"]["index_water_sigma"] = *camera.index_sigma;
   json["first_from_camera"] = poseJson(camera.first_from_camera, camera.first_sigmas);
   if (has_imu) {
     json["imu_from_camera"] = poseJson(c.body_from_camera, camera.body_sigmas);

@@ -40,22 +40,28 @@ std::string lensRows(const CameraCalibrationResult& camera) {
   return text;
 }
 
+std::string portPlaceRows(const Port& port, const std::optional<Vec3>& sigmas) {
+  if (port.type == Port::Type::Dome) {
+    return rowOfThree("dome centre", 1e3 * port.centre_C,
+                      sigmas ? std::optional<Vec3>(1e3 * *sigmas) : std::nullopt, "mm", 2);
+  }
+  std::string text = fmt::format("  {:<22}{:>12.5f} {:>10.5f} {:>10.5f}", "port normal", port.normal_C.x(),
+                                 port.normal_C.y(), port.normal_C.z());
+  if (sigmas)
+    text +=
+        fmt::format("  +- {:.3f} {:.3f} degrees about x, y", sigmas->x() / kDegree, sigmas->y() / kDegree);
+  return text + "\n" +
+         row("port distance", 1e3 * port.distance_m, sigmas ? std::optional(1e3 * sigmas->z()) : std::nullopt,
+             "mm", 2);
+}
+
 std::string portRows(const CameraCalibrationResult& camera) {
   const std::optional<Port>& port = camera.calibration.port;
   if (!port) return "";
-  const std::optional<Vec3>& sigmas = camera.port_sigmas;
-  if (port->type == Port::Type::Dome) {
-    return rowOfThree("dome centre", 1e3 * port->centre_C,
-                      sigmas ? std::optional<Vec3>(1e3 * *sigmas) : std::nullopt, "mm", 2);
-  }
-  std::string text = fmt::format("  {:<22}{:>12.5f} {:>10.5f} {:>10.5f}", "port normal", port->normal_C.x(),
-                                 port->normal_C.y(), port->normal_C.z());
-  if (sigmas)
-    text +=
-        fmt::format("  +- {:.3f} {:.3f} degrees about x, y", (*sigmas)[0] / kDegree, (*sigmas)[1] / kDegree);
-  text += "\n";
-  return text + row("port distance", 1e3 * port->distance_m,
-                    sigmas ? std::optional(1e3 * (*sigmas)[2]) : std::nullopt, "mm", 2);
+  const std::string text = portPlaceRows(*port, camera.port_sigmas);
+  if (!camera.port_sigmas) return text + "  the port was kept as stated\n";
+  return text + row("index of the water", port->index_water, camera.index_sigma,
+                    camera.index_sigma ? "" : "as stated", 5);
 }
 
 std::string poseRows(const std::string& to, const Rigid3& pose, const std::optional<PoseSigmas>& sigmas) {

@@ -86,7 +86,11 @@ void setSigmas(const RigState& state, const Posterior& posterior, size_t camera,
   const CameraColumns& columns = posterior.columns[camera];
   if (columns.lens >= 0)
     result->lens_sigmas = sigmasAt(posterior, columns.lens, state.cameras[camera].lens.size());
-  if (columns.port >= 0) result->port_sigmas = Vec3(sigmasAt(posterior, columns.port, 3).data());
+  if (columns.port >= 0) {
+    const std::vector<double> sigmas = sigmasAt(posterior, columns.port, kPortSize);
+    result->port_sigmas = Vec3(sigmas.data());
+    if (columns.lens < 0) result->index_sigma = sigmas[3];
+  }
   if (columns.delay >= 0) result->delay_sigma_s = sigmasAt(posterior, columns.delay, 1).front();
   if (camera > 0) result->first_sigmas = relativeSigmas(state, posterior, camera);
   if (has_imu && columns.extrinsics >= 0)

@@ -40,9 +40,10 @@ struct PoseSigmas {
 /// Result for one camera.
 struct CameraCalibrationResult {
   CameraCalibration calibration;
-  std::vector<double> lens_sigmas;  ///< fx, fy, cx, cy (px) and the model's; empty for a kept lens
-  std::optional<Vec3> port_sigmas;  ///< flat: tilts (rad), distance (m); dome: centre (m)
-  Rigid3 first_from_camera;         ///< to the first camera
+  std::vector<double> lens_sigmas;    ///< fx, fy, cx, cy (px) and the model's; empty for a kept lens
+  std::optional<Vec3> port_sigmas;    ///< flat: tilts (rad), distance (m); dome: centre (m)
+  std::optional<double> index_sigma;  ///< of the water; nothing where the stated index counts
+  Rigid3 first_from_camera;           ///< to the first camera
   std::optional<PoseSigmas> first_sigmas;
   std::optional<PoseSigmas> body_sigmas;  ///< of CameraCalibration::body_from_camera
   std::optional<double> delay_sigma_s;

@@ -21,7 +21,7 @@ class FollowingFactor final : public ceres::CostFunction {
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     std::copy(blocks[5], blocks[5] + camera_->lens.size(), camera_->lens.begin());
-    if (camera_->base.port) std::copy(blocks[6], blocks[6] + 3, camera_->port.begin());
+    if (camera_->base.port) std::copy(blocks[6], blocks[6] + kPortSize, camera_->port.begin());
     camera_->refresh();
     return factor_.Evaluate(blocks, residuals, jacobians);
   }
@@ -83,7 +83,7 @@ TEST_P(CornerFactorTest, HasTheDerivativesOfAllBlocks) {
   blocks[3] = Eigen::VectorXd::Constant(1, 0.004);
   blocks[4] = Vec2(0.02, -0.01);
   blocks[5] = Eigen::Map<Eigen::VectorXd>(camera.lens.data(), static_cast<Eigen::Index>(camera.lens.size()));
-  if (camera.base.port) blocks[6] = Eigen::VectorXd::Zero(3);
+  if (camera.base.port) blocks[6] = Eigen::VectorXd::Zero(kPortSize);
   const FollowingFactor factor(&rig, &camera, &frame, Vec3(0.15, 0.12, 0.0), Vec2(320.0, 240.0));
   // The derivative by the bias is of first order in the delay.
   expectJacobiansMatch(factor, blocks, 2e-3);

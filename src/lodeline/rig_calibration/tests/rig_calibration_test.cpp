@@ -120,14 +120,19 @@ TEST(RigCalibration, FindsAFlatPortWithTheLensFromAir) {
   trial.port->normal_C = Vec3(0.01, -0.015, 1.0).normalized();
   trial.port->distance_m = 0.021;
   trial.port->thickness_m = 0.008;
+  trial.port->index_water = 1.337;
   BoardRecord record = test::boardRecord(trial);
   for (CameraCalibration& camera : record.rig.cameras) {
     camera.port->normal_C = Vec3::UnitZ();
     camera.port->distance_m = 0.015;
+    camera.port->index_water = 1.333;
   }
   for (const bool keeps_lens : {true, false}) {
     RigCalibrationOptions options;
     options.keeps_lens = keeps_lens;
+    // Beside an unknown lens, the index must be the right one.
+    if (!keeps_lens)
+      for (CameraCalibration& camera : record.rig.cameras) camera.port->index_water = 1.337;
     const RigCalibrationResult result = calibrated(record, options);
     EXPECT_NE(result.verdict, CalibrationVerdict::Poor) << rigCalibrationText(result);
     for (const CameraCalibrationResult& camera : result.cameras) {
@@ -135,8 +140,13 @@ TEST(RigCalibration, FindsAFlatPortWithTheLensFromAir) {
       EXPECT_LT(std::acos(std::min(1.0, port.normal_C.dot(trial.port->normal_C))), 0.05 * kDegree);
       ASSERT_TRUE(camera.port_sigmas);
       EXPECT_LT(std::abs(port.distance_m - trial.port->distance_m), 4.0 * camera.port_sigmas->z());
-      EXPECT_LT(camera.port_sigmas->z(), keeps_lens ? 1e-4 : 5e-4);
+      EXPECT_LT(camera.port_sigmas->z(), 5e-4);
       EXPECT_EQ(camera.lens_sigmas.empty(), keeps_lens);
+      EXPECT_EQ(camera.index_sigma.has_value(), keeps_lens);
+      if (camera.index_sigma) {
+        EXPECT_LT(std::abs(port.index_water - 1.337), 4.0 * *camera.index_sigma);
+        EXPECT_LT(*camera.index_sigma, 5e-4);
+      }
     }
   }
 }
