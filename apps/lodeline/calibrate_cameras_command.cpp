@@ -102,9 +102,14 @@ void calibrateCameras(const CamerasArguments& arguments) {
   const std::unique_ptr<RecordedSource> source =
       openRecording(arguments.data, options, arguments.bag, &diagnostics);
   CameraCalibrationOutcome outcome;
+  const auto endProgress = [&] {
+    if (request.record.progress) fmt::print(stderr, "\n");
+  };
   try {
     outcome = calibrateCameras(source.get(), request, arguments.output, &diagnostics);
+    endProgress();
   } catch (const EstimationError&) {
+    endProgress();
     fmt::print(stderr, "{}", findingsText(diagnostics));
     throw;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -45,7 +46,9 @@ std::vector<ReportPicture> drawPictures(const RigCalibrationResult& result,
   std::vector<ReportPicture> pictures;
   for (const gnuplot::Figure& figure : figures) {
     const std::string svg = contentOf(folder / (figure.name + ".svg"));
-    if (!svg.empty()) pictures.push_back({figure.name, svg});
+    std::string caption = figure.name;
+    std::replace(caption.begin(), caption.end(), '_', ' ');
+    if (!svg.empty()) pictures.push_back({caption, svg});
   }
   return pictures;
 }

@@ -177,7 +177,8 @@ InertialStart alignRates(const RigState& cameras, std::span<const ImuSample> imu
     throw EstimationError(
         "the board is in too few successive images, or these are outside of the inertial readings, to "
         "compare "
-        "the turns of camera and gyroscope; keep the board in view while the rig moves");
+        "the turns of camera and gyroscope; keep the board in view while the rig moves, or calibrate the "
+        "cameras alone with --no-imu");
   }
   const double coarse_s = start.delay_s;
   search(coarse_s - 0.004, coarse_s + 0.004, 0.0005);
