@@ -18,16 +18,18 @@ namespace lodeline {
 namespace {
 
 const char* const kFooter =
-    R"(DATA is a folder in the EuRoC layout or a ROS 1 bag, with the images of one or several cameras and, for the place on
-the IMU and the delay, its readings. The board is a grid of AprilTags (36h11), described as by Kalibr:
-  {target_type: aprilgrid, tagCols: 6, tagRows: 6, tagSize: 0.055, tagSpacing: 0.3}   # m; gap over size
-OUT receives rig.yaml (for --rig of all commands), camchain-imucam.yaml (Kalibr's), calibration.json, report.txt,
-report.html and figures.
-Lens and port at once are hard to tell apart. Better: calibrate the lens in air, then the port under water with it:
+    R"(DATA is a folder in the EuRoC layout or a ROS 1 bag. Images of one camera are enough; inertial
+readings give the place on the IMU and the delay as well.
+The board is a grid of AprilTags (36h11), described in Kalibr's format:
+  {target_type: aprilgrid, tagCols: 6, tagRows: 6, tagSize: 0.055, tagSpacing: 0.3}
+OUT receives rig.yaml (for --rig of all commands), camchain-imucam.yaml (Kalibr's format),
+calibration.json, report.txt, report.html and figures.
+Examples, the port under water with a lens from air:
   lodeline calibrate cameras air -o lens --board board.yaml
-  lodeline calibrate cameras water -o result --board board.yaml --rig lens/rig.yaml --keep lens --port flat
-docs/how-to/calibrate-cameras.md explains how to move the rig. Ends with 3 where the result is poor (the files are
-written), and where no calibration is possible.)";
+  lodeline calibrate cameras water -o rig --board board.yaml --rig lens/rig.yaml --keep lens \
+    --port flat
+docs/how-to/calibrate-cameras.md explains how to move the rig.
+Ends with 3 where no calibration is possible, and, with all files written, where it is poor.)";
 
 struct CamerasArguments {
   std::string data;
