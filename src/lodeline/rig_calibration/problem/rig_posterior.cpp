@@ -74,6 +74,35 @@ double inflate(const Eigen::VectorXd& scattered, Eigen::MatrixXd* covariance) {
   return largest;
 }
 
+/// Raises the variances of the calibration where the frames scatter more than their curvature says.
+double inflateByScatter(const Sparse& jacobian, const std::vector<double>& residuals,
+                        const std::vector<int>& frame_of_row, size_t frames, const Eigen::MatrixXd& inverse,
+                        Eigen::MatrixXd* covariance) {
+  const Eigen::MatrixXd influence = jacobian * inverse;
+  Eigen::MatrixXd by_frame = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(frames), inverse.cols());
+  for (size_t row = 0; row < frame_of_row.size(); ++row)
+    by_frame.row(frame_of_row[row]) += residuals[row] * influence.row(static_cast<Eigen::Index>(row));
+  return inflate(by_frame.colwise().squaredNorm(), covariance);
+}
+
+/// Adds the blocks of the calibration and says where they are in its covariance.
+std::vector<CameraColumns> addCalibration(const ceres::Problem& problem, RigState* state, BlockOrder* order) {
+  order->first_of_calibration = order->columns;
+  std::vector<CameraColumns> result;
+  for (CameraState& camera : state->cameras) {
+    const auto place = [&](double* block) {
+      const int first = order->add(problem, block);
+      return first < 0 ? -1 : first - order->first_of_calibration;
+    };
+    CameraColumns& columns = result.emplace_back();
+    columns.lens = place(camera.lens.data());
+    columns.port = place(camera.port.data());
+    columns.extrinsics = place(camera.body_from_camera.data());
+    columns.delay = place(&camera.delay_change_s);
+  }
+  return result;
+}
+
 }  // namespace
 
 Posterior RigProblem::posterior() {
@@ -83,19 +112,8 @@ Posterior RigProblem::posterior() {
     order.add(*problem_, frame.motion.data());
   }
   order.add(*problem_, state_->tilt.data());
-  order.first_of_calibration = order.columns;
   Posterior result;
-  for (CameraState& camera : state_->cameras) {
-    CameraColumns& columns = result.columns.emplace_back();
-    const auto place = [&](double* block) {
-      const int first = order.add(*problem_, block);
-      return first < 0 ? -1 : first - order.first_of_calibration;
-    };
-    columns.lens = place(camera.lens.data());
-    columns.port = place(camera.port.data());
-    columns.extrinsics = place(camera.body_from_camera.data());
-    columns.delay = place(&camera.delay_change_s);
-  }
+  result.columns = addCalibration(*problem_, state_, &order);
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = order.blocks;
   std::vector<int> frame_of_row;
@@ -113,14 +131,8 @@ Posterior RigProblem::posterior() {
   const Sparse jacobian = sparseOf(crs);
   const Eigen::MatrixXd inverse = lastColumnsOfInverse(jacobian, order.first_of_calibration);
   result.covariance = inverse.bottomRows(inverse.cols());
-  // Influence of every frame on the calibration.
-  const Eigen::MatrixXd influence = jacobian * inverse;
-  Eigen::MatrixXd by_frame =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(by_frame_.size()), inverse.cols());
-  for (size_t row = 0; row < frame_of_row.size(); ++row)
-    by_frame.row(frame_of_row[row]) += residuals[row] * influence.row(static_cast<Eigen::Index>(row));
-  const Eigen::VectorXd scattered = by_frame.colwise().squaredNorm();
-  result.largest_inflation = inflate(scattered, &result.covariance);
+  result.largest_inflation =
+      inflateByScatter(jacobian, residuals, frame_of_row, by_frame_.size(), inverse, &result.covariance);
   return result;
 }
 
