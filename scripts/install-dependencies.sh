@@ -13,6 +13,7 @@ build=(
   libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libyaml-cpp-dev libcli11-dev libfmt-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev libopencv-video-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
+  libapriltag-dev  # boards for the calibration of cameras
   libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev
   libbz2-dev liblz4-dev  # ROS 1 bags
   gnuplot-nox

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "apps/lodeline/calibrate_cameras_command.h"
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/plots.h"
@@ -185,9 +186,10 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
 }  // namespace
 
 void addCalibrateCommand(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("calibrate", "Calibrate a sensor from readings");
+  CLI::App* command = program.add_subcommand("calibrate", "Calibrate a sensor from a recording");
   command->require_subcommand(1);
   addMagnetometerCommand(*command);
+  addCalibrateCamerasCommand(*command);
 }
 
 }  // namespace lodeline

@@ -6,6 +6,7 @@ lodeline_find(fmt)
 lodeline_find(Threads)
 lodeline_find(ZLIB)
 lodeline_find(TBB COMPONENTS tbb)
+lodeline_find(apriltag)
 # Debian 12's libdeflate brings no CMake package.
 lodeline_find_library(libdeflate::libdeflate libdeflate.h deflate)
 # OpenCV's CMake package wants all modules with all that they depend on; Debian's packages of these five will do.

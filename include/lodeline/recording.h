@@ -80,6 +80,8 @@ class RecordedSource : public MeasurementSource {
     if (sample && imu_correction_) sample = imu_correction_->applied(*sample);
     return sample;
   }
+  /// The correction that nextImu() applies.
+  const std::optional<ImuCorrection>& imuCorrection() const { return imu_correction_; }
   /// The next reading as stored.
   virtual std::optional<ImuSample> nextRecordedImu() = 0;
   /// Replaces the recording's own magnetometer calibration; call it before creating a synchronizer.

@@ -110,8 +110,8 @@ struct StandardRigOptions {
 /// with focal lengths 0.3 % apart.
 MountedRig standardRig(const StandardRigOptions& options);
 
-enum class WorldKind { Cave, Wreck, None };
-enum class MotionKind { Dive, AroundWreck, FigureEight, AtRest };
+enum class WorldKind { Cave, Wreck, Board, None };
+enum class MotionKind { Dive, AroundWreck, BeforeBoard, FigureEight, AtRest };
 
 /// All settings that determine a recording, down to its bytes.
 struct Scenario {
@@ -119,6 +119,7 @@ struct Scenario {
   std::string description;
   WorldKind world = WorldKind::Cave;
   MotionKind motion = MotionKind::Dive;
+  bool in_water = true;    ///< false: in a room, without lamps and ports
   bool decorated = false;  ///< a formerly dry cave with stalactites
 
   uint64_t seed = 1;

@@ -25,7 +25,7 @@ struct SimulateArguments {
 
 std::string footer() {
   std::string text = "Scenarios:\n";
-  for (const Scenario& s : scenarios()) text += fmt::format("  {:<14}{}\n", s.name, s.description);
+  for (const Scenario& s : scenarios()) text += fmt::format("  {:<16}{}\n", s.name, s.description);
   text +=
       "\nExamples:\n"
       "  lodeline simulate demo -o demo --realism field\n"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/motion/board_motion.h"
 #include "simulation/motion/dive_motion.h"
 #include "simulation/shared/random.h"
 
@@ -39,7 +40,18 @@ DiveMotionOptions diveOptions(const Scenario& s) {
 struct Place {
   std::optional<Centerline> passage;
   std::optional<WreckLayout> wreck;
+  std::optional<PlacedBoard> board;
 };
+
+// 6 x 6 tags on a panel of A2. The smallest tags have 25 px in images of 640 px.
+PlacedBoard boardAt(const BoardPlace& place) {
+  PlacedBoard placed;
+  placed.board = {.columns = 6, .rows = 6, .tag_size_m = 0.055, .spacing = 0.3};
+  const Vec3 centre_T(0.5 * placed.board.width_m(), 0.5 * placed.board.height_m(), 0.0);
+  placed.world_from_board =
+      Rigid3(place.world_from_board, place.centre_W - place.world_from_board * centre_T);
+  return placed;
+}
 
 Motion makeMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place) {
   switch (s.motion) {
@@ -53,6 +65,12 @@ Motion makeMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place
       Motion motion =
           makeWreckMotion({}, s.seed, s.duration_s, s.path_length_m, s.starts_at_rest, diver_from_body);
       place.wreck = WreckLayout{}.translated(motion.worldShift());
+      return motion;
+    }
+    case MotionKind::BeforeBoard: {
+      BoardPlace board;
+      Motion motion = makeBoardMotion(s.seed, s.duration_s, diver_from_body, &board);
+      place.board = boardAt(board);
       return motion;
     }
     case MotionKind::FigureEight:
@@ -104,6 +122,7 @@ Dive makeDive(const Scenario& s) {
             .motion = std::move(motion),
             .passage = place.passage,
             .wreck = place.wreck,
+            .board = place.board,
             .disturbances = {},
             .start = {}};
   dive.field_W = scenarioField(s);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "lodeline/board/calibration_board.h"
 #include "simulation/dive/dive_errors.h"
 #include "simulation/motion/posed_motion.h"
 #include "simulation/rendering/cave/centerline.h"
@@ -11,6 +12,12 @@
 
 namespace lodeline {
 
+/// A calibration board and its place.
+struct PlacedBoard {
+  CalibrationBoard board;
+  Rigid3 world_from_board;
+};
+
 /// A scenario with all its random draws: place, motion, rig and its errors.
 struct Dive {
   Scenario scenario;
@@ -18,6 +25,7 @@ struct Dive {
   Motion motion;
   std::optional<Centerline> passage;  ///< in a cave, world frame
   std::optional<WreckLayout> wreck;   ///< in open water, world frame
+  std::optional<PlacedBoard> board;   ///< of a camera calibration
   Vec3 field_W = Vec3::Zero();        ///< Earth's, T
   MagneticDisturbances disturbances;
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);

@@ -62,11 +62,22 @@ Port described(const FlatPort& window) {
   return port;
 }
 
-void putBehindPort(uint64_t seed, bool in_files, DiveErrors& errors) {
+FlatPort drawPort(uint64_t seed) {
   Random random(seed, "port");
   FlatPort port;
   port.normal_C = (Vec3::UnitZ() + 0.6 * kDegree * random.normal3()).normalized();
   port.distance_m = random.uniform(0.010, 0.025);
+  return port;
+}
+
+// The lenses of the housing without the port, as on a bench.
+void takeOutOfHousing(uint64_t seed, DiveErrors& errors) {
+  for (CameraCalibration& camera : errors.truth.rig.cameras) camera = airCameraFor(camera, drawPort(seed));
+  errors.in_water = errors.truth.rig;
+}
+
+void putBehindPort(uint64_t seed, bool in_files, DiveErrors& errors) {
+  const FlatPort port = drawPort(seed);
   errors.port = port;
   errors.port_fit_rms_px = 0.0;
   for (size_t i = 0; i < errors.truth.rig.cameras.size(); ++i) {
@@ -137,7 +148,8 @@ DiveErrors drawErrors(const Scenario& s) {
   drawClocks(s, errors);
 
   errors.in_water = errors.truth.rig;
-  if (on.has(Effect::FlatPort)) putBehindPort(s.seed, on.has(Effect::PortInFiles), errors);
+  if (on.has(Effect::FlatPort) && s.in_water) putBehindPort(s.seed, on.has(Effect::PortInFiles), errors);
+  if (on.has(Effect::FlatPort) && !s.in_water) takeOutOfHousing(s.seed, errors);
   errors.given = errors.in_water;
   if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
   misstateExtrinsics(on, s.seed, errors.given);

@@ -25,6 +25,7 @@ std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
     options.heading_rad = static_cast<float>(dive.wreck->azimuth_rad);
     return buildWreckWorld(options);
   }
+  if (dive.board) return buildBoardWorld(dive.board->board, dive.board->world_from_board, s.seed);
   if (!dive.passage) return nullptr;
   CaveOptions options;
   options.style = s.decorated ? CaveStyle::yucatanDecorated() : CaveStyle::floridaSpring();
@@ -36,7 +37,9 @@ std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
 RenderSettings renderSettings(const Dive& dive) {
   const EffectSet& on = dive.scenario.effects;
   const RenderSettings field = RenderSettings::field();
-  RenderSettings settings = dive.wreck ? RenderSettings::openWater() : RenderSettings::clean();
+  RenderSettings settings = dive.wreck               ? RenderSettings::openWater()
+                            : dive.scenario.in_water ? RenderSettings::clean()
+                                                     : RenderSettings::room();
   settings.seed = dive.scenario.seed;
   if (on.has(Effect::MilkyWater)) {
     settings.water = field.water;

@@ -28,7 +28,8 @@ const std::array<EffectDescription, kEffectCount>& effectDescriptions() {
       {Effect::MagnetometerExtrinsics, "magnetometer_extrinsics", false, true,
        "files leave the magnetometer's misalignment to the IMU out"},
       {Effect::FlatPort, "flat_port", false, true,
-       "a flat window refracts the rays; files hold the best radial-tangential fit"},
+       "a flat window refracts the rays; files hold the best radial-tangential fit; in air: its lenses "
+       "alone"},
       {Effect::PortInFiles, "port_in_files", false, false,
        "files hold the window of flat_port and the lens in air instead"},
       {Effect::CameraDelay, "camera_delay", false, true, "image stamps 3-8 ms late, unknown to the files"},

@@ -86,6 +86,11 @@ RecordingSummary recordScenario(const Scenario& scenario, const std::filesystem:
 
   tell("writing sensor readings and truth");
   recordSensors(dive, range, folder);
+  if (dive.board) {
+    RecordingFile board(folder / "board.yaml");
+    board.write(boardText(dive.board->board));
+    board.close();
+  }
   recordTruth(dive, settings, images, range, folder);
   if (images.empty()) return summary;
 

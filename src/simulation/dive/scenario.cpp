@@ -55,6 +55,19 @@ std::vector<Scenario> makeScenarios() {
   figure_eight.images = false;
   all.push_back(figure_eight);
 
+  Scenario board = scenario("board", "a board of AprilTags in a room, for calibrating the cameras; stereo",
+                            40.0, 0.0, kDevilsEye);
+  board.world = WorldKind::Board;
+  board.motion = MotionKind::BeforeBoard;
+  board.in_water = false;
+  all.push_back(board);
+
+  board.name = "board_in_water";
+  board.description = "the same board under water";
+  board.in_water = true;
+  board.start_depth_m = 2.0;
+  all.push_back(board);
+
   Scenario bench = scenario("bench", "at rest for hours, for Allan analysis", 10800.0, 0.0, kDevilsEye);
   bench.world = WorldKind::None;
   bench.motion = MotionKind::AtRest;
@@ -136,6 +149,12 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   if (c.magnetometer_rate_hz)
     s.rig.magnetometer_rate_hz = positive(*c.magnetometer_rate_hz, "--magnetometer-rate-hz");
   s.effects = EffectSet::named(c.realism);
+  if (!s.in_water) {
+    for (const Effect effect : {Effect::FlatPort, Effect::MarineSnow, Effect::MilkyWater, Effect::SiltOuts,
+                                Effect::SecondDiver, Effect::PoorExposure}) {
+      s.effects.set(effect, false);
+    }
+  }
   for (const std::string& assignment : c.effects) s.effects.set(assignment);
   if (c.camera_model) changeCameraModel(*c.camera_model, s);
   s.starts_at_rest = !c.starts_moving;

@@ -64,6 +64,11 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
   const HazeVolume haze = hazeOver(optics, middle, light);
   const SurfaceShader shader(world_->scene, world_->texture);
   const double readout_s = settings_.sensor.readout_s;
+  const auto boardAt = [&](const Rigid3& world_from_body) {
+    return world_->board ? std::optional<BoardSampler>(std::in_place, *world_->board, optics,
+                                                       world_from_body * optics.bodyFromCamera())
+                         : std::nullopt;
+  };
 
   Light out{cv::Mat(height, width, CV_32F, cv::Scalar(0)), cv::Mat(height, width, CV_32F, cv::Scalar(0))};
   const int packet_rows = (height + kPacketHeight - 1) / kPacketHeight;
@@ -72,6 +77,7 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
     // Rolling shutter: each row of packets has its own time.
     const double row_s = middle_s + readout_s * ((y0 + 0.5 * kPacketHeight) / height - 0.5);
     const CameraPose pose = readout_s > 0.0 ? poseAt(row_s) : middle;
+    const std::optional<BoardSampler> board = boardAt(motion(readout_s > 0.0 ? row_s : middle_s));
     for (int x0 = 0; x0 < width; x0 += kPacketWidth) {
       RayPacket rays;
       for (int lane = 0; lane < kRayPacketSize; ++lane) {
@@ -90,6 +96,8 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
         if (rays.active[lane] == 0) continue;
         const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
         const HazeSample veil = haze.at(static_cast<float>(x), static_cast<float>(y), hits.range_m[lane]);
+        if (board && hits.triangle[lane] < BoardPanel::kPanelTriangles && std::isfinite(hits.range_m[lane]))
+          radiance[lane] *= board->brightness(x, y);
         out.radiance.at<float>(y, x) =
             optics.light(y * width + x) * (radiance[lane] * veil.transmittance + veil.radiance);
         out.range_m.at<float>(y, x) = hits.range_m[lane];

@@ -59,6 +59,14 @@ RenderSettings RenderSettings::openWater() {
   return settings;
 }
 
+RenderSettings RenderSettings::room() {
+  RenderSettings settings;
+  settings.daylight.irradiance = 12.0;
+  settings.water.attenuation_per_m = 0.0;
+  settings.snow.flakes_per_m3 = 0.0;
+  return settings;
+}
+
 RenderSettings RenderSettings::ideal() {
   RenderSettings settings = clean();
   settings.snow.flakes_per_m3 = 0.0;

@@ -41,6 +41,9 @@ struct RenderSettings {
   /// Preset for open water: daylight from above over lamps, clear sea.
   static RenderSettings openWater();
 
+  /// Preset in air: diffuse room light, no lamps, nothing between camera and surfaces.
+  static RenderSettings room();
+
   /// Preset without blur, snow and noise, with one constant exposure, for geometric measurements in the
   /// images.
   static RenderSettings ideal();

@@ -20,4 +20,12 @@ std::shared_ptr<const RenderWorld> buildWreckWorld(const WreckOptions& options) 
   return std::make_shared<const RenderWorld>(makeWreck(options), options.seed);
 }
 
+std::shared_ptr<const RenderWorld> buildBoardWorld(const CalibrationBoard& board,
+                                                   const Rigid3& world_from_board, uint64_t seed) {
+  const BoardPanel panel(board, world_from_board);
+  const auto world = std::make_shared<RenderWorld>(makeBoardMesh(panel), seed);
+  world->board = panel;
+  return world;
+}
+
 }  // namespace lodeline

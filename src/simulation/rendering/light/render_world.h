@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "simulation/rendering/board/board_panel.h"
 #include "simulation/rendering/cave/cave_style.h"
 #include "simulation/rendering/cave/centerline.h"
 #include "simulation/rendering/cave/solid_texture.h"
@@ -20,6 +22,7 @@ struct RenderWorld {
 
   TracedScene scene;
   SolidTexture texture;
+  std::optional<BoardPanel> board;  ///< printed on the first triangles of the scene
 };
 
 struct CaveOptions {
@@ -39,5 +42,9 @@ std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, 
 
 /// A wreck on the sea bottom in open water.
 std::shared_ptr<const RenderWorld> buildWreckWorld(const WreckOptions& options);
+
+/// A calibration board before a wall.
+std::shared_ptr<const RenderWorld> buildBoardWorld(const CalibrationBoard& board,
+                                                   const Rigid3& world_from_board, uint64_t seed);
 
 }  // namespace lodeline

@@ -1,0 +1,165 @@
+#include "apps/lodeline/calibrate_cameras_command.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/lodeline/shared/bag_options.h"
+#include "lodeline/cameras/camera_model.h"
+#include "lodeline/output/report/findings.h"
+#include "lodeline/pipeline/calibrate_cameras.h"
+#include "lodeline/pipeline/open_recording.h"
+
+namespace lodeline {
+namespace {
+
+const char* const kFooter =
+    R"(DATA is a folder in the EuRoC layout or a ROS 1 bag. Images of one camera are enough; inertial
+readings give the place on the IMU and the delay as well.
+The board is a grid of AprilTags (36h11), described in Kalibr's format:
+  {target_type: aprilgrid, tagCols: 6, tagRows: 6, tagSize: 0.055, tagSpacing: 0.3}
+OUT receives rig.yaml (for --rig of all commands), camchain-imucam.yaml (Kalibr's format),
+calibration.json, report.txt, report.html and figures.
+Examples, the port under water with a lens from air:
+  lodeline calibrate cameras air -o lens --board board.yaml
+  lodeline calibrate cameras water -o rig --board board.yaml --rig lens/rig.yaml --keep lens \
+    --port flat
+docs/how-to/calibrate-cameras.md explains how to move the rig.
+Ends with 3 where no calibration is possible, and, with all files written, where it is poor.)";
+
+struct CamerasArguments {
+  std::string data;
+  BagArguments bag;
+  std::string output;
+  std::string board;
+  std::vector<int> cameras;
+  std::string model;
+  std::string port;
+  std::vector<std::string> keep;
+  bool without_imu = false;
+  bool quiet = false;
+  double rate_hz = 10.0;
+  double most_delay_s = 0.15;
+  double from_s = 0.0;
+  std::optional<double> to_s;
+};
+
+std::filesystem::path boardFile(const CamerasArguments& arguments) {
+  if (!arguments.board.empty()) return arguments.board;
+  const std::filesystem::path beside = std::filesystem::path(arguments.data) / "board.yaml";
+  std::error_code ignored;
+  if (std::filesystem::exists(beside, ignored)) return beside;
+  throw UsageError("name the file of the board with --board; there is no board.yaml in " + arguments.data);
+}
+
+std::optional<Port> startPort(const std::string& name) {
+  if (name.empty() || name == "none") return std::nullopt;
+  Port port;
+  port.thickness_m = 0.008;
+  if (name == "flat") {
+    port.distance_m = 0.015;
+  } else {
+    port.type = Port::Type::Dome;
+    port.radius_m = 0.05;
+  }
+  return port;
+}
+
+CameraCalibrationRequest requestOf(const CamerasArguments& arguments) {
+  if (!arguments.model.empty() && findCameraModel(arguments.model) == nullptr) {
+    throw UsageError(fmt::format("--camera-model: there is no model '{}'; there are {}", arguments.model,
+                                 cameraModelNames()));
+  }
+  CameraCalibrationRequest request;
+  request.board = readBoard(boardFile(arguments));
+  request.record.most_rate_hz = arguments.rate_hz;
+  request.record.from_s = arguments.from_s;
+  request.record.to_s = arguments.to_s;
+  request.without_ports = arguments.port == "none";
+  request.options.model = arguments.model;
+  request.options.port = startPort(arguments.port);
+  request.options.uses_imu = !arguments.without_imu;
+  request.options.most_delay_s = arguments.most_delay_s;
+  const auto keeps = [&](const char* what) {
+    return std::find(arguments.keep.begin(), arguments.keep.end(), what) != arguments.keep.end();
+  };
+  request.options.keeps_lens = keeps("lens");
+  request.options.keeps_port = keeps("port");
+  if (!arguments.quiet && isatty(STDERR_FILENO) != 0)
+    request.record.progress = [](size_t images) { fmt::print(stderr, "\r{} images searched ", images); };
+  return request;
+}
+
+void calibrateCameras(const CamerasArguments& arguments) {
+  const CameraCalibrationRequest request = requestOf(arguments);
+  EurocOptions options;
+  options.camera_indices = arguments.cameras;
+  options.needs_imu = false;
+  options.needs_calibration = false;
+  Diagnostics diagnostics;
+  const std::unique_ptr<RecordedSource> source =
+      openRecording(arguments.data, options, arguments.bag, &diagnostics);
+  CameraCalibrationOutcome outcome;
+  const auto endProgress = [&] {
+    if (request.record.progress) fmt::print(stderr, "\n");
+  };
+  try {
+    outcome = calibrateCameras(source.get(), request, arguments.output, &diagnostics);
+    endProgress();
+  } catch (const EstimationError&) {
+    endProgress();
+    fmt::print(stderr, "{}", findingsText(diagnostics));
+    throw;
+  }
+  fmt::print("{}{}", outcome.text, findingsText(diagnostics));
+  if (!outcome.poor_because.empty())
+    throw EstimationError(fmt::format("the calibration is poor: {}. The files are in {}",
+                                      outcome.poor_because, arguments.output));
+}
+
+void addSelection(CamerasArguments* arguments, CLI::App* command) {
+  command->add_option("--cameras", arguments->cameras, "numbers of the cameras to use (all)")->delimiter(',');
+  command->add_option("--from", arguments->from_s, "use images from this second of the recording on")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", arguments->to_s, "use images up to this second")->check(CLI::PositiveNumber);
+  command->add_option("--rate-hz", arguments->rate_hz, "most images to use per second and camera (10)")
+      ->check(CLI::PositiveNumber);
+}
+
+}  // namespace
+
+void addCalibrateCamerasCommand(CLI::App& calibrate_command) {
+  const auto arguments = std::make_shared<CamerasArguments>();
+  CLI::App* command = calibrate_command.add_subcommand(
+      "cameras", "Lenses, ports, poses and delay of cameras from a board, with uncertainties and a verdict");
+  command->add_option("DATA", arguments->data, "recording or ROS 1 bag")->required();
+  command->add_option("-o,--output", arguments->output, "folder to write")->required();
+  addBagOptions(&arguments->bag, command);
+  command->add_option("--board", arguments->board,
+                      "the board, in Kalibr's format (board.yaml in the folder DATA)");
+  addSelection(arguments.get(), command);
+  command->add_option(
+      "--camera-model", arguments->model,
+      "lens of all cameras: " + cameraModelNames() + " (the stated one, else radial-tangential)");
+  command
+      ->add_option("--port", arguments->port,
+                   "flat or dome: estimate a port where the rig states none; none: ignore stated ports")
+      ->check(CLI::IsMember({"flat", "dome", "none"}));
+  command->add_option("--keep", arguments->keep, "lens, port: keep the stated ones")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"lens", "port"}));
+  command->add_flag("--no-imu", arguments->without_imu, "calibrate the cameras alone");
+  command
+      ->add_option("--max-delay", arguments->most_delay_s,
+                   "largest delay between images and IMU to search, s (0.15)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->footer(kFooter);
+  command->callback([arguments] { calibrateCameras(*arguments); });
+}
+
+}  // namespace lodeline
