@@ -105,14 +105,14 @@ FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
 }
 
 /// Mean squared distance from the truth over the whole scene; `last` receives the last estimate.
-double squaredPositionError_m2(bool lenses, uint64_t seed, const Eigen::Matrix<double, 6, 1>& lens,
+double squaredPositionError_m2(bool lenses, uint64_t seed, const IntrinsicsCorrection& lens,
                                FrameEstimate* last) {
   TestSceneOptions scene_options = sceneOptions();
   scene_options.seed = seed;
   scene_options.duration_s = 60.0;  // after 20 s focal lengths are known to 0.001, one eighth of the error
   TestScene scene(scene_options);
   Rig files = scene.rig();
-  const Eigen::Matrix<double, 6, 1> undone = -lens;
+  const IntrinsicsCorrection undone = -lens;
   for (CameraCalibration& camera : files.cameras) camera = correctedIntrinsics(camera, undone.data());
   EstimatorOptions options = honestOptions(scene_options);
   options.camera_calibration = calibrationOfWrongFiles(lenses);
@@ -132,8 +132,8 @@ double squaredPositionError_m2(bool lenses, uint64_t seed, const Eigen::Matrix<d
 }
 
 TEST(CameraStates, FindAWrongLens) {
-  Eigen::Matrix<double, 6, 1> lens;
-  lens << 0.008, 0.006, 3.0, -2.0, 0.0, 0.0;
+  IntrinsicsCorrection lens = IntrinsicsCorrection::Zero();
+  lens.head<4>() << 0.008, 0.006, 3.0, -2.0;
   FrameEstimate held, found;
   const double held_m2 = squaredPositionError_m2(false, 1, lens, &held);
   const double found_m2 = squaredPositionError_m2(true, 1, lens, &found);
@@ -148,24 +148,37 @@ TEST(CameraStates, FindAWrongLens) {
 }
 
 TEST(CameraStates, TakeAWrongProfileForNoLongerLens) {
-  Eigen::Matrix<double, 6, 1> lens;
-  lens << 0.0, 0.0, 0.0, 0.0, 0.012, -0.02;
+  IntrinsicsCorrection lens = IntrinsicsCorrection::Zero();
+  lens.segment<2>(4) << 0.012, -0.02;
   double held_m2 = 0.0, found_m2 = 0.0;
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     FrameEstimate held, found;
     held_m2 += squaredPositionError_m2(false, seed, lens, &held);
     found_m2 += squaredPositionError_m2(true, seed, lens, &found);
     for (const auto& estimate : found.camera_corrections->intrinsics) {
-      EXPECT_LT((estimate - lens).tail<2>().norm(), 0.3 * lens.tail<2>().norm()) << estimate.transpose();
+      EXPECT_LT((estimate - lens).segment<2>(4).norm(), 0.3 * lens.segment<2>(4).norm())
+          << estimate.transpose();
       EXPECT_LT(estimate.head<2>().cwiseAbs().maxCoeff(), 0.0025) << estimate.transpose();
     }
   }
   EXPECT_LT(found_m2, 0.25 * held_m2);
 }
 
+// Such a lens turns the heading with every metre.
+TEST(CameraStates, FindALensThatIsNotSymmetric) {
+  IntrinsicsCorrection lens = IntrinsicsCorrection::Zero();
+  lens.segment<2>(6) << 0.004, -0.003;
+  FrameEstimate held, found;
+  const double held_m2 = squaredPositionError_m2(false, 1, lens, &held);
+  const double found_m2 = squaredPositionError_m2(true, 1, lens, &found);
+  for (const auto& estimate : found.camera_corrections->intrinsics)
+    EXPECT_LT((estimate - lens).segment<2>(6).norm(), 0.3 * lens.norm()) << estimate.transpose();
+  EXPECT_LT(found_m2, 0.5 * held_m2);
+}
+
 TEST(CameraStates, StayNearARightLens) {
   FrameEstimate last;
-  squaredPositionError_m2(true, 1, Eigen::Matrix<double, 6, 1>::Zero(), &last);
+  squaredPositionError_m2(true, 1, IntrinsicsCorrection::Zero(), &last);
   for (const auto& estimate : last.camera_corrections->intrinsics) {
     const CameraCalibrationOptions prior = calibrationOfWrongFiles(true);
     EXPECT_LT(estimate.head<2>().cwiseAbs().maxCoeff(), prior.focal_length_sigma) << estimate.transpose();
@@ -222,7 +235,7 @@ TEST(CameraStates, StartWhereTheFrontEndFoundACamera) {
 
 TEST(CameraStates, AreHeldByASigmaOfZeroAndAbsentWhenOff) {
   EstimatorOptions options = honestOptions(sceneOptions());
-  options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0, true, 0.0, 0.0, 0.0};
+  options.camera_calibration = {true, 0.0, 0.0, 0.0, 0.0, 0.0, true, 0.0, 0.0, 0.0, 0.0, 0.0};
   TestSceneOptions shorter = sceneOptions();
   shorter.duration_s = 6.0;
   TestScene held_scene(shorter);

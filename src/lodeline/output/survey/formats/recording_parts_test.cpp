@@ -85,7 +85,7 @@ TEST(RecordingImages, BelongToThePosesOfTheirTimes) {
   run.camera_corrections = {correction};
   camera.fx_px = 400.0;
   source.rig_.cameras = {camera};
-  Eigen::Matrix<double, 6, 1> lens = Eigen::Matrix<double, 6, 1>::Zero();
+  IntrinsicsCorrection lens = IntrinsicsCorrection::Zero();
   lens[0] = 0.01;
   run.intrinsics_corrections = {lens};
   Diagnostics diagnostics;
