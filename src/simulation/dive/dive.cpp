@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/dive/dive_life.h"
 #include "simulation/motion/dive_motion.h"
 #include "simulation/shared/random.h"
 
@@ -105,6 +106,10 @@ Dive makeDive(const Scenario& s) {
             .passage = place.passage,
             .wreck = place.wreck,
             .disturbances = {},
+            .current = nullptr,
+            .fish = {},
+            .buddy = nullptr,
+            .halocline = {},
             .start = {}};
   dive.field_W = scenarioField(s);
   dive.surface_height_m = s.start_depth_m;
@@ -119,6 +124,7 @@ Dive makeDive(const Scenario& s) {
     }
     if (s.effects.has(Effect::LampCurrent))
       dive.disturbances.switched = drawLampSwitching(s.duration_s, s.seed);
+    addLife(dive);
   }
   return dive;
 }

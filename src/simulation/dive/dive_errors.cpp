@@ -52,21 +52,50 @@ void misstateExtrinsics(const EffectSet& effects, uint64_t seed, Rig& given) {
   }
 }
 
-Port described(const FlatPort& window) {
+Port described(const PortWindow& window) {
   Port port;
-  port.normal_C = window.normal_C;
-  port.distance_m = window.distance_m;
-  port.thickness_m = window.thickness_m;
-  port.index_glass = window.index_glass;
-  port.index_water = window.index_water;
+  if (const auto* plate = std::get_if<FlatPort>(&window)) {
+    port.normal_C = plate->normal_C;
+    port.distance_m = plate->distance_m;
+    port.thickness_m = plate->thickness_m;
+  } else {
+    const DomePort& dome = std::get<DomePort>(window);
+    port.type = Port::Type::Dome;
+    port.centre_C = dome.centre_C;
+    port.radius_m = dome.radius_m;
+    port.thickness_m = dome.thickness_m;
+  }
+  port.index_glass = glassIndex(window);
+  port.index_water = waterIndex(window);
   return port;
 }
 
-void putBehindPort(uint64_t seed, bool in_files, DiveErrors& errors) {
+PortWindow drawFlatPort(const EffectSet& effects, uint64_t seed) {
   Random random(seed, "port");
   FlatPort port;
   port.normal_C = (Vec3::UnitZ() + 0.6 * kDegree * random.normal3()).normalized();
   port.distance_m = random.uniform(0.010, 0.025);
+  if (effects.has(Effect::PortTilt)) {
+    Random tilt(seed, "port/tilt");
+    const double angle = tilt.uniform(0.4, 1.0) * kDegree;
+    const double towards = tilt.uniform(0.0, 2.0 * std::numbers::pi);
+    port.normal_C =
+        Vec3(std::sin(angle) * std::cos(towards), std::sin(angle) * std::sin(towards), std::cos(angle));
+  }
+  return port;
+}
+
+PortWindow drawDomePort(uint64_t seed) {
+  Random random(seed, "port/dome");
+  DomePort port;
+  port.radius_m = random.uniform(0.040, 0.060);
+  port.centre_C = random.uniform(0.001, 0.003) * random.direction();
+  return port;
+}
+
+void putBehindPort(const EffectSet& effects, uint64_t seed, DiveErrors& errors) {
+  const bool in_files = effects.has(Effect::PortInFiles);
+  const PortWindow port = effects.has(Effect::DomePort) ? drawDomePort(seed) : drawFlatPort(effects, seed);
   errors.port = port;
   errors.port_fit_rms_px = 0.0;
   for (size_t i = 0; i < errors.truth.rig.cameras.size(); ++i) {
@@ -90,6 +119,10 @@ void drawClocks(const Scenario& s, DiveErrors& errors) {
   if (s.effects.has(Effect::CameraDelay)) errors.camera_clock.delay_s = delay_s;
   if (s.effects.has(Effect::ClockDrift)) errors.camera_clock.drift_ppm = drift_ppm;
   if (s.effects.has(Effect::StampJitter)) errors.camera_clock.jitter_s = 0.0005;
+  if (s.effects.has(Effect::RollingShutter)) {
+    Random shutter(s.seed, "camera/readout");
+    errors.readout_s = s.readout_s.value_or(shutter.uniform(0.010, 0.030));
+  }
   if (s.effects.has(Effect::DroppedFrames)) errors.dropped_image_share = dropped;
 }
 
@@ -125,7 +158,7 @@ DiveErrors drawErrors(const Scenario& s) {
   errors.truth = standardRig(s.rig);
   errors.imu = drawImuErrors(imuGrade(s.imu_grade),
                              {on.has(Effect::ImuNoise), on.has(Effect::ImuBias), on.has(Effect::ImuScale),
-                              on.has(Effect::ImuWarmUp)},
+                              on.has(Effect::ImuWarmUp), on.has(Effect::GSensitivity)},
                              s.seed);
   errors.magnetometer =
       drawMagnetometerErrors(s.imu_grade,
@@ -137,7 +170,7 @@ DiveErrors drawErrors(const Scenario& s) {
   drawClocks(s, errors);
 
   errors.in_water = errors.truth.rig;
-  if (on.has(Effect::FlatPort)) putBehindPort(s.seed, on.has(Effect::PortInFiles), errors);
+  if (on.hasPort()) putBehindPort(on, s.seed, errors);
   errors.given = errors.in_water;
   if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
   misstateExtrinsics(on, s.seed, errors.given);
