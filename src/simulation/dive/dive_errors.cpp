@@ -111,6 +111,19 @@ void putBehindPort(const EffectSet& effects, uint64_t seed, DiveErrors& errors) 
   }
 }
 
+// The true rig knows its line delay. The files at most say that the shutter is rolling, as a data sheet does:
+// a readout of 16.5 ms, give or take 10 ms.
+void describeShutter(const EffectSet& effects, DiveErrors& errors) {
+  if (errors.readout_s <= 0.0) return;
+  for (CameraCalibration& camera : errors.in_water.cameras)
+    camera.line_delay_s = errors.readout_s / camera.height_px;
+  if (!effects.has(Effect::ShutterInFiles)) return;
+  for (CameraCalibration& camera : errors.given.cameras) {
+    camera.line_delay_s = 0.0165 / camera.height_px;
+    camera.line_delay_sigma_s = 0.010 / camera.height_px;
+  }
+}
+
 void drawClocks(const Scenario& s, DiveErrors& errors) {
   Random random(s.seed, "clock/camera");
   const double delay_s = random.uniform(0.003, 0.008);
@@ -172,6 +185,7 @@ DiveErrors drawErrors(const Scenario& s) {
   errors.in_water = errors.truth.rig;
   if (on.hasPort()) putBehindPort(on, s.seed, errors);
   errors.given = errors.in_water;
+  describeShutter(on, errors);
   if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
   misstateExtrinsics(on, s.seed, errors.given);
 

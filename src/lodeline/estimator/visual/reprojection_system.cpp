@@ -80,7 +80,8 @@ ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& fact
       first_(window, states_, factors, CameraViews::At::kLinearizationPoints, values_.hosts()),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
-      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size())),
+      nodes_(frames_ + cameras_ - 1 + static_cast<int>(states_.intrinsics.size()) +
+             (states_.shutter ? 1 : 0)),
       blocks_(window, states_, first_, nodes_) {
   const std::vector<FrameId> ids = idsOf(window);
   std::vector<double> scales;
@@ -89,6 +90,7 @@ ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& fact
     if (isAmong(track, which)) add(track, only, ids, scales);
   }
   arrangeColumns();
+  if (states_.shutter) prepareShutter(window, factors);
   update();
 }
 
@@ -110,7 +112,8 @@ void ReprojectionSystem::add(FeatureTrack& track, std::optional<FrameId> only,
     landmark.first_frame = std::min(landmark.first_frame, frame);
     landmark.end_frame = std::max(landmark.end_frame, frame + 1);
     const double scale = scales[static_cast<size_t>(frame)];
-    observations_.push_back({frame, observation.camera, &observation.measurement, scale * scale});
+    observations_.push_back(
+        {frame, observation.camera, &observation.measurement, scale * scale, &observation.measurement});
   }
   landmark.end_observation = observations_.size();
   landmarks_.push_back(landmark);
@@ -140,6 +143,7 @@ void ReprojectionSystem::arrangeColumns() {
 
 void ReprojectionSystem::update() {
   values_.update();
+  if (states_.shutter) moveMeasurements();
   residuals_.resize(observations_.size());
   for (const Landmark& landmark : landmarks_) {
     const Vec3 direction = landmark.base.direction(landmark.value);
@@ -205,6 +209,12 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
     by_point = (lens.by_residual * by_point).eval();
     term.by(Columns::kIntrinsics) = lens.by_intrinsics;
   }
+  if (states_.shutter) {
+    term.by_nodes.col(Columns::kLineDelay) =
+        by_point * pointByLineDelay(*observation.as_measured, motionOf(observation),
+                                    lineDelay_s(observation.camera),
+                                    seen.rotation * direction + rho * seen.translation, rho);
+  }
   const double weight =
       std::sqrt(landmark.weight / (1.0 + residual.by_intrinsics.squaredNorm() / observation.scale_squared));
   term.by_nodes.col(Columns::kResidual) = weight * residual.by_intrinsics;
@@ -214,6 +224,7 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
       by_point * (seen.translation - measurement.origin_C);
 
   term.by(Columns::kIntrinsics) *= weight;
+  term.by_nodes.col(Columns::kLineDelay) *= weight;
   if (observation.camera > 0) {
     const CameraViews::Further& secondary = first_.secondary(observation.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, observation.frame, 0);
@@ -250,6 +261,12 @@ void ReprojectionSystem::eliminate(Landmark* of) {
     addProducts(term.by_nodes, &by_calibration_[static_cast<size_t>(observation.camera)]);
     if (observation.camera > 0) couple(secondaryNode(observation.camera), Columns::kSecondary);
     if (!states_.intrinsics.empty()) couple(intrinsicsNode(observation.camera), Columns::kIntrinsics);
+    if (states_.shutter) {
+      const Vec2 by_line_delay = term.by_nodes.col(Columns::kLineDelay);
+      coupling.row(6 * shutterNode() + observation.camera) += by_line_delay.transpose() * term.by_landmark;
+      shutter_products_[static_cast<size_t>(observation.camera)] +=
+          Vec2(by_line_delay.squaredNorm(), by_line_delay.dot(term.residual()));
+    }
   }
   // The effect of the targets' poses follows from the host's effect with each target alone.
   auto of_host = coupling.middleRows<6>(6 * landmark.host);
@@ -282,6 +299,11 @@ void ReprojectionSystem::addPair(int host, int target) {
       addCalibration(secondaryNode(camera), of_camera.middleCols<6>(Columns::kSecondary).transpose());
     if (!states_.intrinsics.empty())
       addCalibration(intrinsicsNode(camera), of_camera.middleCols<6>(Columns::kIntrinsics).transpose());
+    if (states_.shutter) {
+      Mat6 by_line_delays = Mat6::Zero();
+      by_line_delays.row(camera) = of_camera.col(Columns::kLineDelay).transpose();
+      addCalibration(shutterNode(), by_line_delays);
+    }
   }
   const Mat6 by_host = sum.middleCols<6>(Columns::kHost);
   const Mat6 by_both = byTarget(by_host, baseline_W);
@@ -320,6 +342,7 @@ void ReprojectionSystem::addTo(NormalEquations* system) {
   const int rows = 6 * nodes_;
   by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
   by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
+  shutter_products_.assign(static_cast<size_t>(cameras_), Vec2::Zero());
   hessian_.setZero(rows, rows);
   gradient_.setZero(rows);
   couplings_.resize(6 * nodes_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
@@ -337,6 +360,7 @@ void ReprojectionSystem::addTo(NormalEquations* system) {
     }
   }
   for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
+  if (states_.shutter) addShutter();
   Eigen::MatrixXd h;
   Eigen::VectorXd g;
   blocks_.transform(hessian_, gradient_, &h, &g);
