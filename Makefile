@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything coverage tidy fuzz faults dependencies test-dependencies demo experiments test test-sanitized test-sanitized-all bench install package format check-format clean
+.PHONY: build everything coverage tidy fuzz faults effects dependencies test-dependencies demo experiments test test-sanitized test-sanitized-all bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = include src apps studies examples ros fuzz
 
@@ -50,6 +50,10 @@ test-sanitized-all:
 # Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
 faults: build
 	./scripts/faults.sh build/faults --seeds 1 2 3 --repeat 2 --allow-told 5 --markdown build/faults/table.md
+
+# What each effect of the simulator costs, with two cameras and one; the table is build/effects/table.md. It takes hours.
+effects: build
+	./scripts/effects.py build/effects --markdown build/effects/table.md
 
 # Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
 fuzz: test-dependencies

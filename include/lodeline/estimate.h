@@ -84,6 +84,7 @@ using IntrinsicsCorrection = Eigen::Matrix<double, 10, 1>;
 struct CameraCorrections {
   std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m
   double time_offset_s = 0.0;                           ///< to be added to the images' time stamps
+  std::vector<double> line_delays_s;  ///< of each camera's rolling shutter; empty where all are global
   /// Of each camera as in factors/intrinsics_factor.h; empty where the intrinsics are not estimated.
   std::vector<IntrinsicsCorrection> intrinsics;
   bool are_files_held = false;  ///< of intrinsics and secondary rotations, see IntrinsicsModelSelection

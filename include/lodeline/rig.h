@@ -105,9 +105,15 @@ struct CameraCalibration {
   Rigid3 body_from_camera;
   /// Offset added to camera stamps to obtain the IMU clock (Kalibr's timeshift_cam_imu).
   double time_offset_to_imu_s = 0.0;
+  /// Rolling shutter: time from one row to the next, and its standard deviation. Both are 0 for a global
+  /// shutter, and the line delay is then no state.
+  double line_delay_s = 0.0;
+  double line_delay_sigma_s = 0.0;
   std::string mask_file;  ///< 8-bit image, zero where the rig itself covers the view; empty for none
   /// Behind a port, the model and its parameters are those of the lens in air.
   std::optional<Port> port = std::nullopt;
+
+  bool hasRollingShutter() const { return line_delay_s != 0.0 || line_delay_sigma_s != 0.0; }
 };
 
 struct MagnetometerCalibration {

@@ -50,16 +50,25 @@ enum class Effect {
   LampCurrent,
   MagnetometerLag,
   DepthErrors,
-  // Effects that are on only by request.
+  // Effects that are on only by request, and in `physical`.
   RollingShutter,
   ClockDrift,
+  PortTilt,
+  DomePort,
+  Dispersion,
+  GSensitivity,
+  Current,
+  Fish,
+  Buddy,
+  Halocline,
+  ShutterInFiles,
 };
-constexpr int kEffectCount = static_cast<int>(Effect::ClockDrift) + 1;
+constexpr int kEffectCount = static_cast<int>(Effect::ShutterInFiles) + 1;
 
 struct EffectDescription {
   Effect effect;
   std::string_view name;  ///< as on the command line
-  bool in_clean, in_field;
+  bool in_clean, in_field, in_physical;
   std::string_view what;
 };
 const std::array<EffectDescription, kEffectCount>& effectDescriptions();
@@ -68,11 +77,16 @@ class EffectSet {
  public:
   static EffectSet clean();
   static EffectSet field();
+  /// `field` and all effects of optics, sensors and water that the estimator does not model. It has the flat
+  /// port: a rig has one kind of port.
+  static EffectSet physical();
   static EffectSet none() { return {}; }
-  /// Effects of `clean` or `field`; throws UsageError for any other word.
+  /// Effects of `clean`, `field` or `physical`; throws UsageError for any other word.
   static EffectSet named(std::string_view realism);
 
   bool has(Effect effect) const { return on_[static_cast<size_t>(effect)]; }
+  /// Whether the cameras are behind a port: flat or dome, or one that another effect needs.
+  bool hasPort() const;
   void set(Effect effect, bool on) { on_[static_cast<size_t>(effect)] = on; }
   /// Parses "name=on" or "name=off". Throws UsageError naming the existing effects.
   void set(const std::string& assignment);
@@ -137,6 +151,7 @@ struct Scenario {
   double start_depth_m = 8.0;
 
   std::string imu_grade = "gx5-25";
+  std::optional<double> readout_s;  ///< of the rolling shutter; drawn where not given
   StandardRigOptions rig;
   EffectSet effects = EffectSet::clean();
 };
@@ -149,6 +164,7 @@ struct ScenarioChanges {
   std::optional<double> camera_rate_hz, imu_rate_hz, magnetometer_rate_hz;
   std::optional<std::string> imu_grade;
   std::optional<std::string> camera_model;
+  std::optional<double> readout_ms;  ///< of a rolling shutter, which it switches on
   std::string realism = "clean";
   std::vector<std::string> effects;  ///< "name=on|off", applied after `realism`
   bool starts_moving = false;

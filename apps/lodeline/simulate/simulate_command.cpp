@@ -37,9 +37,10 @@ std::string footer() {
 }
 
 void printEffects() {
-  fmt::print("{:<26}{:<7}{:<7}{}\n", "effect", "clean", "field", "what it does");
+  fmt::print("{:<26}{:<7}{:<7}{:<10}{}\n", "effect", "clean", "field", "physical", "what it does");
   for (const EffectDescription& d : effectDescriptions()) {
-    fmt::print("{:<26}{:<7}{:<7}{}\n", d.name, d.in_clean ? "on" : "off", d.in_field ? "on" : "off", d.what);
+    fmt::print("{:<26}{:<7}{:<7}{:<10}{}\n", d.name, d.in_clean ? "on" : "off", d.in_field ? "on" : "off",
+               d.in_physical ? "on" : "off", d.what);
   }
 }
 
@@ -65,7 +66,8 @@ void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
   command->add_option("--seconds", c.seconds, "duration; given alone, the length follows");
   command->add_option("--metres", c.metres, "length of the path; given alone, the duration follows");
   command->add_option("--seed", c.seed, "of everything random (1)");
-  command->add_option("--realism", c.realism, "clean, or field: what a diver delivers (clean)");
+  command->add_option("--realism", c.realism,
+                      "clean; field: what a diver delivers; physical: more optics, water and life (clean)");
   command->add_option("--effect", c.effects, "NAME=on or NAME=off, repeatable; see --list-effects");
   command->add_option("--width", c.width_px, "of the images, px; the height follows as 3/4 (640)");
   command->add_option("--height", c.height_px, "of the images, px");
@@ -75,6 +77,8 @@ void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
                       "magnetometer readings a second (50)");
   command->add_option("--camera-model", c.camera_model,
                       "lens of the cameras: " + cameraModelNames() + " (the rig's own)");
+  command->add_option("--readout-ms", c.readout_ms,
+                      "of a rolling shutter, which it switches on (drawn, 10 to 30)");
   command->add_option("--imu", c.imu_grade, "gx5-25, gv7 or consumer");
   command->add_flag("--starts-moving", c.starts_moving, "begin in mid-swim instead of at rest");
 }

@@ -53,7 +53,7 @@ TEST_F(SimulateTest, EndsWithTwoOnWrongUsageAndWritesNothing) {
   expectUsageError("-o " + file("x"), "name a scenario");
   expectUsageError("demo", "-o");
   expectUsageError("cave9 -o " + file("x"), "cave1_short");
-  expectUsageError("demo -o " + file("x") + " --realism dirty", "clean and field");
+  expectUsageError("demo -o " + file("x") + " --realism dirty", "clean, field and physical");
   expectUsageError("demo -o " + file("x") + " --effect fog=on", "silt_outs");
   expectUsageError("demo --seconds 20 --metres 500 -o " + file("x"), "m/s");
   expectUsageError("demo --width many -o " + file("x"), "--width");

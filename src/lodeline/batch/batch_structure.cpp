@@ -72,7 +72,10 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
                                  [](const Observation& observation) { return observation.camera == 0; });
   if (host == track->observations.end() || track->observations.size() < 2) return;
   const CameraStates cameras = cameraStates(window);
-  const auto viewOf = [&](const Observation& observation) {
+  const auto viewOf = [&](const Observation& seen) {
+    Observation observation = seen;
+    observation.measurement =
+        atTimeOfImage(seen, factors.motionOf(*window.find(seen.frame), seen.camera), cameras);
     // Pixels per angle, geometric mean of both axes.
     const double pixels = std::sqrt(std::abs(observation.measurement.sqrt_information.determinant()));
     Rigid3 world_from_ray =

@@ -237,6 +237,7 @@ bool Estimator::initialize(const FrameTracks& tracks, const ObservationList& obs
 void Estimator::addCalibration(Prior* prior) {
   addCameraStates(window_, *prior, static_cast<int>(rig_.cameras.size()), options_.camera_calibration,
                   camera_rotations_);
+  addShutterState(window_, *prior, rig_, options_.camera_calibration);
   addInertialStates(window_, options_.imu_axes);
 }
 

@@ -29,6 +29,7 @@ Rigid3 correctedExtrinsics(const Rigid3& nominal, const double* correction);
 struct ImageMotion {
   Vec3 velocity_W = Vec3::Zero();          ///< m/s
   Vec3 angular_velocity_B = Vec3::Zero();  ///< rad/s, bias removed
+  Vec3 velocity_B = Vec3::Zero();  ///< the same velocity in axes of the body (factors/rolling_shutter.h)
 
   Rigid3 poseAfter(const Rigid3& world_from_body, double dt_s) const;
 };

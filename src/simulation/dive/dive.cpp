@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/dive/dive_life.h"
 #include "simulation/motion/board_motion.h"
 #include "simulation/motion/dive_motion.h"
 #include "simulation/shared/random.h"
@@ -124,6 +125,10 @@ Dive makeDive(const Scenario& s) {
             .wreck = place.wreck,
             .board = place.board,
             .disturbances = {},
+            .current = nullptr,
+            .fish = {},
+            .buddy = nullptr,
+            .halocline = {},
             .start = {}};
   dive.field_W = scenarioField(s);
   dive.surface_height_m = s.start_depth_m;
@@ -138,6 +143,7 @@ Dive makeDive(const Scenario& s) {
     }
     if (s.effects.has(Effect::LampCurrent))
       dive.disturbances.switched = drawLampSwitching(s.duration_s, s.seed);
+    addLife(dive);
   }
   return dive;
 }

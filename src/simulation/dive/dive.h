@@ -6,7 +6,10 @@
 #include "lodeline/board/calibration_board.h"
 #include "simulation/dive/dive_errors.h"
 #include "simulation/motion/posed_motion.h"
+#include "simulation/rendering/bodies/buddy.h"
+#include "simulation/rendering/bodies/fish.h"
 #include "simulation/rendering/cave/centerline.h"
+#include "simulation/rendering/light/halocline.h"
 #include "simulation/sensors/landmark_field.h"
 #include "simulation/shared/motion.h"
 
@@ -28,6 +31,10 @@ struct Dive {
   std::optional<PlacedBoard> board;   ///< of a camera calibration
   Vec3 field_W = Vec3::Zero();        ///< Earth's, T
   MagneticDisturbances disturbances;
+  std::shared_ptr<const DriftTrack> current;  ///< nothing in still water
+  std::vector<FishSchool> fish;
+  std::shared_ptr<const Buddy> buddy;  ///< nothing where no diver is in view
+  std::optional<Halocline> halocline;
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
   double surface_height_m = 0.0;  ///< height of the water surface above the world's origin
   Time start;                     ///< stamp at second 0 of the motion, on the IMU's clock

@@ -52,32 +52,57 @@ void misstateExtrinsics(const EffectSet& effects, uint64_t seed, Rig& given) {
   }
 }
 
-Port described(const FlatPort& window) {
+Port described(const PortWindow& window) {
   Port port;
-  port.normal_C = window.normal_C;
-  port.distance_m = window.distance_m;
-  port.thickness_m = window.thickness_m;
-  port.index_glass = window.index_glass;
-  port.index_water = window.index_water;
+  if (const auto* plate = std::get_if<FlatPort>(&window)) {
+    port.normal_C = plate->normal_C;
+    port.distance_m = plate->distance_m;
+    port.thickness_m = plate->thickness_m;
+  } else {
+    const DomePort& dome = std::get<DomePort>(window);
+    port.type = Port::Type::Dome;
+    port.centre_C = dome.centre_C;
+    port.radius_m = dome.radius_m;
+    port.thickness_m = dome.thickness_m;
+  }
+  port.index_glass = glassIndex(window);
+  port.index_water = waterIndex(window);
   return port;
 }
 
-FlatPort drawPort(uint64_t seed) {
+PortWindow drawFlatPort(const EffectSet& effects, uint64_t seed) {
   Random random(seed, "port");
   FlatPort port;
   port.normal_C = (Vec3::UnitZ() + 0.6 * kDegree * random.normal3()).normalized();
   port.distance_m = random.uniform(0.010, 0.025);
+  if (effects.has(Effect::PortTilt)) {
+    Random tilt(seed, "port/tilt");
+    const double angle = tilt.uniform(0.4, 1.0) * kDegree;
+    const double towards = tilt.uniform(0.0, 2.0 * std::numbers::pi);
+    port.normal_C =
+        Vec3(std::sin(angle) * std::cos(towards), std::sin(angle) * std::sin(towards), std::cos(angle));
+  }
+  return port;
+}
+
+PortWindow drawDomePort(uint64_t seed) {
+  Random random(seed, "port/dome");
+  DomePort port;
+  port.radius_m = random.uniform(0.040, 0.060);
+  port.centre_C = random.uniform(0.001, 0.003) * random.direction();
   return port;
 }
 
 // The lenses of the housing without the port, as on a bench.
-void takeOutOfHousing(uint64_t seed, DiveErrors& errors) {
-  for (CameraCalibration& camera : errors.truth.rig.cameras) camera = airCameraFor(camera, drawPort(seed));
+void takeOutOfHousing(const EffectSet& effects, uint64_t seed, DiveErrors& errors) {
+  const PortWindow port = effects.has(Effect::DomePort) ? drawDomePort(seed) : drawFlatPort(effects, seed);
+  for (CameraCalibration& camera : errors.truth.rig.cameras) camera = airCameraFor(camera, port);
   errors.in_water = errors.truth.rig;
 }
 
-void putBehindPort(uint64_t seed, bool in_files, DiveErrors& errors) {
-  const FlatPort port = drawPort(seed);
+void putBehindPort(const EffectSet& effects, uint64_t seed, DiveErrors& errors) {
+  const bool in_files = effects.has(Effect::PortInFiles);
+  const PortWindow port = effects.has(Effect::DomePort) ? drawDomePort(seed) : drawFlatPort(effects, seed);
   errors.port = port;
   errors.port_fit_rms_px = 0.0;
   for (size_t i = 0; i < errors.truth.rig.cameras.size(); ++i) {
@@ -93,6 +118,19 @@ void putBehindPort(uint64_t seed, bool in_files, DiveErrors& errors) {
   }
 }
 
+// The true rig knows its line delay. The files at most say that the shutter is rolling, as a data sheet does:
+// a readout of 16.5 ms, give or take 10 ms.
+void describeShutter(const EffectSet& effects, DiveErrors& errors) {
+  if (errors.readout_s <= 0.0) return;
+  for (CameraCalibration& camera : errors.in_water.cameras)
+    camera.line_delay_s = errors.readout_s / camera.height_px;
+  if (!effects.has(Effect::ShutterInFiles)) return;
+  for (CameraCalibration& camera : errors.given.cameras) {
+    camera.line_delay_s = 0.0165 / camera.height_px;
+    camera.line_delay_sigma_s = 0.010 / camera.height_px;
+  }
+}
+
 void drawClocks(const Scenario& s, DiveErrors& errors) {
   Random random(s.seed, "clock/camera");
   const double delay_s = random.uniform(0.003, 0.008);
@@ -101,6 +139,10 @@ void drawClocks(const Scenario& s, DiveErrors& errors) {
   if (s.effects.has(Effect::CameraDelay)) errors.camera_clock.delay_s = delay_s;
   if (s.effects.has(Effect::ClockDrift)) errors.camera_clock.drift_ppm = drift_ppm;
   if (s.effects.has(Effect::StampJitter)) errors.camera_clock.jitter_s = 0.0005;
+  if (s.effects.has(Effect::RollingShutter)) {
+    Random shutter(s.seed, "camera/readout");
+    errors.readout_s = s.readout_s.value_or(shutter.uniform(0.010, 0.030));
+  }
   if (s.effects.has(Effect::DroppedFrames)) errors.dropped_image_share = dropped;
 }
 
@@ -136,7 +178,7 @@ DiveErrors drawErrors(const Scenario& s) {
   errors.truth = standardRig(s.rig);
   errors.imu = drawImuErrors(imuGrade(s.imu_grade),
                              {on.has(Effect::ImuNoise), on.has(Effect::ImuBias), on.has(Effect::ImuScale),
-                              on.has(Effect::ImuWarmUp)},
+                              on.has(Effect::ImuWarmUp), on.has(Effect::GSensitivity)},
                              s.seed);
   errors.magnetometer =
       drawMagnetometerErrors(s.imu_grade,
@@ -148,9 +190,10 @@ DiveErrors drawErrors(const Scenario& s) {
   drawClocks(s, errors);
 
   errors.in_water = errors.truth.rig;
-  if (on.has(Effect::FlatPort) && s.in_water) putBehindPort(s.seed, on.has(Effect::PortInFiles), errors);
-  if (on.has(Effect::FlatPort) && !s.in_water) takeOutOfHousing(s.seed, errors);
+  if (on.hasPort() && s.in_water) putBehindPort(on, s.seed, errors);
+  if (on.hasPort() && !s.in_water) takeOutOfHousing(on, s.seed, errors);
   errors.given = errors.in_water;
+  describeShutter(on, errors);
   if (on.has(Effect::CameraIntrinsics)) misstateIntrinsics(s.seed, errors.given);
   misstateExtrinsics(on, s.seed, errors.given);
 

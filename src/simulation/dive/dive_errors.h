@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lodeline/simulation.h"
-#include "simulation/rendering/optics/flat_port.h"
+#include "simulation/rendering/optics/port_fit.h"
 #include "simulation/sensors/imu_model.h"
 #include "simulation/sensors/magnetometer_model.h"
 #include "simulation/sensors/pressure_model.h"
@@ -14,16 +14,17 @@ namespace lodeline {
 
 /// The true rig, the rig in the calibration files, and all errors of its sensors.
 struct DiveErrors {
-  MountedRig truth;  ///< behind a flat port, the cameras are those in air
+  MountedRig truth;  ///< behind a port, the cameras are those in air
   Rig in_water;  ///< effective rig in water: the true rig, with a port the best fit to it or the port itself
   Rig given;     ///< content of the calibration files
-  std::optional<FlatPort> port;  ///< in front of every camera
-  double port_fit_rms_px = 0.0;  ///< residual that a radial-tangential model cannot represent
+  std::optional<PortWindow> port;  ///< in front of every camera
+  double port_fit_rms_px = 0.0;    ///< residual that a radial-tangential model cannot represent
 
   ImuErrors imu;
   MagnetometerErrors magnetometer;
   PressureErrors pressure;
   SonarErrors sonar;
+  double readout_s = 0.0;    ///< of the rolling shutter of all cameras; 0: global
   ClockErrors camera_clock;  ///< one trigger for all cameras
   double dropped_image_share = 0.0;
 };

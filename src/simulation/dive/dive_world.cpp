@@ -52,7 +52,12 @@ RenderSettings renderSettings(const Dive& dive) {
   if (on.has(Effect::SecondDiver)) settings.second_diver = field.second_diver;
   if (on.has(Effect::SiltOuts)) settings.water.silt = drawSiltOuts(dive.scenario.duration_s, settings.seed);
   if (on.has(Effect::Daylight) && dive.passage) settings.daylight = entranceLight(*dive.passage);
-  if (on.has(Effect::RollingShutter)) settings.sensor.readout_s = 0.015;
+  settings.sensor.readout_s = dive.errors.readout_s;
+  settings.dispersion = on.has(Effect::Dispersion);
+  settings.setCurrent(dive.current);
+  settings.fish = dive.fish;
+  settings.buddy = dive.buddy;
+  settings.halocline = dive.halocline;
   if (!on.has(Effect::MarineSnow)) settings.snow.flakes_per_m3 = 0.0;
   settings.sensor.noise = on.has(Effect::ImageNoise);
   settings.motion_blur = on.has(Effect::MotionBlur);

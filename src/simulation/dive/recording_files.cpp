@@ -30,7 +30,7 @@ std::string cameraText(const CameraCalibration& c) {
                       fmt::join(keys.distortion_coefficients, ", "));
   if (c.port) text += fmt::format("port: {}\n", portText(*c.port));
   if (c.time_offset_to_imu_s != 0.0) text += fmt::format("timeshift_cam_imu: {}\n", c.time_offset_to_imu_s);
-  return text;
+  return text + shutterText(c, "");
 }
 
 std::string imuText(const ImuCalibration& imu) {

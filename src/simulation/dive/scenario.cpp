@@ -105,10 +105,10 @@ void changeCameraModel(const std::string& name, Scenario& s) {
     throw UsageError(
         fmt::format("--camera-model: there is no model '{}'; there are {}", name, cameraModelNames()));
   }
-  if (s.effects.has(Effect::FlatPort)) {
+  if (s.effects.hasPort()) {
     throw UsageError(
-        "--camera-model: the effect flat_port makes the lenses itself, by refraction; switch it off with "
-        "--effect flat_port=off");
+        "--camera-model: a port makes the lenses itself, by refraction; switch it off with --effect "
+        "flat_port=off (and port_tilt, dome_port, dispersion and halocline)");
   }
   s.rig.camera_model = model->name;
 }
@@ -157,6 +157,10 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   }
   for (const std::string& assignment : c.effects) s.effects.set(assignment);
   if (c.camera_model) changeCameraModel(*c.camera_model, s);
+  if (c.readout_ms) {
+    s.readout_s = 1e-3 * positive(*c.readout_ms, "--readout-ms");
+    s.effects.set(Effect::RollingShutter, true);
+  }
   s.starts_at_rest = !c.starts_moving;
   if (c.no_images) s.images = false;
   s.rig.sonar_scans_ahead = c.sonar_ahead;
@@ -180,9 +184,12 @@ std::string describe(const Scenario& s) {
       s.rig.cameras, s.rig.width_px, s.rig.height_px, s.rig.camera_rate_hz, s.rig.imu_rate_hz,
       s.rig.magnetometer_rate_hz, s.rig.pressure_rate_hz, s.rig.sonar_rate_hz);
   for (const EffectDescription& d : effectDescriptions()) {
-    text += fmt::format("  {}: {}\n", d.name, s.effects.has(d.effect) ? "on" : "off");
+    // Later effects appear only where they are on, so that earlier recordings keep their identity.
+    const bool on = s.effects.has(d.effect);
+    if (on || d.effect <= Effect::ClockDrift) text += fmt::format("  {}: {}\n", d.name, on ? "on" : "off");
   }
   if (!s.rig.camera_model.empty()) text += fmt::format("camera_model: {}\n", s.rig.camera_model);
+  if (s.readout_s) text += fmt::format("readout_s: {}\n", *s.readout_s);
   if (s.rig.sonar_scans_ahead) text += "sonar_scans_ahead: true\n";
   if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
   return text;

@@ -27,6 +27,46 @@ std::string triadText(const char* name, const TriadErrors& e) {
       numbers(e.warm_up), e.warm_up_time_s, e.range);
 }
 
+std::string portText(const PortWindow& port, double fit_rms_px) {
+  std::string shape;
+  if (const auto* plate = std::get_if<FlatPort>(&port)) {
+    shape = fmt::format("flat_port: {{normal_C: {}, distance_m: {}, thickness_m: {}",
+                        numbers(plate->normal_C), plate->distance_m, plate->thickness_m);
+  } else {
+    const DomePort& dome = std::get<DomePort>(port);
+    shape = fmt::format("dome_port: {{centre_C: {}, radius_m: {}, thickness_m: {}", numbers(dome.centre_C),
+                        dome.radius_m, dome.thickness_m);
+  }
+  return shape + fmt::format(", index_glass: {}, index_water: {}, fit_rms_px: {}}}\n", glassIndex(port),
+                             waterIndex(port), fit_rms_px);
+}
+
+// What only a part of the recordings has: rolling shutter, g-sensitivity, and what moves in the water.
+std::string rareText(const Dive& dive) {
+  std::string text;
+  if (dive.errors.readout_s > 0.0) {
+    text += fmt::format("rolling_shutter: {{readout_s: {}, line_delay_s: {}}}\n", dive.errors.readout_s,
+                        dive.errors.readout_s / dive.scenario.rig.height_px);
+  }
+  if (!dive.errors.imu.g_sensitivity.isZero()) {
+    text +=
+        fmt::format("gyroscope_g_sensitivity_rad_s_per_m_s2: {}\n", numbers(dive.errors.imu.g_sensitivity));
+  }
+  if (dive.current) {
+    const Vec3 carried = dive.current->values.back();
+    const double duration_s = dive.current->step_s * static_cast<double>(dive.current->values.size() - 1);
+    text += fmt::format("current: {{mean_velocity_W: {}}}\n", numbers(Vec3(carried / duration_s)));
+  }
+  if (!dive.fish.empty()) text += fmt::format("fish_schools: {}\n", dive.fish.size());
+  if (dive.buddy) text += fmt::format("buddy: {{kick_hz: {}}}\n", dive.buddy->kick_hz);
+  if (dive.halocline) {
+    text += fmt::format("halocline: {{height_W: {}, thickness_m: {}, index_step: {}, density_step: {}}}\n",
+                        dive.halocline->height_W, dive.halocline->thickness_m, dive.halocline->index_step,
+                        dive.errors.pressure.density_step);
+  }
+  return text;
+}
+
 // Errors of the calibration files as angles and lengths.
 std::string calibrationText(const DiveErrors& e) {
   std::string text = "calibration_files:\n";
@@ -42,11 +82,7 @@ std::string calibrationText(const DiveErrors& e) {
         off.translation.norm());
   }
   if (e.port) {
-    text += fmt::format(
-        "flat_port: {{normal_C: {}, distance_m: {}, thickness_m: {}, index_glass: {}, index_water: {}, "
-        "fit_rms_px: {}}}\n",
-        numbers(e.port->normal_C), e.port->distance_m, e.port->thickness_m, e.port->index_glass,
-        e.port->index_water, e.port_fit_rms_px);
+    text += portText(*e.port, e.port_fit_rms_px);
     for (const CameraCalibration& c : e.truth.rig.cameras) {
       text += fmt::format("{}_in_air: {{intrinsics: [{}, {}, {}, {}]}}\n", c.name, c.fx_px, c.fy_px, c.cx_px,
                           c.cy_px);
@@ -143,6 +179,7 @@ void recordTruth(const Dive& dive, const RenderSettings& settings, const std::ve
   errors.write(calibrationText(dive.errors));
   errors.write(magneticText(dive));
   errors.write(otherText(dive, settings));
+  errors.write(rareText(dive));
   errors.close();
 
   if (!images.empty()) {

@@ -47,49 +47,83 @@ HazeVolume hazeOver(const CameraOptics& optics, const CameraPose& pose, const Li
   return HazeVolume(light, pose.position, directions, columns);
 }
 
+/// The lens in water of a higher index.
+IntrinsicsOptions saltier(IntrinsicsOptions lens, double index_step) {
+  lens.port = withIndices(*lens.port, glassIndex(*lens.port), waterIndex(*lens.port) + index_step);
+  return lens;
+}
+
 }  // namespace
 
 ImageRenderer::ImageRenderer(std::shared_ptr<const RenderWorld> world, const Rig& true_rig,
                              const RenderSettings& settings)
-    : world_(world), settings_(settings), meter_(std::move(world), settings) {
-  for (const CameraCalibration& camera : true_rig.cameras) optics_.emplace_back(camera, settings.lens);
+    : world_(world), settings_(settings), meter_(std::move(world), settings), cameras_(true_rig.cameras) {
+  for (const CameraCalibration& camera : cameras_) {
+    optics_.emplace_back(camera, settings.lens);
+    if (settings.lens.port && settings.halocline)
+      salt_optics_.emplace_back(camera, saltier(settings.lens, settings.halocline->index_step));
+    if (settings.lens.port && settings.dispersion) dispersion_.emplace_back(optics_.back());
+  }
 }
 
-ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& motion, double middle_s,
+ImageRenderer::CameraInWater ImageRenderer::inWater(int camera, const Rigid3& world_from_body) const {
+  if (salt_optics_.empty()) return {&optics_[camera], nullptr};
+  const double height_W = (world_from_body * optics_[camera].bodyFromCamera()).translation.z();
+  const double salt = settings_.halocline->saltShare(height_W);
+  if (salt <= 0.0) return {&optics_[camera], nullptr};
+  if (salt >= 1.0) return {&salt_optics_[camera], nullptr};
+  const auto mixed = std::make_shared<const CameraOptics>(
+      cameras_[camera], saltier(settings_.lens, salt * settings_.halocline->index_step));
+  return {mixed.get(), mixed};
+}
+
+std::vector<Rigid3> ImageRenderer::rowPoses(const CameraOptics& optics, const WorldFromBodyAt& motion,
+                                            double middle_s) const {
+  std::vector<Rigid3> poses;
+  if (settings_.sensor.readout_s <= 0.0) return poses;
+  const double line_delay_s = settings_.sensor.lineDelay_s(optics.height());
+  for (int y = 0; y < optics.height(); ++y)
+    poses.push_back(motion(middle_s + line_delay_s * (y - 0.5 * (optics.height() - 1))));
+  return poses;
+}
+
+ImageRenderer::Light ImageRenderer::trace(const CameraOptics& optics, const Rigid3& world_from_body,
+                                          const std::vector<Rigid3>& row_poses,
                                           const LightField& light) const {
-  const CameraOptics& optics = optics_[camera];
   const int width = optics.width(), height = optics.height();
-  const auto poseAt = [&](double time_s) { return CameraPose(motion(time_s) * optics.bodyFromCamera()); };
-  const CameraPose middle = poseAt(middle_s);
+  const CameraPose middle(world_from_body * optics.bodyFromCamera());
   const HazeVolume haze = hazeOver(optics, middle, light);
   const SurfaceShader shader(world_->scene, world_->texture);
-  const double readout_s = settings_.sensor.readout_s;
   const auto boardAt = [&](const Rigid3& world_from_body) {
     return world_->board ? std::optional<BoardSampler>(std::in_place, *world_->board, optics,
                                                        world_from_body * optics.bodyFromCamera())
                          : std::nullopt;
   };
 
-  Light out{cv::Mat(height, width, CV_32F, cv::Scalar(0)), cv::Mat(height, width, CV_32F, cv::Scalar(0))};
+  Light out{cv::Mat(height, width, CV_32F, cv::Scalar(0)), cv::Mat(height, width, CV_32F, cv::Scalar(0)), {}};
+  if (settings_.halocline) out.height_W = cv::Mat(height, width, CV_32F, cv::Scalar(0));
   const int packet_rows = (height + kPacketHeight - 1) / kPacketHeight;
   tbb::parallel_for(0, packet_rows, [&](int packet_row) {
     const int y0 = packet_row * kPacketHeight;
-    // Rolling shutter: each row of packets has its own time.
-    const double row_s = middle_s + readout_s * ((y0 + 0.5 * kPacketHeight) / height - 0.5);
-    const CameraPose pose = readout_s > 0.0 ? poseAt(row_s) : middle;
-    const std::optional<BoardSampler> board = boardAt(motion(readout_s > 0.0 ? row_s : middle_s));
+    // Rolling shutter: each row has its own pose.
+    std::vector<CameraPose> poses(kPacketHeight, middle);
+    for (int row = 0; row < kPacketHeight && y0 + row < static_cast<int>(row_poses.size()); ++row)
+      poses[row] = CameraPose(row_poses[y0 + row] * optics.bodyFromCamera());
+    const std::optional<BoardSampler> board =
+        boardAt(static_cast<size_t>(y0) < row_poses.size() ? row_poses[y0] : world_from_body);
     for (int x0 = 0; x0 < width; x0 += kPacketWidth) {
       RayPacket rays;
       for (int lane = 0; lane < kRayPacketSize; ++lane) {
         const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
         const bool seen = x < width && y < height && optics.sees(y * width + x);
         if (seen)
-          aim(rays, lane, optics, y * width + x, pose);
+          aim(rays, lane, optics, y * width + x, poses[lane / kPacketWidth]);
         else
           rays.disable(lane);
       }
       HitPacket hits;
       world_->scene.intersect(rays, hits);
+      intersectBodies(light.bodies, rays, hits);
       float radiance[kRayPacketSize];
       shader.shade(rays, hits, light, optics.pixelAngle(), true, radiance);
       for (int lane = 0; lane < kRayPacketSize; ++lane) {
@@ -101,6 +135,10 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
         out.radiance.at<float>(y, x) =
             optics.light(y * width + x) * (radiance[lane] * veil.transmittance + veil.radiance);
         out.range_m.at<float>(y, x) = hits.range_m[lane];
+        if (settings_.halocline) {
+          out.height_W.at<float>(y, x) =
+              rays.origin[2][lane] + std::min(hits.range_m[lane], kSight_m) * rays.direction[2][lane];
+        }
       }
     }
   });
@@ -108,11 +146,13 @@ ImageRenderer::Light ImageRenderer::trace(int camera, const WorldFromBodyAt& mot
 }
 
 cv::Mat ImageRenderer::render(int camera, const WorldFromBodyAt& motion, double middle_s) const {
-  const CameraOptics& optics = optics_[camera];
   const Rigid3 world_from_body = motion(middle_s);
+  const CameraInWater in_water = inWater(camera, world_from_body);
+  const CameraOptics& optics = *in_water.optics;
   const LightField light = placeLight(settings_, optics, world_from_body, middle_s);
   ExposureSetting setting = exposure(camera, motion, middle_s);
-  Light image = trace(camera, motion, middle_s, light);
+  const std::vector<Rigid3> row_poses = rowPoses(optics, motion, middle_s);
+  Light image = trace(optics, world_from_body, row_poses, light);
 
   const Rigid3 middle_from_world = (world_from_body * optics.bodyFromCamera()).inverse();
   const auto fromMiddle = [&](double offset_s) {
@@ -120,11 +160,17 @@ cv::Mat ImageRenderer::render(int camera, const WorldFromBodyAt& motion, double 
   };
   ExposureMotion shutter;
   if (settings_.motion_blur) {
-    shutter = {fromMiddle(-0.5 * setting.exposure_s), fromMiddle(0.5 * setting.exposure_s)};
+    shutter = {fromMiddle(-0.5 * setting.exposure_s), fromMiddle(0.5 * setting.exposure_s),
+               setting.exposure_s};
     blurByMotion(image.radiance, image.range_m, optics, shutter);
   }
   addMarineSnow(image.radiance, image.range_m, optics, world_from_body, shutter, light, settings_.snow,
-                middle_s, settings_.seed);
+                middle_s, settings_.seed, row_poses);
+  if (settings_.halocline) {
+    blurByHalocline(image.radiance, image.range_m, image.height_W,
+                    middle_from_world.inverse().translation.z(), *settings_.halocline);
+  }
+  if (!dispersion_.empty()) dispersion_[camera].smear(image.radiance, image.range_m);
   if (optics.blurSigma() > 0.0) {
     cv::GaussianBlur(image.radiance, image.radiance, cv::Size(3, 3), optics.blurSigma());
   }
@@ -137,7 +183,8 @@ cv::Mat ImageRenderer::render(int camera, const WorldFromBodyAt& motion, double 
 
 std::optional<Vec3> ImageRenderer::hitPoint(int camera, const Vec2& pixel,
                                             const Rigid3& world_from_body) const {
-  const auto ray = optics_[camera].ray(pixel);
+  const CameraInWater in_water = inWater(camera, world_from_body);
+  const auto ray = in_water.optics->ray(pixel);
   if (!ray) return std::nullopt;
   const Rigid3 world_from_camera = world_from_body * optics_[camera].bodyFromCamera();
   const Vec3 origin_W = world_from_camera * ray->origin_C;

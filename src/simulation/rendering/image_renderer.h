@@ -9,6 +9,7 @@
 #include "simulation/rendering/light/light_meter.h"
 #include "simulation/rendering/light/render_settings.h"
 #include "simulation/rendering/light/render_world.h"
+#include "simulation/rendering/optics/dispersion.h"
 
 namespace lodeline {
 
@@ -47,13 +48,29 @@ class ImageRenderer {
   struct Light {
     cv::Mat radiance;  ///< CV_32F, vignetted
     cv::Mat range_m;   ///< CV_32F, infinite without a surface
+    cv::Mat height_W;  ///< CV_32F, of the point in view, m; empty without a halocline
   };
 
-  Light trace(int camera, const WorldFromBodyAt& motion, double middle_s, const LightField& light) const;
+  /// Rays of one camera in the water about it.
+  struct CameraInWater {
+    const CameraOptics* optics;
+    std::shared_ptr<const CameraOptics> kept;  ///< owns the optics within a halocline
+  };
+  CameraInWater inWater(int camera, const Rigid3& world_from_body) const;
+
+  /// Poses of the body while each row is exposed; nothing for a global shutter.
+  std::vector<Rigid3> rowPoses(const CameraOptics& optics, const WorldFromBodyAt& motion,
+                               double middle_s) const;
+
+  Light trace(const CameraOptics& optics, const Rigid3& world_from_body, const std::vector<Rigid3>& row_poses,
+              const LightField& light) const;
   std::shared_ptr<const RenderWorld> world_;
   RenderSettings settings_;
   LightMeter meter_;
-  std::vector<CameraOptics> optics_;
+  std::vector<CameraOptics> optics_;       ///< in the water of the port; above a halocline
+  std::vector<CameraOptics> salt_optics_;  ///< below a halocline; empty without one
+  std::vector<Dispersion> dispersion_;     ///< empty without dispersion
+  std::vector<CameraCalibration> cameras_;
 };
 
 }  // namespace lodeline

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kDegreePerHour = kDegree / 3600.0;
 constexpr double kMilliG = 9.80665e-3;
+constexpr double kDegreePerSecondPerG = kDegree / 9.80665;
 
 TriadErrors triad(double noise_density, double random_walk, double bias_instability, double range) {
   TriadErrors errors;
@@ -26,18 +27,19 @@ TriadErrors triad(double noise_density, double random_walk, double bias_instabil
 // Noise, instability, turn-on bias, scale and misalignment of the class as stated by manufacturers. They do
 // not state random walks. These are chosen to exceed the minimum due to the instability after about a quarter
 // of an hour, as in Allan plots of such parts. Warm-up: a drift over the first ten minutes of about one
-// turn-on bias.
+// turn-on bias. Sensitivity to specific force: typical of tactical (0.01-0.05 deg/s/g) and consumer parts
+// (0.1).
 const std::array<ImuGrade, 3>& grades() {
   static const std::array<ImuGrade, 3> table = {{
       {"gx5-25", 200.0, triad(0.005 * kDegree, 2e-6, 8.0 * kDegreePerHour, 300.0 * kDegree),
        triad(0.025 * kMilliG, 2e-5, 0.04 * kMilliG, 8.0 * 9.80665), 0.04 * kDegree, 2.0 * kMilliG, 5e-4,
-       0.05 * kDegree, 0.02 * kDegree, 1.0 * kMilliG},
+       0.05 * kDegree, 0.02 * kDegree, 1.0 * kMilliG, 0.03 * kDegreePerSecondPerG},
       {"gv7", 200.0, triad(0.0031 * kDegree, 5e-7, 2.0 * kDegreePerHour, 300.0 * kDegree),
        triad(0.030 * kMilliG, 1e-5, 0.02 * kMilliG, 8.0 * 9.80665), 0.05 * kDegree, 2.5 * kMilliG, 5e-4,
-       0.05 * kDegree, 0.015 * kDegree, 0.8 * kMilliG},
+       0.05 * kDegree, 0.015 * kDegree, 0.8 * kMilliG, 0.01 * kDegreePerSecondPerG},
       {"consumer", 200.0, triad(0.01 * kDegree, 1e-5, 30.0 * kDegreePerHour, 500.0 * kDegree),
        triad(0.3 * kMilliG, 1.5e-4, 0.2 * kMilliG, 8.0 * 9.80665), 1.0 * kDegree, 30.0 * kMilliG, 1e-2,
-       0.5 * kDegree, 0.2 * kDegree, 8.0 * kMilliG},
+       0.5 * kDegree, 0.2 * kDegree, 8.0 * kMilliG, 0.1 * kDegreePerSecondPerG},
   }};
   return table;
 }
@@ -88,6 +90,11 @@ ImuErrors drawImuErrors(const ImuGrade& grade, const SpecimenOptions& options, u
             errors.gyroscope);
   drawTriad(grade, options, grade.accelerometer_turn_on_m_per_s2, grade.accelerometer_warm_up_m_per_s2,
             random, errors.accelerometer);
+  if (options.g_sensitivity) {
+    Random own(seed, "imu/g-sensitivity");
+    for (int axis = 0; axis < 3; ++axis)
+      errors.g_sensitivity.col(axis) = grade.g_sensitivity_rad_s_per_m_s2 * own.normal3();
+  }
   return errors;
 }
 

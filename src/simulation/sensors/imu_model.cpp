@@ -62,7 +62,8 @@ ImuSample ImuModel::measure(const ImuSample& perfect) {
   ImuSample sample;
   sample.time = perfect.time;
   sample.angular_velocity_B =
-      read(perfect.angular_velocity_B, errors_.gyroscope, gyroscope_drift_.value(), &gyroscope_bias_);
+      read(perfect.angular_velocity_B + errors_.g_sensitivity * perfect.specific_force_B, errors_.gyroscope,
+           gyroscope_drift_.value(), &gyroscope_bias_);
   sample.specific_force_B = read(perfect.specific_force_B, errors_.accelerometer,
                                  accelerometer_drift_.value(), &accelerometer_bias_);
   return sample;

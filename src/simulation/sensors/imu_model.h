@@ -25,6 +25,8 @@ struct TriadErrors {
 struct ImuErrors {
   TriadErrors gyroscope;
   TriadErrors accelerometer;
+  /// Rate that the gyroscope reads per specific force, (rad/s) / (m/s^2); no part of its bias.
+  Mat3 g_sensitivity = Mat3::Zero();
 };
 
 /// Datasheet values of a class of IMU: noise, and standard deviations of the systematic errors of a specimen.
@@ -35,6 +37,7 @@ struct ImuGrade {
   double gyroscope_turn_on_rad_per_s, accelerometer_turn_on_m_per_s2;
   double scale_error, misalignment_rad;
   double gyroscope_warm_up_rad_per_s, accelerometer_warm_up_m_per_s2;
+  double g_sensitivity_rad_s_per_m_s2;  ///< standard deviation of each element
 };
 
 /// Grades `gx5-25` (Microstrain 3DM-GX5-25), `gv7` (3DM-GV7) and `consumer` (MPU-9250 class). Throws
@@ -47,6 +50,7 @@ struct SpecimenOptions {
   bool turn_on_bias = true;
   bool scale_and_misalignment = false;
   bool warm_up = false;
+  bool g_sensitivity = false;
 };
 /// Draws one specimen of a grade. Each draw is independent of the selection of the others.
 ImuErrors drawImuErrors(const ImuGrade& grade, const SpecimenOptions& options, uint64_t seed);

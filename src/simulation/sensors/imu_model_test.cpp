@@ -92,6 +92,51 @@ TEST(ImuModel, AppliesBiasMatrixWarmUpAndRange) {
   EXPECT_LT((model.accelerometerBias() - Vec3(0.1, 0.5 * std::exp(-1.0), 0.0)).norm(), 1e-12);
 }
 
+TEST(ImuGrades, FlickerOfEverySensorIsFlatAtItsInstability) {
+  for (const std::string_view name : imuGradeNames()) {
+    ImuErrors errors;
+    errors.accelerometer.bias_instability = imuGrade(name).accelerometer.bias_instability;
+    errors.gyroscope.bias_instability = imuGrade(name).gyroscope.bias_instability;
+    ImuModel model(errors, 2.0, 11);
+    std::vector<Vec3> rates, forces;
+    for (int i = 0; i < 100000; ++i) {
+      ImuSample perfect;
+      perfect.time = Time::fromSeconds(0.5 * i);
+      const ImuSample reading = model.measure(perfect);
+      rates.push_back(reading.angular_velocity_B);
+      forces.push_back(reading.specific_force_B);
+    }
+    for (const int size : {20, 100, 500}) {
+      EXPECT_NEAR(allanDeviation(rates, size) / errors.gyroscope.bias_instability, 0.664, 0.1) << size;
+      EXPECT_NEAR(allanDeviation(forces, size) / errors.accelerometer.bias_instability, 0.664, 0.1) << size;
+    }
+  }
+}
+
+TEST(ImuModel, TheGyroscopeReadsARateThatFollowsTheSpecificForce) {
+  ImuErrors errors;
+  errors.g_sensitivity(0, 2) = 0.1 * std::numbers::pi / 180.0 / 9.80665;  // 0.1 deg/s/g
+  ImuModel model(errors, kRate, 1);
+  ImuSample truth;
+  truth.specific_force_B = Vec3(0.0, 0.0, 9.80665);
+  const double rate_deg_per_s = model.measure(truth).angular_velocity_B.x() * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(rate_deg_per_s, 0.1, 1e-12);
+  EXPECT_EQ(model.gyroscopeBias(), Vec3::Zero());  // no part of the bias: it turns with the rig
+}
+
+TEST(ImuGrades, GSensitivityHasTheSizeOfTheGrade) {
+  const auto rms_deg_per_s_per_g = [](std::string_view grade) {
+    double squares = 0.0;
+    for (uint64_t seed = 0; seed < 200; ++seed)
+      squares += drawImuErrors(imuGrade(grade), {.g_sensitivity = true}, seed).g_sensitivity.squaredNorm();
+    return std::sqrt(squares / 1800.0) * 9.80665 * 180.0 / std::numbers::pi;
+  };
+  EXPECT_NEAR(rms_deg_per_s_per_g("consumer"), 0.1, 0.01);
+  EXPECT_NEAR(rms_deg_per_s_per_g("gx5-25"), 0.03, 0.003);
+  EXPECT_NEAR(rms_deg_per_s_per_g("gv7"), 0.01, 0.001);
+  EXPECT_TRUE(drawImuErrors(imuGrade("gv7"), {}, 1).g_sensitivity.isZero());
+}
+
 TEST(ImuGrades, AreOrderedAndRefuseUnknownNames) {
   EXPECT_LT(imuGrade("gv7").gyroscope.bias_instability, imuGrade("gx5-25").gyroscope.bias_instability);
   EXPECT_LT(imuGrade("gx5-25").gyroscope.noise_density, imuGrade("consumer").gyroscope.noise_density);

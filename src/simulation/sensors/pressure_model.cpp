@@ -13,14 +13,16 @@ PressureModel::PressureModel(const Motion& motion, const Rigid3& body_from_press
       errors_(errors),
       noise_(seed, "pressure/white") {}
 
-double PressureModel::trueDepth(double time_s) const {
+double PressureModel::depthOfPressure(double time_s) const {
   const Rigid3 world_from_body = motion_.at(time_s).world_from_body;
-  return surface_height_m_ - (world_from_body * body_from_pressure_.translation).z();
+  const double depth_m = surface_height_m_ - (world_from_body * body_from_pressure_.translation).z();
+  if (!errors_.halocline_depth_m) return depth_m;
+  return depth_m + errors_.density_step * std::max(0.0, depth_m - *errors_.halocline_depth_m);
 }
 
 double PressureModel::measure(double time_s) {
   if (!started_ || errors_.lag_s <= 0.0) {
-    lagged_m_ = trueDepth(time_s);
+    lagged_m_ = depthOfPressure(time_s);
     started_ = true;
   } else {
     // Steps well below both the lag and the breathing period.
@@ -28,7 +30,7 @@ double PressureModel::measure(double time_s) {
     const double step_s = (time_s - last_s_) / steps;
     const double keep = std::exp(-step_s / errors_.lag_s);
     for (int i = 1; i <= steps; ++i) {
-      lagged_m_ = keep * lagged_m_ + (1.0 - keep) * trueDepth(last_s_ + (i - 0.5) * step_s);
+      lagged_m_ = keep * lagged_m_ + (1.0 - keep) * depthOfPressure(last_s_ + (i - 0.5) * step_s);
     }
   }
   last_s_ = time_s;

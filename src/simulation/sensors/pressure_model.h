@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "simulation/shared/motion.h"
 #include "simulation/shared/random.h"
@@ -10,12 +11,15 @@ namespace lodeline {
 /// Errors of a real depth gauge: the pressure of the real water is converted with an assumed density, after a
 /// first-order lag of the membrane.
 ///   reading = round(density_ratio * lagged depth + offset + noise)
+/// Below a halocline, each metre weighs more: it counts (1 + density_step) in the depth.
 struct PressureErrors {
   double noise_m = 0.0;
   double resolution_m = 0.0;  ///< 0: continuous
   double offset_m = 0.0;
   double lag_s = 0.0;          ///< time constant
   double density_ratio = 1.0;  ///< true density divided by assumed density
+  std::optional<double> halocline_depth_m = std::nullopt;
+  double density_step = 0.0;  ///< of the water below the halocline, relative to that above
 };
 
 class PressureModel {
@@ -29,7 +33,8 @@ class PressureModel {
   double measure(double time_s);
 
  private:
-  double trueDepth(double time_s) const;
+  /// Depth in water of the upper density with the same pressure, m.
+  double depthOfPressure(double time_s) const;
 
   const Motion& motion_;
   Rigid3 body_from_pressure_;

@@ -25,7 +25,7 @@ struct Seen {
   Vec3 direction_W;  ///< homogeneous point relative to the host's camera: direction + rho (host - x)
   Vec3 host_W;
   double rho;
-  const DirectionMeasurement* measurement;
+  DirectionMeasurement measurement;
 };
 
 class Resection {
@@ -49,7 +49,7 @@ class Resection {
       }
       seen_.push_back({host_W.rotation * track.landmark->base.direction(track.landmark->parameters.data()),
                        host_W.translation, track.landmark->inverseDistance(),
-                       &track.find(newest, 0)->measurement});
+                       atTimeOfImage(*track.find(newest, 0), factors.motionOf(frame_, 0), states_)});
     }
     errors_.resize(seen_.size());
   }
@@ -110,9 +110,9 @@ class Resection {
 
   Vec2 residualOf(const Seen& seen, const Vec3& point_C, Mat23* by_point) const {
     Vec2 residual =
-        directionResidual(*seen.measurement, seen.measurement->fromOrigin(point_C, seen.rho), by_point);
+        directionResidual(seen.measurement, seen.measurement.fromOrigin(point_C, seen.rho), by_point);
     if (!states_.intrinsics.empty())
-      residual += intrinsicsShift(*seen.measurement, residual, states_.intrinsics.front()->value.data());
+      residual += intrinsicsShift(seen.measurement, residual, states_.intrinsics.front()->value.data());
     return residual;
   }
 

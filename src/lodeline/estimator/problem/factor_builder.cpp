@@ -27,6 +27,28 @@ void hangOnNeighbours(const Window& window, const Frame& target, Factor* factor)
   factor->blocks.push_back(after.pose.data());
 }
 
+/// Linearization points of the blocks of FactorBuilder::calibratedFactor(), in their order.
+std::vector<const double*> linearizationPoints(const Window& window, const Landmark& landmark,
+                                               const Observation& observation, const CameraStates& states) {
+  std::vector<const double*> first;
+  const double* of_secondary = nullptr;
+  if (observation.camera > 0) of_secondary = states.secondary[observation.camera - 1]->linearizationPoint();
+  if (observation.frame == landmark.host) {
+    first = {nullptr};
+    if (observation.camera > 0) first.push_back(of_secondary);
+  } else {
+    const Frame& target = *window.find(observation.frame);
+    const Frame& before = target.interpolated ? *window.find(target.interpolated->before) : target;
+    first = {window.find(landmark.host)->firstPose(), before.firstPose(), nullptr,
+             states.camera0->linearizationPoint(), states.time_offset->linearizationPoint()};
+    if (observation.camera > 0) first.push_back(of_secondary);
+    if (target.interpolated) first.push_back(window.find(target.interpolated->after)->firstPose());
+  }
+  // Intrinsics are linearized at their present values.
+  if (!states.intrinsics.empty()) first.push_back(nullptr);
+  return first;
+}
+
 /// Prior of a zero state with the same sigma for each of its entries.
 Factor zeroPrior(ParameterBlock& state, double sigma) {
   const auto size = static_cast<Eigen::Index>(state.value.size());
@@ -47,6 +69,7 @@ FactorBuilder::FactorBuilder(const Rig& rig, const EstimatorOptions& options)
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);
     camera0_from_camera_.push_back(body_from_camera_.front().inverse() * camera.body_from_camera);
+    centre_rows_.push_back(camera.hasRollingShutter() ? centreRow(camera) : 0.0);
   }
 }
 
@@ -142,44 +165,69 @@ LandmarkFactors FactorBuilder::landmark(Window& window, FeatureTrack& track) con
   return states ? calibratedLandmark(window, track, states) : plainLandmark(window, track);
 }
 
+Factor FactorBuilder::calibratedFactor(Window& window, const Landmark& landmark, double* parameters,
+                                       const Observation& observation,
+                                       const DirectionMeasurement& measurement,
+                                       const CameraStates& states) const {
+  Factor factor;
+  Frame &host = *window.find(landmark.host), &target = *window.find(observation.frame);
+  const bool in_host = observation.frame == landmark.host;
+  ParameterBlock* secondary = observation.camera > 0 ? states.secondary[observation.camera - 1] : nullptr;
+  if (in_host && !secondary) {
+    factor.function = std::make_unique<HostReprojectionFactor>(measurement, landmark.base, Rigid3());
+    factor.blocks = {parameters};
+  } else if (in_host) {
+    factor.function = std::make_unique<CalibratedStereoFactor>(measurement, landmark.base,
+                                                               camera0_from_camera_[observation.camera],
+                                                               secondary->linearizationPoint());
+    factor.blocks = {parameters, secondary->value.data()};
+  } else {
+    CameraPlacement placement{body_from_camera_[0], std::nullopt};
+    if (secondary) placement.camera0_from_target = camera0_from_camera_[observation.camera];
+    const CalibratedLinearizationPoints first{
+        host.firstPose(), target.firstPose(), states.camera0->linearizationPoint(),
+        states.time_offset->linearizationPoint(), secondary ? secondary->linearizationPoint() : nullptr};
+    factor.function = std::make_unique<CalibratedReprojectionFactor>(
+        measurement, landmark.base, placement, host.image_motion, target.image_motion, first);
+    factor.blocks = {host.pose.data(), target.pose.data(), parameters, states.camera0->value.data(),
+                     states.time_offset->value.data()};
+    if (secondary) factor.blocks.push_back(secondary->value.data());
+    if (target.interpolated) hangOnNeighbours(window, target, &factor);
+  }
+  if (states.intrinsics.empty()) return factor;
+  factor.function = std::make_unique<IntrinsicsFactor>(std::move(factor.function), measurement);
+  factor.blocks.push_back(states.intrinsics[observation.camera]->value.data());
+  return factor;
+}
+
+Factor FactorBuilder::shutterFactor(Window& window, const Landmark& landmark, double* parameters,
+                                    const Observation& observation, const CameraStates& states) const {
+  Factor factor =
+      calibratedFactor(window, landmark, parameters, observation, observation.measurement, states);
+  const CameraMotion motion = motionOf(*window.find(observation.frame), observation.camera);
+  const auto factor_of = [this, &window, &landmark, parameters, &observation,
+                          states](const DirectionMeasurement& measurement) {
+    return calibratedFactor(window, landmark, parameters, observation, measurement, states).function;
+  };
+  factor.function =
+      std::make_unique<RollingShutterFactor>(factor_of, observation.measurement, motion, observation.camera,
+                                             linearizationPoints(window, landmark, observation, states));
+  factor.blocks.push_back(states.shutter->value.data());
+  return factor;
+}
+
 LandmarkFactors FactorBuilder::calibratedLandmark(Window& window, FeatureTrack& track,
                                                   const CameraStates& states) const {
   Landmark& landmark = *track.landmark;
-  Frame& host = *window.find(landmark.host);
   LandmarkFactors result;
   result.landmark = landmark.parameters.data();
   result.factors.reserve(track.observations.size());
   for (const Observation& observation : track.observations) {
-    Factor& factor = result.factors.emplace_back();
-    Frame& target = *window.find(observation.frame);
-    factor.loss = lossOf(track, robustScale(target));
-    const bool in_host = observation.frame == landmark.host;
-    ParameterBlock* secondary = observation.camera > 0 ? states.secondary[observation.camera - 1] : nullptr;
-    if (in_host && !secondary) {
-      factor.function =
-          std::make_unique<HostReprojectionFactor>(observation.measurement, landmark.base, Rigid3());
-      factor.blocks = {result.landmark};
-    } else if (in_host) {
-      factor.function = std::make_unique<CalibratedStereoFactor>(observation.measurement, landmark.base,
-                                                                 camera0_from_camera_[observation.camera],
-                                                                 secondary->linearizationPoint());
-      factor.blocks = {result.landmark, secondary->value.data()};
-    } else {
-      CameraPlacement placement{body_from_camera_[0], std::nullopt};
-      if (secondary) placement.camera0_from_target = camera0_from_camera_[observation.camera];
-      const CalibratedLinearizationPoints first{
-          host.firstPose(), target.firstPose(), states.camera0->linearizationPoint(),
-          states.time_offset->linearizationPoint(), secondary ? secondary->linearizationPoint() : nullptr};
-      factor.function = std::make_unique<CalibratedReprojectionFactor>(
-          observation.measurement, landmark.base, placement, host.image_motion, target.image_motion, first);
-      factor.blocks = {host.pose.data(), target.pose.data(), result.landmark, states.camera0->value.data(),
-                       states.time_offset->value.data()};
-      if (secondary) factor.blocks.push_back(secondary->value.data());
-      if (target.interpolated) hangOnNeighbours(window, target, &factor);
-    }
-    if (states.intrinsics.empty()) continue;
-    factor.function = std::make_unique<IntrinsicsFactor>(std::move(factor.function), observation.measurement);
-    factor.blocks.push_back(states.intrinsics[observation.camera]->value.data());
+    result.factors.push_back(states.shutter
+                                 ? shutterFactor(window, landmark, result.landmark, observation, states)
+                                 : calibratedFactor(window, landmark, result.landmark, observation,
+                                                    observation.measurement, states));
+    result.factors.back().loss = lossOf(track, robustScale(*window.find(observation.frame)));
   }
   return result;
 }

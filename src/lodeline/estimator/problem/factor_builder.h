@@ -10,6 +10,7 @@
 #include "lodeline/estimator/state/factor.h"
 #include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
+#include "lodeline/factors/rolling_shutter.h"
 
 namespace lodeline {
 
@@ -40,6 +41,10 @@ class FactorBuilder {
 
   /// Poses by the calibration files.
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
+  /// Motion of a camera while its rows are read (factors/rolling_shutter.h).
+  CameraMotion motionOf(const Frame& frame, int camera) const {
+    return {frame.image_motion, body_from_camera_[camera], centre_rows_[camera]};
+  }
   const Rigid3& camera0FromCamera(int camera) const { return camera0_from_camera_[camera]; }
   int cameraCount() const { return static_cast<int>(body_from_camera_.size()); }
   /// Width of the Cauchy loss on the reprojection residuals of a frame's images, in standard deviations.
@@ -49,10 +54,18 @@ class FactorBuilder {
 
  private:
   LandmarkFactors plainLandmark(Window& window, FeatureTrack& track) const;
+  /// Term of one observation with a measurement of its own.
+  Factor calibratedFactor(Window& window, const Landmark& landmark, double* parameters,
+                          const Observation& observation, const DirectionMeasurement& measurement,
+                          const CameraStates& states) const;
+  /// The same with the line delay of its camera as a variable.
+  Factor shutterFactor(Window& window, const Landmark& landmark, double* parameters,
+                       const Observation& observation, const CameraStates& states) const;
   LandmarkFactors calibratedLandmark(Window& window, FeatureTrack& track, const CameraStates& states) const;
 
   std::vector<Rigid3> body_from_camera_;
   std::vector<Rigid3> camera0_from_camera_;
+  std::vector<double> centre_rows_;  ///< of rolling shutters, 0 otherwise
   Vec3 gravity_W_;
   ImuAxesOptions imu_axes_;
   double placement_sigma_m_;

@@ -125,7 +125,8 @@ void NormalEquations::add(const std::vector<Block>& blocks, const Eigen::MatrixX
 /// One factor of a landmark, linearized: the residual, its derivative by the landmark and by every other
 /// block, all scaled by the loss.
 struct NormalEquations::LandmarkTerm {
-  static constexpr int kMaxBlocks = 8;  // three poses, landmark, extrinsics twice, time offset, intrinsics
+  static constexpr int kMaxBlocks =
+      9;  // three poses, landmark, extrinsics twice, time offset, intrinsics, shutter
   struct Part {
     int offset, size;
     Eigen::Matrix<double, 2, kMostCoordinates> jacobian;  // columns beyond `size` are zero

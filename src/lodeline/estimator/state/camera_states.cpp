@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
 
@@ -9,6 +10,7 @@ namespace lodeline {
 namespace {
 
 constexpr const char* kTimeOffset = "camera.dt";
+constexpr const char* kShutter = "camera.shutter";
 
 // Small enough to hold a state, large enough for a well conditioned prior.
 constexpr double kHeld = 1e-7;
@@ -71,6 +73,25 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
   }
 }
 
+void addShutterState(Window& window, Prior& prior, const Rig& rig, const CameraCalibrationOptions& options) {
+  const auto rolls = [](const CameraCalibration& camera) { return camera.hasRollingShutter(); };
+  if (!options.enabled || std::none_of(rig.cameras.begin(), rig.cameras.end(), rolls)) return;
+  if (rig.cameras.size() > kShutterSize) {
+    throw UsageError("a rolling shutter is estimated for six cameras at most; remove a camera from the rig");
+  }
+  // A line delay is some 1e-5 s, so the usual sigma of a held state would not hold it.
+  constexpr double kHeld_s = 1e-10;
+  Eigen::VectorXd sigmas = Eigen::VectorXd::Constant(kShutterSize, kHeld_s);
+  ParameterBlock state;
+  state.name = kShutter;
+  state.value.assign(kShutterSize, 0.0);
+  for (size_t i = 0; i < rig.cameras.size(); ++i) {
+    state.value[i] = rig.cameras[i].line_delay_s;
+    sigmas[static_cast<Eigen::Index>(i)] = std::max(kHeld_s, rig.cameras[i].line_delay_sigma_s);
+  }
+  prior.append(window.add(std::move(state)).value.data(), kShutterSize, sigmas);
+}
+
 void addIntrinsicsStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options) {
   if (!options.enabled || !options.intrinsics) return;
   for (int camera = 0; camera < cameras; ++camera)
@@ -82,6 +103,7 @@ CameraStates cameraStates(const Window& window) {
   states.camera0 = window.findGlobal(extrinsicsName(0));
   if (!states.camera0) return states;
   states.time_offset = window.findGlobal(kTimeOffset);
+  states.shutter = window.findGlobal(kShutter);
   while (ParameterBlock* secondary = window.findGlobal(extrinsicsName(states.secondary.size() + 1)))
     states.secondary.push_back(secondary);
   while (ParameterBlock* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
@@ -95,6 +117,13 @@ Vec3 rayOf(const Observation& observation, const CameraStates& states) {
   return rayThrough(observation.measurement, lens->value.data());
 }
 
+DirectionMeasurement atTimeOfImage(const Observation& observation, const CameraMotion& motion,
+                                   const CameraStates& states) {
+  if (!states.shutter) return observation.measurement;
+  return atTimeOfImage(observation.measurement, motion,
+                       states.shutter->value[static_cast<size_t>(observation.camera)]);
+}
+
 std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   using Correction = Eigen::Matrix<double, kExtrinsicsSize, 1>;
   const CameraStates states = cameraStates(window);
@@ -104,6 +133,10 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   for (const ParameterBlock* secondary : states.secondary)
     corrections.extrinsics.emplace_back(Eigen::Map<const Correction>(secondary->value.data()));
   corrections.time_offset_s = states.timeOffset_s();
+  if (states.shutter) {
+    const auto first = states.shutter->value.begin();
+    corrections.line_delays_s.assign(first, first + static_cast<long>(corrections.extrinsics.size()));
+  }
   for (const ParameterBlock* lens : states.intrinsics)
     corrections.intrinsics.emplace_back(Eigen::Map<const IntrinsicsCorrection>(lens->value.data()));
   corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->priors.empty();

@@ -7,6 +7,7 @@
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
+#include "lodeline/factors/rolling_shutter.h"
 
 namespace lodeline {
 
@@ -15,7 +16,8 @@ namespace lodeline {
 struct CameraStates {
   ParameterBlock* camera0 = nullptr;
   ParameterBlock* time_offset = nullptr;
-  std::vector<ParameterBlock*> secondary;   ///< of camera 1, 2, ...
+  ParameterBlock* shutter = nullptr;       ///< null where all shutters are global (factors/rolling_shutter.h)
+  std::vector<ParameterBlock*> secondary;  ///< of camera 1, 2, ...
   std::vector<ParameterBlock*> intrinsics;  ///< of every camera; empty where they are not estimated
 
   explicit operator bool() const { return camera0 != nullptr; }
@@ -26,6 +28,8 @@ struct CameraStates {
 /// initial rotations of the secondary cameras, see FrameTracks::camera_rotations.
 void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options,
                      const std::vector<Vec3>& rotations = {});
+/// Adds the line delays of the rig's rolling shutters, where it has any and the calibration is estimated.
+void addShutterState(Window& window, Prior& prior, const Rig& rig, const CameraCalibrationOptions& options);
 /// Adds the intrinsics of the cameras, where these are to be estimated.
 void addIntrinsicsStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
 
@@ -44,6 +48,10 @@ Eigen::VectorXd intrinsicsSigmas(const CameraCalibrationOptions& options);
 /// Ray of an observation (in its camera's frame) by the estimated intrinsics, or by those of the file where
 /// the states are empty.
 Vec3 rayOf(const Observation& observation, const CameraStates& states);
+
+/// The measurement of an observation as of the time of its image (factors/rolling_shutter.h).
+DirectionMeasurement atTimeOfImage(const Observation& observation, const CameraMotion& motion,
+                                   const CameraStates& states);
 
 std::optional<CameraCorrections> cameraCorrections(const Window& window);
 

@@ -22,7 +22,9 @@ void Frame::setState(const NavigationState& state) {
 }
 
 void Frame::updateImageMotion() {
-  if (has_motion) image_motion = {velocity_W(), gyroscope_B - gyroscopeBias()};
+  if (!has_motion) return;
+  const Vec3 velocity_B = worldFromBody().rotation.conjugate() * velocity_W();
+  image_motion = {velocity_W(), gyroscope_B - gyroscopeBias(), velocity_B};
 }
 
 std::span<const Observation> FeatureTrack::in(FrameId frame) const {

@@ -4,6 +4,7 @@
 
 #include "lodeline/estimator/problem/simd_gemm.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/factors/rolling_shutter.h"
 
 namespace lodeline {
 
@@ -22,6 +23,7 @@ CameraToBodyChainRule::CameraToBodyChainRule(const Window& window, const CameraS
   if (!states_) return;
   for (ParameterBlock* state : states_.secondary) append(state->value.data(), kExtrinsicsSize);
   for (ParameterBlock* state : states_.intrinsics) append(state->value.data(), kIntrinsicsSize);
+  if (states_.shutter) append(states_.shutter->value.data(), kShutterSize);
   others_ = rows_ - 6 * frames_;
   append(states_.camera0->value.data(), kExtrinsicsSize);
   append(states_.time_offset->value.data(), kTimeOffsetSize);

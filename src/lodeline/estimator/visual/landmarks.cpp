@@ -27,6 +27,15 @@ Vec2 shiftByIntrinsics(const Observation& observation, const CameraStates& camer
   return intrinsicsShift(observation.measurement, Vec2::Zero(), lens->value.data());
 }
 
+/// An observation with its measurement as of the time of its image.
+Observation atTimeOfImage(const Window& window, const Observation& observation, const FactorBuilder& factors,
+                          const CameraStates& cameras) {
+  Observation moved = observation;
+  moved.measurement = lodeline::atTimeOfImage(
+      observation, factors.motionOf(*window.find(observation.frame), observation.camera), cameras);
+  return moved;
+}
+
 /// Inverse distance along a host's ray from all other observations. It is a closed form and not the full fit
 /// of frontend/stereo/triangulation.h, because every candidate needs it in every frame. With the host's
 /// direction d held, each observation gives
@@ -45,13 +54,14 @@ InverseDistance solveInverseDistance(const Window& window, const FeatureTrack& t
     Vec3 direction;      // R d
     Vec3 baseline;       // t
     Vec2 by_intrinsics;  // sigmas
-    const DirectionMeasurement* measurement;
+    DirectionMeasurement measurement;
   };
   std::vector<Equation> equations;
   const Rigid3 world_from_host = factors.worldFromCamera(window, *window.find(host.frame), 0);
   const Vec3 host_ray = rayOf(host, cameras);
-  for (const Observation& observation : track.observations) {
-    if (&observation == &host) continue;
+  for (const Observation& seen : track.observations) {
+    if (seen.frame == host.frame && seen.camera == host.camera) continue;
+    const Observation observation = atTimeOfImage(window, seen, factors, cameras);
     const Rigid3 target_from_host =
         factors.worldFromCamera(window, *window.find(observation.frame), observation.camera).inverse() *
         world_from_host;
@@ -59,16 +69,16 @@ InverseDistance solveInverseDistance(const Window& window, const FeatureTrack& t
     const Vec3 baseline = target_from_host.rotation * host.measurement.origin_C +
                           target_from_host.translation - observation.measurement.origin_C;
     equations.push_back({target_from_host.rotation * host_ray, baseline,
-                         shiftByIntrinsics(observation, cameras), &observation.measurement});
+                         shiftByIntrinsics(observation, cameras), observation.measurement});
   }
   InverseDistance result;
   for (int pass = 0; pass < 3; ++pass) {
     double information = 0.0;
     double right_side = 0.0;
     for (const Equation& e : equations) {
-      const double depth = e.measurement->bearing_C.dot(e.direction + result.value * e.baseline);
+      const double depth = e.measurement.bearing_C.dot(e.direction + result.value * e.baseline);
       if (depth < 0.1) continue;
-      const Mat23 weight = e.measurement->sqrt_information * e.measurement->tangent_C.transpose() / depth;
+      const Mat23 weight = e.measurement.sqrt_information * e.measurement.tangent_C.transpose() / depth;
       const Vec2 slope = weight * e.baseline;
       information += slope.squaredNorm();
       right_side -= slope.dot(weight * e.direction + e.by_intrinsics);
@@ -80,7 +90,7 @@ InverseDistance solveInverseDistance(const Window& window, const FeatureTrack& t
   double squared_error = 0.0;
   for (const Equation& e : equations) {
     const Vec3 point = e.direction + result.value * e.baseline;
-    squared_error += (directionResidual(*e.measurement, point, nullptr) + e.by_intrinsics).squaredNorm();
+    squared_error += (directionResidual(e.measurement, point, nullptr) + e.by_intrinsics).squaredNorm();
   }
   result.rms_sigmas = std::sqrt(squared_error / (2.0 * static_cast<double>(equations.size())));
   return result;
@@ -141,17 +151,18 @@ int createLandmarks(Window& window, const FactorBuilder& factors, const Landmark
   int created = 0;
   for (FeatureTrack* track : candidates) {
     if (created >= wanted) break;
-    const Observation* host = hostObservation(window, *track);
-    if (!host) continue;
-    const InverseDistance rho = solveInverseDistance(window, *track, *host, factors, cameras);
+    const Observation* seen = hostObservation(window, *track);
+    if (!seen) continue;
+    const Observation host = atTimeOfImage(window, *seen, factors, cameras);
+    const InverseDistance rho = solveInverseDistance(window, *track, host, factors, cameras);
     if (!isUsable(rho, usual, options)) continue;
     Landmark landmark;
-    landmark.host = host->frame;
-    landmark.base = LandmarkBase(rayOf(*host, cameras));
+    landmark.host = host.frame;
+    landmark.base = LandmarkBase(rayOf(host, cameras));
     const double inverse_distance_per_m = std::max(rho.value, 1e-4);
     // The origin of the ray is the point of it next to the lens, so it has no part along the ray.
     const Vec2 aside =
-        inverse_distance_per_m * landmark.base.tangent_C.transpose() * host->measurement.origin_C;
+        inverse_distance_per_m * landmark.base.tangent_C.transpose() * host.measurement.origin_C;
     landmark.parameters = {aside.x(), aside.y(), inverse_distance_per_m};
     track->landmark = landmark;
     ++created;

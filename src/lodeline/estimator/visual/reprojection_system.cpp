@@ -88,7 +88,8 @@ ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& fact
       first_(window, states_, factors, CameraViews::At::kLinearizationPoints, values_.hosts()),
       frames_(static_cast<int>(window.frames().size())),
       cameras_(factors.cameraCount()),
-      rows_(6 * (frames_ + cameras_ - 1) + kIntrinsicsSize * static_cast<int>(states_.intrinsics.size())),
+      rows_(6 * (frames_ + cameras_ - 1) + kIntrinsicsSize * static_cast<int>(states_.intrinsics.size()) +
+            (states_.shutter ? kShutterSize : 0)),
       blocks_(window, states_, first_, rows_) {
   const std::vector<FrameId> ids = idsOf(window);
   std::vector<double> scales;
@@ -97,6 +98,7 @@ ReprojectionSystem::ReprojectionSystem(Window& window, const FactorBuilder& fact
     if (isAmong(track, which)) add(track, only, ids, scales);
   }
   arrangeColumns();
+  if (states_.shutter) prepareShutter(window, factors);
   update();
 }
 
@@ -118,7 +120,8 @@ void ReprojectionSystem::add(FeatureTrack& track, std::optional<FrameId> only,
     landmark.first_frame = std::min(landmark.first_frame, frame);
     landmark.end_frame = std::max(landmark.end_frame, frame + 1);
     const double scale = scales[static_cast<size_t>(frame)];
-    observations_.push_back({frame, observation.camera, &observation.measurement, scale * scale});
+    observations_.push_back(
+        {frame, observation.camera, &observation.measurement, scale * scale, &observation.measurement});
   }
   landmark.end_observation = observations_.size();
   landmarks_.push_back(landmark);
@@ -148,6 +151,7 @@ void ReprojectionSystem::arrangeColumns() {
 
 void ReprojectionSystem::update() {
   values_.update();
+  if (states_.shutter) moveMeasurements();
   residuals_.resize(observations_.size());
   for (const Landmark& landmark : landmarks_) {
     const Vec3 direction = landmark.base.direction(landmark.value);
@@ -213,6 +217,12 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
     by_point = (lens.by_residual * by_point).eval();
     term.by<kIntrinsicsSize>(Columns::kIntrinsics) = lens.by_intrinsics;
   }
+  if (states_.shutter) {
+    term.by_nodes.col(Columns::kLineDelay) =
+        by_point * pointByLineDelay(*observation.as_measured, motionOf(observation),
+                                    lineDelay_s(observation.camera),
+                                    seen.rotation * direction + rho * seen.translation, rho);
+  }
   const double weight =
       std::sqrt(landmark.weight / (1.0 + residual.by_intrinsics.squaredNorm() / observation.scale_squared));
   term.by_nodes.col(Columns::kResidual) = weight * residual.by_intrinsics;
@@ -222,6 +232,7 @@ ReprojectionSystem::Linearized ReprojectionSystem::linearize(const Landmark& lan
       by_point * (seen.translation - measurement.origin_C);
 
   term.by<kIntrinsicsSize>(Columns::kIntrinsics) *= weight;
+  term.by_nodes.col(Columns::kLineDelay) *= weight;
   if (observation.camera > 0) {
     const CameraViews::Further& secondary = first_.secondary(observation.camera);
     const CameraViews::Relative& camera0 = first_.relative(landmark.host, observation.frame, 0);
@@ -260,6 +271,12 @@ void ReprojectionSystem::eliminate(Landmark* of) {
     if (observation.camera > 0) couple(secondaryRow(observation.camera), term.by(Columns::kSecondary));
     if (!states_.intrinsics.empty())
       couple(intrinsicsRow(observation.camera), term.by<kIntrinsicsSize>(Columns::kIntrinsics));
+    if (states_.shutter) {
+      const Vec2 by_line_delay = term.by_nodes.col(Columns::kLineDelay);
+      coupling.row(shutterRow() + observation.camera) += by_line_delay.transpose() * term.by_landmark;
+      shutter_products_[static_cast<size_t>(observation.camera)] +=
+          Vec2(by_line_delay.squaredNorm(), by_line_delay.dot(term.residual()));
+    }
   }
   // The effect of the targets' poses follows from the host's effect with each target alone.
   auto of_host = coupling.middleRows<6>(6 * landmark.host);
@@ -294,6 +311,11 @@ void ReprojectionSystem::addPair(int host, int target) {
     if (!states_.intrinsics.empty())
       addCalibration(intrinsicsRow(camera),
                      of_camera.middleCols<kIntrinsicsSize>(Columns::kIntrinsics).transpose());
+    if (states_.shutter) {
+      Mat6 by_line_delays = Mat6::Zero();
+      by_line_delays.row(camera) = of_camera.col(Columns::kLineDelay).transpose();
+      addCalibration(shutterRow(), by_line_delays);
+    }
   }
   const Mat6 by_host = sum.middleCols<6>(Columns::kHost);
   const Mat6 by_both = byTarget<6>(by_host, baseline_W);
@@ -329,6 +351,7 @@ void ReprojectionSystem::addTo(NormalEquations* system) {
   blocks_.update();
   by_host_.assign(indexOf(frames_, 0, 0), HostProducts::Zero());
   by_calibration_.assign(static_cast<size_t>(cameras_), CalibrationProducts::Zero());
+  shutter_products_.assign(static_cast<size_t>(cameras_), Vec2::Zero());
   hessian_.setZero(rows_, rows_);
   gradient_.setZero(rows_);
   couplings_.resize(rows_, kLandmarkSize * static_cast<Eigen::Index>(landmarks_.size()));
@@ -346,6 +369,7 @@ void ReprojectionSystem::addTo(NormalEquations* system) {
     }
   }
   for (int camera = 0; states_ && camera < cameras_; ++camera) addCalibration(camera);
+  if (states_.shutter) addShutter();
   Eigen::MatrixXd h;
   Eigen::VectorXd g;
   blocks_.transform(hessian_, gradient_, &h, &g);

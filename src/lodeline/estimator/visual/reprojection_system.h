@@ -8,6 +8,7 @@
 #include "lodeline/estimator/visual/camera_to_body_chain_rule.h"
 #include "lodeline/estimator/visual/camera_views.h"
 #include "lodeline/estimator/visual/reprojection_hessian.h"
+#include "lodeline/factors/rolling_shutter.h"
 
 namespace lodeline {
 
@@ -51,7 +52,8 @@ class ReprojectionSystem {
   struct Observation {
     int frame, camera;
     const DirectionMeasurement* measurement;
-    double scale_squared;  ///< of the robust loss
+    double scale_squared;                     ///< of the robust loss
+    const DirectionMeasurement* as_measured;  ///< `measurement` is that at the time of the image
   };
   struct Landmark {
     double* value;
@@ -101,6 +103,17 @@ class ReprojectionSystem {
   /// First rows of a camera's extrinsics and intrinsics.
   int secondaryRow(int camera) const { return 6 * (frames_ + camera - 1); }
   int intrinsicsRow(int camera) const { return secondaryRow(cameras_) + kIntrinsicsSize * camera; }
+  int shutterRow() const {
+    return intrinsicsRow(0) + kIntrinsicsSize * static_cast<int>(states_.intrinsics.size());
+  }
+  double lineDelay_s(int camera) const { return states_.shutter->value[static_cast<size_t>(camera)]; }
+  const CameraMotion& motionOf(const Observation& observation) const {
+    return motions_[static_cast<size_t>(observation.frame * cameras_ + observation.camera)];
+  }
+  void prepareShutter(const Window& window, const FactorBuilder& factors);
+  /// Moves the measurements to the time of their images by the present line delays.
+  void moveMeasurements();
+  void addShutter();
   const double* intrinsicsOf(int camera) const {
     return states_.intrinsics[static_cast<size_t>(camera)]->value.data();
   }
@@ -116,9 +129,14 @@ class ReprojectionSystem {
   std::vector<Stretch> stretches_;
   std::vector<Observation> observations_;
   std::vector<Residual> residuals_;  ///< of the observations
+  // For rolling shutters only:
+  std::vector<CameraMotion> motions_;        ///< by frame and camera
+  std::vector<DirectionMeasurement> moved_;  ///< measurements at the time of the images
+  std::vector<Vec2> shutter_products_;       ///< by camera: squared derivative, and times the residual
   // Nodes are the variables with respect to which landmarks are eliminated, `rows_` coordinates in all: the
   // camera poses of the frames in the window's order, then the extrinsics of secondary cameras, then the
-  // intrinsics where they are estimated.
+  // intrinsics where they are estimated, then the shutter where one is rolling (the line delays of six
+  // cameras).
   std::vector<HostProducts> by_host_;                ///< by indexOf()
   std::vector<CalibrationProducts> by_calibration_;  ///< by camera
   Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle

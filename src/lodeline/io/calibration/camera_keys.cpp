@@ -103,6 +103,25 @@ void checkDistortion(const std::string& key, const CalibrationMap& map,
       map.at(key), 100.0 * share, calibration.model, fmt::join(camera->model().parameters, ", ")));
 }
 
+// Readout of a rolling shutter whose file does not state it, and standard deviations of what a file states.
+constexpr double kUsualReadout_s = 0.0165, kUsualReadoutSigma_s = 0.010;
+constexpr double kReadoutSigma = 0.25, kLineDelaySigma = 0.02;
+constexpr double kLongestLineDelay_s = 1e-3;
+
+double nonNegative(const std::string& key, CalibrationMap* map) {
+  const double value = map->number(key);
+  if (std::isfinite(value) && value >= 0.0) return value;
+  throw InputError(fmt::format("{} is {:g}; it must be 0 or more", map->atLine(key), value));
+}
+
+bool isRolling(CalibrationMap* map) {
+  if (!map->has("shutter")) return false;
+  const std::string shutter = map->text("shutter");
+  if (shutter == "rolling") return true;
+  if (shutter == "global") return false;
+  throw InputError(fmt::format("{} is '{}'; it must be global or rolling", map->atLine("shutter"), shutter));
+}
+
 }  // namespace
 
 void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, CameraCalibration* camera) {
@@ -127,8 +146,39 @@ void readCameraModel(const std::string& coefficients_key, CalibrationMap* map, C
         "{}: {}", map->at(model.before_focal_lengths > 0 ? "intrinsics" : coefficients_key), fault));
   }
   camera->port = readPort(map);
+  readShutter(map, camera);
   checkPlausible(*map, *camera);
   checkDistortion(coefficients_key, *map, *camera);
+}
+
+void readShutter(CalibrationMap* map, CameraCalibration* camera) {
+  const bool rolling = isRolling(map);
+  if (map->has("line_delay_s")) {
+    camera->line_delay_s = nonNegative("line_delay_s", map);
+    camera->line_delay_sigma_s = kLineDelaySigma * camera->line_delay_s;
+  } else if (map->has("line_delay")) {
+    camera->line_delay_s = 1e-9 * nonNegative("line_delay", map);
+    camera->line_delay_sigma_s = kLineDelaySigma * camera->line_delay_s;
+  } else if (map->has("readout_s")) {
+    camera->line_delay_s = nonNegative("readout_s", map) / camera->height_px;
+    camera->line_delay_sigma_s = kReadoutSigma * camera->line_delay_s;
+  } else if (rolling) {
+    camera->line_delay_s = kUsualReadout_s / camera->height_px;
+    camera->line_delay_sigma_s = kUsualReadoutSigma_s / camera->height_px;
+  }
+  if (map->has("line_delay_sigma_s")) camera->line_delay_sigma_s = nonNegative("line_delay_sigma_s", map);
+  if (camera->line_delay_s > kLongestLineDelay_s || camera->line_delay_sigma_s > kLongestLineDelay_s) {
+    throw InputError(
+        fmt::format("{}: a line delay of {:g} s is longer than any shutter's; `line_delay_s` is in "
+                    "seconds and `line_delay` in nanoseconds",
+                    map->at("shutter"), camera->line_delay_s));
+  }
+}
+
+std::string shutterText(const CameraCalibration& camera, const std::string& indent) {
+  if (!camera.hasRollingShutter()) return "";
+  return fmt::format("{0}line_delay_s: {1}\n{0}line_delay_sigma_s: {2}\n", indent, camera.line_delay_s,
+                     camera.line_delay_sigma_s);
 }
 
 }  // namespace lodeline

@@ -71,6 +71,28 @@ TEST_F(RigFileTest, SaysHowWellTheAxesOfTheImuAreKnown) {
         << wrong;
 }
 
+TEST_F(RigFileTest, ReadsTheShutterAndWritesItAgain) {
+  const auto cameraWith = [&](const std::string& keys) {
+    return read({imu_ + camera_ + keys}).rig.cameras.at(0);
+  };
+  EXPECT_FALSE(cameraWith("").hasRollingShutter());
+  EXPECT_FALSE(cameraWith("  shutter: global\n").hasRollingShutter());
+  const double rows = cameraWith("").height_px;
+  EXPECT_DOUBLE_EQ(cameraWith("  shutter: rolling\n").line_delay_s, 0.0165 / rows);
+  EXPECT_DOUBLE_EQ(cameraWith("  shutter: rolling\n").line_delay_sigma_s, 0.010 / rows);
+  EXPECT_DOUBLE_EQ(cameraWith("  shutter: rolling\n  readout_s: 0.02\n").line_delay_s, 0.02 / rows);
+  EXPECT_DOUBLE_EQ(cameraWith("  line_delay: 30000\n").line_delay_s, 3e-5);  // ns, Kalibr
+  const RigFile file = read({imu_ + camera_ + "  line_delay_s: 3e-5\n  line_delay_sigma_s: 0\n"});
+  EXPECT_EQ(file.rig.cameras.at(0).line_delay_s, 3e-5);
+  EXPECT_EQ(file.rig.cameras.at(0).line_delay_sigma_s, 0.0);
+  const CameraCalibration again = read({rigText(file)}).rig.cameras.at(0);
+  EXPECT_EQ(again.line_delay_s, 3e-5);
+  EXPECT_EQ(again.line_delay_sigma_s, 0.0);
+  EXPECT_THAT(refusal({imu_ + camera_ + "  shutter: slow\n"}), HasSubstr("global or rolling"));
+  EXPECT_THAT(refusal({imu_ + camera_ + "  line_delay_s: 30000\n"}), HasSubstr("nanoseconds"));
+  EXPECT_THAT(refusal({imu_ + camera_ + "  readout_s: -1\n"}), HasSubstr("readout_s"));
+}
+
 TEST_F(RigFileTest, IsReadAsARigOfCamerasAndImu) {
   const auto readAsRig = [&](const std::string& text) {
     place_.write("rig.yaml", text);

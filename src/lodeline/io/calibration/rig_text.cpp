@@ -50,6 +50,7 @@ std::string cameraText(const CameraCalibration& camera, bool has_extrinsics) {
   if (camera.time_offset_to_imu_s != 0.0) {
     text += fmt::format("  timeshift_cam_imu: {}\n", camera.time_offset_to_imu_s);
   }
+  text += shutterText(camera, "  ");
   if (!camera.mask_file.empty()) {
     text += fmt::format("  mask: {}\n", std::filesystem::absolute(camera.mask_file).string());
   }

@@ -44,6 +44,8 @@ nlohmann::ordered_json toJson(const RunDescription& run) {
 
 std::string describe(const CameraCorrections& corrections) {
   std::string text = fmt::format("images {:+.1f} ms", 1e3 * corrections.time_offset_s);
+  for (const double line_delay_s : corrections.line_delays_s)
+    text += fmt::format(", {:.2f} us a row", 1e6 * line_delay_s);
   for (size_t i = 0; i < corrections.extrinsics.size(); ++i) {
     const auto& extrinsics = corrections.extrinsics[i];
     text += fmt::format(", camera {}{} {:.2f} deg {:.1f} mm", i, i > 0 ? " to camera 0" : "",
@@ -65,6 +67,7 @@ nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
   nlohmann::ordered_json json;
   json["time_offset_s"] = corrections.time_offset_s;
   json["are_files_held"] = corrections.are_files_held;
+  if (!corrections.line_delays_s.empty()) json["line_delays_s"] = corrections.line_delays_s;
   for (const auto& extrinsics : corrections.extrinsics) {
     json["cameras"].push_back({{"rotation_rad", {extrinsics[0], extrinsics[1], extrinsics[2]}},
                                {"position_m", {extrinsics[3], extrinsics[4], extrinsics[5]}}});

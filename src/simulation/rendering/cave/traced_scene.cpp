@@ -82,6 +82,7 @@ void TracedScene::intersect(const RayPacket& rays, HitPacket& hits) const {
     hits.u[i] = hit ? query.hit.u[i] : 0.0f;
     hits.v[i] = hit ? query.hit.v[i] : 0.0f;
     hits.triangle[i] = hit ? query.hit.primID[i] : 0;
+    hits.body[i] = -1;
   }
 }
 

@@ -45,6 +45,7 @@ struct alignas(64) HitPacket {
   float u[kRayPacketSize];        ///< barycentric weights of the triangle's second and third vertex
   float v[kRayPacketSize];
   uint32_t triangle[kRayPacketSize];
+  int body[kRayPacketSize];  ///< index of the moving body (bodies/ellipsoid.h) instead; -1: the scene
 };
 
 /// Surface properties at an intersection.

@@ -59,6 +59,7 @@ std::vector<float> LightMeter::measure(const CameraOptics& optics, const Rigid3&
     }
     HitPacket hits;
     world_->scene.intersect(rays, hits);
+    intersectBodies(light.bodies, rays, hits);
     float radiance[kRayPacketSize];
     shader.shade(rays, hits, light, optics.pixelAngle(), false, radiance);
     for (int lane = 0; lane < kRayPacketSize; ++lane) {

@@ -73,21 +73,35 @@ void addDisc(cv::Mat& radiance, const Disc& disc) {
 
 void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics& optics,
                    const Rigid3& world_from_body, const ExposureMotion& motion, const LightField& light,
-                   const SnowOptions& options, double time_s, uint64_t seed) {
+                   const SnowOptions& options, double time_s, uint64_t seed,
+                   const std::vector<Rigid3>& row_poses) {
   if (options.flakes_per_m3 <= 0.0) return;
   const Rigid3 world_from_projector = world_from_body * optics.bodyFromProjector();
   const Rigid3 projector_from_world = world_from_projector.inverse();
   const Vec3 eye = world_from_projector.translation;
   const Vec3 forward = world_from_projector.rotation * Vec3::UnitZ();
-  const Vec3 drift = options.drift_speed_m_per_s * time_s * Vec3(0.7, 0.6, -0.25);
+  const Vec3 drift = options.current ? options.current->at(time_s)
+                                     : Vec3(options.drift_speed_m_per_s * time_s * Vec3(0.7, 0.6, -0.25));
+  // Movement of the water during the exposure, camera axes.
+  Vec3 carried_C = Vec3::Zero();
+  if (options.current) {
+    carried_C =
+        world_from_projector.rotation.conjugate() * (options.current->at(time_s + 0.5 * motion.exposure_s) -
+                                                     options.current->at(time_s - 0.5 * motion.exposure_s));
+  }
   const double focal_px = 1.0 / optics.pixelAngle();
   const double mean_per_cell = options.flakes_per_m3 * kCell_m * kCell_m * kCell_m;
 
   const auto addFlake = [&](const Flake& flake) {
-    const Vec3 point_C = projector_from_world * flake.position_W;
+    Vec3 point_C = projector_from_world * flake.position_W;
     const double range = point_C.norm();
     if (point_C.z() < kNearest_m || range > kFarthest_m) return;
-    const auto pixel = optics.projector().project(point_C);
+    auto pixel = optics.projector().project(point_C);
+    if (pixel && !row_poses.empty()) {
+      const long row = std::clamp(std::lround(pixel->y()), 0L, static_cast<long>(row_poses.size()) - 1);
+      point_C = (row_poses[row] * optics.bodyFromProjector()).inverse() * flake.position_W;
+      pixel = optics.projector().project(point_C);
+    }
     if (!pixel || !optics.projector().contains(*pixel, -20.0)) return;
     const int x = std::clamp(static_cast<int>(std::lround(pixel->x())), 0, radiance.cols - 1);
     const int y = std::clamp(static_cast<int>(std::lround(pixel->y())), 0, radiance.rows - 1);
@@ -101,7 +115,8 @@ void addMarineSnow(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics
     const float arriving = irradianceAt(light, flake.position_W.cast<float>());
     const float back = fastExp(-light.water.mean().attenuation * static_cast<float>(range));
     const double brightness = flake.brightness * options.reflectance / std::numbers::pi * arriving * back;
-    const Vec3 before = motion.start_from_middle * point_C, after = motion.end_from_middle * point_C;
+    const Vec3 before = motion.start_from_middle * (point_C - 0.5 * carried_C);
+    const Vec3 after = motion.end_from_middle * (point_C + 0.5 * carried_C);
     const Vec2 streak = focal_px * (after.head<2>() / after.z() - before.head<2>() / before.z());
     addDisc(radiance, {*pixel, streak, std::max(0.6, std::hypot(radius_px, blur_px)),
                        brightness * std::numbers::pi * radius_px * radius_px});

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "simulation/rendering/bodies/buddy.h"
+#include "simulation/rendering/bodies/fish.h"
 #include "simulation/rendering/light/daylight.h"
+#include "simulation/rendering/light/halocline.h"
 #include "simulation/rendering/light/lamp.h"
 #include "simulation/rendering/light/marine_snow.h"
 #include "simulation/rendering/light/second_diver.h"
@@ -22,9 +26,16 @@ struct RenderSettings {
   WaterOptions water;
   SnowOptions snow;
   std::optional<SecondDiver> second_diver;
+  std::vector<FishSchool> fish;
+  std::shared_ptr<const Buddy> buddy;
+  std::optional<Halocline> halocline;
   IntrinsicsOptions lens;
   SensorOptions sensor;
   bool motion_blur = true;
+  bool dispersion = false;  ///< of water and port; needs a port
+
+  /// Sets the current that carries snow, clouds in the water and fish.
+  void setCurrent(std::shared_ptr<const DriftTrack> current) { water.current = snow.current = current; }
 
   /// Transforms the lamps from the diver frame D (x forward, y left, z up), which the presets use, to the
   /// body frame.

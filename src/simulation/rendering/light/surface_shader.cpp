@@ -32,10 +32,11 @@ Vec3f turnedBack(const Vec3f& p) {
 }  // namespace
 
 void SurfaceShader::describe(const RayPacket& rays, const HitPacket& hits, int i, float pixel_angle_rad,
-                             bool detail, Lit& lit) const {
-  const SurfacePoint base = scene_.surfaceAt(hits, i);
+                             bool detail, const LightField& light, Lit& lit) const {
   const Vec3f view = rays.directionOf(i);
   const Vec3f point = rays.originOf(i) + hits.range_m[i] * view;
+  const SurfacePoint base =
+      hits.body[i] >= 0 ? light.bodies[hits.body[i]].surfaceAt(point) : scene_.surfaceAt(hits, i);
   const float facing = -base.normal.dot(view);
   Vec3f normal = facing < 0.0f ? Vec3f(-base.normal) : base.normal;
   float reflectance = base.reflectance;
@@ -62,8 +63,9 @@ void SurfaceShader::describe(const RayPacket& rays, const HitPacket& hits, int i
   lit.gloss[i] = base.gloss;
 }
 
-void SurfaceShader::addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp, float attenuation,
-                            float* radiance) const {
+void SurfaceShader::addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp,
+                            const LightField& light, float* radiance) const {
+  const float attenuation = light.water.mean().diffuse_attenuation;
   float towards[3][kRayPacketSize], distance[kRayPacketSize], direct[kRayPacketSize];
   for (int i = 0; i < kRayPacketSize; ++i) {
     const float x = lamp.position().x() - lit.point[0][i];
@@ -100,7 +102,8 @@ void SurfaceShader::addLamp(const RayPacket& rays, const Lit& lit, const PlacedL
     const Vec3f point(lit.point[0][i], lit.point[1][i], lit.point[2][i]);
     shadow.set(i, point + 0.004f * (to_lamp - rays.directionOf(i)), to_lamp, distance[i] - 0.01f);
   }
-  const uint32_t shadowed = scene_.occluded(shadow);
+  uint32_t shadowed = scene_.occluded(shadow);
+  if (!light.bodies.empty()) shadowed |= occludedByBodies(light.bodies, shadow);
   for (int i = 0; i < kRayPacketSize; ++i) {
     if ((shadowed >> i & 1) == 0) radiance[i] += direct[i];
   }
@@ -110,7 +113,7 @@ void SurfaceShader::shade(const RayPacket& rays, const HitPacket& hits, const Li
                           float pixel_angle_rad, bool detail, float* radiance) const {
   Lit lit = {};
   for (int i = 0; i < kRayPacketSize; ++i) {
-    if (std::isfinite(hits.range_m[i])) describe(rays, hits, i, pixel_angle_rad, detail, lit);
+    if (std::isfinite(hits.range_m[i])) describe(rays, hits, i, pixel_angle_rad, detail, light, lit);
     radiance[i] = 0.0f;
   }
   if (!light.daylight.none()) {
@@ -121,7 +124,7 @@ void SurfaceShader::shade(const RayPacket& rays, const HitPacket& hits, const Li
     }
   }
   for (const PlacedLamp& lamp : light.lamps) {
-    addLamp(rays, lit, lamp, light.water.mean().diffuse_attenuation, radiance);
+    addLamp(rays, lit, lamp, light, radiance);
   }
   constexpr float kPerPi = 1.0f / std::numbers::pi_v<float>;
   for (int i = 0; i < kRayPacketSize; ++i) radiance[i] *= kPerPi;

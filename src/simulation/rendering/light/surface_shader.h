@@ -27,10 +27,10 @@ class SurfaceShader {
   };
 
   void describe(const RayPacket& rays, const HitPacket& hits, int i, float pixel_angle_rad, bool detail,
-                Lit& lit) const;
-  /// Adds the light of one lamp. `attenuation` (1/m) is the diffuse one, because light scattered forwards
-  /// still reaches the surface.
-  void addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp, float attenuation,
+                const LightField& light, Lit& lit) const;
+  /// Adds the light of one lamp. The attenuation is the diffuse one, because light scattered forwards still
+  /// reaches the surface.
+  void addLamp(const RayPacket& rays, const Lit& lit, const PlacedLamp& lamp, const LightField& light,
                float* radiance) const;
 
   const TracedScene& scene_;

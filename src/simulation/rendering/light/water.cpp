@@ -23,6 +23,7 @@ Water::Water(const WaterOptions& options, double time_s, uint64_t seed)
       patchiness_(static_cast<float>(options.patchiness)),
       drift_m_(static_cast<float>(options.drift_speed_m_per_s * time_s) * Vec3f(0.8f, -0.5f, 0.1f)),
       seed_(static_cast<uint32_t>(seed)) {
+  if (options.current) drift_m_ = options.current->at(time_s).cast<float>();
   for (const SiltEpisode& episode : options.silt) {
     silt_per_m_ += static_cast<float>(siltAttenuation(episode, time_s));
   }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "simulation/rendering/optics/render_types.h"
+#include "simulation/shared/track.h"
 
 namespace lodeline {
 
@@ -22,6 +24,7 @@ struct WaterOptions {
   double patchiness = 0.0;          ///< relative strength of clouds half a metre to several metres wide
   double drift_speed_m_per_s = 0.03;
   std::vector<SiltEpisode> silt;
+  std::shared_ptr<const DriftTrack> current = nullptr;  ///< carries the clouds instead of the drift
 };
 
 /// The water at one moment.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lodeline/diagnostics.h"
+#include "simulation/rendering/optics/port_fit.h"
 
 namespace lodeline {
 
@@ -34,15 +35,38 @@ CameraOptics::CameraOptics(const CameraCalibration& calibration, const Intrinsic
                                          (1.0 - lens.vignetting * off_centre * off_centre));
     }
   });
-  const double fx_water = camera_->focalLengthsOnAxis_px().x() * (port_ ? port_->index_water : 1.0);
+  const double fx_water = camera_->focalLengthsOnAxis_px().x() * (port_ ? enlargementBy(*port_) : 1.0);
   pixel_angle_rad_ = static_cast<float>(1.0 / fx_water);
 }
 
-std::optional<WaterRay> CameraOptics::ray(const Vec2& pixel) const {
+std::optional<WaterRay> CameraOptics::ray(const Vec2& pixel, const std::optional<PortWindow>& port) const {
   const auto direction = camera_->unproject(pixel);
   if (!direction || direction->z() <= 0.0) return std::nullopt;
-  if (!port_) return WaterRay{Vec3::Zero(), *direction};
-  return throughPort(*port_, *direction);
+  if (!port) return WaterRay{Vec3::Zero(), *direction};
+  return throughPort(*port, *direction);
+}
+
+std::optional<Vec2> CameraOptics::pixelOf(const Vec3& point_C, const Vec2& near) const {
+  // Where the ray of a pixel passes the plane of the point, relative to the point.
+  const auto miss = [&](const Vec2& pixel) -> std::optional<Vec2> {
+    const auto traced = ray(pixel);
+    if (!traced) return std::nullopt;
+    const double along = (point_C.z() - traced->origin_C.z()) / traced->direction_C.z();
+    return Vec2((traced->origin_C + along * traced->direction_C - point_C).head<2>());
+  };
+  Vec2 pixel = near;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const auto here = miss(pixel);
+    const auto right = miss(pixel + Vec2(0.01, 0.0)), below = miss(pixel + Vec2(0.0, 0.01));
+    if (!here || !right || !below) return std::nullopt;
+    Eigen::Matrix2d slope;
+    slope << 100.0 * (*right - *here), 100.0 * (*below - *here);
+    const Vec2 step = slope.inverse() * *here;
+    pixel -= step;
+    if (step.norm() < 1e-9) return pixel;
+    if (!pixel.allFinite()) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace lodeline

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "lodeline/cameras/camera.h"
-#include "simulation/rendering/optics/flat_port.h"
+#include "simulation/rendering/optics/port_window.h"
 #include "simulation/rendering/optics/render_types.h"
 
 namespace lodeline {
 
 /// Optical elements between the water and the image plane.
 struct IntrinsicsOptions {
-  std::optional<FlatPort> port;  ///< with a port, the calibration describes the camera in air
-  double vignetting = 0.35;      ///< attenuation in the image's corners in addition to the cosine law, 0..1
-  double blur_sigma_px = 0.55;   ///< point spread function of lens and pixel
+  std::optional<PortWindow> port;  ///< with a port, the calibration describes the camera in air
+  double vignetting = 0.35;        ///< attenuation in the image's corners in addition to the cosine law, 0..1
+  double blur_sigma_px = 0.55;     ///< point spread function of lens and pixel
 };
 
 /// The ray of every pixel of one camera, computed once with the exact inverse of its distortion.
@@ -33,7 +33,15 @@ class CameraOptics {
   Vec3f origin(int pixel) const { return origins_.empty() ? Vec3f::Zero() : origins_[pixel]; }
 
   /// The exact ray of any pixel position, double precision; nothing where there is none.
-  std::optional<WaterRay> ray(const Vec2& pixel) const;
+  std::optional<WaterRay> ray(const Vec2& pixel) const { return ray(pixel, port_); }
+  /// The same through another port.
+  std::optional<WaterRay> ray(const Vec2& pixel, const std::optional<PortWindow>& port) const;
+
+  /// The exact pixel of a point in the water, by Newton's method on `ray` from the pixel `near`; nothing
+  /// where it does not converge.
+  std::optional<Vec2> pixelOf(const Vec3& point_C, const Vec2& near) const;
+
+  const std::optional<PortWindow>& port() const { return port_; }
 
   /// Relative illumination of a pixel compared to the image's centre: natural vignetting, the fourth power of
   /// the cosine to the axis, multiplied by that of the lens.
@@ -54,7 +62,7 @@ class CameraOptics {
   Rigid3 body_from_camera_;
   std::shared_ptr<const Camera> camera_;
   std::shared_ptr<const Camera> projector_;
-  std::optional<FlatPort> port_;
+  std::optional<PortWindow> port_;
   std::vector<Vec3f> directions_;
   std::vector<Vec3f> origins_;  ///< empty without a port
   std::vector<float> light_;

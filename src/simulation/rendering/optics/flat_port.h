@@ -31,20 +31,4 @@ std::optional<Vec3> refract(const Vec3& direction, const Vec3& normal, double in
 /// The ray in the water of a ray that leaves the centre of projection in air; nothing where it does not pass.
 std::optional<WaterRay> throughPort(const FlatPort& port, const Vec3& direction_air_C);
 
-/// The camera in air that, behind the port, has approximately the image of `in_water`: focal lengths divided
-/// by the water's refractive index, no distortion.
-CameraCalibration airCameraFor(const CameraCalibration& in_water, const FlatPort& port);
-
-/// Calibration in water of a camera behind a port.
-struct PortFit {
-  CameraCalibration calibration;  ///< radial-tangential, four coefficients; camera pose moved along the axis
-  double rms_px = 0.0;            ///< residual that the model cannot represent
-};
-
-/// Least-squares fit (Gauss-Newton) of a radial-tangential camera to points seen through the port at `near_m`
-/// to `far_m`. The parameters are focal lengths, principal point, k1 k2 p1 p2 and a shift of the centre along
-/// the optical axis, as in a calibration with a target at these distances.
-PortFit fitRadialTangential(const CameraCalibration& in_air, const FlatPort& port, double near_m = 0.6,
-                            double far_m = 4.0);
-
 }  // namespace lodeline

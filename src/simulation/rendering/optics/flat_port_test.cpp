@@ -1,4 +1,4 @@
-#include "simulation/rendering/optics/flat_port.h"
+#include "simulation/rendering/optics/port_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -19,7 +19,10 @@ struct SensorOptions {
   double target_grey = 0.36;    ///< target mean grey value of the automatic exposure, relative to 1
   double exposure_lag_s = 0.4;  ///< time constant of the automatic exposure
   double gain_flicker = 0.0;    ///< RMS relative error of the gain from image to image
-  double readout_s = 0.0;       ///< rolling shutter: time from the first row to the last; 0 is global
+  double readout_s = 0.0;  ///< rolling shutter: time in which all rows begin one after another; 0 is global
+
+  /// Time from one row to the next, s.
+  double lineDelay_s(int height_px) const { return readout_s / height_px; }
 };
 
 /// Exposure setting of one image.

@@ -5,20 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/rendering/optics/sampling.h"
+
 namespace lodeline {
 namespace {
 
 constexpr float kUnseenRange_m = 30.0f;
-
-float bilinear(const cv::Mat& image, float x, float y) {
-  x = std::clamp(x, 0.0f, static_cast<float>(image.cols) - 1.001f);
-  y = std::clamp(y, 0.0f, static_cast<float>(image.rows) - 1.001f);
-  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-  const float fx = x - ix, fy = y - iy;
-  const float* upper = image.ptr<float>(iy) + ix;
-  const float* lower = image.ptr<float>(iy + 1) + ix;
-  return lerp(lerp(upper[0], upper[1], fx), lerp(lower[0], lower[1], fx), fy);
-}
 
 }  // namespace
 

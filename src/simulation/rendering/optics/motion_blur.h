@@ -11,6 +11,7 @@ namespace lodeline {
 struct ExposureMotion {
   Rigid3 start_from_middle;  ///< camera frame at the start of the exposure from that at its middle
   Rigid3 end_from_middle;
+  double exposure_s = 0.0;
 };
 
 /// Averages light along each pixel's path in the image during the exposure. The static point at a pixel (its
