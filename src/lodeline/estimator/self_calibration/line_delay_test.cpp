@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kReadout_s = 0.020;
 
-struct Result {
+struct ShutterRun {
   double position_rms_m = 0.0;
   std::vector<double> line_delays_s;
 };
@@ -45,7 +45,7 @@ void readRowsOneByOne(const TestScene& scene, double line_delay_s, FrameTracks* 
   }
 }
 
-Result run(int cameras, uint64_t seed, double readout_s, bool rig_rolls) {
+ShutterRun runShutter(int cameras, uint64_t seed, double readout_s, bool rig_rolls) {
   TestSceneOptions options;
   options.seed = seed;
   options.cameras = cameras;
@@ -55,7 +55,7 @@ Result run(int cameras, uint64_t seed, double readout_s, bool rig_rolls) {
   TestScene scene(options);
   const Rig rig = rig_rolls ? withRollingShutters(scene.rig()) : scene.rig();
   ComparedEstimator estimator(scene, honestOptions(options), rig);
-  Result result;
+  ShutterRun result;
   double squared = 0.0;
   int count = 0;
   while (auto frame = scene.next()) {
@@ -77,29 +77,31 @@ class LineDelay : public testing::TestWithParam<int> {};
 TEST_P(LineDelay, IsFoundAndThePathIsAsGoodAsWithAGlobalShutter) {
   double global_m = 0.0, rolling_m = 0.0, ignored_m = 0.0;
   for (const uint64_t seed : {3, 4}) {
-    const Result global = run(GetParam(), seed, 0.0, false);
+    const ShutterRun global = runShutter(GetParam(), seed, 0.0, false);
     EXPECT_TRUE(global.line_delays_s.empty());
-    const Result rolling = run(GetParam(), seed, kReadout_s, true);
+    const ShutterRun rolling = runShutter(GetParam(), seed, kReadout_s, true);
     const double true_delay_s = kReadout_s / testRig(1).cameras.front().height_px;
     ASSERT_EQ(rolling.line_delays_s.size(), static_cast<size_t>(GetParam()));
     for (const double line_delay_s : rolling.line_delays_s)
       EXPECT_NEAR(line_delay_s, true_delay_s, 0.1 * true_delay_s) << "seed " << seed;
     global_m += global.position_rms_m;
     rolling_m += rolling.position_rms_m;
-    ignored_m += run(GetParam(), seed, kReadout_s, false).position_rms_m;
+    ignored_m += runShutter(GetParam(), seed, kReadout_s, false).position_rms_m;
   }
   RecordProperty("global_mm", std::to_string(1e3 * global_m / 2.0));
   RecordProperty("rolling_mm", std::to_string(1e3 * rolling_m / 2.0));
   RecordProperty("ignored_mm", std::to_string(1e3 * ignored_m / 2.0));
   EXPECT_LE(rolling_m, 1.3 * global_m);
   // With one camera, the delay of the rows costs no accuracy in these scenes.
-  if (GetParam() == 2) EXPECT_GT(ignored_m, 1.5 * rolling_m);
+  if (GetParam() == 2) {
+    EXPECT_GT(ignored_m, 1.5 * rolling_m);
+  }
 }
 
 // A global shutter whose file calls it rolling: the line delay comes out as zero, although the prior
 // expects 16.5 ms.
 TEST_P(LineDelay, OfAGlobalShutterIsZero) {
-  const Result result = run(GetParam(), 6, 0.0, true);
+  const ShutterRun result = runShutter(GetParam(), 6, 0.0, true);
   for (const double line_delay_s : result.line_delays_s)
     EXPECT_NEAR(line_delay_s * testRig(1).cameras.front().height_px, 0.0, 0.002);
 }
