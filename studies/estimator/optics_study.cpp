@@ -13,7 +13,7 @@
 #include "lodeline/util/angles.h"
 #include "lodeline/util/thread_clock.h"
 #include "simulation/dive/point_dive.h"
-#include "simulation/rendering/optics/flat_port.h"
+#include "simulation/rendering/optics/port_fit.h"
 
 namespace {
 

@@ -85,11 +85,7 @@ void NormalEquations::add(const Factor& factor) {
   const double scale = robustScale(factor.loss.get(), residual.squaredNorm());
 
   std::vector<int> offsets;
-  int columns = 0;
-  for (size_t b = 0; b < sizes.size(); ++b) {
-    offsets.push_back(offsetOf(factor.blocks[b], sizes[b]));
-    columns += find(factor.blocks[b])->tangentSize();
-  }
+  for (size_t b = 0; b < sizes.size(); ++b) offsets.push_back(offsetOf(factor.blocks[b], sizes[b]));
   for (size_t i = 0; i < sizes.size(); ++i) {
     const int size_i = find(factor.blocks[i])->tangentSize();
     const auto jacobian_i = jacobians[i].leftCols(size_i);
