@@ -165,9 +165,8 @@ TEST(MagnetometerFusion, DoubtsAMagnetThatItPasses) {
   HeadingTrialOptions options = trialOptions(480.0);
   options.seed = 2;
   options.trouble = FieldTrouble::Dipole;
-  // With intrinsics files that images confirm the two differ by 1.27 on this dive; the comparison is about
-  // the field.
-  options.estimator.camera_calibration.trust_confirmed_files = false;
+  // The comparison is about the field, so the lenses are held at their files, which are right on this dive.
+  options.estimator.camera_calibration.intrinsics = false;
   const HeadingTrial doubted = runHeadingTrial(options);
   options.estimator.magnetometer.student_dof = 1e6;
   const HeadingTrial believed = runHeadingTrial(options);

@@ -67,12 +67,14 @@ TEST(CameraStates, FindWrongExtrinsics) {
 }
 
 TEST(CameraStates, FindAWrongStereoRotation) {
-  TestScene scene(sceneOptions());
+  TestSceneOptions longer = sceneOptions();
+  longer.duration_s = 40.0;
+  TestScene scene(longer);
   Rig files = scene.rig();
   const Vec3 rotation(0.002, -0.0015, 0.001);
   files.cameras[1].body_from_camera.rotation =
       files.cameras[1].body_from_camera.rotation * so3::exp(rotation);
-  const FrameEstimate last = lastEstimate(scene, files, honestOptions(sceneOptions()));
+  const FrameEstimate last = lastEstimate(scene, files, honestOptions(longer));
   ASSERT_TRUE(last.camera_corrections);
   ASSERT_EQ(last.camera_corrections->extrinsics.size(), 2U);
   const Rigid3 camera0_from_camera1 =
