@@ -75,8 +75,8 @@ std::vector<FishSchool> drawFish(const Dive& dive) {
   return schools;
 }
 
-/// A companion who follows the mean path of the last seconds 3 m ahead, and wanders into the view and out of
-/// it with strokes of its own.
+/// A companion 3 m ahead on the mean path of the last seconds. It sways in and out of the view and kicks at
+/// another frequency than the diver.
 Buddy drawBuddy(const Dive& dive) {
   Random random(dive.scenario.seed, "buddy");
   const double ahead_m = random.uniform(2.9, 3.6), sway_s = random.uniform(17.0, 26.0);

@@ -54,7 +54,7 @@ class FactorBuilder {
 
  private:
   LandmarkFactors plainLandmark(Window& window, FeatureTrack& track) const;
-  /// Term of one observation with a measurement of its own.
+  /// Term of one observation with another measurement than the recorded one.
   Factor calibratedFactor(Window& window, const Landmark& landmark, double* parameters,
                           const Observation& observation, const DirectionMeasurement& measurement,
                           const CameraStates& states) const;

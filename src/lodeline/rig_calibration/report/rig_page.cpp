@@ -90,7 +90,7 @@ std::string camchainText(const RigCalibrationResult& result) {
       const CameraCalibration& before = result.cameras[k - 1].calibration;
       text += matrixText("T_cn_cnm1", c.body_from_camera.inverse() * before.body_from_camera);
     }
-    // Kalibr has names of its own for two distortions.
+    // Kalibr uses other names for two distortion models.
     const bool is_radial = keys.distortion_model == "radial-tangential";
     text += fmt::format(
         "  camera_model: {}\n  intrinsics: [{}]\n  distortion_model: {}\n  distortion_coeffs: [{}]\n",

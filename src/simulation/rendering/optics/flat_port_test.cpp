@@ -5,20 +5,10 @@
 #include <cmath>
 
 #include "lodeline/diagnostics.h"
+#include "simulation/rendering/optics/test_lens.h"
 
 namespace lodeline {
 namespace {
-
-CameraCalibration inWater() {
-  CameraCalibration camera;
-  camera.name = "cam0";
-  camera.width_px = 640;
-  camera.height_px = 480;
-  camera.fx_px = camera.fy_px = 450.0;
-  camera.cx_px = 322.0;
-  camera.cy_px = 239.0;
-  return camera;
-}
 
 TEST(FlatPort, BendsBySnellsLawWhateverTheGlass) {
   FlatPort port;
@@ -50,7 +40,7 @@ TEST(FlatPort, RefusesTotalReflection) {
 TEST(FlatPort, FitIsExactWithoutRefraction) {
   FlatPort port;
   port.index_glass = port.index_water = 1.0;
-  const CameraCalibration camera = inWater();
+  const CameraCalibration camera = lensInWater();
   const PortFit fit = fitRadialTangential(camera, port);
   EXPECT_LT(fit.rms_px, 1e-6);
   EXPECT_NEAR(fit.calibration.fx_px, camera.fx_px, 1e-4);
@@ -61,7 +51,7 @@ TEST(FlatPort, FitIsExactWithoutRefraction) {
 TEST(FlatPort, FitComesNearButCannotReachTheRefraction) {
   FlatPort port;
   port.normal_C = Vec3(0.01, 0.006, 1.0).normalized();
-  const CameraCalibration air = airCameraFor(inWater(), port);
+  const CameraCalibration air = airCameraFor(lensInWater(), port);
   EXPECT_NEAR(air.fx_px, 450.0 / 1.335, 1e-9);
   const PortFit fit = fitRadialTangential(air, port);
   // Refraction reduces the field of view by the index: the focal length returns to its original value, with
@@ -81,7 +71,7 @@ TEST(FlatPort, FitComesNearButCannotReachTheRefraction) {
 TEST(FlatPort, SaysWhenNothingPasses) {
   FlatPort port;
   port.normal_C = -Vec3::UnitZ();
-  EXPECT_THROW(fitRadialTangential(airCameraFor(inWater(), FlatPort{}), port), UsageError);
+  EXPECT_THROW(fitRadialTangential(airCameraFor(lensInWater(), FlatPort{}), port), UsageError);
 }
 
 }  // namespace

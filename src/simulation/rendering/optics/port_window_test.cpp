@@ -10,21 +10,11 @@
 #include "simulation/rendering/optics/camera_optics.h"
 #include "simulation/rendering/optics/dispersion.h"
 #include "simulation/rendering/optics/port_fit.h"
+#include "simulation/rendering/optics/test_lens.h"
 #include "simulation/rendering/optics/water_index.h"
 
 namespace lodeline {
 namespace {
-
-CameraCalibration lensInWater() {
-  CameraCalibration camera;
-  camera.name = "cam0";
-  camera.width_px = 640;
-  camera.height_px = 480;
-  camera.fx_px = camera.fy_px = 450.0;
-  camera.cx_px = 322.0;
-  camera.cy_px = 239.0;
-  return camera;
-}
 
 DomePort decentred(const Vec3& centre_C) {
   DomePort port;
