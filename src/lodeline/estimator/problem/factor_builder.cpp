@@ -59,6 +59,14 @@ Factor zeroPrior(ParameterBlock& state, double sigma) {
   return factor;
 }
 
+/// Wraps a reprojection factor for the estimated intrinsics of its camera, where there are any.
+void addIntrinsics(const DirectionMeasurement& measurement, int camera, const CameraStates& states,
+                   Factor* factor) {
+  if (states.intrinsics.empty()) return;
+  factor->function = std::make_unique<IntrinsicsFactor>(std::move(factor->function), measurement);
+  factor->blocks.push_back(states.intrinsics[static_cast<size_t>(camera)]->value.data());
+}
+
 }  // namespace
 
 FactorBuilder::FactorBuilder(const Rig& rig, const EstimatorOptions& options)
@@ -194,25 +202,27 @@ Factor FactorBuilder::calibratedFactor(Window& window, const Landmark& landmark,
     if (secondary) factor.blocks.push_back(secondary->value.data());
     if (target.interpolated) hangOnNeighbours(window, target, &factor);
   }
-  if (states.intrinsics.empty()) return factor;
-  factor.function = std::make_unique<IntrinsicsFactor>(std::move(factor.function), measurement);
-  factor.blocks.push_back(states.intrinsics[observation.camera]->value.data());
+  addIntrinsics(measurement, observation.camera, states, &factor);
   return factor;
 }
 
 Factor FactorBuilder::shutterFactor(Window& window, const Landmark& landmark, double* parameters,
                                     const Observation& observation, const CameraStates& states) const {
+  // The derivative by the line delay is taken before the intrinsics act on the residual, as that by a pose.
+  CameraStates by_file = states;
+  by_file.intrinsics.clear();
   Factor factor =
-      calibratedFactor(window, landmark, parameters, observation, observation.measurement, states);
+      calibratedFactor(window, landmark, parameters, observation, observation.measurement, by_file);
   const CameraMotion motion = motionOf(*window.find(observation.frame), observation.camera);
   const auto factor_of = [this, &window, &landmark, parameters, &observation,
-                          states](const DirectionMeasurement& measurement) {
-    return calibratedFactor(window, landmark, parameters, observation, measurement, states).function;
+                          by_file](const DirectionMeasurement& measurement) {
+    return calibratedFactor(window, landmark, parameters, observation, measurement, by_file).function;
   };
   factor.function =
       std::make_unique<RollingShutterFactor>(factor_of, observation.measurement, motion, observation.camera,
-                                             linearizationPoints(window, landmark, observation, states));
+                                             linearizationPoints(window, landmark, observation, by_file));
   factor.blocks.push_back(states.shutter->value.data());
+  addIntrinsics(observation.measurement, observation.camera, states, &factor);
   return factor;
 }
 
