@@ -125,6 +125,8 @@ struct StandardRigOptions {
 MountedRig standardRig(const StandardRigOptions& options);
 
 enum class WorldKind { Cave, Wreck, Board, None };
+/// Plan of a cave: one passage, a circuit, a passage with a branch, or one chamber.
+enum class CaveShape { Passage, Loop, Junction, Room };
 enum class MotionKind { Dive, AroundWreck, BeforeBoard, FigureEight, AtRest };
 
 /// All settings that determine a recording, down to its bytes.
@@ -136,7 +138,17 @@ struct Scenario {
   bool in_water = true;    ///< false: in a room, without lamps and ports
   bool decorated = false;  ///< a formerly dry cave with stalactites
 
+  /// Seed of the motion, the rig with its errors, the lamps, the water and the disturbances, and of the place
+  /// where `cave_seed` is not given.
   uint64_t seed = 1;
+  /// Seed of the cave: shape, walls, texture and tags. A scenario with it has a frame of the cave
+  /// (`truth/cave.yaml`), in which all its dives are in the same rock.
+  std::optional<uint64_t> cave_seed;
+  CaveShape shape = CaveShape::Passage;
+  int laps = 2;                         ///< of a circuit or chamber
+  int entrance = 1;                     ///< 2: a dive from the far end of the passage
+  std::optional<double> cave_length_m;  ///< of the passage; half of the path where not given
+  int tags = 0;                         ///< AprilTags on the line
   /// Seed of the sensor noise (white noise and drifting biases of the IMU, noise of magnetometer and pressure
   /// sensor). Place, motion, images and the rig's own errors keep those of `seed`.
   std::optional<uint64_t> noise_seed;
@@ -159,7 +171,10 @@ struct Scenario {
 /// User's changes to a scenario; values not given stay.
 struct ScenarioChanges {
   std::optional<double> seconds, metres;
-  std::optional<uint64_t> seed;
+  std::optional<uint64_t> seed;                  ///< of cave and dive
+  std::optional<uint64_t> cave_seed, dive_seed;  ///< in place of `seed`
+  std::optional<double> cave_metres;             ///< Scenario::cave_length_m
+  std::optional<int> laps, entrance, tags;
   std::optional<int> width_px, height_px, cameras;
   std::optional<double> camera_rate_hz, imu_rate_hz, magnetometer_rate_hz;
   std::optional<std::string> imu_grade;

@@ -31,7 +31,8 @@ std::string footer() {
       "  lodeline simulate demo -o demo --realism field\n"
       "  lodeline simulate cave1_short -o dive --metres 60 --effect flat_port=on\n"
       "  lodeline simulate demo -o fisheye --camera-model double-sphere\n"
-      "  lodeline simulate figure_eight -o calibration --seed 7\n\n"
+      "  lodeline simulate figure_eight -o calibration --seed 7\n"
+      "  lodeline simulate loop_cave -o second --cave-seed 1 --dive-seed 2 --tags 6\n\n"
       "An interrupted simulation goes on where it stopped when the same command is given again.";
   return text;
 }
@@ -66,6 +67,13 @@ void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
   command->add_option("--seconds", c.seconds, "duration; given alone, the length follows");
   command->add_option("--metres", c.metres, "length of the path; given alone, the duration follows");
   command->add_option("--seed", c.seed, "of everything random (1)");
+  command->add_option("--cave-seed", c.cave_seed, "of the cave: place, walls and tags (--seed)");
+  command->add_option("--dive-seed", c.dive_seed,
+                      "of the dive: motion, rig, lamps, water and disturbances (--seed)");
+  command->add_option("--cave-metres", c.cave_metres, "length of the passage (half of the path)");
+  command->add_option("--entrance", c.entrance, "2: dive from the far end of the passage (1)");
+  command->add_option("--laps", c.laps, "rounds of a circuit or chamber (2)");
+  command->add_option("--tags", c.tags, "AprilTags on the line of the cave (0)");
   command->add_option("--realism", c.realism,
                       "clean; field: what a diver delivers; physical: more optics, water and life (clean)");
   command->add_option("--effect", c.effects, "NAME=on or NAME=off, repeatable; see --list-effects");

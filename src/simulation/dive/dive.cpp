@@ -11,18 +11,15 @@
 namespace lodeline {
 namespace {
 
-CenterlineOptions passageOptions(const Scenario& s) {
-  CenterlineOptions options;
-  options.seed = s.seed;
-  options.length_m = 0.5 * s.path_length_m;
-  options.descent_m = std::min(0.08 * options.length_m, s.decorated ? 6.0 : 20.0);
-  if (s.decorated) {
-    // Dissolved along joints near the water table: horizontal, wide and low passages.
-    options.mean_width_m = 5.5;
-    options.mean_height_m = 2.6;
-    options.undulation_m = 0.5;
-    options.shortest_bend_m = 18.0;
-  }
+CavePlanOptions caveOptions(const Scenario& s) {
+  CavePlanOptions options;
+  options.shape = s.shape;
+  options.seed = s.cave_seed.value_or(s.seed);
+  options.path_length_m = s.path_length_m;
+  options.cave_length_m = s.cave_length_m;
+  options.laps = s.laps;
+  options.entrance = s.entrance;
+  options.decorated = s.decorated;
   return options;
 }
 
@@ -40,6 +37,7 @@ DiveMotionOptions diveOptions(const Scenario& s) {
 
 struct Place {
   std::optional<Centerline> passage;
+  std::optional<FramedCave> cave;
   std::optional<WreckLayout> wreck;
   std::optional<PlacedBoard> board;
 };
@@ -54,10 +52,22 @@ PlacedBoard boardAt(const BoardPlace& place) {
   return placed;
 }
 
+// A dive in a cave with a frame.
+Motion makeCaveMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place) {
+  const CavePlanOptions options = caveOptions(s);
+  const CavePlan plan = planCave(options);
+  Motion motion = makePlannedMotion(plan, options, diveOptions(s), diver_from_body);
+  const Vec3 origin_W = motion.worldShift();
+  place.passage = plan.route.tracks.front().translated(origin_W);
+  place.cave = FramedCave{plan.cave, placeTags(plan.cave, plan.line, s.tags, options.seed), origin_W};
+  return motion;
+}
+
 Motion makeMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place) {
   switch (s.motion) {
     case MotionKind::Dive: {
-      const Centerline passage = Centerline::generate(passageOptions(s));
+      if (s.cave_seed) return makeCaveMotion(s, diver_from_body, place);
+      const Centerline passage = Centerline::generate(passageOptions(caveOptions(s)));
       Motion motion = makeDiveMotion(passage, diveOptions(s), diver_from_body);
       place.passage = passage.translated(motion.worldShift());
       return motion;
@@ -122,6 +132,7 @@ Dive makeDive(const Scenario& s) {
             .errors = errors,
             .motion = std::move(motion),
             .passage = place.passage,
+            .cave = place.cave,
             .wreck = place.wreck,
             .board = place.board,
             .disturbances = {},
@@ -132,9 +143,14 @@ Dive makeDive(const Scenario& s) {
             .start = {}};
   dive.field_W = scenarioField(s);
   dive.surface_height_m = s.start_depth_m;
+  // The water has one surface for all dives of a cave.
+  if (dive.cave) dive.surface_height_m += dive.cave->origin_W.z();
   // 2026-11-21, 10:00 UTC, for every date of the scenario. Only the year of that date is used, for the
   // magnetic field.
   dive.start = Time::fromNanoseconds(1'795'255'200'000'000'000);
+  // Dives of one cave are on different days.
+  if (s.cave_seed)
+    dive.start = dive.start + Duration::fromSeconds(86400.0 * static_cast<double>(s.seed % 1000));
   if (s.motion == MotionKind::Dive || s.motion == MotionKind::AroundWreck) {
     DisturbanceOptions options;
     options.seed = s.seed;
@@ -149,6 +165,10 @@ Dive makeDive(const Scenario& s) {
 }
 
 LandmarkField diveLandmarks(const Dive& dive, double points_per_metre) {
+  if (dive.cave) {
+    return caveLandmarks(dive.cave->layout.translated(dive.cave->origin_W), points_per_metre,
+                         *dive.scenario.cave_seed);
+  }
   if (dive.passage) return passageLandmarks(*dive.passage, points_per_metre, dive.scenario.seed);
   if (dive.wreck) return hullLandmarks(*dive.wreck, points_per_metre, dive.scenario.seed);
   return LandmarkField({});

@@ -6,6 +6,7 @@
 #include "lodeline/board/calibration_board.h"
 #include "simulation/dive/dive_errors.h"
 #include "simulation/motion/posed_motion.h"
+#include "simulation/plan/cave_plan.h"
 #include "simulation/rendering/bodies/buddy.h"
 #include "simulation/rendering/bodies/fish.h"
 #include "simulation/rendering/cave/centerline.h"
@@ -21,15 +22,23 @@ struct PlacedBoard {
   Rigid3 world_from_board;
 };
 
+/// The cave of a scenario with a cave seed, in its own frame C (east, north, up).
+struct FramedCave {
+  CaveLayout layout;
+  std::vector<LineTag> tags;
+  Vec3 origin_W = Vec3::Zero();  ///< of C in the world of the dive, m
+};
+
 /// A scenario with all its random draws: place, motion, rig and its errors.
 struct Dive {
   Scenario scenario;
   DiveErrors errors;
   Motion motion;
-  std::optional<Centerline> passage;  ///< in a cave, world frame
-  std::optional<WreckLayout> wreck;   ///< in open water, world frame
-  std::optional<PlacedBoard> board;   ///< of a camera calibration
-  Vec3 field_W = Vec3::Zero();        ///< Earth's, T
+  std::optional<Centerline> passage;  ///< in a cave, world frame; first track of a route
+  std::optional<FramedCave> cave;
+  std::optional<WreckLayout> wreck;  ///< in open water, world frame
+  std::optional<PlacedBoard> board;  ///< of a camera calibration
+  Vec3 field_W = Vec3::Zero();       ///< Earth's, T
   MagneticDisturbances disturbances;
   std::shared_ptr<const DriftTrack> current;  ///< nothing in still water
   std::vector<FishSchool> fish;

@@ -14,6 +14,29 @@ Daylight entranceLight(const Centerline& passage) {
   return daylight;
 }
 
+// Dives of one cave differ in the clarity of the water, the snow and the lamps.
+void drawSeason(const EffectSet& on, uint64_t seed, RenderSettings& settings) {
+  Random random(seed, "season");
+  const double clarity = random.uniform(0.75, 1.3), patches = random.uniform(0.5, 1.5);
+  const double flakes = random.uniform(0.4, 2.0), radius = random.uniform(0.85, 1.15);
+  if (on.has(Effect::MilkyWater)) {
+    settings.water.attenuation_per_m *= clarity;
+    settings.water.patchiness *= patches;
+    settings.snow.flakes_per_m3 *= flakes;
+    settings.snow.median_radius_m *= radius;
+  }
+  for (Lamp& lamp : settings.lamps) {
+    const double strength = random.uniform(0.7, 1.4), spread = random.uniform(0.8, 1.25);
+    const Vec3 shift_m = 0.05 * random.normal3(), turn = 0.06 * random.normal3();
+    if (!on.has(Effect::PoorExposure)) continue;
+    lamp.spot_intensity *= strength;
+    lamp.flood_intensity *= strength;
+    lamp.spot_half_angle_rad *= spread;
+    lamp.position_B += shift_m;
+    lamp.direction_B = (lamp.direction_B + turn).normalized();
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
@@ -29,8 +52,9 @@ std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
   if (!dive.passage) return nullptr;
   CaveOptions options;
   options.style = s.decorated ? CaveStyle::yucatanDecorated() : CaveStyle::floridaSpring();
-  options.seed = s.seed;
+  options.seed = s.cave_seed.value_or(s.seed);
   if (s.effects.has(Effect::BareWalls)) options.style.bare_share += 0.25f;
+  if (dive.cave) return buildCaveWorld(dive.cave->layout, options, dive.cave->tags, dive.cave->origin_W);
   return buildCaveWorld(*dive.passage, options);
 }
 
@@ -58,6 +82,7 @@ RenderSettings renderSettings(const Dive& dive) {
   settings.fish = dive.fish;
   settings.buddy = dive.buddy;
   settings.halocline = dive.halocline;
+  if (dive.cave) drawSeason(on, dive.scenario.seed, settings);
   if (!on.has(Effect::MarineSnow)) settings.snow.flakes_per_m3 = 0.0;
   settings.sensor.noise = on.has(Effect::ImageNoise);
   settings.motion_blur = on.has(Effect::MotionBlur);

@@ -1,6 +1,11 @@
 #include "simulation/dive/point_dive.h"
 
 namespace lodeline {
+namespace {
+
+constexpr double kPointsPerMetre = 400.0;
+
+}  // namespace
 
 PointDive makePointDive(const DiveMotionOptions& motion_options, const MountedRig& mounted,
                         const ImuErrors& imu) {
@@ -9,10 +14,23 @@ PointDive makePointDive(const DiveMotionOptions& motion_options, const MountedRi
   passage_options.length_m = motion_options.path_length_m * (motion_options.round_trip ? 0.5 : 1.0);
   const Centerline passage = Centerline::generate(passage_options);
   Motion motion = makeDiveMotion(passage, motion_options, mounted.diver_from_body);
-  const Centerline moved = passage.translated(motion.worldShift());
-  constexpr double kPointsPerMetre = 400.0;
+  const Vec3 shift = motion.worldShift();
+  const Centerline moved = passage.translated(shift);
   PointDive dive{mounted, moved, std::move(motion),
-                 passageLandmarks(moved, kPointsPerMetre, motion_options.seed)};
+                 passageLandmarks(moved, kPointsPerMetre, motion_options.seed), shift};
+  dive.mounted.rig.imu.noise = statedNoise(imu);
+  return dive;
+}
+
+PointDive makeCaveDive(const CavePlanOptions& cave, const DiveMotionOptions& motion_options,
+                       const MountedRig& mounted, const ImuErrors& imu) {
+  const CavePlan plan = planCave(cave);
+  Motion motion = makePlannedMotion(plan, cave, motion_options, mounted.diver_from_body);
+  const Vec3 shift = motion.worldShift();
+  // The walls of a chamber are four times as far around as those of a passage.
+  const double points_per_metre = kPointsPerMetre * (cave.shape == CaveShape::Room ? 3.0 : 1.0);
+  PointDive dive{mounted, plan.route.tracks.front().translated(shift), std::move(motion),
+                 caveLandmarks(plan.cave.translated(shift), points_per_metre, cave.seed), shift};
   dive.mounted.rig.imu.noise = statedNoise(imu);
   return dive;
 }

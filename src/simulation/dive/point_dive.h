@@ -3,15 +3,18 @@
 #include "lodeline/simulation.h"
 #include "simulation/dive/point_simulation.h"
 #include "simulation/motion/dive_motion.h"
+#include "simulation/plan/cave_plan.h"
 
 namespace lodeline {
 
 /// A world of points, a motion through it and the rig, as input of a PointSimulation; it must outlive that.
 struct PointDive {
   MountedRig mounted;
-  Centerline passage;
+  Centerline passage;  ///< first track of the route
   Motion motion;
   LandmarkField landmarks;
+  /// Origin of the cave's frame in the world of the dive, m; the axes of both are east, north, up.
+  Vec3 cave_origin_W = Vec3::Zero();
 
   PointSimulation simulate(const PointSimulationOptions& options) const {
     return PointSimulation(motion, landmarks, mounted.rig, options);
@@ -21,5 +24,12 @@ struct PointDive {
 /// Makes a dive with a passage of the length that the motion needs; both use `motion.seed`. The rig's IMU
 /// calibration states the true noise of `imu`.
 PointDive makePointDive(const DiveMotionOptions& motion, const MountedRig& mounted, const ImuErrors& imu);
+
+/// Makes a dive in a planned cave: a circuit swum in laps, a junction, a chamber, or a passage in and out.
+/// The cave with its points depends on `cave` alone. The motion depends on `motion.seed`; its path length is
+/// that of the cave. Dives of one cave have the same points under the same indices
+/// (PointSimulation::pointOf), each in its own world.
+PointDive makeCaveDive(const CavePlanOptions& cave, const DiveMotionOptions& motion,
+                       const MountedRig& mounted, const ImuErrors& imu);
 
 }  // namespace lodeline

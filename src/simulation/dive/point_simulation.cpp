@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace lodeline {
 namespace {
@@ -17,6 +18,14 @@ std::vector<std::shared_ptr<const Camera>> makeCameras(const Rig& rig) {
   std::vector<std::shared_ptr<const Camera>> cameras;
   for (const CameraCalibration& calibration : rig.cameras) cameras.push_back(makeCamera(calibration));
   return cameras;
+}
+
+/// Strength of a point for a detector: a hash of its index (finalizer of splitmix64).
+uint64_t strengthOf(int point) {
+  uint64_t hash = static_cast<uint64_t>(point) + 0x9e3779b97f4a7c15ull;
+  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
+  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
+  return hash ^ (hash >> 31);
 }
 
 }  // namespace
@@ -132,10 +141,16 @@ void PointSimulation::renewTracks(double time_s, const Rigid3& world_from_body) 
   std::set<int> taken;
   for (const Track& track : tracks_) taken.insert(track.point);
   std::vector<int> candidates = landmarks_.near(world_from_body.translation, options_.farthest_m);
+  if (options_.strongest_first) {
+    std::sort(candidates.begin(), candidates.end(),
+              [](int a, int b) { return std::pair(strengthOf(a), a) < std::pair(strengthOf(b), b); });
+  }
   while (static_cast<int>(tracks_.size()) < options_.tracks && !candidates.empty()) {
-    const int pick = choice_.index(static_cast<int>(candidates.size()));
-    const int point = candidates[pick];
-    candidates[pick] = candidates.back();
+    if (!options_.strongest_first) {
+      const int pick = choice_.index(static_cast<int>(candidates.size()));
+      std::swap(candidates[pick], candidates.back());
+    }
+    const int point = candidates.back();
     candidates.pop_back();
     if (taken.count(point) || !seen(0, world_from_body, landmarks_.points()[point])) continue;
     tracks_.push_back({static_cast<TrackId>(point_of_track_.size()), point, time_s});

@@ -35,7 +35,10 @@ struct PointSimulationOptions {
   double first_frame_s = 1.0;
   double end_s = 1e9;  ///< clipped to the motion's duration
 
-  int tracks = 150;             ///< target number per frame
+  int tracks = 150;  ///< target number per frame
+  /// Detects visible points in one fixed order, as a detector does by the strength of corners. Most points
+  /// are then seen again at the next visit. Otherwise, detects them at random.
+  bool strongest_first = false;
   double pixel_sigma_px = 0.5;  ///< true noise, and stated sigma of the observations
   double outlier_share = 0.0;   ///< fraction of observations, displaced by 5 to 50 px
   double longest_track_s = 10.0;
@@ -86,7 +89,11 @@ class PointSimulation {
   std::optional<SimulatedFrame> next();
 
   /// The true surface point of a track.
-  Vec3 landmark(TrackId track) const { return landmarks_.points()[point_of_track_.at(track)].position_W; }
+  Vec3 landmark(TrackId track) const { return landmarks_.points()[pointOf(track)].position_W; }
+
+  /// Index of the surface point of a track in the landmark field. Tracks of one point at several visits, or
+  /// in several dives of one cave, have the same index.
+  int pointOf(TrackId track) const { return point_of_track_.at(track); }
 
  private:
   struct Track {

@@ -26,6 +26,15 @@ Scenario scenario(const char* name, const char* description, double duration_s, 
   return s;
 }
 
+// A scenario whose cave has a frame.
+Scenario caveScenario(const char* name, const char* description, double duration_s, double path_length_m,
+                      CaveShape shape) {
+  Scenario s = scenario(name, description, duration_s, path_length_m, kDevilsEye);
+  s.shape = shape;
+  s.cave_seed = s.seed;
+  return s;
+}
+
 std::vector<Scenario> makeScenarios() {
   std::vector<Scenario> all;
   all.push_back(scenario("cave1_short", "Devil's Eye, 110 m in and back; stereo", 900.0, 220.0, kDevilsEye));
@@ -46,6 +55,18 @@ std::vector<Scenario> makeScenarios() {
   demo.decorated = true;
   demo.start_depth_m = 6.0;
   all.push_back(demo);
+
+  all.push_back(
+      caveScenario("loop_cave", "a circuit of 75 m swum twice; stereo", 690.0, 150.0, CaveShape::Loop));
+  all.push_back(caveScenario("junction", "a passage and its branch, each in and back; stereo", 700.0, 160.0,
+                             CaveShape::Junction));
+  all.push_back(caveScenario("room", "one chamber swum through twice on different ways; stereo", 350.0, 85.0,
+                             CaveShape::Room));
+  Scenario two_entrances =
+      caveScenario("two_entrances", "a cave of 80 m, 60 m in and back from either end; stereo", 500.0, 120.0,
+                   CaveShape::Passage);
+  two_entrances.cave_length_m = 80.0;
+  all.push_back(two_entrances);
 
   Scenario figure_eight =
       scenario("figure_eight", "the rig turned about all axes, for calibrating the magnetometer", 90.0, 0.0,
@@ -99,6 +120,35 @@ void changeExtent(const ScenarioChanges& c, Scenario& s) {
   if (c.metres && !c.seconds) s.duration_s = s.path_length_m / standard_speed;
 }
 
+// Cave, dive and what is common to dives of one cave.
+void changePlace(const ScenarioChanges& c, Scenario& s) {
+  const bool in_cave = s.world == WorldKind::Cave;
+  const auto only = [&](bool given, bool possible, const char* option, const char* where) {
+    if (given && !possible) throw UsageError(fmt::format("{}: {} has no {}", option, s.name, where));
+  };
+  only(c.cave_seed.has_value(), in_cave, "--cave-seed", "cave");
+  only(c.tags.has_value(), in_cave, "--tags", "cave");
+  only(c.laps.has_value(), s.shape == CaveShape::Loop || s.shape == CaveShape::Room, "--laps", "circuit");
+  const bool has_far_end = in_cave && s.shape == CaveShape::Passage;
+  only(c.entrance.has_value(), has_far_end, "--entrance", "passage with two ends");
+  only(c.cave_metres.has_value(), has_far_end, "--cave-metres", "passage with two ends");
+  s.seed = c.dive_seed.value_or(c.seed.value_or(1));
+  const bool framed = s.cave_seed || c.cave_seed || c.tags || c.entrance || c.cave_metres || c.dive_seed;
+  if (in_cave && framed) s.cave_seed = c.cave_seed.value_or(c.seed.value_or(1));
+  if (c.laps) {
+    // A change of laps alone keeps the circuit.
+    if (!c.metres && s.shape == CaveShape::Loop && !c.seconds) {
+      s.path_length_m *= static_cast<double>(*c.laps) / s.laps;
+      s.duration_s *= static_cast<double>(*c.laps) / s.laps;
+    }
+    s.laps = *c.laps;
+  }
+  if (c.entrance) s.entrance = *c.entrance;
+  if (c.cave_metres) s.cave_length_m = positive(*c.cave_metres, "--cave-metres");
+  if (c.tags) s.tags = *c.tags;
+  if (s.tags < 0 || s.tags > 100) throw UsageError(fmt::format("--tags must be 0 to 100, got {}", s.tags));
+}
+
 void changeCameraModel(const std::string& name, Scenario& s) {
   const CameraModel* model = findCameraModel(name);
   if (model == nullptr) {
@@ -130,7 +180,7 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   if (found == nullptr) throw UsageError(fmt::format("there is no scenario '{}'; there are {}", name, names));
   Scenario s = *found;
   changeExtent(c, s);
-  if (c.seed) s.seed = *c.seed;
+  changePlace(c, s);
   if (c.imu_grade) s.imu_grade = imuGrade(*c.imu_grade).name;
   // Images keep the aspect ratio of the rig unless both sizes are given.
   if (c.width_px) {
@@ -191,6 +241,11 @@ std::string describe(const Scenario& s) {
   if (!s.rig.camera_model.empty()) text += fmt::format("camera_model: {}\n", s.rig.camera_model);
   if (s.readout_s) text += fmt::format("readout_s: {}\n", *s.readout_s);
   if (s.rig.sonar_scans_ahead) text += "sonar_scans_ahead: true\n";
+  if (s.cave_seed) {
+    text += fmt::format("cave_seed: {}\nlaps: {}\nentrance: {}\ntags: {}\n", *s.cave_seed, s.laps, s.entrance,
+                        s.tags);
+    if (s.cave_length_m) text += fmt::format("cave_length_m: {}\n", *s.cave_length_m);
+  }
   if (s.noise_seed) text += fmt::format("noise_seed: {}\n", *s.noise_seed);
   return text;
 }

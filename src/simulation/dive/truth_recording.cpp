@@ -163,6 +163,42 @@ void recordLandmarks(const Dive& dive, const RangeFunction& range, const std::fi
   file.close();
 }
 
+void recordCave(const FramedCave& cave, const Scenario& scenario, const std::filesystem::path& truth) {
+  RecordingFile place(truth / "cave.yaml");
+  place.write(fmt::format(
+      "# p_W = p_C + world_from_cave_m: W is the world of this dive, C the frame of the cave (both east, "
+      "north,\n"
+      "# up). Dives with the same scenario, length, laps and cave seed share C.\n"
+      "cave: {}\ncave_seed: {}\ndive_seed: {}\nentrance: {}\nworld_from_cave_m: {}\n",
+      scenario.name, *scenario.cave_seed, scenario.seed, scenario.entrance, numbers(cave.origin_W)));
+  place.close();
+  if (cave.tags.empty()) return;
+  RecordingFile tags(truth / "tags.csv");
+  tags.write("#tag,size [m],centre_x [m],centre_y [m],centre_z [m]");
+  for (int k = 0; k < 4; ++k) tags.write(fmt::format(",corner{0}_x [m],corner{0}_y [m],corner{0}_z [m]", k));
+  tags.write("\n");
+  for (const LineTag& tag : cave.tags) {
+    const Vec3& centre_C = tag.cave_from_tag.translation;
+    tags.write(fmt::format("{},{},{:.6f},{:.6f},{:.6f}", tag.id, tag.size_m, centre_C.x(), centre_C.y(),
+                           centre_C.z()));
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 corner_C = tag.corner_C(k);
+      tags.write(fmt::format(",{:.6f},{:.6f},{:.6f}", corner_C.x(), corner_C.y(), corner_C.z()));
+    }
+    tags.write("\n");
+  }
+  tags.close();
+}
+
+std::string lampsText(const RenderSettings& settings) {
+  std::string text = "lamps:\n";
+  for (const Lamp& lamp : settings.lamps) {
+    text += fmt::format("  - {{position_B: {}, spot_W_per_sr: {}, flood_W_per_sr: {}}}\n",
+                        numbers(lamp.position_B), lamp.spot_intensity, lamp.flood_intensity);
+  }
+  return text;
+}
+
 }  // namespace
 
 void recordTruth(const Dive& dive, const RenderSettings& settings, const std::vector<ScheduledImage>& images,
@@ -180,8 +216,10 @@ void recordTruth(const Dive& dive, const RenderSettings& settings, const std::ve
   errors.write(magneticText(dive));
   errors.write(otherText(dive, settings));
   errors.write(rareText(dive));
+  if (dive.cave) errors.write(lampsText(settings));
   errors.close();
 
+  if (dive.cave) recordCave(*dive.cave, dive.scenario, truth);
   if (!images.empty()) {
     RecordingFile times(truth / "image_times.csv");
     times.write("#camera,stamp [ns],middle of exposure on the IMU clock [ns]\n");

@@ -40,9 +40,19 @@ double unwrapped(double angle, double near) {
   return angle + 2.0 * std::numbers::pi * std::round((near - angle) / (2.0 * std::numbers::pi));
 }
 
-MotionChannels makeChannels(const Centerline& centerline, const DiveMotionOptions& o, const SwimPlan& plan) {
+/// 0 on the way in and 1 on the way back, for any number of half turns.
+double wayBack(double turns) {
+  if (turns <= 1.0 + 1e-9) return turns;
+  const double rest = std::fmod(turns, 2.0);
+  return rest <= 1.0 ? rest : 2.0 - rest;
+}
+
+MotionChannels makeChannels(const SwimRoute& route, const DiveMotionOptions& o, const SwimPlan& plan) {
   const Line line(o.seed);
-  const auto positionAt = [&](double t) { return line.at(centerline.at(plan.arcLength(t)), plan.turn(t)); };
+  const auto trackAt = [&](double t) -> const Centerline& { return route.trackOf(plan.leg(t)); };
+  const auto positionAt = [&](double t) {
+    return line.at(trackAt(t).at(plan.arcLength(t)), wayBack(plan.turn(t)));
+  };
   const auto coordinate = [&](int axis) {
     return motionSpline(o.duration_s, kPathKnot_s, [&](double t) { return positionAt(t)[axis]; });
   };
@@ -54,8 +64,8 @@ MotionChannels makeChannels(const Centerline& centerline, const DiveMotionOption
   // The diver looks a little ahead along the passage.
   constexpr double kLookAhead_m = 1.0;
   const auto aheadAt = [&](double t) {
-    const double way = 1.0 - 2.0 * plan.turn(t);
-    return centerline.at(plan.arcLength(t) + way * kLookAhead_m).tangent_W;
+    const double way = 1.0 - 2.0 * wayBack(plan.turn(t));
+    return trackAt(t).at(plan.arcLength(t) + way * kLookAhead_m).tangent_W;
   };
   const double turn_angle = Random(o.seed, "dive/turn").sign() * std::numbers::pi;
   double heading = std::atan2(aheadAt(0.0).y(), aheadAt(0.0).x());
@@ -65,26 +75,26 @@ MotionChannels makeChannels(const Centerline& centerline, const DiveMotionOption
     return heading + turn_angle * plan.turn(t);
   }));
   channels.pitch.splines.push_back(motionSpline(o.duration_s, kPathKnot_s, [&](double t) {
-    const double way = 1.0 - 2.0 * plan.turn(t);
+    const double way = 1.0 - 2.0 * wayBack(plan.turn(t));
     return -0.8 * way * std::asin(aheadAt(t).z());
   }));
   return channels;
 }
 
-Motion makeOnce(const Centerline& centerline, const DiveMotionOptions& o, double penetration_m,
-                const Rigid3& diver_from_body) {
+}  // namespace
+
+Motion makeRouteMotion(const SwimRoute& route, const DiveMotionOptions& o, const Rigid3& diver_from_body) {
   SwimPlanOptions plan_options;
   plan_options.seed = o.seed;
   plan_options.duration_s = o.duration_s;
-  plan_options.penetration_m = penetration_m;
-  plan_options.round_trip = o.round_trip;
+  for (const SwimLeg& leg : route.legs) plan_options.legs_m.push_back(leg.to_m - leg.from_m);
   plan_options.starts_at_rest = o.starts_at_rest;
   plan_options.start_rest_s = o.start_rest_s;
   plan_options.turn_s = o.turn_s;
   plan_options.stops_per_minute = o.stops_per_minute;
   plan_options.still_phases = o.still_phases;
   const SwimPlan plan(plan_options);
-  MotionChannels channels = makeChannels(centerline, o, plan);
+  MotionChannels channels = makeChannels(route, o, plan);
   HandMotionOptions hand;
   hand.seed = o.seed;
   hand.duration_s = o.duration_s;
@@ -95,16 +105,15 @@ Motion makeOnce(const Centerline& centerline, const DiveMotionOptions& o, double
   return Motion(std::move(channels), diver_from_body, o.duration_s);
 }
 
-}  // namespace
-
 Motion makeDiveMotion(const Centerline& centerline, const DiveMotionOptions& o,
                       const Rigid3& diver_from_body) {
   const double nominal_m = o.path_length_m * (o.round_trip ? 0.5 : 1.0);
-  const Motion first = makeOnce(centerline, o, nominal_m, diver_from_body);
+  const Motion first =
+      makeRouteMotion(straightRoute(centerline, nominal_m, o.round_trip), o, diver_from_body);
   // Swaying and the varying line make the path longer than the passage, so the second draft covers a shorter
   // passage.
   const double ratio = o.path_length_m / pathLength(first, 0.0, o.duration_s);
-  return makeOnce(centerline, o, nominal_m * ratio, diver_from_body);
+  return makeRouteMotion(straightRoute(centerline, nominal_m * ratio, o.round_trip), o, diver_from_body);
 }
 
 }  // namespace lodeline

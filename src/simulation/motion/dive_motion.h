@@ -1,7 +1,7 @@
 #pragma once
 
 #include "simulation/motion/swim_plan.h"
-#include "simulation/rendering/cave/centerline.h"
+#include "simulation/motion/swim_route.h"
 #include "simulation/shared/motion.h"
 
 namespace lodeline {
@@ -25,5 +25,10 @@ struct DiveMotionOptions {
 /// SwimPlan.
 Motion makeDiveMotion(const Centerline& centerline, const DiveMotionOptions& options,
                       const Rigid3& diver_from_body);
+
+/// The same kind of motion along a route. Places follow the route, so the path of the body is a few per cent
+/// longer than the route; `path_length_m` and `round_trip` are not used. Throws UsageError like SwimPlan.
+Motion makeRouteMotion(const SwimRoute& route, const DiveMotionOptions& options,
+                       const Rigid3& diver_from_body);
 
 }  // namespace lodeline

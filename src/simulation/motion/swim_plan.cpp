@@ -45,8 +45,7 @@ double smootherStep01(double u) {
 SwimPlan::SwimPlan(const SwimPlanOptions& options) : options_(options) {
   const SwimPlanOptions& o = options_;
   const double rest_s = o.starts_at_rest ? o.start_rest_s + kSettle_s : 0.0;
-  turn_begin_s_ = o.round_trip ? rest_s + 0.5 * (o.duration_s - rest_s - kEndRest_s - o.turn_s)
-                               : o.duration_s + kBorder_s;
+  scheduleTurns(rest_s);
   const std::vector<Pause> all = pauses();
   const Waves variation(o.seed, "swim/speed", 8.0, 60.0);
 
@@ -62,18 +61,53 @@ SwimPlan::SwimPlan(const SwimPlanOptions& options) : options_(options) {
     }
     kick_.push_back(speed);
     activity_.push_back(activity);
-    turn_.push_back(o.round_trip ? smootherStep01((t - turn_begin_s_) / o.turn_s) : 0.0);
+    double turns = 0.0;
+    if (legs_m_.size() > 1) {
+      for (const double begin_s : turn_begin_s_) turns += smootherStep01((t - begin_s) / o.turn_s);
+    }
+    turn_.push_back(turns);
   }
   kick_ = smoothed(kick_, 0.6);
   activity_ = smoothed(activity_, 0.5);
   integrateSpeed();
 }
 
+// Every leg gets the share of the swimming time that it has of the path.
+void SwimPlan::scheduleTurns(double rest_s) {
+  const SwimPlanOptions& o = options_;
+  legs_m_ = o.legs_m;
+  if (legs_m_.empty()) {
+    legs_m_ = {o.penetration_m};
+    if (o.round_trip) legs_m_.push_back(-o.penetration_m);
+  }
+  double path_m = 0.0;
+  for (const double leg_m : legs_m_) path_m += std::abs(leg_m);
+  const auto turns = static_cast<double>(legs_m_.size() - 1);
+  double behind_m = 0.0;
+  for (size_t k = 0; k + 1 < legs_m_.size(); ++k) {
+    behind_m += std::abs(legs_m_[k]);
+    turn_begin_s_.push_back(rest_s +
+                            behind_m / path_m * (o.duration_s - rest_s - kEndRest_s - turns * o.turn_s) +
+                            static_cast<double>(k) * o.turn_s);
+  }
+  if (turn_begin_s_.empty()) turn_begin_s_.push_back(o.duration_s + kBorder_s);
+}
+
+int SwimPlan::leg(double time_s) const {
+  int leg = 0;
+  for (const double begin_s : turn_begin_s_) {
+    if (time_s >= begin_s + 0.5 * options_.turn_s) ++leg;
+  }
+  return std::min(leg, static_cast<int>(legs_m_.size()) - 1);
+}
+
 std::vector<SwimPlan::Pause> SwimPlan::pauses() const {
   const SwimPlanOptions& o = options_;
   std::vector<Pause> all;
   if (o.starts_at_rest) all.push_back({-kBorder_s, o.start_rest_s + kSettle_s, true});
-  if (o.round_trip) all.push_back({turn_begin_s_, turn_begin_s_ + o.turn_s, false});
+  if (legs_m_.size() > 1) {
+    for (const double begin_s : turn_begin_s_) all.push_back({begin_s, begin_s + o.turn_s, false});
+  }
   all.push_back({o.duration_s - kEndRest_s, o.duration_s + kBorder_s, false});
   for (const StillPhase& p : o.still_phases) {
     all.push_back({p.begin_s - kSettle_s, p.begin_s + p.duration_s + kSettle_s, true});
@@ -101,15 +135,15 @@ void SwimPlan::addHalts(std::vector<Pause>& pauses) const {
 
 void SwimPlan::integrateSpeed() {
   const SwimPlanOptions& o = options_;
-  const double middle_s = turn_begin_s_ + 0.5 * o.turn_s;
   const auto timeOf = [](size_t i) { return static_cast<double>(i) * kStep_s - kBorder_s; };
-  double in = 0.0, out = 0.0, swimming_s = 0.0;
+  std::vector<double> kicks_s(legs_m_.size(), 0.0);  // kick strength integrated over each leg
+  double swimming_s = 0.0, path_m = 0.0;
   for (size_t i = 0; i < kick_.size(); ++i) {
     if (timeOf(i) < 0.0 || timeOf(i) > o.duration_s) continue;
-    (timeOf(i) < middle_s ? in : out) += kick_[i] * kStep_s;
+    kicks_s[static_cast<size_t>(leg(timeOf(i)))] += kick_[i] * kStep_s;
     if (kick_[i] > 0.3) swimming_s += kStep_s;
   }
-  const double path_m = o.penetration_m * (o.round_trip ? 2.0 : 1.0);
+  for (const double leg_m : legs_m_) path_m += std::abs(leg_m);
   if (swimming_s == 0.0) {
     throw UsageError(
         fmt::format("{:.0f} s leave no time to swim beside standing still and turning; "
@@ -126,8 +160,8 @@ void SwimPlan::integrateSpeed() {
   const size_t zero = static_cast<size_t>(std::lround(kBorder_s / kStep_s));
   std::vector<double> signed_speed(kick_.size());
   for (size_t i = 0; i < kick_.size(); ++i) {
-    signed_speed[i] =
-        timeOf(i) < middle_s ? kick_[i] * o.penetration_m / in : -kick_[i] * o.penetration_m / out;
+    const auto k = static_cast<size_t>(leg(timeOf(i)));
+    signed_speed[i] = kick_[i] * legs_m_[k] / kicks_s[k];
   }
   arc_length_m_.assign(kick_.size(), 0.0);
   for (size_t i = zero; i + 1 < kick_.size(); ++i)

@@ -93,11 +93,12 @@ ImageRenderer::Light ImageRenderer::trace(const CameraOptics& optics, const Rigi
   const int width = optics.width(), height = optics.height();
   const CameraPose middle(world_from_body * optics.bodyFromCamera());
   const HazeVolume haze = hazeOver(optics, middle, light);
-  const SurfaceShader shader(world_->scene, world_->texture);
-  const auto boardAt = [&](const Rigid3& world_from_body) {
-    return world_->board ? std::optional<BoardSampler>(std::in_place, *world_->board, optics,
-                                                       world_from_body * optics.bodyFromCamera())
-                         : std::nullopt;
+  const SurfaceShader shader(world_->scene, world_->texture, world_->texture_origin_W);
+  const auto samplersAt = [&](const Rigid3& world_from_body) {
+    std::vector<PanelSampler> samplers;
+    for (const PrintedPanel& panel : world_->panels)
+      samplers.emplace_back(panel, optics, world_from_body * optics.bodyFromCamera());
+    return samplers;
   };
 
   Light out{cv::Mat(height, width, CV_32F, cv::Scalar(0)), cv::Mat(height, width, CV_32F, cv::Scalar(0)), {}};
@@ -109,8 +110,8 @@ ImageRenderer::Light ImageRenderer::trace(const CameraOptics& optics, const Rigi
     std::vector<CameraPose> poses(kPacketHeight, middle);
     for (int row = 0; row < kPacketHeight && y0 + row < static_cast<int>(row_poses.size()); ++row)
       poses[row] = CameraPose(row_poses[y0 + row] * optics.bodyFromCamera());
-    const std::optional<BoardSampler> board =
-        boardAt(static_cast<size_t>(y0) < row_poses.size() ? row_poses[y0] : world_from_body);
+    const std::vector<PanelSampler> panels =
+        samplersAt(static_cast<size_t>(y0) < row_poses.size() ? row_poses[y0] : world_from_body);
     for (int x0 = 0; x0 < width; x0 += kPacketWidth) {
       RayPacket rays;
       for (int lane = 0; lane < kRayPacketSize; ++lane) {
@@ -130,8 +131,9 @@ ImageRenderer::Light ImageRenderer::trace(const CameraOptics& optics, const Rigi
         if (rays.active[lane] == 0) continue;
         const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
         const HazeSample veil = haze.at(static_cast<float>(x), static_cast<float>(y), hits.range_m[lane]);
-        if (board && hits.triangle[lane] < BoardPanel::kPanelTriangles && std::isfinite(hits.range_m[lane]))
-          radiance[lane] *= board->brightness(x, y);
+        const size_t panel = hits.triangle[lane] / PrintedPanel::kTriangles;
+        if (panel < panels.size() && hits.body[lane] < 0 && std::isfinite(hits.range_m[lane]))
+          radiance[lane] *= panels[panel].brightness(x, y);
         out.radiance.at<float>(y, x) =
             optics.light(y * width + x) * (radiance[lane] * veil.transmittance + veil.radiance);
         out.range_m.at<float>(y, x) = hits.range_m[lane];

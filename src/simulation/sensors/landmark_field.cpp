@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "simulation/shared/random.h"
 
@@ -32,8 +33,10 @@ std::vector<int> LandmarkField::near(const Vec3& center_W, double radius_m) cons
   return indices;
 }
 
-LandmarkField passageLandmarks(const Centerline& centerline, double points_per_metre, uint64_t seed) {
-  Random random(seed, "landmarks");
+namespace {
+
+std::vector<LandmarkPoint> pointsAround(const Centerline& centerline, double points_per_metre,
+                                        Random random) {
   const double begin = centerline.beginArcLength();
   const double length = centerline.endArcLength() - begin;
   std::vector<LandmarkPoint> points;
@@ -50,6 +53,29 @@ LandmarkField passageLandmarks(const Centerline& centerline, double points_per_m
         station.position_W + rough * (a * std::cos(angle) * left + b * std::sin(angle) * above);
     point.normal_W = -(std::cos(angle) / a * left + std::sin(angle) / b * above).normalized();
     points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+LandmarkField passageLandmarks(const Centerline& centerline, double points_per_metre, uint64_t seed) {
+  return LandmarkField(pointsAround(centerline, points_per_metre, Random(seed, "landmarks")));
+}
+
+LandmarkField caveLandmarks(const CaveLayout& cave, double points_per_metre, uint64_t seed) {
+  // Points of a rough wall that sticks out into the other passage by a tenth of its radius stay.
+  constexpr double kInside = 0.9;
+  std::vector<LandmarkPoint> points;
+  for (size_t k = 0; k < cave.passages.size(); ++k) {
+    const std::string stream = k == 0 ? "landmarks" : "landmarks/" + std::to_string(k);
+    for (const LandmarkPoint& point :
+         pointsAround(cave.passages[k], points_per_metre, Random(seed, stream))) {
+      bool inside = false;
+      for (size_t other = 0; other < cave.passages.size(); ++other)
+        inside = inside || (other != k && insidePassage(cave.passages[other], point.position_W, kInside));
+      if (!inside) points.push_back(point);
+    }
   }
   return LandmarkField(std::move(points));
 }

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/rendering/cave/centerline.h"
+#include "simulation/rendering/cave/cave_layout.h"
 
 namespace lodeline {
 
@@ -35,5 +35,8 @@ class LandmarkField {
 /// Points on the walls, floor and ceiling of a passage: an ellipse around each station, roughened by a tenth
 /// of its radius.
 LandmarkField passageLandmarks(const Centerline& centerline, double points_per_metre, uint64_t seed);
+
+/// The same for all passages of a cave, without the points inside another passage.
+LandmarkField caveLandmarks(const CaveLayout& cave, double points_per_metre, uint64_t seed);
 
 }  // namespace lodeline

@@ -10,16 +10,22 @@
 namespace lodeline {
 namespace {
 
+using FreePlace = std::function<bool(const Vec3f&, float)>;
+
 float uniform(Random& random, double low, double high) {
   return static_cast<float>(random.uniform(low, high));
 }
 
 /// Whether an object with a radius at a point near ring i stays outside the diver's corridor.
-bool isClear(const CaveWalls& walls, int i, const Vec3f& point, float margin_m, float radius_m) {
+bool isClear(const CaveWalls& walls, const FreePlace& isFree, int i, const Vec3f& point, float margin_m,
+             float radius_m) {
+  if (isFree && !isFree(point, radius_m)) return false;
   const float spacing_m = std::max(0.01f, (walls.rings[1].center - walls.rings[0].center).norm());
   const int window = static_cast<int>((radius_m + 1.5f) / spacing_m) + 1;
-  const int last = static_cast<int>(walls.rings.size()) - 1;
-  for (int k = std::max(0, i - window); k <= std::min(last, i + window); ++k) {
+  const int count = static_cast<int>(walls.rings.size());
+  for (int step = -window; step <= window; ++step) {
+    const int k = walls.closed ? ((i + step) % count + count) % count : i + step;
+    if (k < 0 || k >= count) continue;
     const float along = walls.rings[k].forward.dot(point - walls.rings[k].center);
     if (std::abs(along) > radius_m + spacing_m) continue;
     if (!walls.rings[k].clearOfCorridor(point, margin_m + radius_m)) return false;
@@ -85,8 +91,8 @@ void addSpike(TriangleMesh& out, const Vec3f& root, const Vec3f& down, float len
   out.append(spike);
 }
 
-void scatterBoulders(TriangleMesh& out, const CaveWalls& walls, const CaveStyle& style, uint64_t seed,
-                     float clearance_m, float length_m) {
+void scatterBoulders(TriangleMesh& out, const CaveWalls& walls, const FreePlace& isFree,
+                     const CaveStyle& style, uint64_t seed, float clearance_m, float length_m) {
   Random random(seed, "cave/boulders");
   const int count = static_cast<int>(style.boulders_per_m * length_m);
   for (int n = 0; n < count; ++n) {
@@ -98,13 +104,13 @@ void scatterBoulders(TriangleMesh& out, const CaveWalls& walls, const CaveStyle&
     const float radius = std::clamp(size, 0.08f, 0.35f * walls.rings[i].half_width_m + 0.05f);
     if (heap < -0.1f && radius > 0.15f) continue;
     const Vec3f position = wallAt(walls, i, angle) + 0.15f * radius * Vec3f::UnitZ();
-    if (!isClear(walls, i, position, clearance_m, 1.3f * radius)) continue;
+    if (!isClear(walls, isFree, i, position, clearance_m, 1.3f * radius)) continue;
     addBoulder(out, position, radius, style, random);
   }
 }
 
-void hangStalactites(TriangleMesh& out, const CaveWalls& walls, const CaveStyle& style, uint64_t seed,
-                     float clearance_m, float length_m) {
+void hangStalactites(TriangleMesh& out, const CaveWalls& walls, const FreePlace& isFree,
+                     const CaveStyle& style, uint64_t seed, float clearance_m, float length_m) {
   Random random(seed, "cave/stalactites");
   const int count = static_cast<int>(style.stalactites_per_m * length_m);
   for (int n = 0; n < count; ++n) {
@@ -117,10 +123,13 @@ void hangStalactites(TriangleMesh& out, const CaveWalls& walls, const CaveStyle&
     const Vec3f root = wallAt(walls, i, angle);
     const Vec3f foot = wallAt(walls, i, -angle);
     const float gap = root.z() - foot.z();
-    const auto clear = [&](const Vec3f& p) { return isClear(walls, i, p, clearance_m, 1.5f * radius); };
+    const auto clear = [&](const Vec3f& p) {
+      return isClear(walls, isFree, i, p, clearance_m, 1.5f * radius);
+    };
     const bool column = length > 0.7f * gap && clear(0.5f * (root + foot)) && clear(foot);
     const float drop = column ? 0.75f * gap : std::min(length, 0.45f * gap);
     const Vec3f tip = root - drop * Vec3f::UnitZ();
+    if (isFree && !isFree(root, radius)) continue;
     if (!clear(tip) || !clear(0.5f * (root + tip))) continue;
     addSpike(out, root, -Vec3f::UnitZ(), drop, radius, 0.8f, 0.9f, style, random.next());
     const Vec3f under(root.x(), root.y(), foot.z());
@@ -155,15 +164,16 @@ TriangleMesh makeBoulder(uint64_t seed, int subdivisions) {
 }
 
 TriangleMesh makeCaveFurniture(const CaveWalls& walls, const CaveStyle& style, uint64_t seed,
-                               double clearance_m) {
+                               double clearance_m, const FreePlace& isFree) {
   TriangleMesh furniture;
   float length_m = 0.0f;
   for (size_t i = 1; i < walls.rings.size(); ++i) {
     length_m += (walls.rings[i].center - walls.rings[i - 1].center).norm();
   }
+  if (walls.closed) length_m += (walls.rings.front().center - walls.rings.back().center).norm();
   const float clearance = static_cast<float>(clearance_m);
-  scatterBoulders(furniture, walls, style, seed, clearance, length_m);
-  hangStalactites(furniture, walls, style, seed, clearance, length_m);
+  scatterBoulders(furniture, walls, isFree, style, seed, clearance, length_m);
+  hangStalactites(furniture, walls, isFree, style, seed, clearance, length_m);
   return furniture;
 }
 

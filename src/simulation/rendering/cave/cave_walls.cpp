@@ -18,11 +18,12 @@ constexpr float kEndCap_m = 3.0f;    ///< length over which each end of the tube
 /// Rings every `cell_m`; their frames are upright where the passage is not steep.
 std::vector<WallRing> makeRings(const Centerline& centerline, double cell_m) {
   const double begin = centerline.beginArcLength(), end = centerline.endArcLength();
-  const int count = std::max(2, static_cast<int>(std::ceil((end - begin) / cell_m)) + 1);
+  const bool closed = centerline.closed();
+  const int count = std::max(2, static_cast<int>(std::ceil((end - begin) / cell_m)) + (closed ? 0 : 1));
   std::vector<WallRing> rings(count);
   Vec3f right = Vec3f::UnitX();
   for (int i = 0; i < count; ++i) {
-    const double s = begin + (end - begin) * i / (count - 1);
+    const double s = begin + (end - begin) * i / (closed ? count : count - 1);
     const PassageStation station = centerline.at(s);
     WallRing& ring = rings[i];
     ring.center = station.position_W.cast<float>();
@@ -32,7 +33,7 @@ std::vector<WallRing> makeRings(const Centerline& centerline, double cell_m) {
     if (level.norm() > 0.2f) right = level.normalized();
     ring.right = (right - right.dot(ring.forward) * ring.forward).normalized();
     ring.up = ring.right.cross(ring.forward);
-    const float to_end = static_cast<float>(std::min(s - begin, end - s));
+    const float to_end = closed ? kEndCap_m : static_cast<float>(std::min(s - begin, end - s));
     const float taper = std::sqrt(std::min(1.0f, to_end / kEndCap_m + 1e-4f));
     ring.taper = taper;
     ring.half_width_m = 0.5f * static_cast<float>(station.width_m) * taper;
@@ -181,6 +182,7 @@ CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, ui
   const double cell_m = std::max<double>(
       kFinestCell_m, std::sqrt(2.0 * 1.3 * length * perimeter / static_cast<double>(max_triangles)));
   CaveWalls walls;
+  walls.closed = centerline.closed();
   walls.rings = makeRings(centerline, cell_m);
   walls.ring_size = std::max(12, static_cast<int>(std::lround(1.3 * perimeter / cell_m)));
   const int count = static_cast<int>(walls.rings.size());
@@ -191,12 +193,16 @@ CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, ui
       placeVertex(walls, i, j, style, static_cast<float>(clearance_m), static_cast<uint32_t>(seed));
     }
   });
-  // The end rings shrink to a point and close the tube.
-  for (int j = 0; j < walls.ring_size; ++j) {
-    walls.mesh.positions[j] = walls.rings.front().center;
-    walls.mesh.positions[walls.mesh.positions.size() - 1 - j] = walls.rings.back().center;
-  }
   addGridTriangles(walls.mesh, 0, count, walls.ring_size, true);
+  if (walls.closed) {
+    joinRows(walls.mesh, static_cast<uint32_t>((count - 1) * walls.ring_size), 0, walls.ring_size);
+  } else {
+    // The end rings shrink to a point and close the tube.
+    for (int j = 0; j < walls.ring_size; ++j) {
+      walls.mesh.positions[j] = walls.rings.front().center;
+      walls.mesh.positions[walls.mesh.positions.size() - 1 - j] = walls.rings.back().center;
+    }
+  }
   walls.mesh.computeNormals();
   return walls;
 }

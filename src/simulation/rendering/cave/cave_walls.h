@@ -23,9 +23,11 @@ struct WallRing {
   bool clearOfCorridor(const Vec3f& point, float margin_m) const;
 };
 
-/// Walls, ceiling and sediment floor of a passage as a closed tube with its vertices in rings.
+/// Walls, ceiling and sediment floor of a passage as a closed tube with its vertices in rings. In a circuit,
+/// the first ring follows the last one.
 struct CaveWalls {
   std::vector<WallRing> rings;
+  bool closed = false;  ///< whether the passage is a circuit
   int ring_size =
       0;  ///< vertex j of ring i: index i * ring_size + j, at angle 2 pi j / ring_size from `right` to `up`
   TriangleMesh mesh;  ///< includes normals
@@ -37,8 +39,8 @@ struct CaveWalls {
 
 /// Makes the walls by sweeping a superelliptic section along the centreline. Layered noise displaces it
 /// (large alcoves, bedding ledges, crags down to the size of a triangle), sediment fills its lower part, and
-/// both ends are closed. All walls keep `clearance_m` from the diver's corridor. The mesh has at most about
-/// `max_triangles`.
+/// both ends of an open passage are closed. The relief is a function of the place. All walls keep
+/// `clearance_m` from the diver's corridor. The mesh has at most about `max_triangles`.
 CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, uint64_t seed,
                         double clearance_m, size_t max_triangles);
 

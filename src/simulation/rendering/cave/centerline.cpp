@@ -74,20 +74,32 @@ Centerline Centerline::generate(const CenterlineOptions& o) {
   return line.translated(-line.stations_[before].position_W);
 }
 
+Centerline Centerline::through(std::vector<PassageStation> stations, bool closed) {
+  if (stations.size() < 2) throw UsageError("a passage needs two or more stations");
+  Centerline line;
+  line.spacing_m_ = (stations.back().arc_length_m - stations.front().arc_length_m) /
+                    static_cast<double>(stations.size() - 1);
+  line.closed_ = closed;
+  line.stations_ = std::move(stations);
+  return line;
+}
+
 PassageStation Centerline::at(double arc_length_m) const {
-  const double inside = std::clamp(arc_length_m, beginArcLength(), endArcLength());
+  const double inside =
+      closed_ ? arc_length_m - length_m() * std::floor((arc_length_m - beginArcLength()) / length_m())
+              : std::clamp(arc_length_m, beginArcLength(), endArcLength());
   const double index = (inside - beginArcLength()) / spacing_m_;
-  const size_t i = std::min(static_cast<size_t>(index), stations_.size() - 2);
+  const size_t i = std::min(static_cast<size_t>(index), stations_.size() - (closed_ ? 1 : 2));
   const double u = index - static_cast<double>(i);
   const PassageStation& a = stations_[i];
-  const PassageStation& b = stations_[i + 1];
+  const PassageStation& b = stations_[(i + 1) % stations_.size()];
   const double u2 = u * u, u3 = u2 * u;
   PassageStation station;
   station.arc_length_m = arc_length_m;
   station.position_W = (2 * u3 - 3 * u2 + 1) * a.position_W + (u3 - 2 * u2 + u) * spacing_m_ * a.tangent_W +
                        (3 * u2 - 2 * u3) * b.position_W + (u3 - u2) * spacing_m_ * b.tangent_W;
   station.tangent_W = ((1 - u) * a.tangent_W + u * b.tangent_W).normalized();
-  station.position_W += (arc_length_m - inside) * station.tangent_W;
+  if (!closed_) station.position_W += (arc_length_m - inside) * station.tangent_W;
   station.width_m = (1 - u) * a.width_m + u * b.width_m;
   station.height_m = (1 - u) * a.height_m + u * b.height_m;
   return station;
@@ -111,6 +123,16 @@ Centerline Centerline::translated(const Vec3& offset_W) const {
   Centerline moved = *this;
   for (PassageStation& station : moved.stations_) station.position_W += offset_W;
   return moved;
+}
+
+Centerline Centerline::reversed(double zero_arc_length_m) const {
+  Centerline turned = *this;
+  std::reverse(turned.stations_.begin(), turned.stations_.end());
+  for (PassageStation& station : turned.stations_) {
+    station.arc_length_m = zero_arc_length_m - station.arc_length_m;
+    station.tangent_W = -station.tangent_W;
+  }
+  return turned;
 }
 
 }  // namespace lodeline

@@ -40,18 +40,27 @@ struct CenterlineOptions {
   double section_variation = 0.3;  ///< RMS relative change of width and height
 };
 
-/// A random winding passage. It always advances along its main azimuth, so it never intersects itself.
+/// The middle line of a passage with its cross-sections: open with two ends, or closed to a circuit.
 class Centerline {
  public:
+  /// A random winding passage. It always advances along its main azimuth, so it never intersects itself.
   /// Throws UsageError where an option is not positive or not finite.
   static Centerline generate(const CenterlineOptions& options);
 
+  /// A line through two or more stations with even spacing in arc length. In a circuit, the first station
+  /// follows the last one at the same spacing.
+  static Centerline through(std::vector<PassageStation> stations, bool closed);
+
   /// Stations with even spacing in arc length.
   const std::vector<PassageStation>& stations() const { return stations_; }
+  bool closed() const { return closed_; }
   double beginArcLength() const { return stations_.front().arc_length_m; }
-  double endArcLength() const { return stations_.back().arc_length_m; }
+  /// In a circuit, the arc length at which the first station is reached again.
+  double endArcLength() const { return stations_.back().arc_length_m + (closed_ ? spacing_m_ : 0.0); }
+  double length_m() const { return endArcLength() - beginArcLength(); }
 
-  /// Interpolated station (cubic Hermite in position); beyond the ends, straight extrapolation.
+  /// Interpolated station (cubic Hermite in position). Beyond the ends, straight extrapolation; in a circuit,
+  /// any arc length is valid, and the station states the given one.
   PassageStation at(double arc_length_m) const;
 
   /// Arc length of the station nearest to a point, among those within `window_m` of `near_arc_length_m`.
@@ -60,8 +69,12 @@ class Centerline {
   /// The same passage shifted by `offset_W`.
   Centerline translated(const Vec3& offset_W) const;
 
+  /// The same passage in the other direction: `zero_arc_length_m` becomes zero.
+  Centerline reversed(double zero_arc_length_m) const;
+
  private:
   std::vector<PassageStation> stations_;
+  bool closed_ = false;
   double spacing_m_ = 0.0;
 };
 

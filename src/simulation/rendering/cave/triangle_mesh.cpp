@@ -69,6 +69,14 @@ void addGridTriangles(TriangleMesh& mesh, uint32_t first_vertex, int rows, int c
   }
 }
 
+void joinRows(TriangleMesh& mesh, uint32_t first_row, uint32_t second_row, int columns) {
+  for (int j = 0; j < columns; ++j) {
+    const auto here = static_cast<uint32_t>(j), next = static_cast<uint32_t>((j + 1) % columns);
+    mesh.triangles.push_back({first_row + here, first_row + next, second_row + here});
+    mesh.triangles.push_back({first_row + next, second_row + next, second_row + here});
+  }
+}
+
 TriangleMesh unitIcosphere(int subdivisions) {
   TriangleMesh mesh;
   const float t = 0.5f * (1.0f + std::sqrt(5.0f));

@@ -37,6 +37,9 @@ struct TriangleMesh {
 /// side is that of (step to the next column) x (step to the next row).
 void addGridTriangles(TriangleMesh& mesh, uint32_t first_vertex, int rows, int columns, bool closed);
 
+/// Triangles between two closed rows of as many vertices, as between neighbouring rows of a grid.
+void joinRows(TriangleMesh& mesh, uint32_t first_row, uint32_t second_row, int columns);
+
 /// Sphere of unit radius by recursive subdivision of an icosahedron: 20 * 4^subdivisions triangles.
 TriangleMesh unitIcosphere(int subdivisions);
 

@@ -32,7 +32,7 @@ std::vector<float> LightMeter::measure(const CameraOptics& optics, const Rigid3&
   const Mat3f rotation = world_from_camera.rotation.toRotationMatrix().cast<float>();
   const Vec3f position = world_from_camera.translation.cast<float>();
   const LightField light = placeLight(settings_, optics, world_from_body, time_s);
-  const SurfaceShader shader(world_->scene, world_->texture);
+  const SurfaceShader shader(world_->scene, world_->texture, world_->texture_origin_W);
   std::vector<int> pixels;
   std::vector<Vec3f> directions;
   for (int j = 0; j < kRows; ++j) {

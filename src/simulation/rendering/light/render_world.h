@@ -2,11 +2,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <vector>
 
 #include "simulation/rendering/board/board_panel.h"
+#include "simulation/rendering/board/line_tag.h"
+#include "simulation/rendering/cave/cave_layout.h"
 #include "simulation/rendering/cave/cave_style.h"
-#include "simulation/rendering/cave/centerline.h"
 #include "simulation/rendering/cave/solid_texture.h"
 #include "simulation/rendering/cave/traced_scene.h"
 #include "simulation/rendering/cave/wreck_mesh.h"
@@ -22,7 +23,8 @@ struct RenderWorld {
 
   TracedScene scene;
   SolidTexture texture;
-  std::optional<BoardPanel> board;  ///< printed on the first triangles of the scene
+  Vec3f texture_origin_W = Vec3f::Zero();
+  std::vector<PrintedPanel> panels;  ///< on the first triangles of the scene
 };
 
 struct CaveOptions {
@@ -36,6 +38,16 @@ struct CaveOptions {
 
 /// Walls and furniture of a cave along a centreline, with normals.
 TriangleMesh makeCaveMesh(const Centerline& centerline, const CaveOptions& options);
+
+/// Walls and furniture of all passages of a cave. Where two passages overlap, the walls of each inside the
+/// other are left out.
+TriangleMesh makeCaveMesh(const CaveLayout& cave, const CaveOptions& options);
+
+/// A cave of a layout in its frame C with tags on its line, for a dive in whose world C has its origin at
+/// `cave_origin_W`. Rock and texture depend on the cave and the options alone.
+std::shared_ptr<const RenderWorld> buildCaveWorld(const CaveLayout& cave_C, const CaveOptions& options,
+                                                  const std::vector<LineTag>& tags_C,
+                                                  const Vec3& cave_origin_W);
 
 /// A cave along a centreline.
 std::shared_ptr<const RenderWorld> buildCaveWorld(const Centerline& centerline, const CaveOptions& options);

@@ -45,8 +45,9 @@ void SurfaceShader::describe(const RayPacket& rays, const HitPacket& hits, int i
     // axes. An additional third keeps the remaining texture well sampled.
     const float footprint =
         1.35f * hits.range_m[i] * pixel_angle_rad / std::sqrt(std::max(0.08f, std::abs(facing)));
-    const TextureSample fine = texture_.sample(point, kTile_m[0], footprint);
-    const TextureSample coarse = texture_.sample(turned(point), kTile_m[1], footprint);
+    const Vec3f place = point - texture_origin_W_;
+    const TextureSample fine = texture_.sample(place, kTile_m[0], footprint);
+    const TextureSample coarse = texture_.sample(turned(place), kTile_m[1], footprint);
     const float shade = kTileContrast[0] * fine.reflectance + kTileContrast[1] * coarse.reflectance;
     reflectance *= std::clamp(1.0f + base.contrast * shade, 0.12f, 2.4f);
     // A relief h on the surface tilts its normal by minus the tangential part of h's gradient (J. Blinn,

@@ -9,7 +9,9 @@ namespace lodeline {
 /// Computes the radiance from surfaces towards the camera, before attenuation by the water.
 class SurfaceShader {
  public:
-  SurfaceShader(const TracedScene& scene, const SolidTexture& texture) : scene_(scene), texture_(texture) {}
+  /// The texture is fixed to `texture_origin_W`.
+  SurfaceShader(const TracedScene& scene, const SolidTexture& texture, const Vec3f& texture_origin_W)
+      : scene_(scene), texture_(texture), texture_origin_W_(texture_origin_W) {}
 
   /// Radiance (W/m^2/sr) of every hit of a packet; `pixel_angle_rad` is the angle between neighbouring rays.
   /// Without `detail`, the small-scale texture is omitted, as for a light meter. Zero without a hit.
@@ -35,6 +37,7 @@ class SurfaceShader {
 
   const TracedScene& scene_;
   const SolidTexture& texture_;
+  Vec3f texture_origin_W_;
 };
 
 }  // namespace lodeline
