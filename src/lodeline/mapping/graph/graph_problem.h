@@ -1,0 +1,122 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lodeline/factors/prior_factor.h"
+#include "lodeline/mapping/graph/graph_covariance.h"
+#include "lodeline/mapping/graph/graph_elements.h"
+
+namespace lodeline {
+
+/// Multiplies the squared residual of one factor by a weight that changes between solutions.
+class WeightLoss final : public ceres::LossFunction {
+ public:
+  void Evaluate(double squared_norm, double rho[3]) const override {
+    rho[0] = weight * squared_norm;
+    rho[1] = weight;
+    rho[2] = 0.0;
+  }
+  double weight = 1.0;
+};
+
+/// A factor whose residual is reported, and which the solution may refuse where it is robust.
+struct ReportedFactor {
+  FactorReport::Kind kind = FactorReport::Kind::Loop;
+  std::string name;
+  KeyframeId from = -1, to = -1;
+  bool is_robust = true;
+  int degrees_of_freedom = 6;
+  WeightLoss loss;
+  ceres::ResidualBlockId block = nullptr;
+  std::function<Eigen::VectorXd()> residual;  ///< without whitening, at the present estimate
+};
+
+/// The parameters and residuals of a pose graph as a problem of Ceres, and the directions that are held. It
+/// lives as long as its graph: factors are added to it and never removed.
+class GraphProblem {
+ public:
+  GraphProblem();
+
+  void addNode(KeyframeId id, int dive, const Rigid3& world_from_body);
+  void add(const GraphEdge& edge);
+  void add(const TiltMeasurement& measurement);
+  void add(const HeadingMeasurement& measurement);
+  void add(const HeightMeasurement& measurement);
+  void add(const PositionMeasurement& measurement);
+  void add(const GraphLandmark& landmark);
+  void add(const Sighting& sighting);
+  void add(const AzimuthPrior& prior);
+  void add(const HeightOffsetPrior& prior);
+
+  /// Holds what the measurements leave open, see PoseGraph. To be called before each solution.
+  void hold();
+  ceres::Solver::Summary solve(int most_iterations);
+  double chiSquared(const ReportedFactor& factor);
+  std::shared_ptr<const GraphCovariance::Factorization> factorization();
+
+  std::deque<ReportedFactor>& reported() { return reported_; }
+  bool contains(KeyframeId id) const { return nodes_.count(id) > 0; }
+  size_t size() const { return nodes_.size(); }
+  Rigid3 pose(KeyframeId id) const;
+  std::map<KeyframeId, Rigid3> poses() const;
+  Vec3 landmark(const std::string& name) const;
+  double azimuth(int dive) const;
+  double heightOffset(int dive) const;
+  std::optional<double> azimuthSigma(int dive) const;
+  bool hasHeightOffset(int dive) const;
+
+ private:
+  struct Node {
+    std::array<double, kPoseSize> pose{};
+    int dive = 0;
+    std::unique_ptr<Prior> weak;  ///< of the first node of a part
+    std::vector<int> free_axes{0, 1, 2, 3, 4, 5};
+    KeyframeId part = -1;  ///< a node of the same part, nearer to its first node
+  };
+  /// A number that is common to a dive, with its prior.
+  struct DiveNumber {
+    double value = 0.0;
+    Prior prior;
+    bool is_measured = false;
+  };
+  struct LandmarkState {
+    Vec3 position_W = Vec3::Zero();
+    Prior prior;
+    bool is_measured = false;
+    int sightings = 0;
+    KeyframeId part = -1;  ///< a node that sees it for certain
+  };
+
+  Node& node(KeyframeId id, const char* what);
+  const Node& node(KeyframeId id) const;
+  DiveNumber& numberOf(int dive, double first_value, double weak_sigma, std::map<int, DiveNumber>* numbers);
+  static void setPrior(double value, double sigma, const char* what, DiveNumber* number);
+  ReportedFactor& report(FactorReport::Kind kind, bool is_robust, KeyframeId node, int degrees_of_freedom);
+  KeyframeId partOf(KeyframeId id);
+  void join(KeyframeId a, KeyframeId b);
+  void addMeasuredPosition(const Vec3& position_W);
+  std::vector<int> openAxes() const;
+
+  // The problem refers to everything below. Maps and deques keep the addresses of their elements.
+  std::map<KeyframeId, Node> nodes_;
+  std::map<int, DiveNumber> azimuths_, height_offsets_;
+  std::map<std::string, LandmarkState> landmarks_;
+  std::deque<ReportedFactor> reported_;
+  std::vector<std::unique_ptr<ceres::Manifold>> manifolds_;
+  bool has_tilt_ = false;
+  KeyframeId held_ = -1;                    ///< the first node at the first solution
+  std::vector<Vec3> measured_positions_W_;  ///< at most two that are apart
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+}  // namespace lodeline

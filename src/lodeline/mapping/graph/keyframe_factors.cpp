@@ -1,0 +1,82 @@
+#include "lodeline/mapping/graph/keyframe_factors.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "lodeline/diagnostics.h"
+#include "lodeline/geometry/so3.h"
+
+namespace lodeline {
+namespace {
+
+void checkSigma(double sigma, const MapKeyframe& keyframe, const char* what) {
+  if (sigma > 0.0 && std::isfinite(sigma)) return;
+  throw InputError(fmt::format("keyframe {}: sigma of the {} is {:g}", keyframe.id, what, sigma));
+}
+
+TiltMeasurement tiltOf(const MapKeyframe& keyframe, double least_sigma_rad) {
+  const Mat2 covariance = keyframe.covariance.block<2, 2>(3, 3);
+  const double variance = Eigen::SelfAdjointEigenSolver<Mat2>(covariance).eigenvalues().maxCoeff();
+  return {keyframe.id, keyframe.odom_from_body.rotation.conjugate() * Vec3::UnitZ(),
+          std::max(least_sigma_rad, std::sqrt(std::max(variance, 0.0)))};
+}
+
+void addHeading(const MapKeyframe& keyframe, double independent_share, PoseGraph* graph) {
+  const double sigma = *keyframe.heading_sigma_rad;
+  checkSigma(sigma, keyframe, "heading");
+  const double common_sigma = std::sqrt(1.0 - independent_share) * sigma;
+  // The azimuth of the dive is known as well as at its best keyframe.
+  const std::optional<double> known_sigma = graph->azimuthSigma(keyframe.dive);
+  if (!known_sigma || common_sigma < *known_sigma) {
+    graph->add(AzimuthPrior{keyframe.dive, 0.0, common_sigma});
+  }
+  const Quat north_from_odom = so3::exp(keyframe.north_from_odom_rad * Vec3::UnitZ());
+  graph->add(HeadingMeasurement{keyframe.id, north_from_odom * keyframe.odom_from_body.rotation,
+                                std::sqrt(independent_share) * sigma});
+}
+
+void addDepth(const MapKeyframe& keyframe, double offset_sigma_m, PoseGraph* graph) {
+  checkSigma(keyframe.depth_m->sigma, keyframe, "depth");
+  if (!graph->hasHeightOffset(keyframe.dive)) {
+    graph->add(HeightOffsetPrior{keyframe.dive, 0.0, offset_sigma_m});
+  }
+  graph->add(HeightMeasurement{keyframe.id, -keyframe.depth_m->value, keyframe.depth_m->sigma});
+}
+
+}  // namespace
+
+void KeyframeFactorOptions::check() const {
+  odometry.check();
+  if (!(least_tilt_sigma_rad > 0.0)) throw UsageError("the least sigma of roll and pitch must be positive");
+  if (!(independent_heading_share > 0.0 && independent_heading_share < 1.0)) {
+    throw UsageError("the independent share of heading errors must lie between 0 and 1");
+  }
+  if (!(height_offset_sigma_m > 0.0)) throw UsageError("sigma of the height offset must be positive");
+}
+
+void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseGraph* graph,
+                 const Rigid3& first_world_from_odom, const KeyframeFactorOptions& options) {
+  options.check();
+  checkPose(keyframe.odom_from_body, fmt::format("keyframe {}", keyframe.id).c_str());
+  if (!keyframe.covariance.allFinite()) {
+    throw InputError(fmt::format("keyframe {}: the covariance of its odometry is not finite", keyframe.id));
+  }
+  if (previous) {
+    const RelativePose odometry = odometryEdge(*previous, keyframe, 0.0, options.odometry);
+    graph->addNode(keyframe.id, keyframe.dive, graph->pose(previous->id) * odometry.from_from_to);
+    graph->add(GraphEdge{previous->id, keyframe.id, odometry, false});
+  } else {
+    graph->addNode(keyframe.id, keyframe.dive, first_world_from_odom * keyframe.odom_from_body);
+  }
+  graph->add(tiltOf(keyframe, options.least_tilt_sigma_rad));
+  if (keyframe.heading_sigma_rad) addHeading(keyframe, options.independent_heading_share, graph);
+  if (keyframe.depth_m) addDepth(keyframe, options.height_offset_sigma_m, graph);
+}
+
+GraphEdge edgeOf(const Loop& loop) {
+  return {loop.old_keyframe, loop.new_keyframe, {loop.old_from_new, loop.covariance}, true};
+}
+
+}  // namespace lodeline

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "lodeline/mapping/graph/graph_covariance.h"
+#include "lodeline/mapping/graph/graph_elements.h"
+
+namespace lodeline {
+
+class GraphProblem;
+
+struct PoseGraphOptions {
+  /// Probability with which a true robust factor is kept: 3 sigma. Beyond that chi^2 it is refused.
+  double inlier_probability = 0.9973;
+  int most_iterations = 50;  ///< of one least-squares problem
+
+  void check() const;
+};
+
+/// Poses of keyframes of one or many dives, connected by measurements, and their least-squares estimate with
+/// loops and control points that may be false.
+///
+/// The world W has z up. Measurements of position, north and depth determine its origin and azimuth. What
+/// they leave open is held at the first node: its horizontal position, height, azimuth, or roll and pitch.
+/// The first node of every other part that no certain measurement connects (a dive that only loops join) has
+/// a weak prior of 1 km and 10 rad at its initial pose; the result stays defined where all its loops are
+/// refused.
+///
+/// Robust factors are weighted by GraduatedWeights. A solution starts from the last one: loops refused before
+/// stay refused unless they now agree. While everything else agrees this takes one least-squares problem;
+/// otherwise the graduation starts again from all weights 1.
+///
+/// The result depends on the input and its order only (one thread). Errors of input throw InputError.
+class PoseGraph {
+ public:
+  explicit PoseGraph(const PoseGraphOptions& options = {});
+  ~PoseGraph();
+  PoseGraph(PoseGraph&&) noexcept;
+  PoseGraph& operator=(PoseGraph&&) noexcept;
+
+  /// Adds a node with its initial pose.
+  void addNode(KeyframeId id, int dive, const Rigid3& world_from_body);
+  void add(const GraphEdge& edge);
+  void add(const TiltMeasurement& measurement);
+  void add(const HeadingMeasurement& measurement);
+  void add(const HeightMeasurement& measurement);
+  void add(const PositionMeasurement& measurement);
+  void add(const GraphLandmark& landmark);
+  void add(const Sighting& sighting);
+  /// A later prior of the same dive replaces an earlier one. Without one, the azimuth or offset is free.
+  void add(const AzimuthPrior& prior);
+  void add(const HeightOffsetPrior& prior);
+
+  /// Estimates all nodes. Throws EstimationError where the solver fails.
+  GraphSummary solve();
+
+  bool contains(KeyframeId id) const;
+  size_t size() const;
+  Rigid3 pose(KeyframeId id) const;              ///< world_from_body
+  std::map<KeyframeId, Rigid3> poses() const;    ///< world_from_body
+  Vec3 landmark(const std::string& name) const;  ///< position in W, m
+  double azimuth(int dive) const;                ///< of the dive's odometry world in W, rad
+  double heightOffset(int dive) const;           ///< m
+
+  /// Sigma of the azimuth prior of a dive, rad; empty without one.
+  std::optional<double> azimuthSigma(int dive) const;
+  /// Whether a dive has a prior of its height offset.
+  bool hasHeightOffset(int dive) const;
+
+  /// Covariances at the present estimate. The factorization is done once here; each request then solves for
+  /// the columns of the nodes it names. Throws EstimationError where the graph is not determined.
+  GraphCovariance covariance() const;
+
+ private:
+  /// Weights all robust factors from the start, as GraduatedWeights does.
+  void graduate(GraphSummary* summary);
+  void leastSquares(int most_iterations, GraphSummary* summary);
+
+  PoseGraphOptions options_;
+  std::unique_ptr<GraphProblem> problem_;
+};
+
+}  // namespace lodeline

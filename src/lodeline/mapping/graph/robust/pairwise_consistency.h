@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "lodeline/mapping/graph/motion/relative_pose.h"
+#include "lodeline/mapping/keyframe/map_keyframe.h"
+
+namespace lodeline {
+
+struct ConsistencyOptions {
+  /// Probability with which two true loops count as consistent: 3 sigma.
+  double probability = 0.9973;
+
+  void check() const;
+};
+
+/// The largest set of loops that agree with each other in pairs.
+struct ConsistentLoops {
+  std::vector<size_t> indices;  ///< into the loops, ascending
+  bool is_largest = true;       ///< proved, see maximumClique()
+};
+
+/// Pose of the second keyframe in the first by odometry, within one dive.
+using OdometryBetween = std::function<RelativePose(KeyframeId, KeyframeId)>;
+
+/// chi^2 with 6 degrees of freedom of the circuit through two loops a and b and the odometry between their
+/// ends. The way old_a -> new_a -> new_b and the way old_a -> old_b -> new_b must give the same pose within
+/// the sum of their covariances.
+double circuitChiSquared(const Loop& a, const Loop& b, const OdometryBetween& odometry);
+
+/// Pairwise consistency maximization: J. G. Mangelson, D. Dominic, R. M. Eustice, R. Vasudevan, "Pairwise
+/// consistent measurement set maximization for robust multi-robot map merging", ICRA 2018. All loops must
+/// have their old keyframes in one dive and their new keyframes in one dive; both may be the same dive. One
+/// loop alone is always consistent: the caller decides how many must agree.
+ConsistentLoops largestConsistentSet(const std::vector<Loop>& loops, const OdometryBetween& odometry,
+                                     const ConsistencyOptions& options = {});
+
+}  // namespace lodeline
