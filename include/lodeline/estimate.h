@@ -2,6 +2,8 @@
 
 #include <any>
 #include <cstdint>
+#include <deque>
+#include <list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -194,7 +196,8 @@ struct SensorRow {
   std::vector<std::pair<std::string, std::string>> columns;  ///< of states.csv: name with unit, value
 };
 
-/// What the sensors report about a frame: one estimate of each kind at most.
+/// What the sensors report about a frame: one estimate of each kind at most, such as MagnetometerEstimate or
+/// DepthEstimate. A reference stays valid when other kinds are added.
 class SensorEstimates {
  public:
   /// The estimate of a kind; the default one where there is none.
@@ -223,7 +226,7 @@ class SensorEstimates {
     }
     return nullptr;
   }
-  std::vector<std::any> items_;
+  std::list<std::any> items_;
 };
 
 /// What is known right after a frame was added; never revised later.
@@ -250,11 +253,9 @@ struct FrameEstimate {
   std::optional<CameraCorrections> camera_corrections;
   std::optional<SensorAxes> gyroscope_axes;      ///< the same
   std::optional<SensorAxes> accelerometer_axes;  ///< the same
-  SensorEstimates sensors;                       ///< of the other sensors
+  SensorEstimates sensors;                       ///< of magnetometer, pressure sensor and others
   std::vector<SensorRow> sensor_rows;            ///< SensorFusion::row() of each sensor that has one
-  MagnetometerEstimate magnetometer;
-  DepthEstimate depth;
-  ScaleInformation scale;  ///< what carries it at present
+  ScaleInformation scale;                        ///< what carries it at present
 };
 
 /// What the batch solution of a recording is like.
@@ -279,8 +280,23 @@ struct RefinementSummary {
          sigma_m = 0.0;  ///< reported for the last frame: root of the trace of the position covariance
   double processor_s = 0.0;
   bool has_covariance = false;
+  /// Pairs of landmarks, and of a landmark and a single observation, that loop observations connect: those
+  /// found in the record, and those in use at the end.
+  int loop_links = 0, loop_links_used = 0;
 
   bool usable() const { return refusal.empty(); }
+};
+
+/// What the map of a dive is like.
+struct MappingSummary {
+  int keyframes = 0;
+  int candidates = 0;  ///< pairs of keyframes that were compared
+  int verified = 0;    ///< of these, explained by one motion
+  int accepted = 0;    ///< of these, used as loops
+  int refused = 0;
+  int accepted_between_dives = 0;  ///< of the accepted ones
+  bool is_placed = true;           ///< in the earlier map, if the run started from one
+  double processor_s = 0.0;
 };
 
 /// The batch solution of a whole recording.

@@ -114,7 +114,7 @@ message::TransformStamped transformMessage(const FrameEstimate& estimate, const 
 
 std::optional<message::TransformStamped> northMessage(const FrameEstimate& estimate,
                                                       const FrameNames& names) {
-  const std::optional<double>& turn_rad = estimate.magnetometer.north_from_world_rad;
+  const std::optional<double>& turn_rad = estimate.sensors.of<MagnetometerEstimate>().north_from_world_rad;
   if (!turn_rad) return std::nullopt;
   auto message = headed<message::TransformStamped>(estimate.time, names.map);
   message.child_frame_id = names.world;

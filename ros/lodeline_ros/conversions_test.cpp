@@ -54,7 +54,7 @@ TEST(Conversions, OdometryIsTheBodyInTheWorld) {
 TEST(Conversions, NorthIsAMapAboveAWorldThatNeverJumps) {
   FrameEstimate estimate = someEstimate();
   EXPECT_FALSE(northMessage(estimate, {})) << "north is unknown";
-  estimate.magnetometer.north_from_world_rad = 2.0;
+  estimate.sensors.of<MagnetometerEstimate>().north_from_world_rad = 2.0;
   const auto north = northMessage(estimate, {"odom", "imu", "north"});
   ASSERT_TRUE(north);
   EXPECT_EQ(north->header.frame_id, "north");

@@ -74,7 +74,7 @@ DiagnosticStatus NodeStatus::estimatorStatus(const std::vector<std::string>& unh
   addValue("reprojection rms [sigma]", fmt::format("{:.2f}", last_->reprojection_rms_sigmas), &status);
   addValue("ratio to real time", busy_share_ > 0.0 ? fmt::format("{:.1f}", 1.0 / busy_share_) : "", &status);
   addValue("images waiting", std::to_string(backlog_), &status);
-  addValue("depth", toString(last_->depth.status), &status);
+  addValue("depth", toString(last_->sensors.of<DepthEstimate>().status), &status);
   for (const Finding& finding : findings_) {
     if (finding.severity == Severity::Notice) continue;
     addValue(finding.kind.c_str(), fmt::format("{} x, first: {}", finding.count, finding.first_message),
@@ -88,7 +88,7 @@ DiagnosticStatus NodeStatus::magnetometerStatus() const {
   status.name = "lodeline: magnetometer";
   status.level = DiagnosticStatus::OK;
   if (!last_) return status;
-  const MagnetometerEstimate& magnetometer = last_->magnetometer;
+  const MagnetometerEstimate& magnetometer = last_->sensors.of<MagnetometerEstimate>();
   status.message = toString(magnetometer.status);
   if (isRejected(magnetometer.status)) status.level = DiagnosticStatus::WARN;
   addValue("gate", toString(magnetometer.status), &status);

@@ -19,8 +19,9 @@ std::string valueOf(const DiagnosticStatus& status, const std::string& key) {
 FrameEstimate tracking() {
   FrameEstimate estimate;
   estimate.status = Status::Tracking;
-  estimate.magnetometer.status = MagnetometerStatus::Used;
-  estimate.magnetometer.heading_sigma_rad = 0.01;
+  auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  magnetometer.status = MagnetometerStatus::Used;
+  magnetometer.heading_sigma_rad = 0.01;
   return estimate;
 }
 
@@ -54,7 +55,7 @@ TEST(NodeStatus, WarnsOfWhatHolds) {
   FrameEstimate estimate = tracking();
   estimate.status = Status::Waiting;
   estimate.waiting_for = "parallax 12 of 20 px";
-  estimate.magnetometer.status = MagnetometerStatus::Norm;
+  estimate.sensors.of<MagnetometerEstimate>().status = MagnetometerStatus::Norm;
   node.add(estimate, 0.01, 0.05, 0);
   const message::DiagnosticArray array = node.message(ros::Time(), {});
   EXPECT_EQ(array.status[0].level, DiagnosticStatus::WARN);

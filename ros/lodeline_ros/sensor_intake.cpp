@@ -65,7 +65,7 @@ std::map<std::string, std::string> chooseLiveTopics(const RigFile& rig_file,
   }
   if (!topics.contains("mag0")) rig->magnetometer.reset();
   if (!topics.contains("pressure0")) rig->pressure.reset();
-  rig->sonar.reset();  // the estimator does not use it
+  rig->sonar.reset();  // LiveSource has no stream of it
   return topics;
 }
 

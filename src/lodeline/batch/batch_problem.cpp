@@ -17,20 +17,21 @@ constexpr double kSensorLoss = 3.0;  // width of the Cauchy loss, standard devia
 
 }  // namespace
 
-BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record)
+BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record,
+                           const LoopClosures& loops, double loosening)
     : options_(options),
       factors_(rig, options_),
       loss_(std::make_shared<ceres::CauchyLoss>(kSensorLoss)),
-      visual_(window_, factors_) {
+      visual_(window_, factors_),
+      loosening_(loosening) {
   for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
-  addStates(rig, record);
-  addTracks(record);
+  addStates(rig, record, loops.initial_poses);
+  addTracks(record, loops.observations);
   addGlobals(record);
   addStartPrior(record);
   holdIntrinsics(record.globals());
   believeInFilesAsBefore(record);
   addImuAxes(record.globals());
-  orderBlocks();
   resetLinearizationPoints();
   renewLandmarks();
 }
@@ -116,6 +117,8 @@ void BatchProblem::scatter(const NormalEquations& local, BlockSkylineCholesky* h
     gradient->segment(hessian->offset(row), a.tangentSize()) += g.segment(a.offset, a.tangentSize());
     for (size_t i = 0; i < rows.size(); ++i) {
       const NormalEquations::Block& b = local.blocks()[i];
+      // Blocks of states without a common term are zero.
+      if (!hessian->contains(std::max(rows[i], row), std::min(rows[i], row))) continue;
       const auto product = h.block(a.offset, b.offset, a.tangentSize(), b.tangentSize());
       if (rows[i] == row) {
         hessian->block(row, row) += product.selfadjointView<Eigen::Lower>().toDenseMatrix();
@@ -210,13 +213,17 @@ void BatchProblem::resetLinearizationPoints() {
 
 double BatchProblem::renewLandmarks() {
   window_.tracks() = all_tracks_;
+  if (!links_.empty()) joined_ = joinLandmarks(window_, factors_, options_.landmark, links_, loosening_);
+  if (rows_.empty() || !links_.empty()) orderBlocks();
   double placed = 0.0, removed = 0.0;
-  std::vector<ObservationError> errors;
+  std::vector<ObservationError> errors, loosened;
   for (auto& [id, track] : window_.tracks()) {
     placeLandmark(window_, factors_, options_.landmark, &track);
     if (!track.landmark) continue;
     placed += static_cast<double>(track.observations.size());
-    removed += removeContradictions(window_, factors_, options_.landmark, id, &track, &errors);
+    // Errors relative to a loosened sigma do not show the accuracy of the images.
+    std::vector<ObservationError>& to = isLoosened(id) ? loosened : errors;
+    removed += removeContradictions(window_, factors_, options_.landmark, id, &track, &to);
   }
   adaptRobustLosses(window_, errors, options_.solver);
   visual_.arrange();
@@ -228,15 +235,24 @@ TimeCorrelatedErrors BatchProblem::timeCorrelatedErrors() {
   constexpr double kBelieved = 2.0;  // in widths of the loss: larger residuals have little weight
   TimeCorrelatedErrors lasting;
   for (auto& [id, track] : window_.tracks()) {
-    if (!track.landmark) continue;
+    if (!track.landmark || isLoosened(id)) continue;
     const std::vector<Vec2> errors = residualsOf(factors_.landmark(window_, track));
     std::vector<std::vector<Vec2>> by_camera(cameras_.size());
+    const auto finish = [&] {
+      for (std::vector<Vec2>& of_camera : by_camera) {
+        lasting.add(of_camera);
+        of_camera.clear();
+      }
+    };
     for (size_t i = 0; i < errors.size(); ++i) {
       const Observation& observation = track.observations[i];
+      // Another pass: its errors are not those of the pass before.
+      if (i > 0 && observation.frame - track.observations[i - 1].frame > static_cast<FrameId>(kLongestTrack))
+        finish();
       if (errors[i].norm() < kBelieved * factors_.robustScale(*window_.find(observation.frame)))
         by_camera[static_cast<size_t>(observation.camera)].push_back(errors[i]);
     }
-    for (const std::vector<Vec2>& of_camera : by_camera) lasting.add(of_camera);
+    finish();
   }
   return lasting;
 }

@@ -10,6 +10,8 @@
 #include "lodeline/batch/batch_landmarks.h"
 #include "lodeline/batch/block_skyline_cholesky.h"
 #include "lodeline/batch/estimator_log.h"
+#include "lodeline/batch/joined_landmarks.h"
+#include "lodeline/batch/state_order.h"
 #include "lodeline/batch/time_correlated_errors.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/estimator/problem/factor_builder.h"
@@ -26,8 +28,10 @@ class BatchProblem {
  public:
   /// Initial values: states from the forward run, landmarks triangulated with its poses. Observations that
   /// contradict these are left out from the start. `rig` and `options` as in the forward run; all arguments
-  /// must outlive the problem.
-  BatchProblem(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record);
+  /// must outlive the problem. With loops, the states start from their initial poses (InitialCorrection), and
+  /// landmarks are joined with a `loosening` (joinLandmarks()).
+  BatchProblem(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record,
+               const LoopClosures& loops = {}, double loosening = 1.0);
   BatchProblem(const BatchProblem&) = delete;  // its parts refer to each other
   BatchProblem& operator=(const BatchProblem&) = delete;
 
@@ -38,7 +42,13 @@ class BatchProblem {
   const Window& window() const { return window_; }
   const FactorBuilder& factors() const { return factors_; }
 
-  /// A zero matrix with the blocks of the problem in their order.
+  /// Links of loop observations (LoopLink): all, and those that join landmarks at present.
+  int links() const { return static_cast<int>(links_.size()); }
+  int linksUsed() const { return joined_.links_used; }
+  /// Sets the `loosening` with which renewLandmarks() joins landmarks from now on.
+  void tightenLoops(double loosening) { loosening_ = loosening; }
+
+  /// A zero matrix with the blocks of the problem in their order. With loops, renewLandmarks() changes it.
   BlockSkylineCholesky emptyMatrix() const { return BlockSkylineCholesky(sizes_, first_); }
 
   /// Cost at the present values.
@@ -67,6 +77,14 @@ class BatchProblem {
   /// Multiplies the variance of the observations by `variance`, until landmarks are renewed.
   void weighObservations(double variance);
 
+  /// Product L x of the information L that loops add to the system, i.e. that of joined landmarks less that
+  /// of their parts alone, with changes x of all poses: 6 rows [dp, dtheta] for each state, any columns.
+  Eigen::MatrixXd loopInformationTimes(const std::vector<Eigen::MatrixXd>& pose_changes);
+  /// Rows of a state's [dp, dtheta] in the system.
+  int poseOffset(size_t state, const BlockSkylineCholesky& matrix) const {
+    return matrix.offset(rowOf(this->state(state).pose.data()));
+  }
+
   /// Value of a sensor's walking parameter block that is valid for a state; null where there is none.
   const double* walkingValue(std::string_view name, size_t state) const;
 
@@ -76,9 +94,11 @@ class BatchProblem {
   AzimuthCovariance azimuth(size_t state, const BlockSkylineCholesky& inverse) const;
 
  private:
+  /// Longer tracks are split: the states of a track form a clique, and a rig at rest would connect thousands.
+  static constexpr size_t kLongestTrack = 40;
   using GlobalValues = std::map<std::string, std::vector<double>>;
-  void addStates(const Rig& rig, const EstimatorLog& record);
-  void addTracks(const EstimatorLog& record);
+  void addStates(const Rig& rig, const EstimatorLog& record, const std::vector<InitialPose>& initial_poses);
+  void addTracks(const EstimatorLog& record, const std::vector<LoopObservation>& loops);
   void addGlobals(const EstimatorLog& record);
   void addStartPrior(const EstimatorLog& record);
   /// Holds the intrinsics at the final values of the run (`globals`). If they were free, they would follow
@@ -91,6 +111,10 @@ class BatchProblem {
   ParameterBlock* addGlobal(const EstimatorLog& record, const std::string& name, const std::string& as);
   /// Adds the prior of a sensor's parameter block (BatchState::sigma).
   void addKnowledge(ParameterBlock* state, const BatchState& of);
+  bool isLoosened(TrackId track) const { return loosening_ != 1.0 && joined_.contains(track); }
+  /// States that terms connect, beside a sensor's measurements on landmarks.
+  StateCliques cliques() const;
+  std::vector<std::vector<size_t>> neighbours() const;
   void orderBlocks();
   void appendBlock(double* value, int tangent_size, int first);
   std::vector<Factor> motionFactors();
@@ -106,6 +130,7 @@ class BatchProblem {
     bool continues = false;  ///< whether the walk of the node before continues in it
   };
   using Chain = std::vector<Node>;
+  size_t endOf(const Chain& chain, size_t node) const;  ///< state after the last one for which it is valid
   Chain makeChain(const EstimatorLog& record, const RecordedSensorState& recorded);
   void addWalk(const Chain& chain, double walk_per_sqrt_s);
   static double* nodeOf(const Chain& chain, size_t state);
@@ -125,6 +150,9 @@ class BatchProblem {
   BatchLandmarks visual_;
   std::vector<Factor> landmark_factors_;
   Tracks all_tracks_;  ///< with all their observations, without landmarks
+  std::vector<LoopLink> links_;
+  double loosening_ = 1.0;
+  JoinedLandmarks joined_;
   std::vector<Prior> priors_;
   std::vector<Chain> chains_;  ///< not empty; the first node has the name of the parameter block
   // Blocks in the order of the system:

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lodeline/batch/batch_problem.h"
+#include "lodeline/batch/loops/initial_correction.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
@@ -12,8 +13,6 @@ namespace lodeline {
 namespace {
 
 constexpr double kNode_s = 60.0;  // time for which a walking offset counts as constant
-// Longer tracks are split: the states of a track form a clique, and a rig at rest would connect thousands.
-constexpr size_t kLongestTrack = 40;
 
 /// Difference of a random walk between begin and end, as a quadratic term.
 Prior walkBetween(ParameterBlock* begin, ParameterBlock* end, double sigma) {
@@ -51,11 +50,13 @@ void remove(const std::string& name, Prior* prior, std::vector<std::string>* nam
 
 }  // namespace
 
-void BatchProblem::addStates(const Rig& rig, const EstimatorLog& record) {
+void BatchProblem::addStates(const Rig& rig, const EstimatorLog& record,
+                             const std::vector<InitialPose>& initial_poses) {
+  const InitialCorrection correction(record.frames(), initial_poses);
   for (const RecordedState& recorded : record.states()) {
     auto frame = std::make_unique<Frame>();
     frame->id = static_cast<FrameId>(states());
-    frame->setState(recorded.state);
+    frame->setState(correction.apply(recorded.state));
     frame->is_keyframe = true;  // any state may host landmarks
     frame->gyroscope_B = recorded.gyroscope_B;
     frame->measurements = recorded.measurements;
@@ -71,13 +72,16 @@ void BatchProblem::addStates(const Rig& rig, const EstimatorLog& record) {
   }
 }
 
-void BatchProblem::addTracks(const EstimatorLog& record) {
+void BatchProblem::addTracks(const EstimatorLog& record, const std::vector<LoopObservation>& loops) {
   struct Piece {
     TrackId id;
     size_t first;
   };
   std::unordered_map<TrackId, Piece> pieces;
   TrackId next = 0;
+  std::vector<Time> times;
+  for (const RecordedState& recorded : record.states()) times.push_back(recorded.state.time);
+  LoopLinker linker(std::move(times));
   for (size_t k = 0; k < states(); ++k) {
     for (const FeatureObservation& seen : record.states()[k].observations) {
       const auto [entry, is_new] = pieces.try_emplace(seen.track, Piece{next, k});
@@ -89,9 +93,12 @@ void BatchProblem::addTracks(const EstimatorLog& record) {
       observation.measurement = DirectionMeasurement::fromRay(*cameras_[static_cast<size_t>(seen.camera)],
                                                               {seen.origin_C, seen.bearing_C}, seen.sigma_px);
       all_tracks_[entry->second.id].observations.push_back(observation);
+      if (!loops.empty()) linker.add(seen.track, entry->second.id, k);
     }
   }
-  removeShortTracks(all_tracks_, 2);
+  if (!loops.empty()) links_ = linker.link(loops, cameras_, &all_tracks_);
+  // A single observation is of use where a link joins it.
+  if (links_.empty()) removeShortTracks(all_tracks_, 2);
 }
 
 ParameterBlock* BatchProblem::addGlobal(const EstimatorLog& record, const std::string& name,
@@ -225,54 +232,6 @@ void BatchProblem::addImuAxes(const GlobalValues& globals) {
     if (!state) continue;
     const auto end = globals.find(state->name);
     if (end != globals.end()) state->value = end->second;
-  }
-}
-
-void BatchProblem::appendBlock(double* value, int tangent_size, int first) {
-  const int row = static_cast<int>(sizes_.size());
-  rows_[value] = row;
-  sizes_.push_back(tangent_size);
-  first_.push_back(std::min(first, row));
-}
-
-void BatchProblem::orderBlocks() {
-  std::vector<size_t> first_seen(states());  // oldest state that shares a landmark
-  for (size_t k = 0; k < states(); ++k) first_seen[k] = k > 0 ? k - 1 : 0;
-  for (const auto& [id, track] : all_tracks_) {
-    const auto oldest = static_cast<size_t>(track.observations.front().frame);
-    for (const Observation& observation : track.observations) {
-      size_t& first = first_seen[static_cast<size_t>(observation.frame)];
-      first = std::min(first, oldest);
-    }
-  }
-  // A measurement on landmarks connects all states that share a landmark with its own.
-  for (size_t k = 0; k < states(); ++k) {
-    const Measurements& measurements = window_.frames()[k]->measurements;
-    if (std::none_of(measurements.begin(), measurements.end(),
-                     [](const auto& measurement) { return measurement->containsLandmarks(); }))
-      continue;
-    for (size_t i = first_seen[k]; i < k; ++i) first_seen[i] = std::min(first_seen[i], first_seen[k]);
-  }
-  // A node of a chain comes after the states for which it is valid.
-  const auto appendNodes = [&](const Chain& chain, size_t k) {
-    for (size_t i = 0; i < chain.size(); ++i) {
-      const size_t last = i + 1 < chain.size() ? chain[i + 1].first - 1 : states() - 1;
-      if (last != k) continue;
-      const int since = rowOf(state(chain[i].first).pose.data());
-      const int before = i > 0 ? rowOf(chain[i - 1].state->value.data()) : since;
-      // The start's prior correlates the first node with the first state.
-      appendBlock(chain[i].state->value.data(), chain[i].state->tangentSize(), std::min(since, before));
-    }
-  };
-  for (size_t k = 0; k < states(); ++k) {
-    Frame& frame = *window_.frames()[k];
-    const int first = k == 0 ? 0 : rowOf(state(first_seen[k]).pose.data());
-    appendBlock(frame.pose.data(), kPoseTangentSize, first);
-    appendBlock(frame.motion.data(), kMotionSize, k == 0 ? 0 : rowOf(state(k - 1).pose.data()));
-    for (const Chain& chain : chains_) appendNodes(chain, k);
-  }
-  for (const auto& global : window_.globals()) {
-    if (rows_.count(global->value.data()) == 0) appendBlock(global->value.data(), global->tangentSize(), 0);
   }
 }
 

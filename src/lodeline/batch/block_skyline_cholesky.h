@@ -22,6 +22,9 @@ class BlockSkylineCholesky {
   /// Memory of the entries in bytes.
   size_t bytes() const;
 
+  /// Whether a block with column <= row is within the skyline.
+  bool contains(int row, int column) const { return column >= first(row); }
+
   void setZero();
   /// Block (row, column) with column <= row, within the skyline.
   Eigen::Block<Eigen::MatrixXd> block(int row, int column);

@@ -105,13 +105,16 @@ void EstimatorLog::weighMeasurements(RecordedState* state) {
 
 void EstimatorLog::append(RecordedState state) {
   for (const auto& measurement : state.measurements) ++used_[measurement->sensor()];
-  if (!isState(state)) {
-    newest_ = std::move(state);
-    return;
-  }
+  const bool is_state = isState(state);
+  newest_ = std::move(state);
+  if (is_state) keepNewest();
+}
+
+void EstimatorLog::keepNewest() {
+  if (!newest_) return;
+  weighMeasurements(&*newest_);
+  states_.push_back(std::move(*newest_));
   newest_.reset();
-  weighMeasurements(&state);
-  states_.push_back(std::move(state));
 }
 
 void EstimatorLog::finish(const Estimator& estimator) {

@@ -42,6 +42,9 @@ class EstimatorLog {
   /// To be called after every Estimator::add() with its input and output.
   void add(const FrameTracks& tracks, std::span<const ImuSample> imu, const FrameEstimate& estimate,
            const Estimator& estimator);
+  /// Makes the frame of the last add() a state, as a keyframe of the estimator is without that. For frames
+  /// that are to be observed again, or that observe earlier ones again.
+  void keepNewest();
   /// To be called after the last frame; may be called again after further ones.
   void finish(const Estimator& estimator);
 

@@ -38,6 +38,16 @@ class BatchSteps {
   std::vector<double> before_;
 };
 
+/// Factors on the sigmas of loop observations in each round (joinLandmarks()). The first one lets a loop that
+/// is open by a quarter of a radian pass the gate, for a camera with 450 px per radian and points found to
+/// within half a pixel; each round leaves less than a quarter of that.
+std::vector<double> looseningsOf(const LoopClosures& loops, const RefinementOptions& wanted) {
+  std::vector<double> loosenings;
+  if (!loops.observations.empty()) loosenings = {64.0, 16.0, 4.0};
+  loosenings.insert(loosenings.end(), static_cast<size_t>(std::max(wanted.rounds, 0)), 1.0);
+  return loosenings;
+}
+
 void measureMoves(const std::vector<FrameEstimate>& before, const std::vector<FrameEstimate>& after,
                   RefinementSummary* summary) {
   double squares_m2 = 0.0, squares_rad2 = 0.0;
@@ -74,11 +84,14 @@ std::string refusalOf(const RefinementSummary& summary, const RefinementOptions&
   return {};
 }
 
-/// Covariances of the stated model at the solution.
-BatchCovariances posteriorCovariances(BatchProblem& problem, BlockSkylineCholesky& hessian) {
+/// Covariances of the stated model at the solution. `errors`: of the states along the path, with
+/// loops; replaced by the part that loops remove.
+BatchCovariances posteriorCovariances(BatchProblem& problem, BlockSkylineCholesky& hessian,
+                                      StateErrors* errors) {
   Eigen::VectorXd gradient;
   problem.linearize(&hessian, &gradient);
   if (!hessian.factorize()) return {};
+  if (!errors->empty()) *errors = errorsRemovedByLoops(problem, *errors, hessian);
   hessian.invert();
   return covariancesOf(problem, hessian);
 }
@@ -98,8 +111,13 @@ BatchCovariances reportedCovariances(BatchProblem& problem, const RefinementSumm
 
 }  // namespace
 
-Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const EstimatorLog& record,
+Refinement refine(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record,
                   const RefinementOptions& wanted) {
+  return refine(rig, options, record, LoopClosures(), wanted);
+}
+
+Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const EstimatorLog& record,
+                  const LoopClosures& loops, const RefinementOptions& wanted) {
   const EstimatorOptions options = optionsFor(rig, of_run);
   const double start_s = processSeconds();
   Refinement result;
@@ -109,21 +127,24 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
     summary.refusal = "fewer than two frames have a pose";
     return result;
   }
-  BatchProblem problem(rig, options, record);
-  BlockSkylineCholesky hessian = problem.emptyMatrix();
+  const std::vector<double> loosenings = looseningsOf(loops, wanted);
+  BatchProblem problem(rig, options, record, loops, loosenings.empty() ? 1.0 : loosenings.front());
   summary.states = static_cast<int>(problem.states());
-  for (int i = 0; i < wanted.rounds; ++i) {
+  summary.loop_links = problem.links();
+  for (size_t i = 0; i < loosenings.size(); ++i) {
     if (i > 0) {
       // Statistics of a solution, because the pose errors of the run are correlated over time as well.
       const TimeCorrelatedErrors lasting = problem.timeCorrelatedErrors();
       summary.design_effect = lasting.designEffect();
       summary.observation_variance = lasting.variance();
       problem.resetLinearizationPoints();
+      problem.tightenLoops(loosenings[i]);
       summary.outlier_share = problem.renewLandmarks();
       problem.weighObservations(summary.observation_variance);
     }
     // Each round but the last ends when its accuracy suffices for the next round's landmarks and weights.
-    const double relative_gain = i + 1 == wanted.rounds ? 0.0 : 1e-4;
+    const double relative_gain = i + 1 == loosenings.size() ? 0.0 : 1e-4;
+    BlockSkylineCholesky hessian = problem.emptyMatrix();
     BatchSteps steps(problem, hessian);
     const SolveSummary round = minimize(steps, {wanted.max_iterations, relative_gain, wanted.gain_tolerance});
     if (i == 0) {
@@ -138,13 +159,17 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
   summary.observations = static_cast<int64_t>(problem.observations());
   summary.refusal = refusalOf(summary, wanted);
   if (!summary.usable()) return result;
+  summary.loop_links_used = problem.linksUsed();
   BatchCovariances posterior, reported;
+  StateErrors removed;
+  BlockSkylineCholesky hessian = problem.emptyMatrix();
   if (static_cast<double>(hessian.bytes()) < 1e6 * wanted.max_covariance_MB) {
-    posterior = posteriorCovariances(problem, hessian);
+    if (problem.linksUsed() > 0) removed = errorsAlongPath(problem, rig, options, record);
+    posterior = posteriorCovariances(problem, hessian, &removed);
     reported = reportedCovariances(problem, summary, hessian);
   }
   summary.has_covariance = !reported.empty();
-  result.frames = refinedFrames(problem, rig, options, record, posterior, reported);
+  result.frames = refinedFrames(problem, rig, options, record, posterior, reported, removed);
   result.landmarks = mapPoints(problem);
   measureMoves(record.frames(), result.frames, &summary);
   summary.processor_s = processSeconds() - start_s;

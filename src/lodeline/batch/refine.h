@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lodeline/batch/estimator_log.h"
+#include "lodeline/batch/loops/loop_observation.h"
 #include "lodeline/estimate.h"
 
 namespace lodeline {
@@ -27,5 +28,13 @@ struct RefinementOptions {
 /// and the frames are those of the forward run. `rig` and `options` as in that run.
 Refinement refine(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record,
                   const RefinementOptions& wanted = {});
+
+/// The same with loops: old landmarks are observed again by the frames that came back to them. The first
+/// round starts from LoopClosures::initial_poses, so `forward_cost` is that of these poses. Observations that
+/// contradict the others of their landmark are left out, with the landmark's part that they would have
+/// joined. Without loop observations the result is that of the function above. Throws InputError where an
+/// observation has no such camera, or an initial pose no frame.
+Refinement refine(const Rig& rig, const EstimatorOptions& options, const EstimatorLog& record,
+                  const LoopClosures& loops, const RefinementOptions& wanted = {});
 
 }  // namespace lodeline

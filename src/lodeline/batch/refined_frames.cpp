@@ -17,14 +17,16 @@ using Mat15 = Eigen::Matrix<double, 15, 15>;
 class FrameMaker {
  public:
   FrameMaker(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
-             const EstimatorLog& record, const BatchCovariances& posterior, const BatchCovariances& reported)
+             const EstimatorLog& record, const BatchCovariances& posterior, const BatchCovariances& reported,
+             const StateErrors& removed)
       : problem_(problem),
         rig_(rig),
         options_(options),
         record_(record),
         covariance_inflation_(options),
         posterior_(posterior),
-        reported_(reported) {}
+        reported_(reported),
+        removed_(removed) {}
 
   FrameEstimate make(const FrameEstimate& forward) {
     while (state_ + 1 < problem_.states() && problem_.state(state_ + 1).time <= forward.time) ++state_;
@@ -46,16 +48,33 @@ class FrameMaker {
     describeMagnetometer(&refined);
     describeDepth(&refined);
     covariance_inflation_.follow(refined.state.world_from_body, forward.scene_distance_m);
-    covariance_inflation_.addTo({rig_.cameras.size() > 1, refined.depth.unmodelledDensitySigma(),
-                                 refined.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
-                                &refined.covariance);
-    addHeadingError(refined.magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
-    refined.magnetometer.heading_sigma_rad =
-        std::hypot(std::sqrt(refined.covariance(5, 5)), refined.magnetometer.declination_sigma_rad);
+    MagnetometerEstimate& magnetometer = refined.sensors.of<MagnetometerEstimate>();
+    inflate({rig_.cameras.size() > 1, refined.sensors.of<DepthEstimate>().unmodelledDensitySigma(),
+             magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
+            share, &refined.covariance);
+    addHeadingError(magnetometer.axes_sigma_rad, refined.state, &refined.covariance);
+    magnetometer.heading_sigma_rad =
+        std::hypot(std::sqrt(refined.covariance(5, 5)), magnetometer.declination_sigma_rad);
     return refined;
   }
 
+  /// Modelled errors of the last frame, without loops, and the state at or before it.
+  const Eigen::MatrixXd& errors() const { return errors_; }
+  size_t stateBefore() const { return state_; }
+
  private:
+  void inflate(const EstimateSources& sources, double share, Mat15* covariance) {
+    if (!is_with_loops_) {
+      covariance_inflation_.addTo(sources, covariance);
+      return;
+    }
+    errors_ = covariance_inflation_.root(sources);
+    if (removed_.empty()) return;
+    Eigen::MatrixXd left = errors_ - (1.0 - share) * removed_[state_];
+    if (share > 0.0) left -= share * removed_[state_ + 1];
+    covariance->topLeftCorner<6, 6>() += left * left.transpose();
+  }
+
   NavigationState predictTo(const Frame& begin, Time time) const {
     const Preintegration interval(record_.imuBetween(begin.time, time), begin.gyroscopeBias(),
                                   begin.accelerometerBias(), rig_.imu, options_.preintegration);
@@ -83,9 +102,9 @@ class FrameMaker {
 
   /// A north that the run found late applies from the first frame on.
   void describeNorth(double share, FrameEstimate* refined) const {
-    const MagnetometerEstimate& last = record_.frames().back().magnetometer;
+    const MagnetometerEstimate& last = record_.frames().back().sensors.of<MagnetometerEstimate>();
     if (!last.north_found) return;
-    MagnetometerEstimate& magnetometer = refined->magnetometer;
+    MagnetometerEstimate& magnetometer = refined->sensors.of<MagnetometerEstimate>();
     magnetometer.heading_reference = last.heading_reference;
     magnetometer.declination_sigma_rad = last.declination_sigma_rad;
     magnetometer.axes_sigma_rad = last.axes_sigma_rad;
@@ -114,15 +133,17 @@ class FrameMaker {
 
   void describeMagnetometer(FrameEstimate* refined) const {
     const MagnetometerStates states(problem_.window());
-    if (states.field == nullptr || !refined->magnetometer.field_W) return;
-    refined->magnetometer.field_W = states.field_W();
-    refined->magnetometer.offset_B = Vec3(problem_.walkingValue(MagnetometerStates::kOffset, state_));
+    MagnetometerEstimate& magnetometer = refined->sensors.of<MagnetometerEstimate>();
+    if (states.field == nullptr || !magnetometer.field_W) return;
+    magnetometer.field_W = states.field_W();
+    magnetometer.offset_B = Vec3(problem_.walkingValue(MagnetometerStates::kOffset, state_));
   }
 
   void describeDepth(FrameEstimate* refined) const {
     const DepthStates states(problem_.window());
-    if (!states || !refined->depth.gauge) return;
-    DepthEstimate::Gauge& gauge = *refined->depth.gauge;
+    DepthEstimate& depth = refined->sensors.of<DepthEstimate>();
+    if (!states || !depth.gauge) return;
+    DepthEstimate::Gauge& gauge = *depth.gauge;
     gauge.depth_at_origin_m = *problem_.walkingValue(DepthStates::kOffset, state_);
     gauge.density_ratio = states.density_ratio();
     gauge.lag_s = states.lag_s();
@@ -137,6 +158,9 @@ class FrameMaker {
   CovarianceInflation covariance_inflation_;
   const BatchCovariances& posterior_;
   const BatchCovariances& reported_;
+  const StateErrors& removed_;
+  bool is_with_loops_ = problem_.linksUsed() > 0;
+  Eigen::MatrixXd errors_;
   size_t state_ = 0;  ///< the last one at or before the frame
 };
 
@@ -151,11 +175,37 @@ BatchCovariances covariancesOf(const BatchProblem& problem, const BlockSkylineCh
   return covariances;
 }
 
+StateErrors errorsAlongPath(const BatchProblem& problem, const Rig& rig, const EstimatorOptions& options,
+                            const EstimatorLog& record) {
+  const BatchCovariances unknown;
+  const StateErrors none;
+  FrameMaker maker(problem, rig, options, record, unknown, unknown, none);
+  StateErrors errors(problem.states(), Eigen::MatrixXd::Zero(6, CovarianceInflation::kErrors));
+  for (const FrameEstimate& forward : record.frames()) {
+    const FrameEstimate frame = maker.make(forward);
+    if (problem.state(maker.stateBefore()).time == frame.time) errors[maker.stateBefore()] = maker.errors();
+  }
+  return errors;
+}
+
+StateErrors errorsRemovedByLoops(BatchProblem& problem, const StateErrors& along_path,
+                                 const BlockSkylineCholesky& factorized) {
+  const Eigen::MatrixXd forces = problem.loopInformationTimes(along_path);
+  StateErrors removed(problem.states(), Eigen::MatrixXd::Zero(6, forces.cols()));
+  for (Eigen::Index i = 0; i < forces.cols(); ++i) {
+    if (forces.col(i).isZero(0.0)) continue;
+    const Eigen::VectorXd change = factorized.solve(forces.col(i));
+    for (size_t k = 0; k < problem.states(); ++k)
+      removed[k].col(i) = change.segment<6>(problem.poseOffset(k, factorized));
+  }
+  return removed;
+}
+
 std::vector<FrameEstimate> refinedFrames(const BatchProblem& problem, const Rig& rig,
                                          const EstimatorOptions& options, const EstimatorLog& record,
-                                         const BatchCovariances& posterior,
-                                         const BatchCovariances& reported) {
-  FrameMaker maker(problem, rig, options, record, posterior, reported);
+                                         const BatchCovariances& posterior, const BatchCovariances& reported,
+                                         const StateErrors& removed) {
+  FrameMaker maker(problem, rig, options, record, posterior, reported, removed);
   std::vector<FrameEstimate> frames;
   for (const FrameEstimate& forward : record.frames()) frames.push_back(maker.make(forward));
   return frames;

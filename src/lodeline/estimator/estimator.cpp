@@ -112,7 +112,8 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   report(tracks, &estimate);
   addSensorRows(&estimate);
   inertial_covariance_propagation_.follow(window_, factors_, estimate.status == Status::Inertial && !rests_,
-                                          estimate.magnetometer.field_W.has_value(), &estimate.covariance);
+                                          estimate.sensors.of<MagnetometerEstimate>().field_W.has_value(),
+                                          &estimate.covariance);
   requireCovariance(&estimate, diagnostics_);
   reportImplausibleBias(estimate, options_, diagnostics_);
   if (wantsKeyframe(window_, factors_, options_.keyframe)) window_.newest().is_keyframe = true;
@@ -125,13 +126,15 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   if (mode_.isSettled() && mode_.isMarginalizing()) linearization_cache_.freeze(window_, factors_);
   estimate.mode = mode_.mode();
   covariance_inflation_.follow(estimate.state.world_from_body, estimate.scene_distance_m);
-  covariance_inflation_.addTo({mode_.scaleIsGiven(), estimate.depth.unmodelledDensitySigma(),
-                               estimate.magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
-                              &estimate.covariance);
+  MagnetometerEstimate& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  covariance_inflation_.addTo(
+      {mode_.scaleIsGiven(), estimate.sensors.of<DepthEstimate>().unmodelledDensitySigma(),
+       magnetometer.field_W.has_value(), !options_.imu_axes.areDoubted()},
+      &estimate.covariance);
   monitor_->addTo(estimate.state.world_from_body.translation, &estimate.covariance);
-  addHeadingError(estimate.magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
-  estimate.magnetometer.heading_sigma_rad =
-      std::hypot(std::sqrt(estimate.covariance(5, 5)), estimate.magnetometer.declination_sigma_rad);
+  addHeadingError(magnetometer.axes_sigma_rad, estimate.state, &estimate.covariance);
+  magnetometer.heading_sigma_rad =
+      std::hypot(std::sqrt(estimate.covariance(5, 5)), magnetometer.declination_sigma_rad);
   return estimate;
 }
 
@@ -356,9 +359,7 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->gyroscope_axes = gyroscopeAxes(window_);
   estimate->accelerometer_axes = accelerometerAxes(window_);
   for (const auto& sensor : sensors_) sensor->report(window_, &estimate->sensors);
-  estimate->magnetometer = estimate->sensors.of<MagnetometerEstimate>();
-  estimate->depth = estimate->sensors.of<DepthEstimate>();
-  const auto& gauge = estimate->depth.gauge;
+  const auto& gauge = estimate->sensors.of<DepthEstimate>().gauge;
   estimate->scale = scale_.add(window_, gauge ? gauge->told_sigma : options_.depth.density_ratio_sigma);
   estimate->landmarks = statistics.landmarks;
   estimate->scene_distance_m = meanLandmarkDistance_m(window_, newest.id, 0);

@@ -193,8 +193,8 @@ TEST(MagnetometerFusion, OffChangesNotABit) {
                                on_board ? SensorReadings(std::vector{reading}) : SensorReadings());
     }
     last.push_back(estimate);
-    EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Off);
-    EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Start);
+    EXPECT_EQ(estimate.sensors.of<MagnetometerEstimate>().status, MagnetometerStatus::Off);
+    EXPECT_EQ(estimate.sensors.of<MagnetometerEstimate>().heading_reference, HeadingReference::Start);
     EXPECT_TRUE(diagnostics.ranked().empty());
   }
   EXPECT_EQ(last[0].covariance, last[1].covariance);
@@ -236,7 +236,7 @@ class SpoiltMagnetometer : public testing::Test {
         readings.push_back(sample);
       }
       estimate = estimator.add(frame->tracks, frame->imu, SensorReadings(readings));
-      ++statuses_[estimate.magnetometer.status];
+      ++statuses_[estimate.sensors.of<MagnetometerEstimate>().status];
     }
     EXPECT_EQ(estimate.status, Status::Tracking);
     EXPECT_TRUE(estimate.covariance.allFinite());
@@ -254,18 +254,20 @@ class SpoiltMagnetometer : public testing::Test {
 
 TEST_F(SpoiltMagnetometer, WithNothingWrongIsUsed) {
   const FrameEstimate estimate = run(leave);
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_EQ(magnetometer.status, MagnetometerStatus::Used);
   EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 0);
-  EXPECT_EQ(estimate.magnetometer.north_from_world_rad.value(), 0.0);
-  EXPECT_FALSE(estimate.magnetometer.north_found);
+  EXPECT_EQ(magnetometer.north_from_world_rad.value(), 0.0);
+  EXPECT_FALSE(magnetometer.north_found);
 }
 
 TEST_F(SpoiltMagnetometer, OfNaNsIsNoData) {
   const FrameEstimate estimate =
       run([](int64_t, MagnetometerSample* s) { s->field_M.y() = std::numeric_limits<double>::quiet_NaN(); });
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::NoData);
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Start);
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.status, MagnetometerStatus::NoData);
+  EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Start);
   EXPECT_GT(diagnostics_.count("magnetometer_invalid"), 100);
   EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 1);
 }
@@ -274,7 +276,7 @@ TEST_F(SpoiltMagnetometer, ThatFreezesIsNoData) {
   const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
     if (i > 100) s->field_M = Vec3(1e-6, 20e-6, 30e-6);
   });
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::NoData);
+  EXPECT_EQ(estimate.sensors.of<MagnetometerEstimate>().status, MagnetometerStatus::NoData);
   EXPECT_EQ(diagnostics_.count("magnetometer_frozen"), 1);
 }
 
@@ -284,22 +286,24 @@ TEST_F(SpoiltMagnetometer, ThatIsNotWantedStillTellsItsFaults) {
         if (i > 100) s->field_M = Vec3(1e-6, 20e-6, 30e-6);
       },
       MagnetometerUse::Off);
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Off);
+  EXPECT_EQ(estimate.sensors.of<MagnetometerEstimate>().status, MagnetometerStatus::Off);
   EXPECT_EQ(diagnostics_.count("magnetometer_frozen"), 1);
 }
 
 TEST_F(SpoiltMagnetometer, InMicroteslaIsConvertedWithAWarning) {
   const FrameEstimate estimate = run([](int64_t, MagnetometerSample* s) { s->field_M *= 1e6; });
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.status, MagnetometerStatus::Used);
   EXPECT_EQ(diagnostics_.count("magnetometer_converted"), 1);
-  EXPECT_NEAR(estimate.magnetometer.field_W->norm(), kField_W.norm(), 1e-6);
+  EXPECT_NEAR(magnetometer.field_W->norm(), kField_W.norm(), 1e-6);
 }
 
 TEST_F(SpoiltMagnetometer, ComesAtAnyRate) {
   for (const double rate_hz : {1.0, 1000.0}) {
     statuses_.clear();
     const FrameEstimate estimate = run(leave, MagnetometerUse::Automatic, rate_hz);
-    EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic) << rate_hz;
+    EXPECT_EQ(estimate.sensors.of<MagnetometerEstimate>().heading_reference, HeadingReference::Magnetic)
+        << rate_hz;
     EXPECT_GT(statuses_[MagnetometerStatus::Used], 3) << rate_hz;
     EXPECT_EQ(statuses_[MagnetometerStatus::NoData] > 0, rate_hz < 10.0);
   }
@@ -309,15 +313,15 @@ TEST_F(SpoiltMagnetometer, ThatComesLateIsUsedFromThenOn) {
   const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
     if (i < 150) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
   });
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
-  ASSERT_TRUE(estimate.magnetometer.field_W.has_value());
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_EQ(magnetometer.status, MagnetometerStatus::Used);
+  ASSERT_TRUE(magnetometer.field_W.has_value());
   // In the estimator's own world, which stays that of the first pose.
-  const double azimuth_rad =
-      std::atan2(estimate.magnetometer.field_W->y(), estimate.magnetometer.field_W->x());
-  EXPECT_NEAR(std::remainder(azimuth_rad + *estimate.magnetometer.north_from_world_rad - 90.0 * kDegree,
-                             360.0 * kDegree),
-              0.0, 1e-9);
+  const double azimuth_rad = std::atan2(magnetometer.field_W->y(), magnetometer.field_W->x());
+  EXPECT_NEAR(
+      std::remainder(azimuth_rad + *magnetometer.north_from_world_rad - 90.0 * kDegree, 360.0 * kDegree), 0.0,
+      1e-9);
   EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 1);
   EXPECT_EQ(diagnostics_.count("north_found"), 1);
 }
@@ -327,8 +331,9 @@ TEST_F(SpoiltMagnetometer, ThatMissesTheFirstFrameAloneIsAsGoodAsInTime) {
   const FrameEstimate estimate = run([](int64_t i, MagnetometerSample* s) {
     if (i < 2) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
   });
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
-  EXPECT_TRUE(estimate.magnetometer.north_from_world_rad.has_value());
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_TRUE(magnetometer.north_from_world_rad.has_value());
   EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 0);
 }
 
@@ -343,8 +348,9 @@ TEST_F(SpoiltMagnetometer, AsInThePaperFindsNorthLate) {
         if (i < 100) s->field_M.setConstant(std::numeric_limits<double>::quiet_NaN());
       },
       MagnetometerUse::Paper);
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
-  EXPECT_TRUE(estimate.magnetometer.north_from_world_rad.has_value());
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_TRUE(magnetometer.north_from_world_rad.has_value());
 }
 
 TEST_F(SpoiltMagnetometer, ThatLosesTheFieldIsRejectedAndSaysSo) {
@@ -357,34 +363,37 @@ TEST_F(SpoiltMagnetometer, ThatLosesTheFieldIsRejectedAndSaysSo) {
 
 TEST_F(SpoiltMagnetometer, WithoutCalibrationIsUsedOnlyWhenAskedTo) {
   calibration_.is_calibrated = false;
-  EXPECT_EQ(run(leave).magnetometer.status, MagnetometerStatus::Uncalibrated);
+  EXPECT_EQ(run(leave).sensors.of<MagnetometerEstimate>().status, MagnetometerStatus::Uncalibrated);
   EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 1);
   const FrameEstimate asked = run(leave, MagnetometerUse::Absolute);
-  EXPECT_EQ(asked.magnetometer.status, MagnetometerStatus::Used);
-  EXPECT_GT(asked.magnetometer.heading_sigma_rad, 1.0 * kDegree) << "hard iron may be anything";
-  const Vec3 field_W = asked.magnetometer.field_W.value();
-  EXPECT_NEAR(asked.magnetometer.axes_sigma_rad, 0.03 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
-  EXPECT_GT(asked.covariance(5, 5), std::pow(asked.magnetometer.axes_sigma_rad, 2)) << "and so may its axes";
+  const auto& magnetometer = asked.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_GT(magnetometer.heading_sigma_rad, 1.0 * kDegree) << "hard iron may be anything";
+  const Vec3 field_W = magnetometer.field_W.value();
+  EXPECT_NEAR(magnetometer.axes_sigma_rad, 0.03 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
+  EXPECT_GT(asked.covariance(5, 5), std::pow(magnetometer.axes_sigma_rad, 2)) << "and so may its axes";
   EXPECT_EQ(diagnostics_.count("magnetometer_uncalibrated"), 2);
 }
 
 // Such a magnetometer is calibrated against the gyroscope, whose axes differ from those of the housing.
 TEST_F(SpoiltMagnetometer, OnAnImuThatWasPerhapsNeverCalibratedClaimsLess) {
   const FrameEstimate believed = run(leave);
-  EXPECT_EQ(believed.magnetometer.axes_sigma_rad, 0.0);
+  EXPECT_EQ(believed.sensors.of<MagnetometerEstimate>().axes_sigma_rad, 0.0);
   axes_sigma_ = 0.007;
   const FrameEstimate doubted = run(leave);
-  const Vec3 field_W = doubted.magnetometer.field_W.value();
-  EXPECT_NEAR(doubted.magnetometer.axes_sigma_rad, 0.007 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
+  const auto& magnetometer = doubted.sensors.of<MagnetometerEstimate>();
+  const Vec3 field_W = magnetometer.field_W.value();
+  EXPECT_NEAR(magnetometer.axes_sigma_rad, 0.007 * field_W.norm() / field_W.head<2>().norm(), 1e-12);
   EXPECT_GT(doubted.covariance(5, 5),
-            believed.covariance(5, 5) + std::pow(0.9 * doubted.magnetometer.axes_sigma_rad, 2));
+            believed.covariance(5, 5) + std::pow(0.9 * magnetometer.axes_sigma_rad, 2));
 }
 
 TEST_F(SpoiltMagnetometer, AsInThePaperTellsNoField) {
   const FrameEstimate estimate = run(leave, MagnetometerUse::Paper);
-  EXPECT_EQ(estimate.magnetometer.status, MagnetometerStatus::Used);
-  EXPECT_EQ(estimate.magnetometer.heading_reference, HeadingReference::Magnetic);
-  EXPECT_FALSE(estimate.magnetometer.field_W.has_value());
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  EXPECT_EQ(magnetometer.status, MagnetometerStatus::Used);
+  EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Magnetic);
+  EXPECT_FALSE(magnetometer.field_W.has_value());
 }
 
 }  // namespace

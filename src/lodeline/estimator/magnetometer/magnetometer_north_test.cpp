@@ -113,10 +113,10 @@ double headingErrorAfterRest_sigmas(uint64_t seed, int* used) {
         frame->truth.time, rotation.conjugate() * kField_W + hard_iron_B + 0.02e-6 * random.normal3()};
     const FrameEstimate estimate =
         estimator.add(frame->tracks, frame->imu, SensorReadings(std::vector{reading}));
-    *used += estimate.magnetometer.status == MagnetometerStatus::Used;
+    *used += estimate.sensors.of<MagnetometerEstimate>().status == MagnetometerStatus::Used;
     const Quat magnetic_from_true = so3::exp(north * Vec3::UnitZ());
     sigmas = headingBetween(magnetic_from_true * rotation, estimate.state.world_from_body.rotation) /
-             estimate.magnetometer.heading_sigma_rad;
+             estimate.sensors.of<MagnetometerEstimate>().heading_sigma_rad;
   }
   return sigmas;
 }

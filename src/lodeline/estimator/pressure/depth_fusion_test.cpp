@@ -83,7 +83,7 @@ Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, Es
     if (no_images.contains(scene.secondsOf(frame->truth.time))) continue;
     frame->imu = std::exchange(imu, {});
     result.frames.push_back(compared.add(*frame, std::exchange(readings, {})));
-    ++result.statuses[result.last().depth.status];
+    ++result.statuses[result.last().sensors.of<DepthEstimate>().status];
   }
   for (const Finding& finding : compared.diagnostics().ranked())
     result.findings[finding.kind] = finding.count;
@@ -130,7 +130,7 @@ TEST(DepthFusion, FindsLagAndDensity) {
   EstimatorOptions estimator = honestOptions(options);
   estimator.camera_calibration.enabled = false;
   const Dive found = dive(options, gauge, estimator);
-  const DepthEstimate::Gauge& last = found.last().depth.gauge.value();
+  const DepthEstimate::Gauge& last = found.last().sensors.of<DepthEstimate>().gauge.value();
   EXPECT_NEAR(last.lag_s, 0.7, 0.1);
   EXPECT_LT(last.lag_sigma_s, 0.05);
   EXPECT_LT(last.density_ratio_sigma, 0.008);
@@ -157,7 +157,8 @@ TEST(DepthFusion, ClaimsHeightsNoBetterThanADensityThatCrookedCamerasFound) {
   EXPECT_EQ(believed.state.world_from_body.translation, doubted.state.world_from_body.translation);
   EXPECT_NEAR(doubted.covariance(2, 2) - believed.covariance(2, 2), 0.007 * 0.007 * height_m * height_m,
               1e-12);
-  EXPECT_GT(doubted.depth.gauge->density_ratio_sigma, believed.depth.gauge->density_ratio_sigma);
+  EXPECT_GT(doubted.sensors.of<DepthEstimate>().gauge->density_ratio_sigma,
+            believed.sensors.of<DepthEstimate>().gauge->density_ratio_sigma);
   estimator.depth.density_ratio_sigma = 0.001;
   const double told = lastWith(0.007).covariance(2, 2) - lastWith(0.0).covariance(2, 2);
   EXPECT_NEAR(told, 1e-6 * height_m * height_m, 1e-8) << "a density that was told";
@@ -184,7 +185,8 @@ TEST(DepthFusion, KnowsFreshWaterAndSalt) {
       });
     };
     const FrameEstimate with = descend(true), without = descend(false);
-    const DepthEstimate::Gauge &known = *with.depth.gauge, &seen = *without.depth.gauge;
+    const DepthEstimate::Gauge& known = *with.sensors.of<DepthEstimate>().gauge;
+    const DepthEstimate::Gauge& seen = *without.sensors.of<DepthEstimate>().gauge;
     EXPECT_LT(std::abs(known.density_ratio - ratio), 0.8 * std::abs(seen.density_ratio - ratio)) << ratio;
     EXPECT_NEAR(known.density_ratio, ratio, 3.0 * known.density_ratio_sigma) << ratio;
     EXPECT_LT(known.density_ratio_sigma, seen.density_ratio_sigma) << ratio;
@@ -197,11 +199,14 @@ TEST(DepthFusion, KnowsFreshWaterAndSalt) {
 // a calibration that images have not confirmed, so the correct one of this scene must not be.
 TEST(DepthFusion, WeighsWaterDensityPriorAgainstWhatCrookedCamerasAreWorth) {
   const auto descend = [](bool water_density_prior) {
-    return *endOfDescent(1.0, [water_density_prior](EstimatorOptions* options) {
-              options->camera_calibration.enabled = true;
-              options->camera_calibration.trust_confirmed_files = false;
-              options->depth.water_density_prior = water_density_prior;
-            }).depth.gauge;
+    return *endOfDescent(1.0,
+                         [water_density_prior](EstimatorOptions* options) {
+                           options->camera_calibration.enabled = true;
+                           options->camera_calibration.trust_confirmed_files = false;
+                           options->depth.water_density_prior = water_density_prior;
+                         })
+                .sensors.of<DepthEstimate>()
+                .gauge;
   };
   const DepthEstimate::Gauge known = descend(true), seen = descend(false);
   EXPECT_GT(std::abs(seen.density_ratio - 1.0), 0.007) << "too easy a scene";
@@ -267,7 +272,7 @@ TEST_F(FaultyGauge, SpikesAreLeftOut) {
 TEST_F(FaultyGauge, NewZeroIsTakenForANewOffset) {
   const Dive result = run([](double t, double depth_m) { return t < 12.0 ? depth_m : depth_m + 3.0; });
   EXPECT_EQ(result.statuses.at(DepthStatus::Restarted), 1);
-  EXPECT_EQ(result.last().depth.status == DepthStatus::Jump, false);
+  EXPECT_EQ(result.last().sensors.of<DepthEstimate>().status == DepthStatus::Jump, false);
   EXPECT_LT(result.largestHeightError(0.0, kNever), 0.08);
   EXPECT_EQ(result.findings.at("pressure_restarted"), 1);
 }
@@ -284,7 +289,7 @@ TEST_F(FaultyGauge, FrozenReadingsAreNoticedAndForgivenWhenTheyChange) {
   EXPECT_LT(result.largestHeightError(0.0, kNever), 0.08);
   int used_later = 0;
   for (const Comparison& c : result.frames)
-    used_later += c.time_s > 21.0 && c.estimate.depth.status == DepthStatus::Used;
+    used_later += c.time_s > 21.0 && c.estimate.sensors.of<DepthEstimate>().status == DepthStatus::Used;
   EXPECT_GT(used_later, 20);
 }
 
@@ -317,8 +322,8 @@ TEST(DepthFusion, SwitchedOffItIsAsIfThereWereNone) {
   off.depth.use = false;
   const Dive with = dive(options, Gauge(), off);
   const Dive without = dive(options, std::nullopt);
-  EXPECT_EQ(with.last().depth.status, DepthStatus::Off);
-  EXPECT_EQ(without.last().depth.status, DepthStatus::NoData);
+  EXPECT_EQ(with.last().sensors.of<DepthEstimate>().status, DepthStatus::Off);
+  EXPECT_EQ(without.last().sensors.of<DepthEstimate>().status, DepthStatus::NoData);
   EXPECT_EQ(with.last().covariance, without.last().covariance);
   EXPECT_EQ(with.last().state.world_from_body.translation, without.last().state.world_from_body.translation);
 }

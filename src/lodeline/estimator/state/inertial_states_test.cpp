@@ -216,7 +216,8 @@ TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   EXPECT_GT(in_doubt.first_heading_variance_rad2, 1.02 * taken_for_calibrated.first_heading_variance_rad2);
   EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_intrinsics_rad2, 1.02 * believed.covariance(5, 5))
       << "turns have told by now";
-  EXPECT_EQ(doubted.magnetometer.heading_sigma_rad, std::sqrt(doubted.covariance(5, 5)));
+  EXPECT_EQ(doubted.sensors.of<MagnetometerEstimate>().heading_sigma_rad,
+            std::sqrt(doubted.covariance(5, 5)));
 }
 
 /// Means over scenes with accelerometer biases four times as large as the initial sigma, soon after the

@@ -246,7 +246,7 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
     if (estimate.status == Status::Waiting) return;
     const Quat& estimated = estimate.state.world_from_body.rotation;
     const Quat& truth = frame.truth.motion.world_from_body.rotation;
-    const MagnetometerEstimate& magnetometer = estimate.magnetometer;
+    const MagnetometerEstimate& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
     trial.reference = magnetometer.heading_reference;
     trial.correlated_noise_sigma_T = magnetometer.correlated_noise_sigma_T.value_or(0.0);
     headings_rad.push_back(so3::log(estimated * truth.conjugate()).z());

@@ -158,7 +158,7 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
         oldest.firstPose() ? poseFromBlock(oldest.firstPose()) : oldest.worldFromBody();
     const Rigid3& first_truth = true_poses_.at(oldest.time);
     estimate_from_truth_ = estimateFromTruth(linearization_point, first_truth);
-    if (estimate.magnetometer.heading_reference != HeadingReference::Start) {
+    if (estimate.sensors.of<MagnetometerEstimate>().heading_reference != HeadingReference::Start) {
       // The heading is that of the field, which points along the world's y axis in the simulation.
       *estimate_from_truth_ =
           Rigid3(Quat::Identity(), linearization_point.translation - first_truth.translation);

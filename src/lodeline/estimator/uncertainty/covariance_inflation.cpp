@@ -77,6 +77,30 @@ void CovarianceInflation::addTo(const EstimateSources& sources,
   if (!sources.is_scale_given) bent_by_the_way_.addTo(kTurnPerWaySigma_rad_per_m, covariance);
 }
 
+Eigen::Matrix<double, 6, Eigen::Dynamic> CovarianceInflation::root(const EstimateSources& sources) const {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> root = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, kErrors);
+  if (!options_.camera_calibration.enabled || !newest_) return root;
+  const Vec3& position_W = newest_->translation;
+  for (int k = 0; k < 3; ++k) {
+    root.block<3, 3>(0, 3 * k) = kWayPerWaySigma * by_way_[k];
+    root.block<3, 3>(0, 9 + 3 * k) = kWayPerTurnSigma * by_turn_[k];
+  }
+  if (!sources.is_scale_given) root.block<3, 1>(0, 18) = kOneCameraScaleSigma * position_W;
+  if (sources.density_sigma) {
+    root.row(2) *= std::min(1.0, kHeldHeightSigma_m / std::max(root.row(2).norm(), 1e-6));
+    root(2, 19) = *sources.density_sigma * position_W.z();
+  }
+  if (sources.has_magnetometer) return root;
+  const auto addBend = [&](int column, double sigma, const Bend& bend) {
+    root.block<1, 9>(0, column) = sigma * bend.x.reshaped().transpose();
+    root.block<1, 9>(1, column) = sigma * bend.y.reshaped().transpose();
+    root.block<1, 9>(5, column) = sigma * bend.heading.reshaped().transpose();
+  };
+  addBend(20, sources.are_gyroscope_axes_known ? kHeldTurnPerTurnSigma : kTurnPerTurnSigma, bent_by_turns_);
+  if (!sources.is_scale_given) addBend(29, kTurnPerWaySigma_rad_per_m, bent_by_the_way_);
+  return root;
+}
+
 void addHeadingError(double sigma_rad, const NavigationState& state,
                      Eigen::Matrix<double, 15, 15>* covariance) {
   Eigen::Matrix<double, 9, 1> moved;

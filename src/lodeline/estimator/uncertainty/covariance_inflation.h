@@ -66,6 +66,12 @@ class CovarianceInflation {
   /// Adds this covariance to that of the newest pose's state (pose first, world axes).
   void addTo(const EstimateSources& sources, Eigen::Matrix<double, 15, 15>* covariance) const;
 
+  /// A with A A^T = what addTo() adds to the covariance of [dp, dtheta]: one column for each independent
+  /// error, times its sigma. The errors of all frames of a path are the same, so the columns of two frames
+  /// also have their cross-covariance.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> root(const EstimateSources& sources) const;
+  static constexpr int kErrors = 38;  ///< columns of root()
+
  private:
   /// Derivatives, by the entries of E, of the heading and of the horizontal position for heading errors E c.
   /// c is the motion that causes the error (rotation or translation) in body axes; x and y are world axes.

@@ -149,6 +149,27 @@ TEST(CovarianceInflation, OfTheHeightAreHeldByAPressureSensorUpToItsDensity) {
               std::pow(0.007 * 20.0, 2), 1e-12);
 }
 
+TEST(CovarianceInflation, HaveARootWithOneColumnForEachError) {
+  for (const bool is_one_camera : {false, true}) {
+    for (const bool has_magnetometer : {false, true}) {
+      for (const std::optional<double> density : {std::optional<double>(), std::optional<double>(0.004)}) {
+        CovarianceInflation errors({});
+        errors.follow(heading(0.0, Vec3::Zero()), 2.0);
+        swim(heading(0.0, Vec3::Zero()), heading(2.5, kPosition), 2.0, &errors);
+        const EstimateSources sources{
+            .is_scale_given = !is_one_camera, .density_sigma = density, .has_magnetometer = has_magnetometer};
+        const Eigen::Matrix<double, 6, Eigen::Dynamic> root = errors.root(sources);
+        ASSERT_EQ(root.cols(), CovarianceInflation::kErrors);
+        Mat15 covariance = Mat15::Zero();
+        errors.addTo(sources, &covariance);
+        EXPECT_GT(covariance.norm(), 1e-3);
+        EXPECT_LT((root * root.transpose() - covariance.topLeftCorner<6, 6>()).norm(),
+                  1e-9 * covariance.norm());
+      }
+    }
+  }
+}
+
 TEST(CovarianceInflation, AreNoneWhereTheCalibrationIsBelieved) {
   EstimatorOptions options;
   options.camera_calibration.enabled = false;
@@ -156,6 +177,7 @@ TEST(CovarianceInflation, AreNoneWhereTheCalibrationIsBelieved) {
   errors.follow(heading(0.0, Vec3::Zero()), 2.0);
   swim(heading(0.0, Vec3::Zero()), heading(2.0, kPosition), 2.0, &errors);
   EXPECT_EQ(added(errors, {.is_scale_given = false, .density_sigma = 0.007}).norm(), 0.0);
+  EXPECT_EQ(errors.root({.is_scale_given = false}).norm(), 0.0);
   EXPECT_EQ(unmodelledDensitySigma(options), 0.0);
 }
 

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "lodeline/io/calibration/yaml_file.h"
+#include "lodeline/sensors/sensor_kind.h"
 #include "lodeline/util/edit_distance.h"
 
 namespace lodeline {
 namespace {
-
-constexpr std::array kSingleSensors = {"imu0", "mag0", "pressure0", "sonar0"};
 
 bool hasAllKeys(const YAML::Node& node, std::initializer_list<const char*> keys) {
   return std::all_of(keys.begin(), keys.end(), [&](const char* key) { return node[key].IsDefined(); });

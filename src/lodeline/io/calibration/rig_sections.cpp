@@ -1,6 +1,7 @@
 #include "lodeline/io/calibration/rig_sections.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include "lodeline/io/calibration/calibration_kind.h"
 #include "lodeline/io/calibration/calibration_translation.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
+#include "lodeline/sensors/sensor_kind.h"
 #include "lodeline/util/edit_distance.h"
 
 namespace lodeline {
@@ -20,13 +22,11 @@ constexpr std::array kBesideKalibr = {"rate_hz", "mask", "topic", "port"};
 
 void refuseUnknownSensor(const std::filesystem::path& file, const std::string& key, int line) {
   std::string nearest = "cam0";
-  for (const char* sensor : {"imu0", "mag0", "pressure0", "sonar0"}) {
+  for (const char* sensor : kSingleSensors) {
     if (editDistance(key, sensor) < editDistance(key, nearest)) nearest = sensor;
   }
-  throw InputError(
-      fmt::format("{}:{}: unknown sensor '{}'; did you mean '{}'? Known are cam0, cam1, …, imu0, mag0, "
-                  "pressure0, sonar0",
-                  file.string(), line, key, nearest));
+  throw InputError(fmt::format("{}:{}: unknown sensor '{}'; did you mean '{}'? Known are cam0, cam1, …, {}",
+                               file.string(), line, key, nearest, fmt::join(kSingleSensors, ", ")));
 }
 
 class SectionCollector {

@@ -9,6 +9,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/calibration_kind.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
+#include "lodeline/sensors/sensor_kind.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {
@@ -95,7 +96,7 @@ class FolderCalibration {
   FolderCalibration(const EurocLayout& layout, Diagnostics* diagnostics)
       : layout_(layout), diagnostics_(diagnostics) {
     for (const int index : layout.camera_indices) sensors_.push_back(fmt::format("cam{}", index));
-    for (const char* sensor : {"imu0", "mag0", "pressure0", "sonar0"}) {
+    for (const char* sensor : kSingleSensors) {
       if (fs::exists(layout.csv(sensor))) sensors_.push_back(sensor);
     }
   }

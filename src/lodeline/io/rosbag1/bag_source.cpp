@@ -36,15 +36,21 @@ void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
     camera.rate_hz = 0.0;
     rig.cameras.push_back(camera);
   }
-  const auto add = [&](const char* name, auto* sensor) {
-    if (*sensor || topicsFor(bag, name).empty()) return;
-    sensor->emplace();
-    (*sensor)->rate_hz = 0.0;  // no stated rate
-  };
-  add("mag0", &rig.magnetometer);
-  add("pressure0", &rig.pressure);
-  add("sonar0", &rig.sonar);
+  forEachSensorKind([&](auto kind) {
+    auto& sensor = rig.*kind.calibration;
+    if (sensor || topicsFor(bag, kind.section).empty()) return;
+    sensor.emplace();
+    sensor->rate_hz = 0.0;  // no stated rate
+  });
   if (!rig_file->sections.contains("imu0")) rig.imu.rate_hz = 0.0;
+}
+
+std::vector<std::string> singleSensorsOf(const Rig& rig) {
+  std::vector<std::string> sensors = {"imu0"};
+  forEachSensorKind([&](auto kind) {
+    if (rig.*kind.calibration) sensors.emplace_back(kind.section);
+  });
+  return sensors;
 }
 
 TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
@@ -57,10 +63,7 @@ TopicWish wishOf(const RigFile& rig_file, const BagOptions& options) {
   for (const CameraCalibration& camera : used.cameras) {
     if (options.with_cameras) wish.cameras.push_back(camera.name);
   }
-  wish.sensors = {"imu0"};
-  if (rig_file.rig.magnetometer) wish.sensors.push_back("mag0");
-  if (rig_file.rig.pressure) wish.sensors.push_back("pressure0");
-  if (rig_file.rig.sonar) wish.sensors.push_back("sonar0");
+  wish.sensors = singleSensorsOf(rig_file.rig);
   return wish;
 }
 
@@ -121,26 +124,21 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
   settleCameras(options);
   imu_ = cursorOf("imu0");
   accelerometer_ = {choice_.accelerometer, 0};
-  magnetometer_ = cursorOf("mag0");
-  pressure_ = cursorOf("pressure0");
-  sonar_ = cursorOf("sonar0");
+  forEachSensorKind([&](auto kind) { sensors_[kind.section] = cursorOf(kind.section); });
   if (options.needs_calibration && imu_.topic == nullptr) {
     throw InputError(fmt::format("{}: has no topic of type {}; inertial readings are needed", bag.string(),
                                  messages::kImu.name));
   }
-  if (magnetometer_.topic == nullptr) rig_.magnetometer.reset();
-  if (pressure_.topic == nullptr) rig_.pressure.reset();
-  if (sonar_.topic == nullptr) rig_.sonar.reset();
+  forEachSensorKind([&](auto kind) {
+    if (sensors_[kind.section].topic == nullptr) (rig_.*kind.calibration).reset();
+  });
   settleRates();
 }
 
 void BagSource::refuseUnknownTopics(const BagOptions& options) const {
   std::vector<std::string> sensors;
   for (const CameraCalibration& camera : rig_file_.rig.cameras) sensors.push_back(camera.name);
-  sensors.push_back("imu0");
-  if (rig_file_.rig.magnetometer) sensors.push_back("mag0");
-  if (rig_file_.rig.pressure) sensors.push_back("pressure0");
-  if (rig_file_.rig.sonar) sensors.push_back("sonar0");
+  for (const std::string& sensor : singleSensorsOf(rig_file_.rig)) sensors.push_back(sensor);
   for (const auto& [sensor, topic] : options.topics) {
     if (std::find(sensors.begin(), sensors.end(), sensor) != sensors.end()) continue;
     throw UsageError(fmt::format("--topic {}={}: the rig has no {}; it has {}", sensor, topic, sensor,
@@ -192,11 +190,12 @@ void BagSource::settleRates() {
   for (size_t i = 0; i < cameras_.size(); ++i) {
     settle(cameras_[i], CameraCalibration().rate_hz, &rig_.cameras[i].rate_hz);
   }
-  if (rig_.magnetometer) {
-    settle(magnetometer_, MagnetometerCalibration().rate_hz, &rig_.magnetometer->rate_hz);
-  }
-  if (rig_.pressure) settle(pressure_, PressureCalibration().rate_hz, &rig_.pressure->rate_hz);
-  if (rig_.sonar) settle(sonar_, SonarCalibration().rate_hz, &rig_.sonar->rate_hz);
+  forEachSensorKind([&](auto kind) {
+    auto& sensor = rig_.*kind.calibration;
+    if (!sensor) return;
+    const double fallback_hz = std::decay_t<decltype(*sensor)>().rate_hz;
+    settle(sensors_[kind.section], fallback_hz, &sensor->rate_hz);
+  });
 }
 
 std::optional<wire::Bytes> BagSource::nextMessage(Cursor* cursor) {
@@ -271,29 +270,32 @@ GreyRange BagSource::measureGreyRange(size_t camera) {
 }
 
 std::optional<MagnetometerSample> BagSource::nextMagnetometer() {
-  std::optional<MagnetometerSample> sample = nextReading(&magnetometer_, messages::parseMagneticField);
-  if (sample) restamp(magnetometer_, &*sample);
+  Cursor& cursor = cursorOfKind<MagnetometerSample>();
+  std::optional<MagnetometerSample> sample = nextReading(&cursor, messages::parseMagneticField);
+  if (sample) restamp(cursor, &*sample);
   return sample;
 }
 
 std::optional<DepthSample> BagSource::nextDepth() {
-  std::optional<DepthSample> sample = nextReading(&pressure_, [this](std::span<const uint8_t> message) {
+  Cursor& cursor = cursorOfKind<DepthSample>();
+  std::optional<DepthSample> sample = nextReading(&cursor, [this](std::span<const uint8_t> message) {
     return messages::parseFluidPressure(message, rig_file_.water);
   });
-  if (sample) restamp(pressure_, &*sample);
+  if (sample) restamp(cursor, &*sample);
   return sample;
 }
 
 std::optional<SonarSample> BagSource::nextSonar() {
+  Cursor& cursor = cursorOfKind<SonarSample>();
   while (echoes_.empty()) {
     const bool is_scan =
-        sonar_.topic != nullptr && sonar_.topic->connection.type == messages::kLaserScan.name;
-    const auto echoes = nextReading(&sonar_, is_scan ? messages::parseLaserScan : messages::parseRange);
+        cursor.topic != nullptr && cursor.topic->connection.type == messages::kLaserScan.name;
+    const auto echoes = nextReading(&cursor, is_scan ? messages::parseLaserScan : messages::parseRange);
     if (!echoes) return std::nullopt;
     if (echoes->empty()) continue;
     echoes_.assign(echoes->begin(), echoes->end());
     SonarSample first = echoes->front();
-    restamp(sonar_, &first);
+    restamp(cursor, &first);
     for (SonarSample& echo : echoes_) echo.time = first.time + (echo.time - echoes->front().time);
   }
   const SonarSample echo = echoes_.front();

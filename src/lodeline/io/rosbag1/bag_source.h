@@ -15,6 +15,7 @@
 #include "lodeline/io/rosbag1/topic_choice.h"
 #include "lodeline/recording.h"
 #include "lodeline/rosbag.h"
+#include "lodeline/sensors/sensor_kind.h"
 
 namespace lodeline {
 
@@ -47,6 +48,10 @@ class BagSource : public RecordedSource {
   void settleCameras(const BagOptions& options);
   void settleRates();
   Cursor cursorOf(const std::string& sensor) const;
+  template <typename Sample>
+  Cursor& cursorOfKind() {
+    return sensors_[SensorKind<Sample>::section];
+  }
   std::optional<wire::Bytes> nextMessage(Cursor* cursor);
   void reportMessage(const Cursor& cursor, const std::string& problem);
   std::vector<Time> firstStamps(Cursor cursor, const std::string& name);
@@ -65,9 +70,10 @@ class BagSource : public RecordedSource {
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
   std::vector<std::optional<GreyRange>> grey_ranges_;  ///< per camera, measured at its first image
-  Cursor imu_, accelerometer_, magnetometer_, pressure_, sonar_;
-  ImuHalves halves_;                ///< state for an IMU in two topics
-  std::deque<SonarSample> echoes_;  ///< echoes of the scan that was read last
+  Cursor imu_, accelerometer_;
+  std::map<std::string, Cursor> sensors_;  ///< by SensorKind::section
+  ImuHalves halves_;                       ///< state for an IMU in two topics
+  std::deque<SonarSample> echoes_;         ///< echoes of the scan that was read last
 };
 
 /// Path of NAME.rig.yaml for NAME.bag.

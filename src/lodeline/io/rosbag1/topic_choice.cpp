@@ -7,6 +7,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag1/imu_halves.h"
 #include "lodeline/io/rosbag1/messages.h"
+#include "lodeline/sensors/sensor_kind.h"
 
 namespace lodeline {
 namespace {
@@ -207,8 +208,8 @@ class Chooser {
   }
 
   void reportUnused() {
-    for (const char* sensor : {"mag0", "pressure0", "sonar0"}) {
-      if (choice_.of(sensor) != nullptr) continue;
+    for (const std::string sensor : kSingleSensors) {
+      if (sensor == "imu0" || choice_.of(sensor) != nullptr) continue;
       for (const BagTopic* topic : topicsFor(bag_, sensor)) {
         diagnostics_->report(
             Severity::Notice, "bag_topic_unused",

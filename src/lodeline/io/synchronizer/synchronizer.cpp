@@ -8,26 +8,6 @@
 #include "lodeline/io/synchronizer/inertial_stream.h"
 
 namespace lodeline {
-namespace {
-
-/// Removes and returns readings up to `time`; drops those before `oldest`.
-template <typename Reading>
-std::vector<Reading> takeUntil(Time time, Time oldest, OrderedStream<Reading>* stream, SpanOfStream* span) {
-  std::vector<Reading> taken;
-  while (stream->peek() != nullptr && stream->peek()->time <= time) {
-    Reading reading = stream->pop();
-    span->add(reading.time);
-    if (reading.time >= oldest) taken.push_back(std::move(reading));
-  }
-  return taken;
-}
-
-template <typename Sensor>
-double rateOf(const std::optional<Sensor>& sensor) {
-  return sensor ? sensor->rate_hz : 0.0;
-}
-
-}  // namespace
 
 Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions& options,
                            Diagnostics* diagnostics)
@@ -37,14 +17,12 @@ Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions&
       imu_(inertialReadings(), options.history_s),
       histories_(source->rig().cameras.size()),
       repeats_(source->rig(), diagnostics),
-      magnetometer_(
-          magnetometerExpectation(), [source] { return source->nextMagnetometer(); }, diagnostics),
-      depth_(
-          expectation("depth", "pressure sensor", rateOf(source->rig().pressure)),
-          [source] { return source->nextDepth(); }, diagnostics),
-      sonar_(
-          expectation("sonar", "sonar", rateOf(source->rig().sonar)),
-          [source] { return source->nextSonar(); }, diagnostics) {
+      sensors_(
+          source,
+          [this](const char* kind, const char* name, double rate_hz) {
+            return expectation(kind, name, rate_hz);
+          },
+          diagnostics) {
   const std::vector<CameraCalibration>& cameras = source->rig().cameras;
   if (cameras.empty()) throw InputError("the recording has no camera; at least one is needed");
   for (size_t i = 0; i < cameras.size(); ++i) cameras_.push_back(imageStream(i));
@@ -92,13 +70,6 @@ ImuIntervals::Pull Synchronizer::inertialReadings() const {
   };
 }
 
-StreamExpectation Synchronizer::magnetometerExpectation() const {
-  const std::optional<MagnetometerCalibration>& magnetometer = source_->rig().magnetometer;
-  StreamExpectation expected = expectation("magnetometer", "magnetometer", rateOf(magnetometer));
-  if (magnetometer) expected.offset_to_imu_clock = Duration::fromSeconds(magnetometer->time_offset_to_imu_s);
-  return expected;
-}
-
 std::optional<FramePacket> Synchronizer::next() {
   std::optional<FramePacket> repeated;
   while (std::optional<FramePacket> packet = nextOfImage()) {
@@ -144,11 +115,7 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     draft.packet.imu = imu_.cut(reference.time, &draft.packet.longest_imu_gap_s);
     const Time oldest =
         last_packet_time_ ? *last_packet_time_ : reference.time - Duration::fromSeconds(options_.history_s);
-    SensorReadings& readings = draft.packet.readings;
-    readings.of<MagnetometerSample>() =
-        takeUntil(reference.time, oldest, &magnetometer_, &magnetometer_span_);
-    readings.of<DepthSample>() = takeUntil(reference.time, oldest, &depth_, &depth_span_);
-    readings.of<SonarSample>() = takeUntil(reference.time, oldest, &sonar_, &sonar_span_);
+    draft.packet.readings = sensors_.takeUntil(reference.time, oldest);
     draft.packet.image_delays_s = {0.0};
     double latest_s = 0.0;
     for (size_t i = 1; i < cameras_.size(); ++i) {

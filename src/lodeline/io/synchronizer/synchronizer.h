@@ -11,6 +11,7 @@
 #include "lodeline/io/synchronizer/frame_packet.h"
 #include "lodeline/io/synchronizer/image_repeats.h"
 #include "lodeline/io/synchronizer/imu_interval.h"
+#include "lodeline/io/synchronizer/sensor_streams.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {
@@ -77,7 +78,6 @@ class Synchronizer {
   };
 
   StreamExpectation expectation(const char* kind, const std::string& name, double rate_hz) const;
-  StreamExpectation magnetometerExpectation() const;
   OrderedStream<PendingImage> imageStream(size_t camera);
   std::optional<Draft> draftNext();
   void followClocks(PendingImage* reference);
@@ -110,13 +110,11 @@ class Synchronizer {
   std::vector<OrderedStream<PendingImage>> cameras_;
   std::vector<CameraHistory> histories_;
   ImageRepeats repeats_;
-  OrderedStream<MagnetometerSample> magnetometer_;
-  OrderedStream<DepthSample> depth_;
-  OrderedStream<SonarSample> sonar_;
+  SensorStreams sensors_;
   std::optional<Time> first_image_time_;
   std::optional<Time> last_image_time_;
   int64_t recorded_images_ = 0;
-  SpanOfStream images_span_, magnetometer_span_, depth_span_, sonar_span_;
+  SpanOfStream images_span_;
   std::optional<Time> last_packet_time_;
   std::optional<Draft> prefetched_;
   bool started_ = false;

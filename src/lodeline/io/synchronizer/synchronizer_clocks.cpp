@@ -54,9 +54,7 @@ bool Synchronizer::followCommonClock(const ImuIntervals::Gap& gap, Duration step
   reference->time = moved(reference->time, by);
   imu_.shiftFrom(from, by);
   for (OrderedStream<PendingImage>& camera : cameras_) camera.shiftFrom(from, by);
-  magnetometer_.shiftFrom(from, by);
-  depth_.shiftFrom(from, by);
-  sonar_.shiftFrom(from, by);
+  sensors_.shiftFrom(from, by);
   return true;
 }
 
@@ -113,8 +111,9 @@ bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingIma
 void Synchronizer::reportApart() {
   const bool may_read_on = !source_->isLive();
   if (may_read_on) imu_.drain();
-  const auto report = [this](const char* name, const std::optional<TimeSpan>& span, const char* other_name,
-                             const std::optional<TimeSpan>& other, const char* offset) {
+  const auto report = [this](const std::string& name, const std::optional<TimeSpan>& span,
+                             const char* other_name, const std::optional<TimeSpan>& other,
+                             const char* offset) {
     if (!span || !other) return;
     const std::optional<std::string> words = apart(name, *span, other_name, *other, offset);
     if (words) diagnostics_->report(Severity::Serious, kClocksApart, *words);
@@ -122,14 +121,10 @@ void Synchronizer::reportApart() {
   report("the images", images_span_.get(), "the inertial readings", imu_.span(),
          "timeshift_cam_imu (to be added to the images' stamps)");
   if (!last_packet_time_) return;
-  const auto reportOther = [&](const char* name, auto* stream, SpanOfStream* span, const char* offset) {
-    while (may_read_on && stream->peek() != nullptr) span->add(stream->pop().time);
-    report(name, span->get(), "the images", images_span_.get(), offset);
-  };
-  reportOther("the magnetometer", &magnetometer_, &magnetometer_span_,
-              "time_offset_to_imu_s of its calibration");
-  reportOther("the pressure sensor", &depth_, &depth_span_, "its clock");
-  reportOther("the sonar", &sonar_, &sonar_span_, "its clock");
+  sensors_.reportSpans(may_read_on,
+                       [&](const std::string& name, const std::optional<TimeSpan>& span, const char* offset) {
+                         report(name, span, "the images", images_span_.get(), offset);
+                       });
 }
 
 }  // namespace lodeline

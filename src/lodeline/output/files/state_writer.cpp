@@ -95,7 +95,7 @@ FrameEstimate withAttitudeOnly(const FrameEstimate& frame, const AttitudeEstimat
   known.covariance.setConstant(kUnknown);
   known.posterior_covariance.setConstant(kUnknown);
   known.covariance(5, 5) = attitude.heading_sigma_rad * attitude.heading_sigma_rad;
-  known.magnetometer.heading_sigma_rad = attitude.heading_sigma_rad;
+  known.sensors.of<MagnetometerEstimate>().heading_sigma_rad = attitude.heading_sigma_rad;
   return known;
 }
 
@@ -120,7 +120,7 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
     }
   }
   fmt::format_to(std::back_inserter(line), ",{:.9g}", estimate.covariance(6, 7));
-  appendMagnetometer(line, estimate.magnetometer);
+  appendMagnetometer(line, estimate.sensors.of<MagnetometerEstimate>());
   return line;
 }
 
@@ -128,10 +128,9 @@ fmt::memory_buffer stateLine(const FrameEstimate& estimate, const char* status) 
 
 StateWriter::StateWriter(const std::filesystem::path& folder, const std::string& suffix,
                          const std::vector<std::string>& sensor_columns)
-    : file_(folder / ("trajectory" + suffix + ".tum")),
-      trajectory_(openOutput(file_)),
-      states_(openOutput(folder / ("states" + suffix + ".csv"))) {
-  trajectory_ << "# timestamp [s] x y z qx qy qz qw\n" << std::flush;
+    : trajectory_(folder / ("trajectory" + suffix + ".tum")),
+      file_(folder / ("states" + suffix + ".csv")),
+      states_(openOutput(file_)) {
   states_ << kStateHeader << covarianceHeader() << kMagnetometerHeader << kAttitudeHeader << kDepthHeader
           << kPosteriorHeader;
   for (const std::string& name : sensor_columns) states_ << "," << name;
@@ -141,29 +140,21 @@ StateWriter::StateWriter(const std::filesystem::path& folder, const std::string&
 void StateWriter::write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude) {
   const bool has_pose = estimate.status != Status::Waiting;
   if (!has_pose && !attitude) return;
-  if (has_pose) writeTrajectory(estimate);
+  if (has_pose) trajectory_.write(estimate.time, estimate.state.world_from_body);
   fmt::memory_buffer line = has_pose ? stateLine(estimate, toString(estimate.status))
                                      : stateLine(withAttitudeOnly(estimate, *attitude), "attitude");
   appendAttitude(line, attitude);
-  appendDepth(line, estimate.depth);
+  appendDepth(line, estimate.sensors.of<DepthEstimate>());
   for (int i = 0; i < 6; i += 3)
     append(line, estimate.posterior_covariance.diagonal().segment<3>(i).unaryExpr(&sigma));
   for (const SensorRow& row : estimate.sensor_rows) {
     for (const auto& [name, value] : row.columns) fmt::format_to(std::back_inserter(line), ",{}", value);
   }
   states_ << fmt::to_string(line) << "\n" << std::flush;
-  if (!trajectory_ || !states_) {
+  if (!states_) {
     throw InputError(file_.string() + ": writing failed at " + std::to_string(estimate.time.nanoseconds()) +
                      " ns; is the disk full?");
   }
-}
-
-void StateWriter::writeTrajectory(const FrameEstimate& estimate) {
-  const Vec3& p = estimate.state.world_from_body.translation;
-  const Quat q = so3::canonical(estimate.state.world_from_body.rotation);
-  fmt::print(trajectory_, "{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", secondsText(estimate.time),
-             p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-  trajectory_.flush();
 }
 
 }  // namespace lodeline

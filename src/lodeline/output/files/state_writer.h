@@ -8,6 +8,7 @@
 
 #include "lodeline/ahrs/attitude_filter.h"
 #include "lodeline/estimate.h"
+#include "lodeline/output/files/pose_writer.h"
 
 namespace lodeline {
 
@@ -26,10 +27,8 @@ class StateWriter {
   void write(const FrameEstimate& estimate, const std::optional<AttitudeEstimate>& attitude = std::nullopt);
 
  private:
-  void writeTrajectory(const FrameEstimate& estimate);
-
-  std::filesystem::path file_;  ///< of the trajectory
-  std::ofstream trajectory_;
+  PoseWriter trajectory_;
+  std::filesystem::path file_;  ///< of the states
   std::ofstream states_;
 };
 

@@ -157,9 +157,12 @@ std::optional<WorldTurn> WorldTurn::of(const MagnetometerEstimate& last) {
 
 Vec3 WorldTurn::apply(const Vec3& vector_W) const { return rotationOf(*this) * vector_W; }
 
+void turnTrajectoryFile(const fs::path& file, const WorldTurn& turn) {
+  rewrite(file, [&](const std::string& line) { return turnedPose(line, turn); });
+}
+
 void turnStateFiles(const fs::path& folder, const std::string& suffix, const WorldTurn& turn) {
-  rewrite(folder / ("trajectory" + suffix + ".tum"),
-          [&](const std::string& line) { return turnedPose(line, turn); });
+  turnTrajectoryFile(folder / ("trajectory" + suffix + ".tum"), turn);
   std::map<std::string, size_t> columns;
   std::vector<std::string_view> fields;
   rewrite(folder / ("states" + suffix + ".csv"), [&](const std::string& line) {

@@ -23,6 +23,10 @@ struct WorldTurn {
   Vec3 apply(const Vec3& vector_W) const;
 };
 
+/// Rotates the poses of a file in TUM format. Replaces the file atomically by renaming. Throws InputError
+/// where it cannot be read or written.
+void turnTrajectoryFile(const std::filesystem::path& file, const WorldTurn& turn);
+
 /// Rotates `trajectory<suffix>.tum` and `states<suffix>.csv` of StateWriter. Each file is replaced atomically
 /// by renaming. Throws InputError where a file cannot be read or written.
 void turnStateFiles(const std::filesystem::path& folder, const std::string& suffix, const WorldTurn& turn);

@@ -33,14 +33,15 @@ FrameEstimate estimateAt(int frame) {
   const Eigen::MatrixXd root =
       Eigen::MatrixXd::NullaryExpr(15, 15, [&](Eigen::Index, Eigen::Index) { return 0.1 * normal(random); });
   estimate.covariance = root * root.transpose();
-  estimate.magnetometer.heading_sigma_rad = std::sqrt(estimate.covariance(5, 5));
+  auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  magnetometer.heading_sigma_rad = std::sqrt(estimate.covariance(5, 5));
   if (frame < 2) return estimate;
-  estimate.magnetometer.heading_reference = HeadingReference::Magnetic;
-  estimate.magnetometer.field_W = so3::exp(-kTurn_rad * Vec3::UnitZ()) * Vec3(0.0, 24e-6, -38e-6);
-  estimate.magnetometer.offset_B = Vec3::Zero();
-  estimate.magnetometer.north_found = Time::fromSeconds(12.0);
-  estimate.magnetometer.north_from_world_rad = kTurn_rad + (frame == 2 ? 0.02 : 0.0);
-  estimate.magnetometer.north_from_world_sigma_rad = kTurnSigma_rad;
+  magnetometer.heading_reference = HeadingReference::Magnetic;
+  magnetometer.field_W = so3::exp(-kTurn_rad * Vec3::UnitZ()) * Vec3(0.0, 24e-6, -38e-6);
+  magnetometer.offset_B = Vec3::Zero();
+  magnetometer.north_found = Time::fromSeconds(12.0);
+  magnetometer.north_from_world_rad = kTurn_rad + (frame == 2 ? 0.02 : 0.0);
+  magnetometer.north_from_world_sigma_rad = kTurnSigma_rad;
   return estimate;
 }
 
@@ -55,7 +56,7 @@ class TurnedRun : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path folder_;
-  WorldTurn turn_ = WorldTurn::of(estimateAt(3).magnetometer).value();
+  WorldTurn turn_ = WorldTurn::of(estimateAt(3).sensors.of<MagnetometerEstimate>()).value();
 };
 
 TEST_F(TurnedRun, PointsToNorthFromTheFirstPoseOn) {

@@ -21,11 +21,12 @@ FrameEstimate estimateAt(int second) {
   const double north_rad = 0.5 * M_PI;
   const Quat world_from_north(Eigen::AngleAxisd(-north_rad, Vec3::UnitZ()));
   estimate.state.world_from_body = Rigid3(world_from_north, world_from_north * Vec3(second, 0.0, -0.5));
+  auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
   if (second >= 6) {
-    estimate.magnetometer.heading_reference = HeadingReference::True;
-    estimate.magnetometer.north_from_world_rad = north_rad;
+    magnetometer.heading_reference = HeadingReference::True;
+    magnetometer.north_from_world_rad = north_rad;
   }
-  estimate.magnetometer.heading_sigma_rad = 2.0 * M_PI / 180.0;
+  magnetometer.heading_sigma_rad = 2.0 * M_PI / 180.0;
   return estimate;
 }
 

@@ -36,7 +36,7 @@ nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
           {"sigma_p_x [m]", shortNumber(sigma[0])},
           {"sigma_p_y [m]", shortNumber(sigma[1])},
           {"sigma_p_z [m]", shortNumber(sigma[2])},
-          {"sigma_heading [rad]", shortNumber(estimate.magnetometer.heading_sigma_rad)},
+          {"sigma_heading [rad]", shortNumber(estimate.sensors.of<MagnetometerEstimate>().heading_sigma_rad)},
           {"tracks", estimate.tracks},
           {"landmarks", estimate.landmarks},
           {"reprojection_rms [sigma]", shortNumber(estimate.reprojection_rms_sigmas)}};
@@ -61,14 +61,14 @@ std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, 
   json["t_s"] = shortNumber(t_s);
   const bool has_pose = estimate.status != Status::Waiting;
   if (has_pose) json["numbers"] = numbersOf(estimate);
-  json["words"] = {{"status", toString(estimate.status)},
-                   {"magnetometer", toString(estimate.magnetometer.status)}};
+  const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  json["words"] = {{"status", toString(estimate.status)}, {"magnetometer", toString(magnetometer.status)}};
   json["run"] = {{"frames", summary.frames()},
                  {"path_m", shortNumber(summary.pathLength_m())},
                  {"real_time_factor", shortNumber(summary.realTimeFactor())},
-                 {"heading_reference", toString(estimate.magnetometer.heading_reference)},
+                 {"heading_reference", toString(magnetometer.heading_reference)},
                  {"waiting_for", estimate.waiting_for}};
-  const std::optional<double>& north_rad = estimate.magnetometer.north_from_world_rad;
+  const std::optional<double>& north_rad = magnetometer.north_from_world_rad;
   json["run"]["north_from_world_rad"] =
       north_rad ? nlohmann::ordered_json(*north_rad) : nlohmann::ordered_json();
   if (!landmarks_W.empty()) {

@@ -69,11 +69,12 @@ TEST_F(RunFolder, StatesHaveAsManyValuesAsNames) {
 TEST_F(RunFolder, StatesEndWithTheMagnetometer) {
   StateWriter writer(folder_);
   FrameEstimate estimate = estimateAt(5, Vec3::Zero());
-  estimate.magnetometer.heading_sigma_rad = 0.01;
+  auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  magnetometer.heading_sigma_rad = 0.01;
   writer.write(estimate);
-  estimate.magnetometer.status = MagnetometerStatus::Innovation;
-  estimate.magnetometer.field_W = Vec3(1e-6, 24e-6, -38e-6);
-  estimate.magnetometer.offset_B = Vec3(3e-7, 0.0, -1e-7);
+  magnetometer.status = MagnetometerStatus::Innovation;
+  magnetometer.field_W = Vec3(1e-6, 24e-6, -38e-6);
+  magnetometer.offset_B = Vec3(3e-7, 0.0, -1e-7);
   writer.write(estimate);
   const std::string states = read("states.csv");
   EXPECT_NE(states.find(",sigma_heading [rad],magnetometer,field_x [T],"), std::string::npos);
@@ -85,10 +86,11 @@ TEST_F(RunFolder, SummaryTellsWhatBecameOfTheMagnetometer) {
   RunSummary summary;
   FrameEstimate estimate = estimateAt(0, Vec3::Zero());
   EXPECT_EQ(nlohmann::json::parse(summary.json({})).count("magnetometer"), 0u);
-  estimate.magnetometer.heading_reference = HeadingReference::True;
-  estimate.magnetometer.heading_sigma_rad = 0.5 * M_PI / 180.0;
+  auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+  magnetometer.heading_reference = HeadingReference::True;
+  magnetometer.heading_sigma_rad = 0.5 * M_PI / 180.0;
   for (const auto status : {MagnetometerStatus::Used, MagnetometerStatus::Norm, MagnetometerStatus::Norm}) {
-    estimate.magnetometer.status = status;
+    magnetometer.status = status;
     summary.add(estimate);
   }
   const auto json = nlohmann::json::parse(summary.json({}));
@@ -103,8 +105,9 @@ TEST_F(RunFolder, StatesHaveThePressureSensor) {
   StateWriter writer(folder_);
   FrameEstimate estimate = estimateAt(5, Vec3::Zero());
   writer.write(estimate);
-  estimate.depth.status = DepthStatus::Jump;
-  estimate.depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
+  auto& depth = estimate.sensors.of<DepthEstimate>();
+  depth.status = DepthStatus::Jump;
+  depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
   writer.write(estimate);
   const std::string states = read("states.csv");
   EXPECT_NE(
@@ -121,11 +124,12 @@ TEST_F(RunFolder, SummaryTellsOfDepthAndWhatCarriedTheScale) {
   summary.add(estimate);
   EXPECT_EQ(nlohmann::json::parse(summary.json({})).count("pressure"), 0u);
   EXPECT_EQ(nlohmann::json::parse(summary.json({})).count("scale"), 0u);
-  estimate.depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
-  estimate.depth.status = DepthStatus::Used;
+  auto& depth = estimate.sensors.of<DepthEstimate>();
+  depth.gauge = DepthEstimate::Gauge{7.5, 0.975, 0.01, 0.5, 0.1, 9.25};
+  depth.status = DepthStatus::Used;
   estimate.scale = {6e4, 3e4, 1e4};
   summary.add(estimate);
-  estimate.depth.status = DepthStatus::NoData;
+  depth.status = DepthStatus::NoData;
   estimate.scale = {};
   summary.add(estimate);
   summary.add(estimate);

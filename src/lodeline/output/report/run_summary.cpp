@@ -9,6 +9,7 @@
 #include "lodeline/output/files/world_turn.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/readable_times.h"
+#include "lodeline/output/report/stage_summaries.h"
 #include "lodeline/output/report/summary_lines.h"
 #include "lodeline/util/json_text.h"
 
@@ -107,43 +108,6 @@ nlohmann::ordered_json toJson(const DepthEstimate::Gauge& gauge) {
           {"lag_sigma_s", gauge.lag_sigma_s}};
 }
 
-std::string describe(const RefinementSummary& refined) {
-  if (!refined.usable()) return "refused: " + refined.refusal + "; the forward run is what there is";
-  return fmt::format(
-      "{} states, {} landmarks, {} observations ({:.1f} % left out, {:.1f} of them count as one), {} "
-      "steps{}; "
-      "cost {:.4g} of {:.4g}; moved "
-      "by "
-      "{:.3f} m and {:.2f} deg rms, {:.3f} m at most; {:.1f} core-s",
-      refined.states, refined.landmarks, refined.observations, 100.0 * refined.outlier_share,
-      refined.design_effect, refined.iterations, refined.converged ? "" : " (not converged)",
-      refined.first_round_cost, refined.forward_cost, refined.moved_rms_m,
-      refined.turned_rms_rad * 180.0 / M_PI, refined.moved_max_m, refined.processor_s);
-}
-
-nlohmann::ordered_json toJson(const RefinementSummary& refined) {
-  nlohmann::ordered_json json;
-  json["used"] = refined.usable();
-  if (!refined.usable()) json["refusal"] = refined.refusal;
-  json["converged"] = refined.converged;
-  json["states"] = refined.states;
-  json["landmarks"] = refined.landmarks;
-  json["observations"] = refined.observations;
-  json["observation_variance"] = refined.observation_variance;
-  json["design_effect"] = refined.design_effect;
-  json["outlier_share"] = refined.outlier_share;
-  json["iterations"] = refined.iterations;
-  json["cost"] = {
-      {"forward", refined.forward_cost}, {"first_round", refined.first_round_cost}, {"end", refined.cost}};
-  json["moved_rms_m"] = refined.moved_rms_m;
-  json["moved_max_m"] = refined.moved_max_m;
-  json["turned_rms_rad"] = refined.turned_rms_rad;
-  json["end_sigma_m"] = {{"forward", refined.forward_sigma_m}, {"refined", refined.sigma_m}};
-  json["has_covariance"] = refined.has_covariance;
-  json["processor_s"] = refined.processor_s;
-  return json;
-}
-
 using ScaleSource = std::pair<const char*, double ScaleInformation::*>;
 constexpr ScaleSource kScaleSources[] = {{"stereo", &ScaleInformation::stereo},
                                          {"accelerometer", &ScaleInformation::accelerometer},
@@ -187,9 +151,9 @@ void RunSummary::add(const FrameEstimate& estimate) {
   degraded_ += estimate.status == Status::Degraded;
   disagreeing_ += estimate.status == Status::Inertial && estimate.tracks >= kManyTracks;
   keyframes_ += estimate.is_keyframe;
-  if (estimate.magnetometer.status != MagnetometerStatus::Off)
-    ++magnetometer_frames_[estimate.magnetometer.status];
-  const DepthStatus depth = estimate.depth.status;
+  const MagnetometerStatus magnetometer = estimate.sensors.of<MagnetometerEstimate>().status;
+  if (magnetometer != MagnetometerStatus::Off) ++magnetometer_frames_[magnetometer];
+  const DepthStatus depth = estimate.sensors.of<DepthEstimate>().status;
   if (depth != DepthStatus::Off && depth != DepthStatus::NoData) ++depth_frames_[depth];
   sensor_frames_.add(estimate.sensor_rows);
   scale_.stereo += estimate.scale.stereo;
@@ -232,15 +196,15 @@ double RunSummary::coreMillisecondsPerFrame(double seconds) const {
 }
 
 double RunSummary::northFoundAfter_s() const {
-  return (*last_.magnetometer.north_found - first_pose_time_).seconds();
+  return (*lastMagnetometer().north_found - first_pose_time_).seconds();
 }
 
-bool RunSummary::hasNorth() const { return WorldTurn::of(last_.magnetometer).has_value(); }
+bool RunSummary::hasNorth() const { return WorldTurn::of(lastMagnetometer()).has_value(); }
 
 std::string RunSummary::headingText() const {
   return fmt::format("{} found {:.1f} s after the first pose; all files are turned by {:.1f} deg to it",
-                     toString(last_.magnetometer.heading_reference), northFoundAfter_s(),
-                     WorldTurn::of(last_.magnetometer)->angle_rad * 180.0 / M_PI);
+                     toString(lastMagnetometer().heading_reference), northFoundAfter_s(),
+                     WorldTurn::of(lastMagnetometer())->angle_rad * 180.0 / M_PI);
 }
 
 std::string RunSummary::magnetometerText() const {
@@ -258,8 +222,8 @@ std::string RunSummary::depthText() const {
   std::string text;
   for (const auto& [status, frames] : depth_frames_)
     text += fmt::format("{}{} {} readings", text.empty() ? "" : ", ", frames, toString(status));
-  if (!last_.depth.gauge) return text;
-  const DepthEstimate::Gauge& gauge = *last_.depth.gauge;
+  if (!lastGauge()) return text;
+  const DepthEstimate::Gauge& gauge = *lastGauge();
   return text + fmt::format("; {:.2f} m at the origin, density ratio {:.4f} (sigma {:.4f}), lag {:.2f} s",
                             gauge.depth_at_origin_m, gauge.density_ratio, gauge.density_ratio_sigma,
                             gauge.lag_s);
@@ -282,8 +246,8 @@ std::string RunSummary::uncertaintyText() const {
   const Eigen::VectorXd sigma = last_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return fmt::format(
       "{:.3f} m, heading {:.2f} deg against the first pose, {:.2f} deg against {} (one sigma, at the end)",
-      sigma.head<3>().norm(), sigma[5] * 180.0 / M_PI, last_.magnetometer.heading_sigma_rad * 180.0 / M_PI,
-      toString(last_.magnetometer.heading_reference));
+      sigma.head<3>().norm(), sigma[5] * 180.0 / M_PI, lastMagnetometer().heading_sigma_rad * 180.0 / M_PI,
+      toString(lastMagnetometer().heading_reference));
 }
 
 void RunSummary::addDetails(SummaryLines* lines) const {
@@ -308,6 +272,7 @@ std::string RunSummary::text(const Diagnostics& diagnostics, bool with_details, 
   SummaryLines lines(value_width);
   if (const std::string reason = distrust(); !reason.empty()) lines.add("do not trust", reason);
   if (refinement) lines.add("refinement", describe(*refinement));
+  if (mapping && (mapping->accepted > 0 || !mapping->is_placed)) lines.add("loops", describe(*mapping));
   lines.add("completion", completionText());
   lines.add("path", fmt::format("{:.2f} m in {}", path_m_, clockText(recordingSeconds())));
   if (posed_ > 0) lines.add("uncertainty", uncertaintyText());
@@ -369,7 +334,7 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
                                {"estimator", coreMillisecondsPerFrame(estimator_s)},
                                {"pictures", coreMillisecondsPerFrame(pictures_s)}};
   json["peak_memory_MB"] = peak_memory_MB;
-  const MagnetometerEstimate& magnetometer = last_.magnetometer;
+  const MagnetometerEstimate& magnetometer = lastMagnetometer();
   json["heading"] = {{"reference", toString(magnetometer.heading_reference)},
                      {"sigma_rad", magnetometer.heading_sigma_rad}};
   const std::optional<WorldTurn> turn = WorldTurn::of(magnetometer);
@@ -389,10 +354,11 @@ std::string RunSummary::json(const Diagnostics& diagnostics) const {
     json["magnetometer"]["correlated_noise_sigma_T"] = *magnetometer.correlated_noise_sigma_T;
   }
   for (const auto& [status, frames] : depth_frames_) json["pressure"]["frames"][toString(status)] = frames;
-  if (last_.depth.gauge) json["pressure"]["gauge"] = toJson(*last_.depth.gauge);
+  if (lastGauge()) json["pressure"]["gauge"] = toJson(*lastGauge());
   sensor_frames_.addTo(&json);
   if (const auto scale = scaleInformation()) json["scale"] = toJson(*scale);
   if (refinement) json["refinement"] = toJson(*refinement);
+  if (mapping) json["mapping"] = toJson(*mapping);
   json["findings"] = findingsJson(diagnostics, [this](const std::string& m) { return readable(m); });
   return jsonText(json) + "\n";
 }

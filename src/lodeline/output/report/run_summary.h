@@ -56,6 +56,7 @@ class RunSummary {
   int64_t map_points = 0;
   bool interrupted = false;                     ///< the user ended the run before the end of the recording
   std::optional<RefinementSummary> refinement;  ///< if the run was refined
+  std::optional<MappingSummary> mapping;        ///< if the run made a map
 
   double recordingSeconds() const;
   /// Number of recorded images of the first camera; unusable ones are not frames.
@@ -85,6 +86,10 @@ class RunSummary {
  private:
   double coreMillisecondsPerFrame(double seconds) const;
   bool hasMagnetometer() const { return !magnetometer_frames_.empty(); }
+  const MagnetometerEstimate& lastMagnetometer() const { return last_.sensors.of<MagnetometerEstimate>(); }
+  const std::optional<DepthEstimate::Gauge>& lastGauge() const {
+    return last_.sensors.of<DepthEstimate>().gauge;
+  }
   double northFoundAfter_s() const;
   bool hasNorth() const;
   std::string completionText() const;

@@ -8,6 +8,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/synchronizer/recording_file.h"
+#include "lodeline/sensors/sensor_kind.h"
 
 namespace lodeline {
 namespace {
@@ -62,7 +63,7 @@ void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::st
   for (size_t i = 0; i < layout.camera_indices.size(); ++i) {
     add(fmt::format("cam{}", layout.camera_indices[i]), fmt::format("cam{}", i));
   }
-  for (const char* sensor : {"imu0", "mag0", "pressure0", "sonar0"}) {
+  for (const char* sensor : kSingleSensors) {
     if (topics.contains(sensor) && rig.sections.contains(sensor)) add(sensor, sensor);
   }
   if (root["imu0"].IsDefined() && rig.sections.at("imu0").keys == SectionKeys::Kalibr &&

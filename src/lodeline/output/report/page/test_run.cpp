@@ -36,7 +36,7 @@ FrameEstimate estimateAt(int i, double t_s) {
   estimate.tracks = 150 + i % 30;
   estimate.landmarks = 80 + i % 20;
   estimate.reprojection_rms_sigmas = 0.5;
-  MagnetometerEstimate& magnetometer = estimate.magnetometer;
+  MagnetometerEstimate& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
   magnetometer.status = i % 20 == 19 ? MagnetometerStatus::Norm : MagnetometerStatus::Used;
   magnetometer.heading_reference = HeadingReference::True;
   magnetometer.heading_sigma_rad = 0.01;

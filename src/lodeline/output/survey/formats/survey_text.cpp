@@ -52,6 +52,12 @@ std::string quoted(std::string text) {
   return '"' + text + '"';
 }
 
+std::string localStart(const DiveMap& map) {
+  const Vec3 first_ENU = map.survey.stations.front().position_ENU - map.start_depth_m * Vec3::UnitZ();
+  const auto text = [](double value) { return value == 0.0 ? "0" : fmt::format("{:.4f}", value); };
+  return fmt::format("{} {} {:.4f}", text(first_ENU.x()), text(first_ENU.y()), first_ENU.z() + 0.0);
+}
+
 }  // namespace lodeline::survey_text
 
 namespace lodeline {

@@ -21,6 +21,9 @@ std::string splay(size_t station, const char* target, const Vec3& vector, const 
 /// Every note as a comment.
 std::string comments(const DiveMap& map, const char* mark);
 
+/// "E N U" of the first station, m, in a map without a place on Earth: from the map's origin at the surface.
+std::string localStart(const DiveMap& map);
+
 /// "2026.11.21" from "2026-11-21".
 std::string dotted(std::string date);
 

@@ -9,9 +9,7 @@ namespace {
 using namespace survey_text;
 
 std::string survexFix(const DiveMap& map) {
-  if (!map.place) {
-    return fmt::format("*fix 0 0 0 {:.4f}\n", -map.start_depth_m + 0.0);
-  }
+  if (!map.place) return fmt::format("*fix 0 {}\n", localStart(map));
   const std::string& grid = map.place->gridDescription().survex_name;
   const Vec3 first = rounded(map.place->grid(map.survey.stations.front().position_ENU));
   return fmt::format("*cs {0}\n*cs out {0}\n*fix 0 {1:.4f} {2:.4f} {3:.4f} {4:g} {5:g} {6:g}\n", grid,

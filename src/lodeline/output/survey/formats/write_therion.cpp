@@ -39,7 +39,7 @@ class Offsets {
 
 /// The line that fixes the position of a dive's first station.
 std::string fixLine(const DiveMap& map, const std::optional<Georeference>& place) {
-  if (!place) return fmt::format("  fix 0@{} 0 0 {:.4f}\n", map.name, -map.start_depth_m + 0.0);
+  if (!place) return fmt::format("  fix 0@{} {}\n", map.name, localStart(map));
   const Vec3 first = rounded(place->grid(map.survey.stations.front().position_ENU));
   return fmt::format("  fix 0@{} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n", map.name, first.x(), first.y(),
                      first.z(), map.place_sigma.x(), map.place_sigma.y(), map.place_sigma.z());

@@ -28,7 +28,8 @@ RunFolder runOf(const std::string& name, const std::vector<FrameEstimate>& estim
   for (const FrameEstimate& estimate : estimates)
     last = estimate.status == Status::Waiting ? last : &estimate;
   if (last == nullptr) throw InputError(name + ": no estimate has a pose");
-  const WorldTurn turn = WorldTurn::of(last->magnetometer).value_or(WorldTurn{});
+  const auto& magnetometer = last->sensors.of<MagnetometerEstimate>();
+  const WorldTurn turn = WorldTurn::of(magnetometer).value_or(WorldTurn{});
   const Rigid3 turned_from_world(Quat(Eigen::AngleAxisd(turn.angle_rad, Vec3::UnitZ())), Vec3::Zero());
   for (const FrameEstimate& estimate : estimates) {
     if (estimate.status == Status::Waiting) continue;
@@ -38,12 +39,12 @@ RunFolder runOf(const std::string& name, const std::vector<FrameEstimate>& estim
   for (const MapPoint& point : landmarks) {
     run.landmarks.push_back({turn.apply(point.position_W), point.observations});
   }
-  const MagnetometerEstimate& magnetometer = last->magnetometer;
   run.heading_reference = magnetometer.heading_reference;
   if (magnetometer.heading_reference != HeadingReference::Start) {
     run.heading_sigma_rad = magnetometer.heading_sigma_rad;
   }
-  if (last->depth.gauge) run.depth_at_origin_m = last->depth.gauge->depth_at_origin_m;
+  const auto& gauge = last->sensors.of<DepthEstimate>().gauge;
+  if (gauge) run.depth_at_origin_m = gauge->depth_at_origin_m;
   if (last->camera_corrections) {
     run.camera_corrections = last->camera_corrections->extrinsics;
     run.intrinsics_corrections = last->camera_corrections->intrinsics;
