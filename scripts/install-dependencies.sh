@@ -12,6 +12,7 @@ build=(
   build-essential cmake ninja-build ccache git
   libboost-dev libeigen3-dev libceres-dev libgoogle-glog-dev libyaml-cpp-dev libcli11-dev libfmt-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev libopencv-video-dev
+  libopencv-features2d-dev libsqlite3-dev
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libapriltag-dev  # boards for the calibration of cameras
   libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev

@@ -19,6 +19,7 @@
 #include "apps/lodeline/evaluate_command.h"
 #include "apps/lodeline/export/export_command.h"
 #include "apps/lodeline/inspect_command.h"
+#include "apps/lodeline/map/map_command.h"
 #include "apps/lodeline/refine_command.h"
 #include "apps/lodeline/report_command.h"
 #include "apps/lodeline/run_command.h"
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);
   lodeline::addExportCommand(program);
+  lodeline::addMapCommand(program);
   lodeline::addReportCommand(program);
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);

@@ -94,6 +94,8 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
   command->add_option("--site", arguments->site,
                       "LAT,LON,HEIGHT (degrees, m) of the recording, for true north");
   command->add_option("--date", arguments->date, "YYYY-MM-DD of the recording, for true north");
+  command->add_option("--map", arguments->map,
+                      "map of earlier dives (`lodeline map`): find the dive's place in it");
   command
       ->add_option("--live", arguments->live_port,
                    fmt::format("show the run in the browser while it goes on, at this port ({} where none is "

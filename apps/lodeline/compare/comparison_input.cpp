@@ -22,6 +22,9 @@ namespace fs = std::filesystem;
 std::string label(const std::string& name, const ScenarioChanges& changes) {
   std::string text = name + "_" + changes.realism;
   if (changes.seed && *changes.seed != 1) text += fmt::format("_seed{}", *changes.seed);
+  if (changes.cave_seed) text += fmt::format("_cave{}", *changes.cave_seed);
+  if (changes.dive_seed) text += fmt::format("_dive{}", *changes.dive_seed);
+  if (changes.entrance) text += fmt::format("_entrance{}", *changes.entrance);
   return text;
 }
 
@@ -33,7 +36,7 @@ fs::path recordingsFolder(const ComparisonRequest& request) {
 /// dive.
 fs::path calibrateRig(const Scenario& dive, const std::string& name, const ComparisonRequest& request) {
   ScenarioChanges changes;
-  changes.seed = request.changes.seed;
+  changes.seed = dive.seed;
   changes.realism = request.changes.realism;
   changes.effects = request.changes.effects;
   changes.imu_rate_hz = request.changes.imu_rate_hz;

@@ -67,21 +67,25 @@ void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
 
 }  // namespace
 
+void addMapFileOptions(CLI::App* command, ExportArguments* arguments) {
+  command
+      ->add_option("-f,--format", arguments->formats,
+                   "survex, therion, geojson, kml, gpx, ply, csv, tum, colmap; several with commas")
+      ->delimiter(',');
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace files of another dive that have the same names");
+  addPlaceOptions(command, arguments);
+  addSurveyOptions(command, arguments);
+}
+
 void addExportCommand(CLI::App& program) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand(
       "export", "A run as files for surveyors and map makers: Survex, Therion, GIS, 3-D");
   command->add_option("RUN", arguments->runs, "folders that `lodeline run` wrote; several make one project")
       ->required();
-  command
-      ->add_option("-f,--format", arguments->formats,
-                   "survex, therion, geojson, kml, gpx, ply, csv, tum, colmap; several with commas")
-      ->delimiter(',');
   command->add_option("-o,--output", arguments->output, "folder for the files; without it, RUN/export");
-  command->add_flag("--overwrite", arguments->overwrite,
-                    "replace files of another dive that have the same names");
-  addPlaceOptions(command, arguments.get());
-  addSurveyOptions(command, arguments.get());
+  addMapFileOptions(command, arguments.get());
   addDepthOptions(command, &arguments->depth);
   command->footer(
       "Every file begins with where it is from, which north it uses and what was applied.\n"

@@ -78,10 +78,9 @@ std::vector<MapFormat> wantedFormats(const ExportArguments& arguments) {
   return formats;
 }
 
-ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
-                      const std::string& run_folder, DiveMapOptions options, Diagnostics* diagnostics) {
+ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFormat>& formats, RunFolder run,
+                      DiveMapOptions options, Diagnostics* diagnostics) {
   ExportedDive dive;
-  RunFolder run = readRunFolder(run_folder, diagnostics);
   if (!arguments.depth.file.empty())
     dive.depth_comparison = applyDepthProfile(arguments.depth, &run, &options, diagnostics);
   dive.recording = readRecording(arguments, formats, run, diagnostics);
@@ -92,18 +91,20 @@ ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFor
 /// Maps of all dives on the grid of the first one, because survey programs cannot join dives on different
 /// grids.
 std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
-                                    Diagnostics* diagnostics) {
+                                    std::vector<RunFolder> runs, Diagnostics* diagnostics) {
   DiveMapOptions options = mapOptions(arguments);
   std::vector<ExportedDive> dives;
-  if (arguments.runs.size() == 1) {
-    dives.push_back(makeDive(arguments, formats, arguments.runs.front(), options, diagnostics));
+  if (runs.size() == 1) {
+    dives.push_back(makeDive(arguments, formats, std::move(runs.front()), options, diagnostics));
     return dives;
   }
-  const std::vector<std::string> names = surveyNames({arguments.runs.begin(), arguments.runs.end()});
+  std::vector<std::filesystem::path> folders;
+  for (const RunFolder& run : runs) folders.push_back(run.folder);
+  const std::vector<std::string> names = surveyNames(folders);
   for (size_t i = 0; i < names.size(); ++i) {
     options.name = names[i];
     options.title.clear();
-    dives.push_back(makeDive(arguments, formats, arguments.runs[i], options, diagnostics));
+    dives.push_back(makeDive(arguments, formats, std::move(runs[i]), options, diagnostics));
     const std::optional<Georeference>& place = dives.back().map.place;
     if (place) options.crs = place->gridDescription().code;
   }
@@ -165,9 +166,16 @@ void writeProjects(const ExportArguments& arguments, const std::vector<MapFormat
 }  // namespace
 
 void exportRuns(const ExportArguments& arguments) {
-  const std::vector<MapFormat> formats = wantedFormats(arguments);
+  wantedFormats(arguments);  // refuses wrong arguments before anything is read
   Diagnostics diagnostics;
-  const std::vector<ExportedDive> dives = makeDives(arguments, formats, &diagnostics);
+  std::vector<RunFolder> runs;
+  for (const std::string& folder : arguments.runs) runs.push_back(readRunFolder(folder, &diagnostics));
+  exportDives(arguments, std::move(runs), &diagnostics);
+}
+
+void exportDives(const ExportArguments& arguments, std::vector<RunFolder> runs, Diagnostics* diagnostics) {
+  const std::vector<MapFormat> formats = wantedFormats(arguments);
+  const std::vector<ExportedDive> dives = makeDives(arguments, formats, std::move(runs), diagnostics);
   const std::filesystem::path folder = outputFolder(arguments);
   if (!arguments.overwrite) {
     for (const ExportedDive& dive : dives) expectOwnFolder(dive, formats, folder);
@@ -180,7 +188,7 @@ void exportRuns(const ExportArguments& arguments) {
     for (const std::string& note : dive.map.notes) fmt::print("{}\n", note);
   }
   for (const std::filesystem::path& file : files) fmt::print("written: {}\n", file.string());
-  fmt::print("{}", findingsText(diagnostics));
+  fmt::print("{}", findingsText(*diagnostics));
 }
 
 }  // namespace lodeline

@@ -28,4 +28,7 @@ struct ExportArguments {
 /// survey programs get a project file that joins them.
 void exportRuns(const ExportArguments& arguments);
 
+/// The same for runs that were read already; `arguments.runs` names them.
+void exportDives(const ExportArguments& arguments, std::vector<RunFolder> runs, Diagnostics* diagnostics);
+
 }  // namespace lodeline

@@ -25,6 +25,8 @@ class EstimationLoop {
 
   /// Keeps what the batch solution needs, from the next packet on (EstimatorLog).
   void record(double state_interval_s) { record_.emplace(state_interval_s); }
+  /// Makes the frame processed last a state of the batch solution.
+  void keepNewest() { record_->keepNewest(); }
 
   /// Reads the next packet; returns false at the end of the source.
   bool fetch();

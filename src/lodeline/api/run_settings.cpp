@@ -22,6 +22,8 @@ void bindRecording(Settings* settings, RunSettings* options) {
                  "of the IMU, else 250.");
   settings->bind("front_end.static_image_mask", &options->odometry.front_end.static_image_mask.enabled,
                  "Leave out regions that stay in place in the images, such as parts of the rig.");
+  settings->bind("loops.enabled", &options->loops,
+                 "Recognize places that were seen before, and write the map of the dive.");
   settings->bind("camera_calibration.enabled", &options->odometry.estimator.camera_calibration.enabled,
                  "Estimate the calibration of the cameras.");
 }

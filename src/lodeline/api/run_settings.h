@@ -21,7 +21,8 @@ struct RunSettings {
   std::vector<double> site;              ///< latitude, longitude (degrees) and height (m); empty for unknown
   std::string date;                      ///< YYYY-MM-DD; empty for unknown
   WhiteNoise
-      shown_noise;  ///< of the IMU, estimated from its readings; used to check the noise stated in its file
+      shown_noise;    ///< of the IMU, estimated from its readings; used to check the noise stated in its file
+  bool loops = true;  ///< find loops, and write the map of the dive
 };
 
 void bindRunSettings(Settings* settings, RunSettings* options);

@@ -7,30 +7,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "lodeline/board/corner_refinement.h"
-#include "lodeline/board/tag_family.h"
-
-extern "C" {
-#include <apriltag/apriltag.h>
-}
+#include "lodeline/board/tag_detector.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kPixelsOfFullDetection = 1.0e6;  ///< larger images are searched at half the resolution
-constexpr float kLeastMargin = 20.0f;             ///< contrast of the bits, grey values
-
-/// A tag in an image, its corners in the library's order.
-struct FoundTag {
-  int id = 0;
-  double border_share = 0.2;  ///< width of the black border over the edge
-  Vec2 corners[4];
-
-  double edge_px() const {
-    double shortest = std::numeric_limits<double>::max();
-    for (int k = 0; k < 4; ++k) shortest = std::min(shortest, (corners[k] - corners[(k + 1) % 4]).norm());
-    return shortest;
-  }
-};
 
 /// Errors (in edges of the tag) of the tags against one homography of the board. Tags may be printed turned:
 /// corner k of the library is corner k + `turn` of the board.
@@ -85,39 +65,8 @@ int keepFittingTags(const CalibrationBoard& board, std::vector<FoundTag>* tags) 
 
 }  // namespace
 
-struct BoardDetector::Library {
-  TagFamily narrow{1}, wide{2};
-  std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector{apriltag_detector_create(),
-                                                                                apriltag_detector_destroy};
-  Library() {
-    detector->nthreads = 1;
-    apriltag_detector_add_family(detector.get(), narrow.get());
-    apriltag_detector_add_family(detector.get(), wide.get());
-  }
-
-  std::vector<FoundTag> find(const cv::Mat& image, int tag_count) const {
-    detector->quad_decimate = static_cast<double>(image.total()) > kPixelsOfFullDetection ? 2.0f : 1.0f;
-    image_u8_t view = {image.cols, image.rows, static_cast<int>(image.step), image.data};
-    zarray_t* detections = apriltag_detector_detect(detector.get(), &view);
-    std::vector<FoundTag> tags;
-    for (int i = 0; i < zarray_size(detections); ++i) {
-      apriltag_detection_t* detection = nullptr;
-      zarray_get(detections, i, &detection);
-      if (detection->id >= tag_count || detection->decision_margin < kLeastMargin) continue;
-      FoundTag tag;
-      tag.id = detection->id;
-      tag.border_share = detection->family == narrow.get() ? 1.0 / narrow.width() : 2.0 / wide.width();
-      // The library puts the centre of the first pixel at (0.5, 0.5).
-      for (int k = 0; k < 4; ++k) tag.corners[k] = Vec2(detection->p[k][0] - 0.5, detection->p[k][1] - 0.5);
-      tags.push_back(tag);
-    }
-    apriltag_detections_destroy(detections);
-    return tags;
-  }
-};
-
 BoardDetector::BoardDetector(const CalibrationBoard& board)
-    : board_(board), library_(std::make_unique<Library>()) {}
+    : board_(board), tags_(std::make_unique<TagDetector>()) {}
 BoardDetector::~BoardDetector() = default;
 
 namespace {
@@ -137,13 +86,13 @@ void addMissed(std::vector<FoundTag> more, double inset_px, std::vector<FoundTag
 }  // namespace
 
 std::vector<BoardCorner> BoardDetector::detect(const cv::Mat& image) const {
-  std::vector<FoundTag> tags = library_->find(image, board_.tagCount());
+  std::vector<FoundTag> tags = tags_->find(image, board_.tagCount());
   if (static_cast<int>(tags.size()) < board_.tagCount()) {
     // In a blurred image, the squares at the crossings join the tags to one black area. Thinner black parts
     // them.
     cv::Mat thinned;
     cv::dilate(image, thinned, cv::getStructuringElement(cv::MORPH_CROSS, cv::Size(3, 3)));
-    addMissed(library_->find(thinned, board_.tagCount()), 1.0, &tags);
+    addMissed(tags_->find(thinned, board_.tagCount()), 1.0, &tags);
   }
   if (tags.size() < kLeastTags) return {};
   const int turn = keepFittingTags(board_, &tags);

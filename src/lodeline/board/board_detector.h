@@ -8,6 +8,8 @@
 
 namespace lodeline {
 
+class TagDetector;
+
 /// A corner of the board in an image.
 struct BoardCorner {
   int index = 0;  ///< see CalibrationBoard::corner_T
@@ -29,10 +31,8 @@ class BoardDetector {
   std::vector<BoardCorner> detect(const cv::Mat& image) const;
 
  private:
-  struct Library;
-
   CalibrationBoard board_;
-  std::unique_ptr<Library> library_;
+  std::unique_ptr<TagDetector> tags_;
 };
 
 }  // namespace lodeline

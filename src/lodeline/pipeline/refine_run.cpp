@@ -11,10 +11,10 @@ constexpr const char* kLandmarks = "landmarks_refined.ply";
 
 }  // namespace
 
-RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record,
+RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record, const LoopClosures& loops,
                             const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
                             Diagnostics* diagnostics) {
-  const Refinement refinement = refine(estimator.rig(), estimator.options(), record);
+  const Refinement refinement = refine(estimator.rig(), estimator.options(), record, loops);
   const RefinementSummary& summary = refinement.summary;
   if (!summary.usable()) {
     diagnostics->report(Severity::Serious, "refinement_refused",
@@ -36,7 +36,7 @@ RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& reco
       last = frame.time;
     }
   }
-  const MagnetometerEstimate& north = refinement.frames.back().magnetometer;
+  const MagnetometerEstimate& north = refinement.frames.back().sensors.of<MagnetometerEstimate>();
   std::optional<WorldTurn> turn = WorldTurn::of(north);
   if (turn) turn->north_found.reset();  // all frames are relative to it
   if (turn) turnStateFiles(folder, kSuffix, *turn);

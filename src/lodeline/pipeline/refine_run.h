@@ -12,7 +12,7 @@ namespace lodeline {
 /// landmarks_refined.ply beside the run's own files; only a finding where the solution is rejected.
 /// `result_stamps`: of frames whose results have a stamp other than their time. Throws InputError where
 /// writing fails.
-RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record,
+RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record, const LoopClosures& loops,
                             const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
                             Diagnostics* diagnostics);
 

@@ -27,6 +27,7 @@ struct RunRequest {
   bool quiet = false;                      ///< no progress
   bool verbose = false;                    ///< a summary with all values
   bool overwrite = false;                  ///< replace the results of another run in the folder
+  std::string map;                         ///< map file in which the run looks for places; empty for none
   /// Computes the batch solution after the run, with states at most this far apart (`lodeline refine`).
   std::optional<double> refine_interval_s;
 };

@@ -35,6 +35,15 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
   return description;
 }
 
+RunMappingRequest mappingRequest(const RunRequest& request) {
+  RunMappingRequest mapping;
+  mapping.folder = request.output;
+  mapping.earlier_map = request.map;
+  mapping.name = std::filesystem::absolute(request.output).filename().string();
+  mapping.recording = request.data;
+  return mapping;
+}
+
 void writeSettings(const std::filesystem::path& folder, const Settings& settings) {
   std::ofstream config = openOutput(folder / "config.yaml");
   settings.write(config);
@@ -58,6 +67,8 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
     writeSettings(folder_, settings);
     output_.emplace(folder_, loop_.odometry().estimator(),
                     RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
+    if (options.loops || !request.map.empty())
+      mapping_.emplace(mappingRequest(request), source->rig(), diagnostics);
   }
   start_ = Clock::now();
   start_processor_s_ = ProcessUsage::now().processor_s;
@@ -71,6 +82,10 @@ void RunSession::process() {
   landmarks_ =
       output_ ? output_->write(packet, loop_.hasNewStamp() ? &estimate : nullptr, attitude, &loop_.odometry())
               : loop_.odometry().estimator().takeMapPoints();
+  if (mapping_) {
+    const std::optional<Time> stamp = loop_.hasNewStamp() ? std::optional(estimate.time) : std::nullopt;
+    if (mapping_->add(packet, estimate, stamp, loop_.odometry()) && loop_.log()) loop_.keepNewest();
+  }
   summary_.add(estimate);
   for (const cv::Mat& image : packet.images) summary_.images += image.empty() ? 0 : 1;
   summary_.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -79,8 +94,10 @@ void RunSession::process() {
 RunSummary RunSession::finish() {
   loop_.finish();
   const PacketOdometry& odometry = loop_.odometry();
-  if (output_) summary_.map_points = output_->finish(odometry, summary_.last().magnetometer);
+  if (output_)
+    summary_.map_points = output_->finish(odometry, summary_.last().sensors.of<MagnetometerEstimate>());
   if (output_) summary_.pictures_s = output_->picturesSeconds();
+  if (mapping_) summary_.mapping = mapping_->finish(summary_.last().sensors.of<MagnetometerEstimate>());
   output_.reset();  // closes files that are read next
   summary_.interrupted = loop_.isPending();
   if (!summary_.interrupted) summary_.recorded_images = loop_.synchronizer().recordedImages();
@@ -90,7 +107,8 @@ RunSummary RunSession::finish() {
   summary_.process_s = usage.processor_s - start_processor_s_;
   if (loop_.log()) {
     summary_.refinement =
-        refineRun(odometry.estimator(), *loop_.log(), folder_, loop_.resultStamps(), diagnostics_);
+        refineRun(odometry.estimator(), *loop_.log(), mapping_ ? mapping_->closures() : LoopClosures{},
+                  folder_, loop_.resultStamps(), diagnostics_);
     usage = ProcessUsage::now();
   }
   summary_.peak_memory_MB = usage.peak_memory_MB;

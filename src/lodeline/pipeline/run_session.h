@@ -8,6 +8,7 @@
 #include "lodeline/api/run_settings.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/attitude_track.h"
+#include "lodeline/mapping/session/run_mapping.h"
 #include "lodeline/output/files/run_output.h"
 #include "lodeline/output/report/run_summary.h"
 #include "lodeline/pipeline/run_request.h"
@@ -57,6 +58,7 @@ class RunSession {
   AttitudeTrack attitude_;
   RunSummary summary_;
   std::optional<RunOutput> output_;
+  std::optional<RunMapping> mapping_;
   std::vector<MapPoint> landmarks_;
   Clock::time_point start_;
   double start_processor_s_ = 0.0;

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/rig.h"
+#include "lodeline/sensors/sensor_kind.h"
 
 namespace lodeline {
 
@@ -40,8 +40,9 @@ class SensorReadings {
   }
 
  private:
-  // A new kind of sensor adds its type here.
-  std::tuple<std::vector<MagnetometerSample>, std::vector<DepthSample>, std::vector<SonarSample>> lists_;
+  template <typename Sample>
+  using List = std::vector<Sample>;
+  PerSensorKind<List> lists_;
 };
 
 }  // namespace lodeline

@@ -1,0 +1,289 @@
+#include "lodeline/mapping/session/dive_mapping.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "lodeline/mapping/recognition/merge_keyframes.h"
+#include "lodeline/mapping/session/loops/cloud_loops.h"
+#include "lodeline/util/thread_clock.h"
+
+namespace lodeline {
+namespace {
+
+// Keyframes after which the file is brought up to date. A killed program loses no more than these.
+constexpr int kKeyframesPerCommit = 25;
+// Length of a clip with which a place is looked for without a prediction.
+constexpr double kClip_s = 3.0;
+
+/// Mean viewing direction of a keyframe's features, unit.
+Vec3 viewOf(const MapKeyframe& keyframe) {
+  Vec3 sum = Vec3::Zero();
+  for (const MapFeature& feature : keyframe.features) {
+    if (!feature.rays.empty()) sum += feature.rays.front().bearing_B;
+  }
+  return sum.norm() > 1e-9 ? Vec3(sum.normalized()) : Vec3::UnitX();
+}
+
+KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, double path_m) {
+  KnownKeyframe known;
+  known.id = keyframe.id;
+  known.dive = keyframe.dive;
+  known.time = keyframe.time;
+  known.odom_from_body = keyframe.odom_from_body;
+  known.map_from_body = map_from_body;
+  known.view_B = viewOf(keyframe);
+  known.path_m = path_m;
+  if (keyframe.depth_m) known.depth_m = keyframe.depth_m->value;
+  return known;
+}
+
+RelativePose poseOf(const Loop& loop) { return {loop.old_from_new, loop.covariance}; }
+
+std::vector<LinkedFeature> linksOf(const Loop& loop, const MapKeyframe& old_keyframe,
+                                   const MapKeyframe& new_keyframe) {
+  std::vector<LinkedFeature> links;
+  for (const FeatureMatch& match : loop.inlier_matches) {
+    const MapFeature& old_feature = old_keyframe.features[static_cast<size_t>(match.old_feature)];
+    const MapFeature& new_feature = new_keyframe.features[static_cast<size_t>(match.new_feature)];
+    if (old_feature.track >= 0) links.push_back({old_feature.track, new_feature.track, new_feature.rays});
+  }
+  return links;
+}
+
+}  // namespace
+
+DiveMapping::DiveMapping(MapFile* own, MapDive dive, const MapFile* earlier, const MappingOptions& options)
+    : own_(own),
+      dive_(std::move(dive)),
+      earlier_(earlier),
+      options_(options),
+      verifier_(options.verifier),
+      search_(options.candidates),
+      graph_(options.graph) {
+  change_.emplace(own_->change());
+  dive_.id = change_->addDive(dive_);
+  if (earlier_ != nullptr) loadEarlier();
+  DivePlacement start = options_.start;
+  if (earlier_ == nullptr) start = DivePlacement{};
+  known_.startDive(dive_number_, start);
+  map_from_odom_ = start.map_from_odom;
+  is_placed_ = earlier_ == nullptr;
+}
+
+void DiveMapping::loadEarlier() {
+  for (const MapDive& dive : earlier_->dives()) {
+    dive_number_ = std::max(dive_number_, dive.id + 1);
+    std::map<KeyframeId, RelativePose> edge_to;
+    earlier_->forEachEdge(dive.id, [&](const OdometryEdge& edge) {
+      edge_to[edge.new_keyframe] = {edge.old_from_new, edge.covariance};
+    });
+    known_.startDive(dive.id, DivePlacement{});
+    double path_m = 0.0;
+    std::vector<KeyframeId> ids;
+    earlier_->forEachKeyframe(dive.id, [&](const StoredKeyframe& row) { ids.push_back(row.keyframe.id); });
+    for (const KeyframeId id : ids) {
+      const StoredKeyframe row = *earlier_->keyframe(id);
+      MapKeyframe keyframe = row.keyframe;
+      keyframe.features = earlier_->features(id);
+      const auto edge = edge_to.find(id);
+      const RelativePose* odometry = edge == edge_to.end() ? nullptr : &edge->second;
+      if (odometry) path_m += odometry->from_from_to.translation.norm();
+      const Rigid3 pose = row.solved ? row.solved->map_from_body : keyframe.odom_from_body;
+      known_.add(knownOf(keyframe, pose, path_m), odometry);
+      if (!keyframe.features.empty()) index_.add(keyframe);
+      next_id_ = std::max(next_id_, id + 1);
+      if (!depth_datum_m_ && keyframe.depth_m)
+        depth_datum_m_ = keyframe.depth_m->value + pose.translation.z();
+    }
+  }
+}
+
+MapKeyframe DiveMapping::full(KeyframeId id) const {
+  const bool is_own = known_.at(id).dive == dive_number_;
+  return is_own ? own_->fullKeyframe(id) : earlier_->fullKeyframe(id);
+}
+
+void DiveMapping::store(MapKeyframe* keyframe) {
+  keyframe->id = next_id_++;
+  keyframe->dive = dive_.id;
+  change_->addKeyframe(*keyframe);
+  std::optional<RelativePose> odometry;
+  if (previous_) {
+    previous_->dive = dive_.id;
+    odometry = odometryEdge(*previous_, *keyframe, 0.0, options_.factors.odometry);
+    change_->addEdge({previous_->id, keyframe->id, odometry->from_from_to, odometry->covariance});
+  }
+  if (++uncommitted_ >= kKeyframesPerCommit) {
+    change_->commit();
+    change_.reset();
+    change_.emplace(own_->change());
+    uncommitted_ = 0;
+  }
+  keyframe->dive = dive_number_;
+  MapKeyframe measured = *keyframe;
+  measured.features.clear();
+  if (keyframe->depth_m) {
+    if (!depth_datum_m_) depth_datum_m_ = keyframe->depth_m->value + keyframe->odom_from_body.translation.z();
+    measured.depth_m->value -= *depth_datum_m_;
+  }
+  addKeyframe(measured, previous_ ? &*previous_ : nullptr, &graph_, map_from_odom_, options_.factors);
+  const double moved_m = odometry ? odometry->from_from_to.translation.norm() : 0.0;
+  path_m_ += moved_m;
+  known_.add(knownOf(*keyframe, map_from_odom_ * keyframe->odom_from_body, path_m_),
+             odometry ? &*odometry : nullptr);
+  previous_ = std::move(measured);
+  ++summary_.keyframes;
+}
+
+void DiveMapping::look(const MapKeyframe& keyframe, MappingStep* step) {
+  for (const LoopCandidateKeyframe& candidate : search_.find(keyframe, known_, index_)) {
+    const MapKeyframe old_keyframe = full(candidate.id);
+    // Without a prediction, a clip tells more than a single image.
+    const bool by_clip = !candidate.prediction;
+    Loop loop = by_clip ? verifier_.verify(old_keyframe, mergeKeyframes({recent_.begin(), recent_.end()}))
+                        : verifier_.verify(old_keyframe, keyframe, candidate.prediction);
+    loop.old_keyframe = candidate.id;
+    loop.new_keyframe = keyframe.id;
+    loop.source = candidate.source;
+    ++summary_.candidates;
+    if (loop.status != LoopStatus::Verified) {
+      record(loop);
+      continue;
+    }
+    ++summary_.verified;
+    VerifiedLoop verified{loop, {}};
+    if (!by_clip) verified.links = linksOf(loop, old_keyframe, keyframe);
+    verified.loop.inlier_matches.clear();
+    use(acceptance_.add(std::move(verified), candidate.prediction.has_value(), known_), step);
+  }
+  use(acceptance_.expire(keyframe.id, known_), step);
+}
+
+void DiveMapping::record(const Loop& loop) {
+  ledger_.push_back(loop);
+  ledger_.back().inlier_matches.clear();
+}
+
+void DiveMapping::joinGraph(KeyframeId earlier) {
+  if (graph_.contains(earlier)) return;
+  const StoredKeyframe row = *earlier_->keyframe(earlier);
+  if (!row.solved) return;
+  const Rigid3& pose = row.solved->map_from_body;
+  const int dive = row.keyframe.dive;
+  graph_.addNode(earlier, dive, pose);
+  constexpr double kLeast_m = 1e-3, kLeast_rad = 1e-4;
+  const Mat6& covariance = row.solved->covariance;
+  PositionMeasurement position;
+  position.name = "keyframe " + std::to_string(earlier);
+  position.node = earlier;
+  position.position_W = pose.translation;
+  position.covariance = covariance.topLeftCorner<3, 3>() + kLeast_m * kLeast_m * Mat3::Identity();
+  position.robust = false;
+  graph_.add(position);
+  const auto sigma = [&](int axis) { return std::sqrt(std::max(0.0, covariance(axis, axis))) + kLeast_rad; };
+  graph_.add(
+      TiltMeasurement{earlier, pose.rotation.conjugate() * Vec3::UnitZ(), std::max(sigma(3), sigma(4))});
+  graph_.add(AzimuthPrior{dive, 0.0, kLeast_rad});
+  graph_.add(HeadingMeasurement{earlier, pose.rotation, sigma(5)});
+}
+
+void DiveMapping::use(std::vector<VerifiedLoop> decided, MappingStep* step) {
+  for (VerifiedLoop& verified : decided) {
+    const Loop& loop = verified.loop;
+    record(loop);
+    if (loop.status != LoopStatus::Accepted) {
+      ++summary_.refused;
+      continue;
+    }
+    const bool between_dives = known_.at(loop.old_keyframe).dive != dive_number_;
+    if (between_dives) joinGraph(loop.old_keyframe);
+    graph_.add(edgeOf(loop));
+    known_.addLoop(loop.old_keyframe, loop.new_keyframe, poseOf(loop));
+    ++summary_.accepted;
+    if (between_dives) {
+      ++summary_.accepted_between_dives;
+      is_placed_ = true;
+      known_.placement(dive_number_).is_known = true;
+    }
+    step->accepted.push_back(std::move(verified));
+  }
+}
+
+void DiveMapping::updatePoses() {
+  for (KnownKeyframe& keyframe : known_.all()) {
+    if (keyframe.dive == dive_number_) keyframe.map_from_body = graph_.pose(keyframe.id);
+  }
+  const KnownKeyframe& newest = known_.at(previous_->id);
+  map_from_odom_ = mapFromOdom(newest.map_from_body, newest.odom_from_body);
+}
+
+MappingStep DiveMapping::add(MapKeyframe keyframe) {
+  const double start_s = threadSeconds();
+  store(&keyframe);
+  recent_.push_back(keyframe);
+  const Time oldest = keyframe.time - Duration::fromSeconds(kClip_s);
+  std::erase_if(recent_, [&](const MapKeyframe& other) { return other.time < oldest; });
+  MappingStep step;
+  step.keyframe = keyframe.id;
+  look(keyframe, &step);
+  index_.add(keyframe);
+  if (!step.accepted.empty()) {
+    graph_.solve();
+    updatePoses();
+  }
+  step.is_placed = is_placed_;
+  step.map_from_odom = map_from_odom_;
+  summary_.processor_s += threadSeconds() - start_s;
+  return step;
+}
+
+void DiveMapping::registerClouds() {
+  std::vector<MapKeyframe> keyframes;
+  own_->forEachKeyframe(dive_.id, [&](const StoredKeyframe& row) { keyframes.push_back(row.keyframe); });
+  Vec3 view_B = Vec3::Zero();
+  for (const KnownKeyframe& keyframe : known_.all()) {
+    if (keyframe.dive == dive_number_) view_B += keyframe.view_B;
+  }
+  const auto features = [this](KeyframeId id) { return own_->features(id); };
+  LoopAcceptance acceptance;
+  MappingStep step;
+  for (const Loop& loop : cloudLoops(keyframes, features, view_B.normalized())) {
+    ++summary_.candidates;
+    if (loop.status != LoopStatus::Verified) {
+      record(loop);
+      continue;
+    }
+    ++summary_.verified;
+    use(acceptance.add({loop, {}}, true, known_), &step);
+  }
+  use(acceptance.expire(previous_->id, known_, true), &step);
+}
+
+MappingSummary DiveMapping::finish(Time end) {
+  const double start_s = threadSeconds();
+  MappingStep last;
+  if (previous_) {
+    use(acceptance_.expire(previous_->id, known_, true), &last);
+    registerClouds();
+    graph_.solve();
+    updatePoses();
+    const GraphCovariance covariances = graph_.covariance();
+    for (const KnownKeyframe& keyframe : known_.all()) {
+      if (keyframe.dive == dive_number_)
+        change_->setSolution(keyframe.id, {keyframe.map_from_body, covariances.of(keyframe.id)});
+    }
+  }
+  for (const Loop& loop : ledger_) {
+    // Loops with another map's keyframes go to the common map.
+    if (known_.at(loop.old_keyframe).dive == dive_number_) change_->addLoop(loop);
+  }
+  dive_.end = end;
+  change_->updateDive(dive_);
+  change_->commit();
+  change_.reset();
+  summary_.is_placed = is_placed_;
+  summary_.processor_s += threadSeconds() - start_s;
+  return summary_;
+}
+
+}  // namespace lodeline

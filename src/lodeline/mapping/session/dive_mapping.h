@@ -1,0 +1,95 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/mapping/graph/keyframe_factors.h"
+#include "lodeline/mapping/graph/motion/level_motion.h"
+#include "lodeline/mapping/recognition/descriptor_index.h"
+#include "lodeline/mapping/session/loops/candidate_search.h"
+#include "lodeline/mapping/session/loops/known_keyframes.h"
+#include "lodeline/mapping/session/loops/loop_acceptance.h"
+#include "lodeline/mapping/store/map_change.h"
+#include "lodeline/mapping/store/map_file.h"
+
+namespace lodeline {
+
+struct MappingOptions {
+  CandidateSearchOptions candidates;
+  LoopVerifierOptions verifier;
+  PoseGraphOptions graph;
+  KeyframeFactorOptions factors;
+  /// Where the dive begins in an earlier map, if known: east, north, up relative to that map's origin, with
+  /// sigmas of the horizontal and the vertical position.
+  DivePlacement start;
+};
+
+/// Result for one keyframe.
+struct MappingStep {
+  KeyframeId keyframe = -1;
+  std::vector<VerifiedLoop> accepted;  ///< with this keyframe, or waiting ones that it confirms
+  bool is_placed = false;              ///< whether the pose in the map is known
+  Rigid3 map_from_odom;                ///< rotation about the vertical and translation
+};
+
+/// Builds the map of one dive from its keyframes, in order: stores them, looks for loops within the dive and
+/// with an earlier map, and solves the graph of poses where loops were accepted.
+class DiveMapping {
+ public:
+  /// `own`: file of this dive's map. `dive`: its row, number left open. `earlier`: a map to start from; null
+  /// for none. Both files must outlive this object.
+  DiveMapping(MapFile* own, MapDive dive, const MapFile* earlier, const MappingOptions& options);
+
+  /// Adds a keyframe; its id and dive are set here.
+  MappingStep add(MapKeyframe keyframe);
+
+  /// Completes the map: final solution with covariances, ledger. `end`: time of the dive's last frame.
+  MappingSummary finish(Time end);
+
+  /// All candidates so far with what became of them.
+  const std::vector<Loop>& ledger() const { return ledger_; }
+  const KnownKeyframes& known() const { return known_; }
+  const MappingSummary& summary() const { return summary_; }
+  const PoseGraph& graph() const { return graph_; }
+  /// Number of this dive among the known keyframes.
+  int dive() const { return dive_number_; }
+
+ private:
+  void loadEarlier();
+  MapKeyframe full(KeyframeId id) const;
+  void store(MapKeyframe* keyframe);
+  void look(const MapKeyframe& keyframe, MappingStep* step);
+  void use(std::vector<VerifiedLoop> decided, MappingStep* step);
+  void joinGraph(KeyframeId earlier);
+  void updatePoses();
+  /// Joins the way in and the way out by the shape of the passage.
+  void registerClouds();
+  void record(const Loop& loop);
+
+  MapFile* own_;
+  MapDive dive_;
+  const MapFile* earlier_;
+  MappingOptions options_;
+  LoopVerifier verifier_;
+  CandidateSearch search_;
+  DescriptorIndex index_;
+  KnownKeyframes known_;
+  LoopAcceptance acceptance_;
+  PoseGraph graph_;
+  std::optional<MapChange> change_;
+  int uncommitted_ = 0;
+  int dive_number_ = 1;  ///< of this dive in memory, beyond those of the earlier map
+  KeyframeId next_id_ = 1;
+  double path_m_ = 0.0;
+  std::optional<MapKeyframe> previous_;  ///< without features
+  std::vector<MapKeyframe> recent_;      ///< the last seconds, with features
+  std::optional<double> depth_datum_m_;  ///< depth at height 0 of the map
+  Rigid3 map_from_odom_;
+  bool is_placed_ = true;
+  std::vector<Loop> ledger_;
+  MappingSummary summary_;
+};
+
+}  // namespace lodeline

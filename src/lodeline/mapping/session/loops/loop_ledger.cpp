@@ -1,0 +1,48 @@
+#include "lodeline/mapping/session/loops/loop_ledger.h"
+
+#include <fmt/format.h>
+
+#include "lodeline/geometry/so3.h"
+#include "lodeline/util/files/output_file.h"
+
+namespace lodeline {
+namespace {
+
+constexpr const char* kHeader =
+    "#new_time [ns],old_time [ns],new_dive,old_dive,source,status,reason,matches,inliers,covered_share,"
+    "rms [sigma],mahalanobis_squared,dx [m],dy [m],dz [m],turn [deg],sigma_dx [m],sigma_dy [m],sigma_dz [m]";
+
+/// A text as one field of a CSV file: in quotes where it contains a comma or a quote.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+LoopLedger::LoopLedger(const std::filesystem::path& file) : file_(file), stream_(openOutput(file)) {
+  stream_ << kHeader << '\n' << std::flush;
+}
+
+void LoopLedger::write(const Loop& loop, const LoopPlaces& places) {
+  const Vec3& moved = loop.old_from_new.translation;
+  const double turn_deg = so3::log(loop.old_from_new.rotation).norm() * 180.0 / M_PI;
+  const Vec3 sigma = loop.covariance.diagonal().head<3>().cwiseMax(0.0).cwiseSqrt();
+  stream_ << fmt::format("{},{},{},{},{},{},{},{},{},{:.3f},{:.3f},{:.3f}", places.new_time.nanoseconds(),
+                         places.old_time.nanoseconds(), field(places.new_dive), field(places.old_dive),
+                         loop.source, toString(loop.status), field(loop.reason), loop.matches, loop.inliers,
+                         loop.covered_share, loop.rms_sigmas, loop.mahalanobis_squared);
+  // A candidate that was never aligned has no pose.
+  if (loop.inliers > 0) {
+    stream_ << fmt::format(",{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f}\n", moved.x(), moved.y(),
+                           moved.z(), turn_deg, sigma.x(), sigma.y(), sigma.z());
+  } else {
+    stream_ << ",nan,nan,nan,nan,nan,nan,nan\n";
+  }
+  stream_.flush();
+  if (!stream_) throw InputError(file_.string() + ": writing failed; is the disk full?");
+}
+
+}  // namespace lodeline

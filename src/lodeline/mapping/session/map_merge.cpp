@@ -1,0 +1,131 @@
+#include "lodeline/mapping/session/map_merge.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <set>
+
+#include "lodeline/diagnostics.h"
+#include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/store/map_change.h"
+
+namespace lodeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A map file that is removed at the end, beside another one.
+class TemporaryMap {
+ public:
+  explicit TemporaryMap(const fs::path& beside)
+      : path_(beside.string() + fmt::format(".{}.adding", ::getpid())) {
+    remove();
+    file_.emplace(MapFile::create(path_, {}));
+  }
+  ~TemporaryMap() {
+    file_.reset();
+    remove();
+  }
+  MapFile& file() { return *file_; }
+
+ private:
+  void remove() {
+    std::error_code ignored;
+    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(path_.string() + suffix, ignored);
+  }
+  fs::path path_;
+  std::optional<MapFile> file_;
+};
+
+DivePlacement placementOf(const DiveStart& start, const MapKeyframe& first) {
+  DivePlacement placement;
+  placement.is_known = first.heading_sigma_rad.has_value();
+  placement.azimuth_sigma_rad = first.heading_sigma_rad.value_or(M_PI);
+  placement.position_sigma_m =
+      Vec3(start.horizontal_sigma_m, start.horizontal_sigma_m, start.vertical_sigma_m);
+  placement.map_from_odom.rotation = so3::exp(first.north_from_odom_rad * Vec3::UnitZ());
+  placement.map_from_odom.translation =
+      start.position - placement.map_from_odom.rotation * first.odom_from_body.translation;
+  return placement;
+}
+
+/// Keyframes of a new dive that see what a keyframe of the map sees.
+std::set<KeyframeId> redundantKeyframes(const std::vector<Loop>& ledger, const KnownKeyframes& known,
+                                        int dive, const MapMergeOptions& options) {
+  std::set<KeyframeId> redundant;
+  for (const Loop& loop : ledger) {
+    if (loop.status != LoopStatus::Accepted || known.at(loop.old_keyframe).dive == dive) continue;
+    const double turn_rad = Quat::Identity().angularDistance(loop.old_from_new.rotation);
+    if (loop.old_from_new.translation.norm() < options.redundant_distance_m &&
+        turn_rad < options.redundant_turn_rad)
+      redundant.insert(loop.new_keyframe);
+  }
+  return redundant;
+}
+
+void addStart(const DiveStart& start, const std::string& dive, KeyframeId first, MapChange* change) {
+  ControlPoint point;
+  point.name = "start of " + dive;
+  point.kind = ControlKind::Gps;
+  point.origin = "as stated for the dive";
+  Vec3 sigmas(start.horizontal_sigma_m, start.horizontal_sigma_m, start.vertical_sigma_m);
+  point.position = PositionPrior{start.position, sigmas.cwiseAbs2().asDiagonal()};
+  ControlObservation seen;
+  seen.point = change->putControlPoint(point);
+  seen.keyframe = first;
+  constexpr double kBody_m = 0.01;  // the body itself is at the point
+  seen.in_body.covariance = kBody_m * kBody_m * Mat3::Identity();
+  change->addControlObservation(seen);
+}
+
+}  // namespace
+
+MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& options) {
+  const std::vector<MapDive> dives = run.dives();
+  if (dives.empty()) throw InputError(run.path().string() + ": the map of this run has no dive");
+  MapDive dive = dives.front();
+  if (map->findDive(dive.name)) {
+    throw InputError(fmt::format("{}: the map has a dive '{}' already; `lodeline map remove` takes it out",
+                                 map->path().string(), dive.name));
+  }
+  std::vector<KeyframeId> ids;
+  run.forEachKeyframe(dives.front().id, [&](const StoredKeyframe& row) { ids.push_back(row.keyframe.id); });
+  if (ids.empty()) throw InputError(run.path().string() + ": the dive has no keyframe");
+  const bool is_first = map->dives().empty();
+  MappingOptions mapping_options = options.mapping;
+  mapping_options.start.is_known = false;
+  if (options.start) mapping_options.start = placementOf(*options.start, run.fullKeyframe(ids.front()));
+
+  TemporaryMap temporary(map->path());
+  DiveMapping mapping(&temporary.file(), dive, is_first ? nullptr : map, mapping_options);
+  for (const KeyframeId id : ids) mapping.add(run.fullKeyframe(id));
+  MergedDive merged;
+  merged.name = dive.name;
+  merged.summary = mapping.finish(dive.end.value_or(dive.start));
+  merged.ledger = mapping.ledger();
+  const std::set<KeyframeId> redundant =
+      redundantKeyframes(merged.ledger, mapping.known(), mapping.dive(), options);
+  merged.without_features = static_cast<int>(redundant.size());
+
+  const MapFile& source = temporary.file();
+  const DiveId from = source.dives().front().id;
+  MapChange change = map->change();
+  const DiveId to = change.addDive(dive);
+  std::vector<StoredKeyframe> rows;
+  source.forEachKeyframe(from, [&](const StoredKeyframe& row) { rows.push_back(row); });
+  for (const StoredKeyframe& row : rows) {
+    MapKeyframe keyframe = row.keyframe;
+    keyframe.dive = to;
+    if (redundant.count(keyframe.id) == 0) keyframe.features = source.features(keyframe.id);
+    change.addKeyframe(keyframe);
+    if (row.solved) change.setSolution(keyframe.id, *row.solved);
+  }
+  source.forEachEdge(from, [&](const OdometryEdge& edge) { change.addEdge(edge); });
+  for (const Loop& loop : merged.ledger) change.addLoop(loop);
+  if (options.start) addStart(*options.start, dive.name, rows.front().keyframe.id, &change);
+  change.commit();
+  return merged;
+}
+
+}  // namespace lodeline

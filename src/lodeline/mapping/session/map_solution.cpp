@@ -1,0 +1,151 @@
+#include "lodeline/mapping/session/map_solution.h"
+
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "lodeline/mapping/store/map_change.h"
+
+namespace lodeline {
+namespace {
+
+/// Groups of dives that are connected with each other (union-find).
+class Groups {
+ public:
+  int of(int dive) {
+    int& parent = parent_.try_emplace(dive, dive).first->second;
+    return parent == dive ? dive : parent = of(parent);
+  }
+  void join(int a, int b) { parent_[std::max(of(a), of(b))] = std::min(of(a), of(b)); }
+
+ private:
+  std::map<int, int> parent_;
+};
+
+/// The graph of a map with what is needed to write the result back.
+struct MapGraph {
+  PoseGraph graph;
+  std::vector<KeyframeId> keyframes;
+  std::vector<StoredLoop> loops;  ///< accepted ones, in the order of the graph's robust factors
+  std::map<KeyframeId, int> dive_of;
+  std::map<int, std::string> names;
+  std::map<std::string, ControlPoint> points;
+  Groups groups;
+};
+
+/// Pose at which a dive starts before anything is solved: as solved before, else the identity.
+Rigid3 startOf(const StoredKeyframe& first) {
+  if (!first.solved) return {};
+  return mapFromOdom(first.solved->map_from_body, first.keyframe.odom_from_body);
+}
+
+void addDives(const MapFile& map, const MapSolutionOptions& options, MapGraph* result) {
+  std::optional<double> depth_datum_m;
+  for (const MapDive& dive : map.dives()) {
+    result->names[dive.id] = dive.name;
+    result->groups.of(dive.id);
+    std::optional<MapKeyframe> previous;
+    std::vector<StoredKeyframe> rows;
+    map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) { rows.push_back(row); });
+    for (const StoredKeyframe& row : rows) {
+      MapKeyframe keyframe = row.keyframe;
+      if (keyframe.depth_m) {
+        if (!depth_datum_m) depth_datum_m = keyframe.depth_m->value + keyframe.odom_from_body.translation.z();
+        keyframe.depth_m->value -= *depth_datum_m;
+      }
+      addKeyframe(keyframe, previous ? &*previous : nullptr, &result->graph, startOf(rows.front()),
+                  options.factors);
+      result->keyframes.push_back(keyframe.id);
+      result->dive_of[keyframe.id] = dive.id;
+      previous = std::move(keyframe);
+    }
+  }
+}
+
+void addLoops(const MapFile& map, MapGraph* result) {
+  map.forEachLoop([&](const StoredLoop& row) {
+    if (row.loop.status == LoopStatus::Accepted) result->loops.push_back(row);
+  });
+  for (const StoredLoop& row : result->loops) {
+    result->graph.add(edgeOf(row.loop));
+    result->groups.join(result->dive_of.at(row.loop.old_keyframe), result->dive_of.at(row.loop.new_keyframe));
+  }
+}
+
+void addControl(const MapFile& map, MapGraph* result) {
+  std::map<int64_t, ControlPoint> points;
+  std::map<int64_t, int> first_dive;
+  for (const ControlPoint& point : map.controlPoints()) {
+    points[point.id] = point;
+    result->points[point.name] = point;
+    GraphLandmark landmark{point.name, std::nullopt, Mat3::Identity()};
+    if (point.position) {
+      landmark.position_W = point.position->position;
+      landmark.covariance = point.position->covariance;
+    }
+    result->graph.add(landmark);
+  }
+  // All points of known position are in one frame, which joins their dives as well.
+  constexpr int kFrame = -1;
+  for (const ControlObservation& seen : map.controlObservations()) {
+    const ControlPoint& point = points.at(seen.point);
+    const int dive = result->dive_of.at(seen.keyframe);
+    Sighting sighting;
+    sighting.landmark = point.name;
+    sighting.node = seen.keyframe;
+    sighting.point_B = seen.in_body.position;
+    sighting.covariance = seen.in_body.covariance;
+    result->graph.add(sighting);
+    const int joined = point.position ? kFrame : first_dive.try_emplace(seen.point, dive).first->second;
+    result->groups.join(dive, joined);
+  }
+}
+
+std::vector<std::string> unconnectedDives(MapGraph* graph) {
+  std::vector<std::string> names;
+  const int first = graph->names.begin()->first;
+  for (const auto& [dive, name] : graph->names) {
+    if (graph->groups.of(dive) != graph->groups.of(first)) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+MapSolution solveMap(MapFile* map, const MapSolutionOptions& options) {
+  MapGraph graph{PoseGraph(options.graph), {}, {}, {}, {}, {}, {}};
+  addDives(*map, options, &graph);
+  MapSolution solution;
+  if (graph.keyframes.empty()) return solution;
+  addLoops(*map, &graph);
+  addControl(*map, &graph);
+  const GraphSummary summary = graph.graph.solve();
+  const GraphCovariance covariance = graph.graph.covariance();
+  MapChange change = map->change();
+  for (const KeyframeId id : graph.keyframes)
+    change.setSolution(id, {graph.graph.pose(id), covariance.of(id)});
+  size_t next_loop = 0;
+  for (const FactorReport& factor : summary.factors) {
+    if (factor.kind == FactorReport::Kind::Loop) {
+      StoredLoop& row = graph.loops[next_loop++];
+      if (factor.accepted) continue;
+      row.loop.status = LoopStatus::Refused;
+      row.loop.reason = factor.reason;
+      change.updateLoop(row);
+      ++solution.refused_loops;
+    } else {
+      const Vec3 residual = factor.residual.head<3>();
+      solution.control.push_back({factor.name, graph.names.at(graph.dive_of.at(factor.from)), residual,
+                                  factor.chi_squared, factor.accepted, factor.reason});
+    }
+  }
+  change.commit();
+  solution.converged = summary.converged;
+  solution.dives = static_cast<int>(graph.names.size());
+  solution.keyframes = static_cast<int>(graph.keyframes.size());
+  solution.loops = static_cast<int>(graph.loops.size()) - solution.refused_loops;
+  solution.unconnected = unconnectedDives(&graph);
+  return solution;
+}
+
+}  // namespace lodeline

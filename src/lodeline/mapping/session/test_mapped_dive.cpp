@@ -1,0 +1,161 @@
+#include "lodeline/mapping/session/test_mapped_dive.h"
+
+#include <cmath>
+
+#include "lodeline/cameras/camera.h"
+#include "lodeline/estimator/trials/scene.h"
+#include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/recognition/frame_geometry.h"
+#include "lodeline/mapping/session/keyframe_choice.h"
+#include "lodeline/mapping/session/loops/loop_closures.h"
+#include "simulation/dive/point_dive.h"
+
+namespace lodeline {
+namespace {
+
+Rig givenRig(Rig rig, const MappedDiveOptions& options) {
+  for (CameraCalibration& camera : rig.cameras) {
+    camera.fx_px *= 1.0 + options.focal_length_error;
+    camera.fy_px *= 1.0 + options.focal_length_error;
+  }
+  Rigid3& second = rig.cameras.back().body_from_camera;
+  const Vec3 baseline = second.translation - rig.cameras.front().body_from_camera.translation;
+  second.translation += options.baseline_error * baseline;
+  second.rotation = second.rotation * so3::exp(options.rotation_error_rad * Vec3(0.6, -0.5, 0.6));
+  return rig;
+}
+
+/// The descriptor of a physical point, the same in all dives of a cave; some share that of another point.
+Descriptor descriptorOf(int point, const MappedDiveOptions& options) {
+  Random choice(options.cave.seed, "alike/" + std::to_string(point));
+  if (choice.uniform(0.0, 1.0) < options.alike_share) point %= 40;
+  Random bits(options.cave.seed, "descriptor/" + std::to_string(point));
+  Descriptor descriptor;
+  for (uint64_t& word : descriptor.bits) {
+    for (int i = 0; i < 64; ++i) word |= static_cast<uint64_t>(bits.uniform(0.0, 1.0) < 0.5) << i;
+  }
+  return descriptor;
+}
+
+Descriptor withWrongBits(Descriptor descriptor, double share, Random& random) {
+  for (uint64_t& word : descriptor.bits) {
+    for (int i = 0; i < 64; ++i) word ^= static_cast<uint64_t>(random.uniform(0.0, 1.0) < share) << i;
+  }
+  return descriptor;
+}
+
+/// Makes keyframes from the tracks of a simulation of points.
+class KeyframeMaker {
+ public:
+  KeyframeMaker(const Rig& rig, const MappedDiveOptions& options)
+      : options_(options), random_(options.dive_seed, "mapped_dive/bits") {
+    for (const CameraCalibration& camera : rig.cameras) cameras_.push_back(makeCamera(camera));
+  }
+
+  MapKeyframe make(const FrameTracks& tracks, const FrameEstimate& estimate, const Estimator& estimator,
+                   const PointSimulation& simulation) {
+    const FrameGeometry geometry = frameGeometry(estimator, cameras_, tracks);
+    MapKeyframe keyframe;
+    keyframe.time = estimate.time;
+    keyframe.odom_from_body = estimate.state.world_from_body;
+    keyframe.covariance = estimate.covariance.topLeftCorner<6, 6>();
+    for (const FeatureObservation& seen : tracks.observations) {
+      const auto ray = geometry.rayOf(seen.camera, seen.pixel, seen.sigma_px);
+      if (!ray) continue;
+      const bool is_known = !keyframe.features.empty() && keyframe.features.back().track == seen.track;
+      if (!is_known) {
+        if (seen.camera != 0) continue;
+        MapFeature feature;
+        feature.track = seen.track;
+        feature.descriptor = withWrongBits(descriptorOf(simulation.pointOf(seen.track), options_),
+                                           options_.wrong_bits, random_);
+        if (const TrackPoint* point = geometry.find(seen.track)) {
+          feature.point_B = point->point_B;
+          feature.distance_sigma_m = point->distance_sigma_m;
+        }
+        keyframe.features.push_back(feature);
+      }
+      keyframe.features.back().rays.push_back(*ray);
+    }
+    return keyframe;
+  }
+  const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }
+
+ private:
+  MappedDiveOptions options_;
+  Random random_;
+  std::vector<std::shared_ptr<const Camera>> cameras_;
+};
+
+}  // namespace
+
+MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::path& file,
+                       const MapFile* earlier) {
+  MountedRig mounted = standardRig({});
+  const ImuErrors imu = drawImuErrors(imuGrade("gx5-25"), {}, wanted.dive_seed);
+  mounted.rig.imu.noise = statedNoise(imu);
+  DiveMotionOptions motion;
+  motion.seed = wanted.dive_seed;
+  motion.duration_s = (wanted.cave.path_length_m + 22.0) / wanted.speed_m_per_s;
+  const PointDive dive = makeCaveDive(wanted.cave, motion, mounted, imu);
+  cave_origin_W = dive.cave_origin_W;
+  rig = givenRig(dive.mounted.rig, wanted);
+  PointSimulationOptions points;
+  points.seed = wanted.dive_seed;
+  points.frame_rate_hz = wanted.frame_rate_hz;
+  points.tracks = wanted.tracks;
+  points.imu = imu;
+  PointSimulation simulation(dive.motion, dive.landmarks, dive.mounted.rig, rig, points);
+  Diagnostics diagnostics;
+  Estimator estimator(rig, options, &diagnostics);
+  TruthComparison comparison;
+  KeyframeChoice choice(KeyframeChoiceOptions{});
+  KeyframeMaker maker(rig, wanted);
+  MapFile own = MapFile::create(file, {});
+  MapDive row;
+  row.name = file.stem().string();
+  DiveMapping mapping(&own, row, earlier, wanted.mapping);
+  Rigid3 map_from_odom;
+  bool placed = earlier == nullptr;
+  std::map<KeyframeId, Rigid3> true_poses;
+  Time last;
+  while (const auto frame = simulation.next()) {
+    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
+    record.add(frame->tracks, frame->imu, estimate, estimator);
+    const Comparison compared = comparison.compare(*frame, estimate, estimator);
+    if (!compared.initialized()) continue;
+    last = estimate.time;
+    if (choice.add(estimate)) {
+      record.keepNewest();
+      const MappingStep step = mapping.add(maker.make(frame->tracks, estimate, estimator, simulation));
+      true_poses[step.keyframe] = compared.true_world_from_body;
+      accepted.insert(accepted.end(), step.accepted.begin(), step.accepted.end());
+      map_from_odom = step.map_from_odom;
+      placed = step.is_placed;
+    }
+    truth.push_back(compared.true_world_from_body);
+    true_in_simulation.push_back(frame->truth.motion.world_from_body);
+    odometry.push_back(estimate.state.world_from_body);
+    in_map.push_back(map_from_odom * estimate.state.world_from_body);
+    is_placed.push_back(placed);
+  }
+  record.finish(estimator);
+  summary = mapping.finish(last);
+  ledger = mapping.ledger();
+  closures = loopClosures(accepted, mapping.known(), mapping.dive(), maker.cameras());
+  for (const Loop& loop : ledger) {
+    if (loop.status != LoopStatus::Accepted || true_poses.count(loop.old_keyframe) == 0) continue;
+    const Rigid3 true_relative =
+        true_poses.at(loop.old_keyframe).inverse() * true_poses.at(loop.new_keyframe);
+    loop_errors_m.push_back((true_relative.translation - loop.old_from_new.translation).norm());
+  }
+}
+
+double positionRms(const std::vector<Rigid3>& poses, const std::vector<Rigid3>& truth) {
+  double sum = 0.0;
+  for (size_t i = 0; i < poses.size(); ++i)
+    sum += (poses[i].translation - truth[i].translation).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(std::max<size_t>(1, poses.size())));
+}
+
+}  // namespace lodeline
