@@ -85,7 +85,6 @@ void addMapRelocaliseCommand(CLI::App* map) {
   const auto arguments = std::make_shared<RelocaliseArguments>();
   CLI::App* command = map->add_subcommand(
       "relocalise", "Find short clips of a run in a map by what they show, each by itself");
-  command->alias("relocalize");
   command->add_option("MAP", arguments->map, "file of the map")->required();
   command->add_option("RUN", arguments->run, "folder that `lodeline run` wrote, or its map.db")->required();
   command->add_option("--clip", arguments->clip_s, "length of a clip")
