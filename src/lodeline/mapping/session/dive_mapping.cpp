@@ -112,6 +112,7 @@ void DiveMapping::store(MapKeyframe* keyframe) {
     previous_->dive = dive_.id;
     odometry = odometryEdge(*previous_, *keyframe, 0.0, options_.factors.odometry);
     change_->addEdge({previous_->id, keyframe->id, odometry->from_from_to, odometry->covariance});
+    previous_->dive = dive_number_;
   }
   if (++uncommitted_ >= kKeyframesPerCommit) {
     change_->commit();
