@@ -7,8 +7,10 @@
 
 #include "apps/lodeline/map/map_subcommands.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/mapping/control/control_residual.h"
 #include "lodeline/mapping/store/map_change.h"
 #include "lodeline/mapping/store/map_file.h"
+#include "lodeline/util/json_text.h"
 
 namespace lodeline {
 namespace {
@@ -48,6 +50,14 @@ std::map<std::string, int> loopsByStatus(const MapFile& map) {
   return loops;
 }
 
+/// Of the control points at the stored solution.
+std::vector<ControlPointResidual> residualsOf(const MapFile& map) {
+  return controlResiduals(controlFactorsOf(map), [&](KeyframeId id) {
+    const std::optional<StoredKeyframe> row = map.keyframe(id);
+    return row ? row->solved : std::nullopt;
+  });
+}
+
 nlohmann::ordered_json infoJson(const MapFile& map) {
   nlohmann::ordered_json json;
   const MapSizes sizes = map.sizes();
@@ -72,6 +82,15 @@ nlohmann::ordered_json infoJson(const MapFile& map) {
       json["control_points"].back()["position_m"] = {p.x(), p.y(), p.z()};
     }
   }
+  json["control_residuals"] = nlohmann::ordered_json::array();
+  for (const ControlPointResidual& residual : residualsOf(map)) {
+    const Vec3& error = residual.error_m;
+    json["control_residuals"].push_back({{"name", residual.name},
+                                         {"keyframe", residual.keyframe},
+                                         {"error_m", {error.x(), error.y(), error.z()}},
+                                         {"chi_squared", residual.chi_squared},
+                                         {"is_blunder", residual.is_blunder}});
+  }
   json["bytes"] = sizes.file_bytes;
   json["features"] = sizes.features;
   return json;
@@ -81,7 +100,7 @@ void printInfo(const ContentArguments& arguments) {
   const MapFile map = MapFile::open(arguments.map, MapFile::Access::Read);
   const nlohmann::ordered_json json = infoJson(map);
   if (arguments.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", jsonText(json));
     return;
   }
   double path_m = 0.0;
@@ -98,6 +117,9 @@ void printInfo(const ContentArguments& arguments) {
   fmt::print("loops: {}\n", loops.empty() ? "none" : loops);
   for (const auto& point : json["control_points"])
     fmt::print("control point {} ({})\n", point["name"].get<std::string>(), point["kind"].get<std::string>());
+  const std::vector<ControlPointResidual> residuals = residualsOf(map);
+  if (!residuals.empty()) fmt::print("{}", residualTable(residuals));
+  for (const std::string& blunder : blunderTexts(residuals)) fmt::print("blunder: {}\n", blunder);
   fmt::print("{:.1f} MB for {:.0f} m of path, {} features\n", 1e-6 * json["bytes"].get<double>(), path_m,
              json["features"].get<int64_t>());
 }

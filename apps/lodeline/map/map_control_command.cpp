@@ -1,13 +1,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 
 #include "apps/lodeline/map/map_subcommands.h"
 #include "apps/lodeline/shared/place_argument.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/mapping/control/files/control_set.h"
+#include "lodeline/mapping/control/control_factor.h"
 #include "lodeline/mapping/store/map_change.h"
 #include "lodeline/mapping/store/map_file.h"
 #include "lodeline/output/report/findings.h"
@@ -21,33 +20,49 @@ struct ControlArguments {
   std::vector<double> grid_origin;
 };
 
-/// The keyframe of a dive nearest in time to a visit. Throws InputError where none is near.
-KeyframeId keyframeOf(const MapFile& map, const ControlVisit& visit) {
-  constexpr double kFarthest_s = 10.0;
-  std::vector<MapDive> dives = map.dives();
-  std::erase_if(dives, [&](const MapDive& dive) { return !visit.dive.empty() && dive.name != visit.dive; });
-  if (dives.empty()) throw InputError(fmt::format("{}: the map has no dive '{}'", visit.origin, visit.dive));
-  std::optional<KeyframeId> nearest;
-  double nearest_s = kFarthest_s;
-  for (const MapDive& dive : dives) {
-    std::optional<Time> first;
+/// A dive with its keyframes in order of time.
+struct VisitedDive {
+  std::string name;
+  std::vector<VisitedKeyframe> keyframes;
+
+  /// Whether a stamp is within the dive, or just outside.
+  bool contains(Time stamp) const {
+    constexpr double kAround_s = 2.0;
+    return !keyframes.empty() && (stamp - keyframes.front().time).seconds() > -kAround_s &&
+           (keyframes.back().time - stamp).seconds() > -kAround_s;
+  }
+};
+
+std::vector<VisitedDive> visitedDives(const MapFile& map) {
+  std::vector<VisitedDive> dives;
+  for (const MapDive& dive : map.dives()) {
+    dives.push_back({dive.name, {}});
     map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
-      if (!first) first = row.keyframe.time;
-      const Time wanted = visit.stamp ? *visit.stamp : *first + visit.since_start.value_or(Duration());
-      const double apart_s = std::abs((row.keyframe.time - wanted).seconds());
-      if (apart_s >= nearest_s) return;
-      nearest_s = apart_s;
-      nearest = row.keyframe.id;
+      dives.back().keyframes.push_back({row.keyframe.id, row.keyframe.time, row.keyframe.odom_from_body});
     });
   }
-  if (!nearest) {
-    throw InputError(
-        fmt::format("{}: no keyframe of the map is within {:.0f} s of this time", visit.origin, kFarthest_s));
-  }
-  return *nearest;
+  return dives;
 }
 
-void addControl(const ControlArguments& arguments) {
+/// Names the dive of each visit that does not: the dive around its stamp, or the only one.
+void nameDives(const std::vector<VisitedDive>& dives, std::vector<ControlVisit>* visits) {
+  for (ControlVisit& visit : *visits) {
+    std::vector<std::string> names;
+    for (const VisitedDive& dive : dives) {
+      const bool fits =
+          visit.dive.empty() ? !visit.stamp || dive.contains(*visit.stamp) : dive.name == visit.dive;
+      if (fits) names.push_back(dive.name);
+    }
+    if (names.size() != 1) {
+      throw InputError(fmt::format("{}: {} of the map fits the visit of '{}'; name it in the column 'dive'",
+                                   visit.origin, names.empty() ? "no dive" : "more than one dive",
+                                   visit.point));
+    }
+    visit.dive = names.front();
+  }
+}
+
+void addControlFile(const ControlArguments& arguments) {
   MapFile map = MapFile::open(arguments.map, MapFile::Access::Change);
   ControlReadOptions options;
   options.site = map.description().site;
@@ -55,19 +70,19 @@ void addControl(const ControlArguments& arguments) {
   if (!arguments.grid_origin.empty())
     options.grid_origin = Vec3(arguments.grid_origin[0], arguments.grid_origin[1], arguments.grid_origin[2]);
   Diagnostics diagnostics;
-  const ControlSet control = readControl(arguments.file, options, &diagnostics);
-  // The rig was beside the mark, not on it.
-  constexpr double kReach_m = 0.5;
-  MapChange change = map.change();
-  std::map<std::string, int64_t> ids;
-  for (const ControlPoint& point : control.points) ids[point.name] = change.putControlPoint(point);
-  for (const ControlVisit& visit : control.visits) {
-    ControlObservation seen;
-    seen.point = ids.at(visit.point);
-    seen.keyframe = keyframeOf(map, visit);
-    seen.in_body.covariance = kReach_m * kReach_m * Mat3::Identity();
-    change.addControlObservation(seen);
+  ControlSet control = readControl(arguments.file, options, &diagnostics);
+  const std::vector<VisitedDive> dives = visitedDives(map);
+  nameDives(dives, &control.visits);
+  std::vector<ControlFactor> factors;
+  for (const VisitedDive& dive : dives) {
+    if (dive.keyframes.empty()) continue;
+    // A time since the start counts from the first keyframe.
+    const std::vector<ControlFactor> of_dive =
+        factorsOfVisits(control, dive.name, dive.keyframes.front().time, dive.keyframes);
+    factors.insert(factors.end(), of_dive.begin(), of_dive.end());
   }
+  MapChange change = map.change();
+  addControl(control, factors, &change);
   change.commit();
   fmt::print("{} control points and {} visits added; `lodeline map solve {}` uses them\n{}",
              control.points.size(), control.visits.size(), arguments.map, findingsText(diagnostics));
@@ -91,7 +106,7 @@ void addMapControlCommand(CLI::App* map) {
                    "EASTING,NORTHING,ALTITUDE (m) of the map's origin, for positions on a grid")
       ->delimiter(',')
       ->expected(3);
-  command->callback([arguments] { addControl(*arguments); });
+  command->callback([arguments] { addControlFile(*arguments); });
 }
 
 }  // namespace lodeline

@@ -44,9 +44,9 @@ size_t mostAgreed(const std::vector<PositionPrior>& points) {
   return best;
 }
 
-ControlResidual residualOf(const ControlFactor& factor, const PositionPrior& solved,
-                           const PositionPrior& stated) {
-  ControlResidual residual;
+ControlPointResidual residualOf(const ControlFactor& factor, const PositionPrior& solved,
+                                const PositionPrior& stated) {
+  ControlPointResidual residual;
   residual.name = factor.name;
   residual.kind = factor.kind;
   residual.keyframe = factor.keyframe;
@@ -65,8 +65,8 @@ struct SolvedObservation {
 
 }  // namespace
 
-std::vector<ControlResidual> controlResiduals(std::span<const ControlFactor> factors,
-                                              const SolvedPoses& poses) {
+std::vector<ControlPointResidual> controlResiduals(std::span<const ControlFactor> factors,
+                                                   const SolvedPoses& poses) {
   std::vector<SolvedObservation> observations;
   std::map<std::string, std::vector<size_t>> unknown;  // observations of points without a position, by name
   for (const ControlFactor& factor : factors) {
@@ -81,7 +81,7 @@ std::vector<ControlResidual> controlResiduals(std::span<const ControlFactor> fac
     for (const size_t number : numbers) points.push_back(observations[number].point);
     references[name] = numbers[mostAgreed(points)];
   }
-  std::vector<ControlResidual> residuals;
+  std::vector<ControlPointResidual> residuals;
   for (size_t i = 0; i < observations.size(); ++i) {
     const auto& [factor, point] = observations[i];
     if (factor->in_map) {
@@ -89,16 +89,16 @@ std::vector<ControlResidual> controlResiduals(std::span<const ControlFactor> fac
       continue;
     }
     const SolvedObservation& reference = observations[references.at(factor->name)];
-    ControlResidual residual = residualOf(*factor, point, reference.point);
+    ControlPointResidual residual = residualOf(*factor, point, reference.point);
     residual.reference_keyframe = reference.factor->keyframe;
     residuals.push_back(residual);
   }
   return residuals;
 }
 
-std::vector<std::string> blunderTexts(std::span<const ControlResidual> residuals) {
+std::vector<std::string> blunderTexts(std::span<const ControlPointResidual> residuals) {
   std::vector<std::string> texts;
-  for (const ControlResidual& residual : residuals) {
+  for (const ControlPointResidual& residual : residuals) {
     if (!residual.is_blunder) continue;
     const std::string place = residual.reference_keyframe ? fmt::format("from where keyframe {} shows it",
                                                                         *residual.reference_keyframe)
@@ -111,10 +111,10 @@ std::vector<std::string> blunderTexts(std::span<const ControlResidual> residuals
   return texts;
 }
 
-std::string residualTable(std::span<const ControlResidual> residuals) {
+std::string residualTable(std::span<const ControlPointResidual> residuals) {
   std::string text = fmt::format("{:<24} {:<8} {:>9} {:>8} {:>8} {:>8} {:>8}\n", "control point", "kind",
                                  "keyframe", "east m", "north m", "up m", "chi2");
-  for (const ControlResidual& residual : residuals) {
+  for (const ControlPointResidual& residual : residuals) {
     text +=
         fmt::format("{:<24} {:<8} {:>9} {:>8.2f} {:>8.2f} {:>8.2f} {:>8.1f}{}\n", residual.name,
                     toString(residual.kind), residual.keyframe, residual.error_m.x(), residual.error_m.y(),

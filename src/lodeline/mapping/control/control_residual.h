@@ -14,7 +14,7 @@ namespace lodeline {
 constexpr double kControlQuantile = 16.266;
 
 /// What a solution makes of one observation of a control point.
-struct ControlResidual {
+struct ControlPointResidual {
   std::string name;
   ControlKind kind = ControlKind::Station;
   KeyframeId keyframe = -1;
@@ -36,13 +36,13 @@ using SolvedPoses = std::function<std::optional<SolvedPose>(KeyframeId)>;
 /// The point of an observation is p = t + R q with the pose (R, t) and the position q in the body. Its
 /// covariance is J P J^T + R Q R^T with J = [I, -[R q]x]; that of a stated position is added. Where the
 /// position is unknown, the observation that agrees best with all others stands for it.
-std::vector<ControlResidual> controlResiduals(std::span<const ControlFactor> factors,
+std::vector<ControlPointResidual> controlResiduals(std::span<const ControlFactor> factors,
                                               const SolvedPoses& poses);
 
 /// One sentence for each blunder.
-std::vector<std::string> blunderTexts(std::span<const ControlResidual> residuals);
+std::vector<std::string> blunderTexts(std::span<const ControlPointResidual> residuals);
 
 /// A table of all residuals with a line for each.
-std::string residualTable(std::span<const ControlResidual> residuals);
+std::string residualTable(std::span<const ControlPointResidual> residuals);
 
 }  // namespace lodeline

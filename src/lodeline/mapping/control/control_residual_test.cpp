@@ -48,9 +48,9 @@ TEST(ControlResidualTest, IsZeroAtTheTruth) {
   const std::vector<ControlFactor> factors = {
       factorTo("a", 1, Vec3(4, 5, 6), true), factorTo("b", 2, Vec3(1, 1, 1), false),
       factorTo("b", 3, Vec3(1, 1, 1), false), factorTo("c", 101, Vec3(1, 1, 1), true)};
-  const std::vector<ControlResidual> residuals = controlResiduals(factors, truePose);
+  const std::vector<ControlPointResidual> residuals = controlResiduals(factors, truePose);
   ASSERT_EQ(residuals.size(), 3u) << "keyframe 101 has no pose";
-  for (const ControlResidual& residual : residuals) {
+  for (const ControlPointResidual& residual : residuals) {
     EXPECT_LT(residual.error_m.norm(), 1e-12);
     EXPECT_FALSE(residual.is_blunder);
   }
@@ -95,7 +95,7 @@ TEST(ControlResidualTest, NamesBlunders) {
     factors.push_back(factorTo("tag 7", keyframe, Vec3(1, 1, 1), false));
   factors[1].in_body.position.z() += 4.3;
   factors[1].kind = ControlKind::Tag;
-  const std::vector<ControlResidual> residuals = controlResiduals(factors, truePose);
+  const std::vector<ControlPointResidual> residuals = controlResiduals(factors, truePose);
   const std::vector<std::string> texts = blunderTexts(residuals);
   ASSERT_EQ(texts.size(), 2u);
   EXPECT_THAT(texts[0], HasSubstr("station 'gps': keyframe 1 shows it 0.50 m from its stated position"));

@@ -39,12 +39,13 @@ const char* const kSurvey = R"(*begin cave
 1 2 30.00 90 -10
 2 3 15.50 180 -20
 *begin a_survey_with_a_name_that_takes_more_than_fifteen_characters_in_the_label
-*equate 1 ^3
 1 2 12.34 45 0
 2 another_long_station_name 5.67 315 5
 *end a_survey_with_a_name_that_takes_more_than_fifteen_characters_in_the_label
+*equate 3 a_survey_with_a_name_that_takes_more_than_fifteen_characters_in_the_label.1
 *flags splay
-3 - 2.00 0 0
+3 .. 2.00 0 0
+3 ... 1.00 90 0
 *flags not splay
 *data passage station left right up down
 1 1 1 1 1
@@ -86,7 +87,7 @@ TEST_F(SurvexFilesTest, ReadsTheStationsThatDump3dLists) {
                     name) == 4)
       expected[name] = position;
   }
-  ASSERT_EQ(expected.size(), 5u) << textOf(dump);
+  ASSERT_EQ(expected.size(), 6u) << textOf(dump);
   std::map<std::string, Vec3> read;
   for (const SurvexStation& station : survey.stations) read[station.name] = station.position;
   EXPECT_EQ(read.size(), expected.size());
