@@ -37,7 +37,7 @@ using SolvedPoses = std::function<std::optional<SolvedPose>(KeyframeId)>;
 /// covariance is J P J^T + R Q R^T with J = [I, -[R q]x]; that of a stated position is added. Where the
 /// position is unknown, the observation that agrees best with all others stands for it.
 std::vector<ControlPointResidual> controlResiduals(std::span<const ControlFactor> factors,
-                                              const SolvedPoses& poses);
+                                                   const SolvedPoses& poses);
 
 /// One sentence for each blunder.
 std::vector<std::string> blunderTexts(std::span<const ControlPointResidual> residuals);
