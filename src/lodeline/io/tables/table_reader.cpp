@@ -113,7 +113,7 @@ void TableReader::readPreamble() {
     if (text.empty()) continue;
     const std::optional<std::string_view> comment = commentOf(text);
     if (readAsHeader(line, comment.value_or(text))) {
-      readUnitsBelow();
+      if (options_.may_have_units_below) readUnitsBelow();
       break;
     }
     if (comment) {

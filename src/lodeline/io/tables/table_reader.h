@@ -31,6 +31,8 @@ struct TableOptions {
   /// Whether a row with another number of cells is an error instead of being skipped. A truncated last row is
   /// never an error.
   bool refuses_misfits = false;
+  /// Whether a line of words below the header states the units. Otherwise, it is a row.
+  bool may_have_units_below = true;
   /// Rows may have fewer cells; the missing ones are empty.
   bool rows_may_be_short = false;
 };

@@ -65,7 +65,7 @@ TEST(ControlResidualTest, IsWhite) {
   constexpr int kDraws = 4000;
   double sum = 0.0;
   int blunders = 0;
-  const Mat6 covariance = test::someCovariance(0.05, &random);
+  const Mat6 covariance = test::someCovariance(0.01, &random);
   const Mat6 factor_L = covariance.llt().matrixL();
   std::normal_distribution<double> normal;
   for (int i = 0; i < kDraws; ++i) {

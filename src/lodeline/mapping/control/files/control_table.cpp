@@ -94,6 +94,7 @@ class ControlTable {
     };
     options.finding = "control_row";
     options.refuses_misfits = true;
+    options.may_have_units_below = false;  // a row may have names alone
     options.rows_may_be_short = true;
     return options;
   }

@@ -31,8 +31,8 @@ std::string textOf(const std::filesystem::path& file) {
 }
 
 /// A survey with nested surveys, long labels, splays, an anonymous station and an entrance.
-const char* const kSurvey = R"(*begin cave
-*title "The cave"
+const char* const kSurvey = R"(*title "The cave"
+*begin cave
 *entrance 1
 *fix 1 100.5 200.25 10
 *date 2026.11.28

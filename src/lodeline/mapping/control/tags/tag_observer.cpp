@@ -2,12 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "lodeline/board/calibration_board.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/control/tags/tag_pose.h"
 
 namespace lodeline {
+namespace {
+
+Vec2 centreOf(const FoundTag& tag) {
+  return 0.25 * (tag.corners[0] + tag.corners[1] + tag.corners[2] + tag.corners[3]);
+}
+
+/// Whether two detections are of one square: both kinds of border may decode it, one of them with wrong bits.
+bool areSameSquare(const FoundTag& one, const FoundTag& other) {
+  return (centreOf(one) - centreOf(other)).norm() < 0.25 * one.edge_px();
+}
+
+}  // namespace
 
 void TagOptions::check() const {
   const auto require = [](bool is_good, const char* what) {
@@ -33,16 +46,20 @@ TagObserver::TagObserver(std::shared_ptr<const Camera> camera, const Rigid3& bod
 
 std::vector<TagSighting> TagObserver::observe(const cv::Mat& image) const {
   std::vector<FoundTag> tags = detector_.find(image, CalibrationBoard::kFamilySize);
-  std::stable_sort(tags.begin(), tags.end(),
-                   [](const FoundTag& a, const FoundTag& b) { return a.id < b.id; });
+  std::erase_if(tags, [&](const FoundTag& tag) {
+    return tag.wrong_bits > options_.most_wrong_bits || tag.edge_px() < options_.least_edge_px;
+  });
+  std::stable_sort(tags.begin(), tags.end(), [](const FoundTag& a, const FoundTag& b) {
+    return std::tuple(a.id, a.wrong_bits, -a.margin) < std::tuple(b.id, b.wrong_bits, -b.margin);
+  });
   std::vector<TagSighting> sightings;
-  for (size_t i = 0; i < tags.size();) {
-    size_t end = i + 1;
-    while (end < tags.size() && tags[end].id == tags[i].id) ++end;
-    if (end == i + 1) {
-      if (auto one = sighting(tags[i])) sightings.push_back(std::move(*one));
+  for (auto tag = tags.begin(); tag != tags.end();) {
+    const auto end =
+        std::find_if(tag, tags.end(), [&](const FoundTag& other) { return other.id != tag->id; });
+    if (std::all_of(tag, end, [&](const FoundTag& other) { return areSameSquare(*tag, other); })) {
+      if (auto one = sighting(*tag)) sightings.push_back(std::move(*one));
     }
-    i = end;
+    tag = end;
   }
   return sightings;
 }

@@ -120,11 +120,22 @@ TEST_F(TagObserverTest, GivesRaysAloneWhereTheSizeIsUnknown) {
 TEST_F(TagObserverTest, LeavesOutATagThatIsSeenTwiceAndOneTooSmall) {
   cv::Mat twice = image();
   draw(5, facing(Vec3(-0.2, 0, 0.8), Vec3(0, 0.2, 0)), &twice);
+  EXPECT_EQ(observer(kSize_m).observe(twice).size(), 1u);
   draw(5, facing(Vec3(0.2, 0, 0.8), Vec3(0, 0.2, 0)), &twice);
   EXPECT_THAT(observer(kSize_m).observe(twice), IsEmpty());
   cv::Mat small = image();
   draw(5, facing(Vec3(0, 0, 4.5), Vec3::Zero()), &small);
   EXPECT_THAT(observer(kSize_m).observe(small), IsEmpty());
+}
+
+TEST_F(TagObserverTest, CountsASquareThatBothBordersDecodeOnce) {
+  cv::Mat view = image();
+  draw(17, facing(Vec3(0.2, -0.1, 0.7), Vec3(-0.5, 0.1, 2.0)), &view);
+  TagOptions options;
+  options.most_wrong_bits = 2;
+  const TagObserver observer(makeCamera(testCamera()), body_from_camera_, 0, options);
+  ASSERT_GE(TagDetector().find(view, 587).size(), 2u) << "the wide border decodes it too, with a wrong bit";
+  EXPECT_EQ(observer.observe(view).size(), 1u);
 }
 
 TEST_F(TagObserverTest, FindsNoTagInNoise) {
