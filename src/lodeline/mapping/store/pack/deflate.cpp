@@ -9,8 +9,8 @@
 namespace lodeline {
 namespace {
 
-/// The sign leaves the header out. A window of 1 kB and a small memory serve planes of some hundred bytes, and
-/// take no time to set up.
+/// The sign leaves the header out. A window of 1 kB and a small memory serve planes of some hundred bytes,
+/// and take no time to set up.
 constexpr int kPackedWindow = -10;
 constexpr int kMemoryLevel = 5;
 constexpr int kLargestWindow = -15;
