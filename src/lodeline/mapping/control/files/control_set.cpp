@@ -24,8 +24,8 @@ void ControlSet::add(const ControlPoint& point) {
     return;
   }
   const auto contradict = [&](const char* what) {
-    throw InputError(
-        fmt::format("{}: '{}' has another {} than at {}", point.origin, point.name, what, known->origin));
+    throw InputError(fmt::format("{}: the {} of '{}' differs from that at {}", point.origin, what, point.name,
+                                 known->origin));
   };
   if (known->kind != point.kind) contradict("kind");
   if (known->tag && point.tag && *known->tag != *point.tag) contradict("tag");

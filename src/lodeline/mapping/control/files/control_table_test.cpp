@@ -97,7 +97,7 @@ TEST_F(ControlTableTest, NamesWhatIsWrongWithARow) {
   EXPECT_THAT(refusal(head + "A,gps,20.5,-87.4,8,,-3,\n"), HasSubstr("the time is negative"));
   EXPECT_THAT(refusal(head + "A,gps,20.5,-87.4,8,,,0\n"), HasSubstr("a sigma is not positive"));
   EXPECT_THAT(refusal(head + "A,gps,20.5,-87.4,8,,,\nA,gps,20.5,-87.41,8,,,\n"),
-              HasSubstr("control.csv:3: 'A' has another position than at"));
+              HasSubstr("control.csv:3: the position of 'A' differs from that at"));
   EXPECT_THAT(refusal("name,easting,northing,altitude\nA,450000,2267000,4\n"),
               HasSubstr("control.csv:2: is 2311 km from the origin of the map"));
   options_.site.reset();
