@@ -53,9 +53,7 @@ std::vector<LoopCandidateKeyframe> CandidateSearch::find(const MapKeyframe& newe
                                                          const DescriptorIndex& index) const {
   const KnownKeyframe& now = known.at(newest.id);
   // The odometry since any earlier keyframe is at most this uncertain; it bounds the search cheaply.
-  const Mat6 drift =
-      known.between(known.all().front().dive == now.dive ? known.all().front().id : now.id, now.id)
-          .covariance;
+  const Mat6 drift = known.between(known.firstOf(now.dive), now.id).covariance;
   const double drift_m = kSigmas * std::sqrt(drift.topLeftCorner<3, 3>().trace());
   std::map<KeyframeId, LoopCandidateKeyframe> possible;
   for (const KnownKeyframe& old_keyframe : known.all()) {

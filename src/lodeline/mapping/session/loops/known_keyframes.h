@@ -45,6 +45,8 @@ class KnownKeyframes {
   const std::vector<KnownKeyframe>& all() const { return keyframes_; }
   std::vector<KnownKeyframe>& all() { return keyframes_; }
   const KnownKeyframe& at(KeyframeId id) const { return keyframes_[index_.at(id)]; }
+  /// First keyframe of a dive.
+  KeyframeId firstOf(int dive) const { return keyframes_[first_.at(dive)].id; }
   bool contains(KeyframeId id) const { return index_.count(id) > 0; }
   DivePlacement& placement(int dive) { return placements_.at(dive); }
   const DivePlacement& placement(int dive) const { return placements_.at(dive); }
