@@ -44,8 +44,9 @@ TEST(InAndOut, PairsTheWayOutWithTheWayIn) {
     const auto &older = keyframes[pair.old_index], &newer = keyframes[pair.new_index];
     EXPECT_GE(pair.new_index - pair.old_index, 15u);
     // Next to the turn, less than 15 m of path lie between the nearest.
-    if (pair.new_index > 68)
+    if (pair.new_index > 68) {
       EXPECT_LE((older.odom_from_body.translation - newer.odom_from_body.translation).norm(), 0.31);
+    }
     EXPECT_TRUE(pair.looks_back);
     EXPECT_EQ(pair.covariance.llt().info(), Eigen::Success);
     const double uncertainty = pair.covariance.diagonal().head(3).sum();
