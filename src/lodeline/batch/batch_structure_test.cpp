@@ -11,7 +11,7 @@ namespace {
 // An error in a landmark's position widens the robust losses of all its frames. With intrinsics that the run
 // found to be wrong, batches gave weight to observations that slide.
 TEST(PlaceLandmark, PutsItWhereTheLensOfTheRunSeesIt) {
-  const std::vector<double> lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01};
+  const TestWindow::Lens lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01, 0.002, -0.001, 0.0, 0.0};
   const Vec3 point_W(3.0, -0.9, 0.4);
   TestWindow test;
   test.calibrate(lens);

@@ -8,7 +8,6 @@
 #include "lodeline/estimator/initialization/start.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/visual/landmarks.h"
-#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 
@@ -79,16 +78,16 @@ void TestWindow::seeAlong(TrackId track, const Vec3& bearing_C, const Frame& fra
   addObservation(track, bearing_C.normalized(), frame, camera, 1.0);
 }
 
-void TestWindow::calibrate(const std::vector<double>& lens) {
+void TestWindow::calibrate(const Lens& lens) {
   const int cameras = static_cast<int>(cameras_.size());
   Prior prior;
   addCameraStates(window, prior, cameras, options.camera_calibration);
   addIntrinsicsStates(window, prior, cameras, options.camera_calibration);
-  for (ParameterBlock* state : cameraStates(window).intrinsics) state->value = lens;
+  for (ParameterBlock* state : cameraStates(window).intrinsics) state->value.assign(lens.begin(), lens.end());
 }
 
-void TestWindow::seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W,
-                            const Frame& frame, int camera) {
+void TestWindow::seeThrough(const Lens& lens, TrackId track, const Vec3& point_W, const Frame& frame,
+                            int camera) {
   const auto through = makeCamera(correctedIntrinsics(rig.cameras[camera], lens.data()));
   const std::optional<Vec2> pixel = through->project(pointInCamera(point_W, frame, camera));
   ASSERT_TRUE(pixel && cameras_[camera]->contains(*pixel)) << "track " << track << " is out of view";

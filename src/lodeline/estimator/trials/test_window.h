@@ -1,16 +1,21 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/trials/scene.h"
+#include "lodeline/factors/intrinsics_factor.h"
 
 namespace lodeline {
 
 /// Test support: a window filled by hand, with frames at known states.
 class TestWindow {
  public:
+  /// Corrections of a camera's intrinsics (factors/intrinsics_factor.h).
+  using Lens = std::array<double, kIntrinsicsSize>;
+
   explicit TestWindow(int cameras = 2, const EstimatorOptions& options = {});
 
   /// Adds a frame without inertial term; identities count up from 0.
@@ -25,13 +30,11 @@ class TestWindow {
   /// As see(), from the ray alone, for points that may lie outside the image or behind the camera.
   void seeAlong(TrackId track, const Vec3& bearing_C, const Frame& frame, int camera = 0);
 
-  /// Adds the states of the camera calibration, with the intrinsics block `lens`
-  /// (factors/intrinsics_factor.h) for every camera.
-  void calibrate(const std::vector<double>& lens);
+  /// Adds the states of the camera calibration, with the intrinsics block `lens` for every camera.
+  void calibrate(const Lens& lens);
   /// Adds an observation by a camera with such intrinsics. Fails the test where the camera cannot observe the
   /// point.
-  void seeThrough(const std::vector<double>& lens, TrackId track, const Vec3& point_W, const Frame& frame,
-                  int camera);
+  void seeThrough(const Lens& lens, TrackId track, const Vec3& point_W, const Frame& frame, int camera);
 
   /// Creates a landmark at `point_W` with the host `host`, which must have observed the track with camera 0.
   Landmark& place(TrackId track, const Vec3& point_W, const Frame& host);

@@ -85,7 +85,7 @@ double stereoSigma(double found_m, bool is_file_held, const CameraCalibrationOpt
   options.camera_calibration = calibration;
   TestWindow test(2);
   test.fill();
-  test.calibrate(std::vector<double>(kIntrinsicsSize, 0.0));
+  test.calibrate(TestWindow::Lens{});
   believeInFiles(test.window, calibration, is_file_held);
   cameraStates(test.window).secondary.front()->value[3] = found_m;
   return 1.0 / std::sqrt(ScaleObservability(test.rig, options).add(test.window, 1.0).stereo);

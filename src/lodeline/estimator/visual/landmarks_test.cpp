@@ -46,7 +46,7 @@ TEST_F(LandmarksTest, AreCreatedWhereThePointIs) {
 
 // With the intrinsics of the file, the error of the point would be 25 mm.
 TEST_F(LandmarksTest, AreCreatedByTheLensThatTheWindowKnows) {
-  const std::vector<double> lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01, 0.002, -0.001, 0.0, 0.0};
+  const TestWindow::Lens lens = {0.006, -0.004, 2.5, -1.5, 0.008, -0.01, 0.002, -0.001, 0.0, 0.0};
   const Vec3 point_W(3.0, -0.9, 0.4);
   test_.calibrate(lens);
   for (const auto& frame : test_.window.frames()) {
