@@ -44,7 +44,10 @@ struct ShapeRow {
 /// Registration of a new cloud to an old one with four degrees of freedom.
 class ShapeProblem {
  public:
+  /// Both clouds must outlive the problem.
   ShapeProblem(const LocalCloud& old_cloud, const LocalCloud& new_cloud, int neighbours);
+  ShapeProblem(const LocalCloud&& old_cloud, const LocalCloud& new_cloud, int neighbours) = delete;
+  ShapeProblem(const LocalCloud& old_cloud, const LocalCloud&& new_cloud, int neighbours) = delete;
 
   /// Rows of every `stride`-th point that has a counterpart.
   std::vector<ShapeRow> rows(const ShapeState& state, size_t stride = 1) const;

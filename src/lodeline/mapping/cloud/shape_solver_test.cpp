@@ -65,7 +65,8 @@ TEST(ShapeSolver, ReturnsToTheTruth) {
 
 TEST(ShapeSolver, SaysWhereNothingFits) {
   const LocalCloud cloud = tubeCloud();
-  const ShapeProblem problem(cloud, LocalCloud{}, 10);
+  const LocalCloud empty;
+  const ShapeProblem problem(cloud, empty, 10);
   const ShapeFit fit = fitShape(problem, priorOf(1.0), {}, 0.5, 1, 40);
   EXPECT_FALSE(fit.converged);
   EXPECT_GE(fit.score, 1e9);
