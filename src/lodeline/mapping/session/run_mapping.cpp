@@ -13,8 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Removes a map file and what SQLite keeps beside it.
+/// Removes a map file and what SQLite keeps beside it. Throws InputError where it is no regular file.
 void removeMap(const fs::path& file) {
+  if (fs::exists(file) && !fs::is_regular_file(file))
+    throw InputError(file.string() + ": cannot be written, as it is no regular file");
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(file.string() + suffix);
 }
 

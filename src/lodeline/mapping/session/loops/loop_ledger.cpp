@@ -23,7 +23,13 @@ std::string field(const std::string& text) {
 }  // namespace
 
 LoopLedger::LoopLedger(const std::filesystem::path& file) : file_(file), stream_(openOutput(file)) {
-  stream_ << kHeader << '\n' << std::flush;
+  stream_ << kHeader << '\n';
+  flush();
+}
+
+void LoopLedger::flush() {
+  stream_.flush();
+  if (!stream_) throw InputError(file_.string() + ": writing failed; is the disk full?");
 }
 
 void LoopLedger::write(const Loop& loop, const LoopPlaces& places) {
@@ -41,8 +47,7 @@ void LoopLedger::write(const Loop& loop, const LoopPlaces& places) {
   } else {
     stream_ << ",nan,nan,nan,nan,nan,nan,nan\n";
   }
-  stream_.flush();
-  if (!stream_) throw InputError(file_.string() + ": writing failed; is the disk full?");
+  flush();
 }
 
 }  // namespace lodeline

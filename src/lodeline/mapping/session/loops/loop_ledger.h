@@ -24,6 +24,8 @@ class LoopLedger {
   void write(const Loop& loop, const LoopPlaces& places);
 
  private:
+  void flush();
+
   std::filesystem::path file_;
   std::ofstream stream_;
 };
