@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything coverage tidy fuzz faults effects dependencies test-dependencies demo experiments test test-sanitized test-sanitized-all bench install package format check-format clean
+.PHONY: build everything coverage tidy fuzz faults effects dependencies test-dependencies demo experiments loops test test-sanitized test-sanitized-all bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = include src apps studies examples ros fuzz
 
@@ -72,6 +72,11 @@ coverage: test-dependencies
 tidy: test-dependencies
 	cmake --preset sanitized -DCMAKE_UNITY_BUILD=OFF -B build/tidy
 	run-clang-tidy-14 -quiet -p build/tidy '(src/lodeline|apps)/.*(?<!_test)\.cpp$$'
+
+# Loops and false loops in numbers that are too large for the tests; some minutes.
+loops: everything
+	build/release/bin/batch_test --gtest_also_run_disabled_tests --gtest_filter='Loops.*'
+	build/release/bin/cloud_test --gtest_also_run_disabled_tests --gtest_filter='FalseClouds.*:CloudGain.*'
 
 bench: everything
 	./scripts/benchmark.sh

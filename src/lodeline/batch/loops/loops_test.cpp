@@ -45,7 +45,7 @@ void expectLessError(const CircuitRun& run, double wrong_share, bool are_tracked
 }
 
 TEST(Loops, RemoveMostOfTheErrorOfACircuitThatIsSwumTwice) {
-  expectLessError(CircuitRun(circuitOf(7.0)), 0.2, false, 0.25);
+  expectLessError(CircuitRun(circuitOf(12.0)), 0.2, false, 0.25);
 }
 
 // Takes minutes; `make loops` runs it.

@@ -62,8 +62,9 @@ class Registration {
     rows_ = problem_.rows(fit_.state);
     knowledge_ = knowledgeOf(problem_, fit_.state, rows_,
                              {options_.scale_sigma, options_.tilt_sigma_rad, options_.local_drift});
-    for (auto check : {&Registration::fitReason, &Registration::shapeReason, &Registration::predictionReason,
-                       &Registration::mirroredReason, &Registration::symmetryReason}) {
+    for (auto check :
+         {&Registration::fitReason, &Registration::shapeReason, &Registration::predictionReason,
+          &Registration::accuracyReason, &Registration::mirroredReason, &Registration::symmetryReason}) {
       const std::string reason = (this->*check)();
       if (!reason.empty()) return reason;
     }
@@ -79,8 +80,17 @@ class Registration {
     if (!fit_.converged) return "the registration does not converge";
     if (fit_.counterpart_share < options_.least_counterpart_share)
       return fmt::format("{:.0f} % of the points have a counterpart", 100.0 * fit_.counterpart_share);
-    if (loop.rms_sigmas > options_.most_rms_sigmas)
-      return fmt::format("the surfaces differ by {:.2f} sigmas", loop.rms_sigmas);
+    return "";
+  }
+
+  std::string accuracyReason() {
+    const auto old_error = usualErrorWithin(old_, options_.neighbours);
+    const auto new_error = usualErrorWithin(new_, options_.neighbours);
+    if (!old_error || !new_error) return "a cloud is too sparse to know its own error";
+    const double within_sigmas = std::max(*old_error, *new_error);
+    if (result_.loop.rms_sigmas > options_.most_usual_error * within_sigmas)
+      return fmt::format("the surfaces differ by {:.2f} sigmas, each within itself by {:.2f}",
+                         result_.loop.rms_sigmas, within_sigmas);
     return "";
   }
 
@@ -189,7 +199,7 @@ void CloudRegistrationOptions::check() const {
   if (most_starts < 1) throw UsageError("most_starts of a registration must be at least 1");
   for (const auto& [value, name] : {std::pair(start_spacing_m, "start_spacing_m"),
                                     {least_counterpart_share, "least_counterpart_share"},
-                                    {most_rms_sigmas, "most_rms_sigmas"},
+                                    {most_usual_error, "most_usual_error"},
                                     {most_score_of_mirrored, "most_score_of_mirrored"},
                                     {scale_sigma, "scale_sigma"},
                                     {tilt_sigma_rad, "tilt_sigma_rad"},

@@ -14,11 +14,12 @@ struct CloudRegistrationOptions {
   int most_starts = 81;          ///< a wider prior is refused
   /// Least share of the new points with a counterpart on the old surface, either way.
   double least_counterpart_share = 0.4;
-  /// Largest rms of the distances in their own sigmas (Huber's, see `usualError`): the same wall has about 1.
-  double most_rms_sigmas = 1.3;
+  /// Largest usual error of the fit, by that of each cloud within itself (usualErrorWithin). The same wall
+  /// has about 0.6, because a whole surface is more accurate than half of it.
+  double most_usual_error = 0.85;
   /// A mirrored cloud has the size and the slopes of the passage, but not its shape. The score of the cloud
   /// itself must be lower than that of the best mirrored one by this factor.
-  double most_score_of_mirrored = 0.75;
+  double most_score_of_mirrored = 0.6;
   /// Parameters that are not estimated: relative scale of the distances of each cloud, and tilt of each.
   double scale_sigma = 0.01;
   double tilt_sigma_rad = 0.005;

@@ -238,7 +238,7 @@ TEST(RegisterClouds, RefusesBadInput) {
   options.neighbours = 2;
   EXPECT_THROW(registerClouds(cloud, cloud, {}, Mat6::Identity(), options), UsageError);
   options = {};
-  options.most_rms_sigmas = std::numeric_limits<double>::quiet_NaN();
+  options.most_usual_error = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(registerClouds(cloud, cloud, {}, Mat6::Identity(), options), UsageError);
 }
 

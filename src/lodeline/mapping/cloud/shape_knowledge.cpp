@@ -79,15 +79,12 @@ double sightOf(const LocalCloud& cloud) {
   return sum / std::max(1.0, static_cast<double>(cloud.points.size()));
 }
 
-void countErrors(const std::vector<ShapeRow>& rows, ShapeKnowledge& knowledge) {
+double usualError(const std::vector<ShapeRow>& rows) {
   std::vector<double> errors;
-  for (const ShapeRow& row : rows) {
-    errors.push_back(std::abs(row.error));
-    if (errors.back() <= 3.0) ++knowledge.inliers;
-  }
+  for (const ShapeRow& row : rows) errors.push_back(std::abs(row.error));
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
   std::nth_element(errors.begin(), middle, errors.end());
-  knowledge.usual_error = 1.4826 * *middle;
+  return 1.4826 * *middle;
 }
 
 }  // namespace
@@ -113,7 +110,9 @@ ShapeKnowledge knowledgeOf(const ShapeProblem& problem, const ShapeState& state,
                            const std::vector<ShapeRow>& rows, const ConsideredSigmas& considered) {
   ShapeKnowledge knowledge;
   if (rows.empty()) return knowledge;
-  countErrors(rows, knowledge);
+  knowledge.usual_error = usualError(rows);
+  knowledge.inliers = static_cast<int>(std::count_if(
+      rows.begin(), rows.end(), [](const ShapeRow& row) { return std::abs(row.error) <= 3.0; }));
   const ShapeSums sums = sumsOf(problem, state, rows);
   // A parameter that no row depends on keeps a positive pivot; it is all noise.
   Mat4 noise = sums.noise, hessian = sums.hessian;
@@ -141,6 +140,17 @@ ShapeKnowledge knowledgeOf(const ShapeProblem& problem, const ShapeState& state,
   covariance.diagonal() += Vec4(shift, shift, shift, 2.0 * squared(considered.local_drift));
   knowledge.covariance = 0.5 * (covariance + covariance.transpose());
   return knowledge;
+}
+
+std::optional<double> usualErrorWithin(const LocalCloud& cloud, int neighbours) {
+  constexpr size_t kLeastRows = 30;
+  LocalCloud half = cloud, other = cloud;
+  half.points.clear();
+  other.points.clear();
+  for (size_t i = 0; i < cloud.points.size(); ++i) (i % 2 ? half : other).points.push_back(cloud.points[i]);
+  const auto rows = ShapeProblem(half, other, neighbours).rows({});
+  if (rows.size() < kLeastRows) return std::nullopt;
+  return usualError(rows);
 }
 
 }  // namespace lodeline

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "lodeline/mapping/cloud/shape_problem.h"
 
 namespace lodeline {
@@ -44,5 +46,10 @@ struct ConsideredSigmas {
 
 ShapeKnowledge knowledgeOf(const ShapeProblem& problem, const ShapeState& state,
                            const std::vector<ShapeRow>& rows, const ConsideredSigmas& considered);
+
+/// Usual error of half of a cloud's points on the surface of the other half, in sigmas: what two views of the
+/// same wall differ by. It is about 1 where the points' covariances are right. Nothing where the halves have
+/// too few points.
+std::optional<double> usualErrorWithin(const LocalCloud& cloud, int neighbours);
 
 }  // namespace lodeline

@@ -93,13 +93,20 @@ TEST(FalseClouds, OfOneProfileAreRefused) {
   expectNoneWrong(tube, 20);
 }
 
-// Takes minutes: run with --gtest_also_run_disabled_tests.
+/// Walls so even that other places of the passage fit nearly as well.
+Tube evenPassageOfLength(double length_m, unsigned seed) {
+  Tube tube = passageOfLength(length_m, seed);
+  tube.bump_m = 0.1;
+  tube.bend_rad = 0.2;
+  return tube;
+}
+
+TEST(FalseClouds, OfAnEvenPassageAreRefused) { expectNoneWrong(evenPassageOfLength(60.0, 32), 100); }
+
+// Takes minutes; `make loops` runs it.
 TEST(FalseClouds, DISABLED_OfAThousandPairsAreRefused) {
   expectNoneWrong(passageOfLength(120.0, 31), 600);
-  Tube weak = passageOfLength(120.0, 32);
-  weak.bump_m = 0.1;
-  weak.bend_rad = 0.2;
-  expectNoneWrong(weak, 600);
+  expectNoneWrong(evenPassageOfLength(120.0, 32), 600);
 }
 
 }  // namespace
