@@ -1,6 +1,6 @@
 // The page while a run goes on: what the program tells over server-sent events, shown as it comes.
 
-import { decodeFloats, type PageData, type Run } from "./data";
+import { decodeFloats, type PageData, type Run, type RunMap } from "./data";
 import { append, element, section, toggle } from "./dom";
 import { headingDial } from "./heading_dial";
 import { number } from "./format";
@@ -38,9 +38,14 @@ const kMostLandmarks = 60000;
 const kWorthTurning_rad = 0.002; // north moves a little with every frame
 const kLivePlots = ["heading", "depth", "heading-sigma", "tracks"];
 
+/// The way in the map alone; the ledger is in the report.
+function emptyMap(): RunMap {
+  return { pairs: 0, outcomes: [], loops: [], path: { t_s: [], x: [], y: [], z: [] }, control: [] };
+}
+
 function emptyRun(data: PageData): Run {
   const run: Run = {
-    name: data.name ?? "run", origin_ns: "0", config: "", evaluation: null, timings: null, magnetometer: null, map: null, pictures: [],
+    name: data.name ?? "run", origin_ns: "0", config: "", evaluation: null, timings: null, magnetometer: null, map: emptyMap(), pictures: [],
     summary: { data: data.data, rig: { camera_axis_B: data.camera_axis_B }, heading: {} },
     states: { total: 0, stride: 1, t_s: [], numbers: {}, words: { status: [], magnetometer: [] } },
     landmarks: { total: 0, xyz: "" },

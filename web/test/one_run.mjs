@@ -45,6 +45,8 @@ await run(async ({ page }) => {
     pictures.unshift(await plan.evaluate((canvas) => canvas.toDataURL()));
   }
 
+  await page.$eval(".pose input", (slider) => { slider.value = "0"; slider.dispatchEvent(new Event("input")); });
+
   for (const plot of kPlots) {
     await show(page, `#plot-${plot}`);
     await page.waitForSelector(`#plot-${plot} canvas`);
