@@ -42,14 +42,26 @@ function ledgerCard(view: View, map: RunMap): HTMLElement {
   return card;
 }
 
+const kMostMoments = 5;
+
+/// Sightings of one point that are used together; each blunder for itself.
+function groups(control: RunMap["control"]): RunMap["control"][] {
+  const used = new Map<string, RunMap["control"]>();
+  for (const point of control) if (!point.is_blunder) used.set(point.name, [...(used.get(point.name) ?? []), point]);
+  return [...control.filter((point) => point.is_blunder).map((point) => [point]), ...used.values()];
+}
+
 function controlCard(view: View, map: RunMap): HTMLElement | null {
   if (map.control.length === 0) return null;
-  const rows = map.control.map((point) => [
-    point.name, point.kind, moment(view, point.t_s), ...point.error_m.map((v) => number(v, 2)), number(point.chi_squared, 2),
-    point.is_blunder ? element("span", "badge warning", "blunder") : "used"]);
+  const rows = groups(map.control).map((points) => [
+    points[0].name, points[0].kind, String(points.length),
+    number(Math.sqrt(points.reduce((sum, { error_m }) => sum + Math.hypot(...error_m) ** 2, 0) / points.length), 2),
+    number(Math.max(...points.map((point) => point.chi_squared)), 2),
+    moments(view, points.slice(0, kMostMoments).map((point) => point.t_s), points.length),
+    points[0].is_blunder ? element("span", "badge warning", "blunder") : "used"]);
   return element("div", "card control", element("header", "", element("h3", "", "Tags and control points")),
     element("p", "note", "Residuals of the solved map. Above a chi squared of 16.3, an observation is a blunder."),
-    table(["Point", "Kind", "At", "East (m)", "North (m)", "Up (m)", "χ²", ""], rows));
+    table(["Point", "Kind", "Sightings", "Residual, RMS (m)", "Largest χ²", "At", ""], rows));
 }
 
 /// Nothing where no run has a map.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,18 +94,8 @@ nlohmann::json secondsAt(int64_t stamp_ns, int64_t origin_ns) {
 
 /// A reason with its numbers replaced, so that reasons of one kind are counted together.
 std::string kindOf(const std::string& reason) {
-  std::string kind;
-  for (size_t i = 0; i < reason.size(); ++i) {
-    const auto isDigit = [&](size_t k) { return k < reason.size() && reason[k] >= '0' && reason[k] <= '9'; };
-    const bool continues_number =
-        isDigit(i) || (reason[i] == '.' && isDigit(i + 1) && i > 0 && isDigit(i - 1));
-    if (!continues_number) {
-      kind += reason[i];
-    } else if (!kind.ends_with("…")) {
-      kind += "…";
-    }
-  }
-  return kind;
+  static const std::regex number("[0-9]+([.][0-9]+)?(e[-+]?[0-9]+)?");
+  return std::regex_replace(reason, number, "…");
 }
 
 /// Candidates that ended alike.
