@@ -122,6 +122,17 @@ std::optional<message::TransformStamped> northMessage(const FrameEstimate& estim
   return message;
 }
 
+std::optional<message::TransformStamped> mapMessage(const FrameEstimate& estimate,
+                                                    const std::optional<Rigid3>& map_from_world,
+                                                    const FrameNames& names) {
+  if (!map_from_world) return northMessage(estimate, names);
+  auto message = headed<message::TransformStamped>(estimate.time, names.map);
+  message.child_frame_id = names.world;
+  message.transform.translation = vectorMessage<message::Vector3>(map_from_world->translation);
+  message.transform.rotation = quaternionMessage(map_from_world->rotation);
+  return message;
+}
+
 message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time time, const FrameNames& names) {
   auto cloud = headed<message::PointCloud2>(time, names.world);
   using message::PointField;

@@ -10,11 +10,11 @@
 /// Functions that convert estimates to ROS 1 messages (packages geometry_msgs, nav_msgs, sensor_msgs 1.13).
 namespace lodeline {
 
-/// Names of the frames in messages: the map (east, north, up), the world (of the first pose; never jumps) and
-/// the body (the IMU). The map equals the world where north is known at the start.
+/// Names of the frames in messages, as in REP-105: the map (east, north, up; jumps where a loop is closed),
+/// the odometry's world (of the first pose; never jumps) and the body (the IMU).
 struct FrameNames {
-  std::string world = "world";
-  std::string body = "body";
+  std::string world = "odom";
+  std::string body = "base_link";
   std::string map = "map";
 };
 
@@ -40,6 +40,12 @@ message::TransformStamped transformMessage(const FrameEstimate& estimate, const 
 /// Transformation of the world in the map: a rotation about the vertical to the current estimate of north.
 /// Returns nothing while north is unknown.
 std::optional<message::TransformStamped> northMessage(const FrameEstimate& estimate, const FrameNames& names);
+
+/// Transformation of the world in the map. `map_from_world`: by the map of the run, empty where it has none;
+/// then northMessage().
+std::optional<message::TransformStamped> mapMessage(const FrameEstimate& estimate,
+                                                    const std::optional<Rigid3>& map_from_world,
+                                                    const FrameNames& names);
 
 /// Landmarks in the world, m, as x, y, z (FLOAT32) and `observations` (UINT32), 16 bytes per point.
 message::PointCloud2 landmarkCloud(const std::vector<MapPoint>& points, Time time, const FrameNames& names);

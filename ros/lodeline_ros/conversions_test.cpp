@@ -64,6 +64,37 @@ TEST(Conversions, NorthIsAMapAboveAWorldThatNeverJumps) {
   EXPECT_NEAR(north->transform.rotation.w, std::cos(1.0), 1e-12);
 }
 
+TEST(Conversions, MapAndOdometryGiveThePoseInTheMap) {
+  const FrameEstimate estimate = someEstimate();
+  const Rigid3 map_from_world(Quat(Eigen::AngleAxisd(-2.5, Vec3::UnitZ())), Vec3(4.0, -3.0, 0.5));
+  const auto map = mapMessage(estimate, map_from_world, {});
+  const message::TransformStamped body = transformMessage(estimate, {});
+  ASSERT_TRUE(map);
+  // map -> odom -> base_link is one chain.
+  EXPECT_EQ(map->header.frame_id, "map");
+  EXPECT_EQ(map->child_frame_id, body.header.frame_id);
+  EXPECT_EQ(body.child_frame_id, "base_link");
+  EXPECT_EQ(map->header.stamp, body.header.stamp);
+  const auto rigid = [](const auto& transform) {
+    const auto &q = transform.rotation, &p = transform.translation;
+    return Rigid3(Quat(q.w, q.x, q.y, q.z), Vec3(p.x, p.y, p.z));
+  };
+  const Rigid3 chained = rigid(map->transform) * rigid(body.transform);
+  const Rigid3 expected = map_from_world * estimate.state.world_from_body;
+  EXPECT_LT((chained.translation - expected.translation).norm(), 1e-12);
+  EXPECT_LT(chained.rotation.angularDistance(expected.rotation), 1e-9);
+}
+
+TEST(Conversions, WithoutAMapOnlyNorthTurnsTheOdometry) {
+  FrameEstimate estimate = someEstimate();
+  estimate.sensors.of<MagnetometerEstimate>().north_from_world_rad.reset();
+  EXPECT_FALSE(mapMessage(estimate, std::nullopt, {}));
+  estimate.sensors.of<MagnetometerEstimate>().north_from_world_rad = 1.0;
+  const auto north = mapMessage(estimate, std::nullopt, {});
+  ASSERT_TRUE(north);
+  EXPECT_NEAR(north->transform.rotation.z, std::sin(0.5), 1e-12);
+}
+
 TEST(Conversions, PoseCovarianceIsPositionThenRotationRowByRow) {
   const FrameEstimate estimate = someEstimate();
   const message::Odometry message = odometryMessage(estimate, {}, {});
@@ -131,7 +162,7 @@ Number numberAt(const decltype(message::PointCloud2::data)& bytes, size_t offset
 TEST(Conversions, CloudLaysPointsOutAsItsFieldsSay) {
   const std::vector<MapPoint> points = {{1, Vec3(1.0, 2.0, 3.0), 4}, {2, Vec3(-5.5, 6.0, 7.0), 8}};
   const message::PointCloud2 cloud = landmarkCloud(points, Time::fromNanoseconds(1), {});
-  EXPECT_EQ(cloud.header.frame_id, "world");
+  EXPECT_EQ(cloud.header.frame_id, "odom");
   EXPECT_EQ(cloud.width * cloud.height, 2U);
   ASSERT_EQ(cloud.data.size(), cloud.row_step * cloud.height);
   ASSERT_EQ(cloud.fields.size(), 4U);

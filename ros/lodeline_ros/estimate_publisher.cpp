@@ -20,7 +20,8 @@ EstimatePublisher::EstimatePublisher(ros::NodeHandle node, FrameNames names, boo
 }
 
 void EstimatePublisher::publish(const FramePacket& packet, const FrameEstimate& estimate,
-                                const PacketOdometry& odometry, const ImuCalibration& imu) {
+                                const PacketOdometry& odometry, const ImuCalibration& imu,
+                                const std::optional<Rigid3>& map_from_world) {
   if (estimate.status == Status::Waiting) return;
   const double gyroscope_sigma = imu.noise.gyroscope_density_rad_per_s_sqrtHz * std::sqrt(imu.rate_hz);
   const Turning turning{packet.imu.back().angular_velocity_B, gyroscope_sigma};
@@ -28,7 +29,8 @@ void EstimatePublisher::publish(const FramePacket& packet, const FrameEstimate& 
   if (tf_) {
     message::TFMessage transforms;
     transforms.transforms.push_back(transformMessage(estimate, names_));
-    if (auto north = northMessage(estimate, names_)) transforms.transforms.push_back(std::move(*north));
+    if (auto map = mapMessage(estimate, map_from_world, names_))
+      transforms.transforms.push_back(std::move(*map));
     tf_.publish(transforms);
   }
   if (!estimate.is_keyframe) return;

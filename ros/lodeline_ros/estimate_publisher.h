@@ -18,8 +18,9 @@ class EstimatePublisher {
   EstimatePublisher(ros::NodeHandle node, FrameNames names, bool with_tf);
 
   /// Publishes nothing for a frame without a pose. `imu`: calibration of the IMU of the packet's readings.
+  /// `map_from_world`: by the map of the run, see RunMapping; empty where there is none.
   void publish(const FramePacket& packet, const FrameEstimate& estimate, const PacketOdometry& odometry,
-               const ImuCalibration& imu);
+               const ImuCalibration& imu, const std::optional<Rigid3>& map_from_world);
 
  private:
   void publishPath(const FrameEstimate& estimate);

@@ -55,7 +55,8 @@ void estimate(LiveSource* source, RunSession* session, EstimatePublisher* publis
   while (session->fetch()) {
     const Clock::time_point start = Clock::now();
     session->process();
-    publisher->publish(session->packet(), session->estimate(), session->odometry(), source->rig().imu);
+    publisher->publish(session->packet(), session->estimate(), session->odometry(), source->rig().imu,
+                       session->mapFromOdom());
     const double work_s = std::chrono::duration<double>(Clock::now() - start).count();
     status->add(session->estimate(), work_s, period_s, source->backlog());
     if (session->summary().frames() % kFramesBetweenFindings == 0) status->setFindings(diagnostics.ranked());

@@ -77,6 +77,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& node) {
   reader.read("magnetometer", &run.magnetometer);
   reader.read("site", &run.site);
   reader.read("date", &run.date);
+  reader.read("map", &run.map);
   reader.read("map_frame", &parameters.frames.map);
   reader.read("world_frame", &parameters.frames.world);
   reader.read("body_frame", &parameters.frames.body);

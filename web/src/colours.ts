@@ -2,6 +2,9 @@
 
 /// Okabe & Ito 2008, for things of different kinds.
 export const kKinds = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+/// The way in the map, and loops.
+export const kMapColour = "#d55e00";
+export const kLoopColour = "#cc79a7";
 /// x, y, z.
 export const kAxes = ["#d55e00", "#009e73", "#0072b2"];
 

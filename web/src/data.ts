@@ -86,6 +86,30 @@ export interface Magnetometer {
   field_strength_from: string; // in words
 }
 
+/// A pair of keyframes whose images show one place.
+export interface Loop {
+  new_t_s: number;
+  old_t_s: number | null; // null where the old keyframe is of another dive
+  old_dive?: string;
+  source: string;
+  inliers: number;
+}
+
+export interface Outcome {
+  status: string;
+  reason: string;
+  count: number;
+  t_s: number[]; // of the first ones
+}
+
+export interface RunMap {
+  pairs: number; // that were compared
+  outcomes: Outcome[];
+  loops: Loop[]; // accepted
+  path: { t_s: number[]; x: number[]; y: number[]; z: number[] } | null; // keyframes in the solved map
+  control: { name: string; kind: string; t_s: number; error_m: number[]; chi_squared: number; is_blunder: boolean }[];
+}
+
 export interface Run {
   name: string;
   origin_ns: string;
@@ -98,6 +122,7 @@ export interface Run {
   timings: Table | null;
   magnetometer: Magnetometer | null;
   evaluation: Evaluation | null;
+  map: RunMap | null;
 }
 
 export interface PageData {

@@ -1,22 +1,32 @@
 // The page while a run goes on: what the program tells over server-sent events, shown as it comes.
 
-import { decodeFloats, type PageData, type Run } from "./data";
+import { decodeFloats, type PageData, type Run, type RunMap } from "./data";
 import { append, element, section, toggle } from "./dom";
 import { headingDial } from "./heading_dial";
 import { number } from "./format";
 import { kPlots } from "./plots";
 import { plotCard } from "./plot";
 import { statusCard } from "./status_strip";
-import { appendPose, makeTrack, refill } from "./track";
+import type { Vec3 } from "./geometry";
+import { appendPose, makeTrack, refill, type Track } from "./track";
 import { trajectorySection } from "./trajectory_section";
 import { View } from "./view";
 import { turnNumbers, turnPoints, turnRows } from "./world_turn";
+
+/// The pose in the map, and the turn of the odometry's world in it about the vertical.
+interface MapPose {
+  x_m: number;
+  y_m: number;
+  z_m: number;
+  turned_rad: number;
+}
 
 /// What LiveView sends of a frame; columns have the names of states.csv.
 interface State {
   t_s: number;
   numbers?: Record<string, number | null>;
   words: Record<string, string>;
+  map?: MapPose; // where a place of the map is known
   landmarks?: string; // new ones, base64 of 32-bit floats: x y z x y z ...
   run: { frames: number; path_m: number; real_time_factor: number; heading_reference: string;
     north_from_world_rad: number | null; waiting_for: string };
@@ -28,9 +38,14 @@ const kMostLandmarks = 60000;
 const kWorthTurning_rad = 0.002; // north moves a little with every frame
 const kLivePlots = ["heading", "depth", "heading-sigma", "tracks"];
 
+/// The way in the map alone; the ledger is in the report.
+function emptyMap(): RunMap {
+  return { pairs: 0, outcomes: [], loops: [], path: { t_s: [], x: [], y: [], z: [] }, control: [] };
+}
+
 function emptyRun(data: PageData): Run {
   const run: Run = {
-    name: data.name ?? "run", origin_ns: "0", config: "", evaluation: null, timings: null, magnetometer: null, pictures: [],
+    name: data.name ?? "run", origin_ns: "0", config: "", evaluation: null, timings: null, magnetometer: null, map: emptyMap(), pictures: [],
     summary: { data: data.data, rig: { camera_axis_B: data.camera_axis_B }, heading: {} },
     states: { total: 0, stride: 1, t_s: [], numbers: {}, words: { status: [], magnetometer: [] } },
     landmarks: { total: 0, xyz: "" },
@@ -38,6 +53,10 @@ function emptyRun(data: PageData): Run {
   for (const name of ["p_x [m]", "p_y [m]", "p_z [m]", "q_w", "q_x", "q_y", "q_z", "sigma_p_x [m]", "sigma_p_y [m]", "sigma_p_z [m]",
     "sigma_heading [rad]", "tracks", "landmarks", "reprojection_rms [sigma]"]) run.states.numbers[name] = [];
   return run;
+}
+
+function metres(position: (number | null)[]): string {
+  return `${position.map((v) => (v ?? NaN).toFixed(2).replace(/^-(?=[0.]*$)/, "").replace("-", "−")).join(", ")} m`;
 }
 
 /// The newest words and figures.
@@ -55,6 +74,8 @@ function nowPanel(): { node: HTMLElement; show: (state: State, mapPoints: number
       ["Path", `${number(run.path_m, 4)} m`],
       ["Tracks", numbers ? `${numbers["tracks"]}, ${numbers["landmarks"]} of them landmarks` : "–"],
       ["Map points shown", String(mapPoints)],
+      ["By odometry", numbers ? metres(["x", "y", "z"].map((axis) => numbers[`p_${axis} [m]`])) : "–"],
+      ...(state.map ? [["In the map", metres([state.map.x_m, state.map.y_m, state.map.z_m])] as [string, string]] : []),
       ["Magnetometer", words.magnetometer],
     ];
     list.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", "", name), element("dd", "", value)]));
@@ -92,6 +113,7 @@ export function startLive(page: Element, data: PageData): void {
     const state = JSON.parse((event as MessageEvent<string>).data) as State;
     // After a broken connection the server tells everything from the start again.
     if (state.t_s <= (run.states.t_s[run.states.t_s.length - 1] ?? -1)) return;
+    turnMapPath(track, state);
     const north_rad = state.run.north_from_world_rad ?? turned_rad;
     if (Math.abs(north_rad - turned_rad) > kWorthTurning_rad) {
       turnRows(run.states, north_rad - turned_rad);
@@ -102,6 +124,7 @@ export function startLive(page: Element, data: PageData): void {
     if (state.numbers) turnNumbers(state.numbers, turned_rad);
     add(run, state);
     if (state.numbers) appendPose(track, run.states.t_s.length - 1);
+    if (state.map) track.inMap.push([state.map.x_m, state.map.y_m, state.map.z_m]);
     run.summary.heading = { reference: state.run.heading_reference };
     if (state.landmarks) landmarks = added(landmarks, turnPoints(decodeFloats(state.landmarks), turned_rad));
     now.show(state, landmarks.length / 3);
@@ -123,6 +146,17 @@ export function startLive(page: Element, data: PageData): void {
     view.active.emit();
     if (follow) view.time.set(track.t_s[track.t_s.length - 1]);
   }, kRedraw_ms);
+}
+
+/// Until a loop moves it, the map turns to north with the odometry; so does the way that is drawn of it.
+function turnMapPath(track: Track, { map, numbers }: State): void {
+  if (!map || !numbers) return;
+  const turned = turnPoints(["x", "y", "z"].map((axis) => numbers[`p_${axis} [m]`] ?? NaN), map.turned_rad);
+  const moved_m = Math.hypot(map.x_m - turned[0], map.y_m - turned[1], map.z_m - turned[2]);
+  const turn_rad = map.turned_rad - track.mapTurned_rad;
+  if (moved_m > 0.01 || Math.abs(turn_rad) < kWorthTurning_rad) return;
+  track.mapTurned_rad = map.turned_rad;
+  track.inMap = track.inMap.map((p) => turnPoints(p, turn_rad) as Vec3);
 }
 
 /// When there are many, every second one goes.

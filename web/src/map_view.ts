@@ -1,11 +1,11 @@
 // The way from above or from the side, on a flat map with a scale.
 
-import { css, kKinds, themed, whenThemeChanges } from "./colours";
+import { css, kKinds, kLoopColour, kMapColour, themed, whenThemeChanges } from "./colours";
 import { colourScale } from "./colouring";
 import { element, whenResized } from "./dom";
 import type { Vec3 } from "./geometry";
 import { MapFrame } from "./map_frame";
-import type { Track } from "./track";
+import { loopEnds, type Track } from "./track";
 import { Tip, poseText } from "./tip";
 import type { View } from "./view";
 import { worldNames } from "./world";
@@ -84,8 +84,8 @@ export class MapView {
   private frameOf(width: number, height: number, flat: Flattening["flat"]): MapFrame {
     const low: [number, number] = [Infinity, Infinity];
     const high: [number, number] = [-Infinity, -Infinity];
-    for (const { position } of this.view.tracks) {
-      for (const p of position) {
+    for (const { position, inMap } of this.view.tracks) {
+      for (const p of [...position, ...inMap]) {
         flat(p).forEach((v, k) => {
           low[k] = Math.min(low[k], v);
           high[k] = Math.max(high[k], v);
@@ -110,7 +110,9 @@ export class MapView {
     tracks.forEach((other, i) => {
       if (other !== track) drawLine(c, other.position.map(place), kKinds[i % kKinds.length], 1.6);
     });
+    if (shown.value.map && track.inMap.length > 1) drawLine(c, track.inMap.map(place), kMapColour, 1.6, [6, 4]);
     drawColoured(c, track, place, colourScale(track, this.view.colouring.value).colours);
+    if (shown.value.loops) drawLoops(c, track, place);
     if (shown.value.pictures) drawPictures(c, track, place);
     if (track.position.length > 0) {
       const p = track.position[this.view.pose()];
@@ -160,12 +162,31 @@ function drawLandmarks(c: CanvasRenderingContext2D, track: Track, place: Placing
   c.globalAlpha = 1;
 }
 
-function drawLine(c: CanvasRenderingContext2D, points: [number, number][], colour: string, width: number): void {
+function drawLine(
+  c: CanvasRenderingContext2D, points: [number, number][], colour: string, width: number, dashes: number[] = []
+): void {
   c.strokeStyle = colour;
   c.lineWidth = width;
+  c.setLineDash(dashes);
   c.beginPath();
   points.forEach(([x, y]) => c.lineTo(x, y));
   c.stroke();
+  c.setLineDash([]);
+}
+
+/// A line between the poses that a loop joins, and a dot at the later one.
+function drawLoops(c: CanvasRenderingContext2D, track: Track, place: Placing): void {
+  c.strokeStyle = c.fillStyle = kLoopColour;
+  c.lineWidth = 1.3;
+  for (const [before, now] of loopEnds(track)) {
+    c.beginPath();
+    c.moveTo(...place(before));
+    c.lineTo(...place(now));
+    c.stroke();
+    c.beginPath();
+    c.arc(...place(now), 2.2, 0, 2 * Math.PI);
+    c.fill();
+  }
 }
 
 function drawColoured(

@@ -4,6 +4,7 @@ import { append, button, element, section } from "./dom";
 import { fileName } from "./download";
 import { findingsList, summaryTiles } from "./summary";
 import { kComparisonPlots } from "./comparison_plots";
+import { mapSection } from "./map_section";
 import { kMagnetometerPlots, kPlots } from "./plots";
 import { plotCard } from "./plot";
 import { sphereCard } from "./sphere_view";
@@ -94,6 +95,7 @@ export function assemble(page: Element, view: View): void {
   append(page, head(view), summaryTiles(view),
     section("findings", "What to know about the data", findingsList(view)),
     trajectorySection(view),
+    mapSection(view),
     several ? comparison(view) : null,
     view.tracks.some((t) => t.run.evaluation) ? section("evaluation", "Against the reference", evaluationTable(view)) : null,
     plots(view), magnetometer(view), configuration(view),

@@ -4,11 +4,11 @@ import * as THREE from "three";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { kKinds, themed } from "./colours";
+import { kKinds, kLoopColour, kMapColour, themed } from "./colours";
 import { colourScale, type Colouring } from "./colouring";
 import { niceStep } from "./format";
 import type { Vec3 } from "./geometry";
-import { extent, type Track } from "./track";
+import { extent, loopEnds, type Track } from "./track";
 
 export type Place = { middle: THREE.Vector3; radius: number; reach: number };
 
@@ -50,6 +50,24 @@ export function referenceLine(track: Track): THREE.Object3D | null {
   const path = track.run.evaluation?.path;
   if (!path || path.x.length < 2) return null;
   return fatLine(path.x.map((x, i) => [x, path.y[i], path.z[i]] as Vec3), themed("ink"), 1.1, 3);
+}
+
+/// The way in the map, closed by loops.
+export function mapLine(track: Track): THREE.Object3D | null {
+  return track.inMap.length > 1 ? fatLine(track.inMap, kMapColour, 1.8, 3) : null;
+}
+
+/// A line for each loop between the poses that it joins; a dot where the old keyframe is of another dive.
+export function loopLines(track: Track): THREE.Object3D {
+  const group = new THREE.Group();
+  const ends = loopEnds(track);
+  const lines = new THREE.BufferGeometry().setFromPoints(ends.flat().map((p) => new THREE.Vector3(...p)));
+  const paint = { color: kLoopColour, depthTest: false, transparent: true };
+  group.add(new THREE.LineSegments(lines, new THREE.LineBasicMaterial(paint)));
+  const dots = new THREE.BufferGeometry().setFromPoints(ends.map(([, p]) => new THREE.Vector3(...p)));
+  group.add(new THREE.Points(dots, new THREE.PointsMaterial({ ...paint, size: 5, sizeAttenuation: false })));
+  for (const object of group.children) object.renderOrder = 4;
+  return group;
 }
 
 export function landmarkCloud(track: Track): THREE.Object3D {

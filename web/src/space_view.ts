@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { ViewHelper } from "three/addons/helpers/ViewHelper.js";
 import { whenThemeChanges } from "./colours";
 import { element, whenResized } from "./dom";
-import { grid, landmarkCloud, otherLine, placeOf, PoseMarker, referenceLine, trajectoryLine, type Place } from "./scene";
+import { grid, landmarkCloud, loopLines, mapLine, otherLine, placeOf, PoseMarker, referenceLine, trajectoryLine, type Place } from "./scene";
 import { poseText, Tip } from "./tip";
 import type { View } from "./view";
 import { worldNames } from "./world";
@@ -116,6 +116,9 @@ export class SpaceView {
     if (view.shown.value.landmarks) this.content.add(landmarkCloud(track));
     const reference = view.shown.value.reference ? referenceLine(track) : null;
     if (reference) this.content.add(reference);
+    const inMap = view.shown.value.map ? mapLine(track) : null;
+    if (inMap) this.content.add(inMap);
+    if (view.shown.value.loops && track.run.map?.loops.length) this.content.add(loopLines(track));
     this.addGround();
     this.marker = new PoseMarker(0.06 * this.place.radius);
     this.content.add(this.marker.object);

@@ -18,13 +18,15 @@ export interface Track {
   positionSigma_m: (number | null)[];
   error_m: (number | null)[];
   map: WorldMap;
+  inMap: Vec3[]; // the way in the map of the run, closed by loops, in the world that the page shows
+  mapTurned_rad: number; // while a run goes on: the turn of its odometry in the map, as inMap shows it
   landmarks: Float32Array; // x y z x y z ..., in the world that the page shows
 }
 
 export function makeTrack(run: Run): Track {
   const map = new WorldMap(run);
   const track: Track = {
-    run, map, row: [], t_s: [], position: [], view: [], heading_deg: [], depth_m: [], headingSigma_deg: [],
+    run, map, inMap: mapPath(run, map), mapTurned_rad: 0, row: [], t_s: [], position: [], view: [], heading_deg: [], depth_m: [], headingSigma_deg: [],
     positionSigma_m: [], error_m: [], landmarks: mapped(decodeFloats(run.landmarks.xyz), map),
   };
   refill(track);
@@ -71,6 +73,18 @@ function errorAt(run: Run, t: number): number | null {
   const i = nearestIndex(errors.t_s, t);
   // Further away than a few frames there was no reference to compare with.
   return Math.abs(errors.t_s[i] - t) < 1 ? errors.numbers["position [m]"][i] : null;
+}
+
+function mapPath(run: Run, map: WorldMap): Vec3[] {
+  const path = run.map?.path;
+  return path ? path.x.map((x, i) => map.point([x, path.y[i], path.z[i]])) : [];
+}
+
+/// Ends of the loops on a track; both are the same where the old keyframe is of another dive.
+export function loopEnds(track: Track): [Vec3, Vec3][] {
+  if (track.t_s.length === 0) return [];
+  const at = (t: number) => track.position[nearestIndex(track.t_s, t)];
+  return (track.run.map?.loops ?? []).map((loop) => [at(loop.old_t_s ?? loop.new_t_s), at(loop.new_t_s)]);
 }
 
 function mapped(xyz: Float32Array, map: WorldMap): Float32Array {

@@ -1,7 +1,8 @@
 // The trajectory in space, from above and from the side, with what can be chosen about it.
 
 import { available, colourScale } from "./colouring";
-import { gradient, whenThemeChanges } from "./colours";
+import { gradient, kLoopColour, kMapColour, whenThemeChanges } from "./colours";
+import type { RunMap } from "./data";
 import { button, choice, element, section, toggle, whenNear } from "./dom";
 import { fileName, saveCsv, savePng } from "./download";
 import { fromAbove, fromTheSide, MapView, type Flattening } from "./map_view";
@@ -34,7 +35,18 @@ function toggles(view: View): HTMLElement {
   const row = element("div", "toggles", toggle("Landmarks", true, change("landmarks")));
   if (view.tracks.some((t) => t.run.evaluation)) row.append(toggle("Reference (thin line)", true, change("reference")));
   if (view.tracks.some((t) => t.run.pictures.length > 0)) row.append(toggle("Picture places", true, change("pictures")));
+  const has = (what: (map: RunMap) => boolean) => view.tracks.some(({ run }) => run.map && what(run.map));
+  if (has((map) => map.path !== null)) row.append(keyed(toggle("In the map", true, change("map")), kMapColour));
+  if (has((map) => map.loops.length > 0)) row.append(keyed(toggle("Loops", true, change("loops")), kLoopColour));
   return row;
+}
+
+/// A toggle with the colour of what it shows.
+function keyed(node: HTMLElement, colour: string): HTMLElement {
+  const swatch = element("i");
+  swatch.style.background = colour;
+  node.append(swatch);
+  return node;
 }
 
 /// All states that the page holds.

@@ -9,13 +9,15 @@ export interface Shown {
   landmarks: boolean;
   reference: boolean;
   pictures: boolean;
+  loops: boolean;
+  map: boolean;
 }
 
 export class View {
   readonly active: Signal<Track>;
   readonly time: Signal<number>; // s since the start of the active run
   readonly colouring = new Signal<Colouring>("time");
-  readonly shown = new Signal<Shown>({ landmarks: true, reference: true, pictures: true });
+  readonly shown = new Signal<Shown>({ landmarks: true, reference: true, pictures: true, loops: true, map: true });
 
   constructor(readonly tracks: Track[]) {
     this.active = new Signal(tracks[0]);

@@ -11,6 +11,10 @@ await run(async ({ page }) => {
   assert.match(await text(".dial"), /90\.0° ± 2\.0°from true north/);
   await page.waitForFunction(() => document.querySelector(".pose .time").textContent === "0:12.0");
   assert.match(await text(".pose .figures"), /Position12\.00, 0\.00, −0\.50 m/);
+  // Odometry and map apart, after a loop.
+  assert.match(await text(".now"), /By odometry12\.00, 0\.00, −0\.50 m/);
+  assert.match(await text(".now"), /In the map12\.00, 3\.00, −0\.50 m/);
+  assert.match(await text(".toggles"), /In the map/);
   assert.match(await page.$eval(".picture img", (image) => image.src), /^data:image\/jpeg;base64,AAAA/);
   // One with each of the states 0 to 12.
   assert.match(await text(".now"), /Map points shown13/);

@@ -22,6 +22,31 @@ await run(async ({ page }) => {
   assert.match(await text(page, "#evaluation"), /0\.100 m/);
   assert.match(await text(page, "#configuration pre"), /keyframes: 7/);
 
+  // The ledger by outcome, with moments that select a pose; residuals of the tags.
+  assert.match(await text(page, "#map .ledger .note"), /5 pairs of images were compared and 2 accepted as loops\./);
+  const ledger = await page.$$eval("#map .ledger tbody tr", (rows) => rows.map((row) => row.textContent));
+  assert.equal(ledger.length, 3);
+  assert.ok(ledger.some((row) => /accepted2–0:10\.0, 0:11\.0/.test(row)), ledger.join("; "));
+  assert.ok(ledger.some((row) => /candidate2… matches, … needed0:06\.0, 0:07\.0/.test(row)), ledger.join("; "));
+  assert.ok(ledger.some((row) => /refused1tag 7 hangs 3\.20 m away0:08\.0/.test(row)), ledger.join("; "));
+  await page.click("#map .ledger .time-link");
+  const control = await page.$$eval("#map .control tbody tr", (rows) => rows.map((row) => row.textContent));
+  assert.match(control[0], /tag 7, oldtag13\.28120:08\.0blunder/);
+  assert.match(control[1], /tag 3tag10\.0231\.30:03\.0used/);
+  await page.waitForFunction(() => ["0:06.0", "0:10.0"].includes(document.querySelector(".pose .time").textContent));
+
+  // Way in the map and loops can be taken away.
+  const plan = await page.$("canvas.map");
+  const whole = await plan.evaluate((canvas) => canvas.toDataURL());
+  const pictures = [];
+  for (const name of ["In the map", "Loops"]) {
+    await page.$$eval(".toggle", (labels, name) => labels.find((l) => l.textContent === name).querySelector("input").click(), name);
+    await page.waitForFunction((old) => document.querySelector("canvas.map").toDataURL() !== old, {}, pictures[0] ?? whole);
+    pictures.unshift(await plan.evaluate((canvas) => canvas.toDataURL()));
+  }
+
+  await page.$eval(".pose input", (slider) => { slider.value = "0"; slider.dispatchEvent(new Event("input")); });
+
   for (const plot of kPlots) {
     await show(page, `#plot-${plot}`);
     await page.waitForSelector(`#plot-${plot} canvas`);

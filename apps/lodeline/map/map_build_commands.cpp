@@ -50,6 +50,10 @@ void printMerged(const MergedDive& dive, bool is_first) {
                summary.is_placed ? "its place in the map is known" : "no place of the map was recognized");
   }
   fmt::print("\n");
+  for (const Loop& row : dive.ledger) {
+    if (row.source == kTagSource && row.status == LoopStatus::Refused)
+      fmt::print("warning [tag_refused]: {}, keyframe {}: {}\n", dive.name, row.new_keyframe, row.reason);
+  }
 }
 
 void printSolution(const MapSolution& solution) {

@@ -24,6 +24,11 @@ void bindRecording(Settings* settings, RunSettings* options) {
                  "Leave out regions that stay in place in the images, such as parts of the rig.");
   settings->bind("loops.enabled", &options->loops,
                  "Recognize places that were seen before, and write the map of the dive.");
+  settings->bind("tags.size_m", &options->tag_size_m,
+                 "Edge of the black square of the AprilTags (36h11) on the line. `0` where it is unknown.");
+  settings->bind("tags.control", &options->tags_control,
+                 "File of [control points](../how-to/control-points.md) with names, sizes and positions of "
+                 "tags. Empty for none.");
   settings->bind("camera_calibration.enabled", &options->odometry.estimator.camera_calibration.enabled,
                  "Estimate the calibration of the cameras.");
 }

@@ -23,6 +23,8 @@ struct RunSettings {
   WhiteNoise
       shown_noise;    ///< of the IMU, estimated from its readings; used to check the noise stated in its file
   bool loops = true;  ///< find loops, and write the map of the dive
+  double tag_size_m = 0.0;   ///< edge of AprilTags on the line; 0: unknown
+  std::string tags_control;  ///< file of control points that names tags; empty for none
 };
 
 void bindRunSettings(Settings* settings, RunSettings* options);

@@ -32,7 +32,7 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
     session->process();
     if (live) {
       live->show(session->packet(), session->estimate(), session->summary(), session->odometry().frontEnd(),
-                 session->landmarks());
+                 session->landmarks(), session->mapFromOdom());
     }
     progress.show(session->summary());
   }

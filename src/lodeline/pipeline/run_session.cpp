@@ -35,8 +35,32 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
   return description;
 }
 
-RunMappingRequest mappingRequest(const RunRequest& request) {
+/// Sizes, names and positions of tags that the settings state.
+void addTags(const RunSettings& options, RunMappingRequest* mapping, Diagnostics* diagnostics) {
+  mapping->tags.size_m = options.tag_size_m;
+  if (!options.tags_control.empty()) {
+    ControlReadOptions read;
+    if (options.site.size() == 3)
+      read.site = GeodeticPosition{options.site[0], options.site[1], options.site[2]};
+    const ControlSet control = readControl(options.tags_control, read, diagnostics);
+    mapping->tags.sizes_m = control.tag_sizes_m;
+    for (const ControlPoint& point : control.points) {
+      if (point.tag) mapping->mapping.tags.add(point);
+    }
+    if (mapping->mapping.tags.points.empty())
+      throw InputError(options.tags_control + ": tags.control names a file without tags");
+    if (mapping->tags.sizes_m.empty() && options.tag_size_m == 0.0) {
+      throw UsageError(options.tags_control +
+                       ": no size of a tag is known; state tags.size_m, or a column 'size [m]' in the file");
+    }
+  }
+  mapping->tags.check();
+}
+
+RunMappingRequest mappingRequest(const RunRequest& request, const RunSettings& options,
+                                 Diagnostics* diagnostics) {
   RunMappingRequest mapping;
+  addTags(options, &mapping, diagnostics);
   mapping.folder = request.output;
   mapping.earlier_map = request.map;
   mapping.name = std::filesystem::absolute(request.output).filename().string();
@@ -68,7 +92,7 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
     output_.emplace(folder_, loop_.odometry().estimator(),
                     RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
     if (options.loops || !request.map.empty())
-      mapping_.emplace(mappingRequest(request), source->rig(), diagnostics);
+      mapping_.emplace(mappingRequest(request, options, diagnostics), source->rig(), diagnostics);
   }
   start_ = Clock::now();
   start_processor_s_ = ProcessUsage::now().processor_s;

@@ -46,6 +46,10 @@ class RunSession {
   const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }
   const PacketOdometry& odometry() const { return loop_.odometry(); }
+  /// From the odometry's world to the map's, see RunMapping; empty where the run has no map.
+  std::optional<Rigid3> mapFromOdom() const {
+    return mapping_ ? mapping_->mapFromOdom(summary_.last()) : std::nullopt;
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -33,6 +33,13 @@ struct MapFeature {
   double distance_sigma_m = 0.0;  ///< of that position along the first ray; across it the ray's sigma holds
 };
 
+/// An AprilTag seen at a keyframe.
+struct SeenTag {
+  int tag = 0;                         ///< its number
+  Vec3 centre_B = Vec3::Zero();        ///< position of its centre in the body frame, m
+  Mat3 covariance = Mat3::Identity();  ///< of that position, m^2
+};
+
 /// What a map keeps of one moment of a dive.
 struct MapKeyframe {
   KeyframeId id = -1;
@@ -49,6 +56,7 @@ struct MapKeyframe {
   /// Depth of the body below the surface by the pressure sensor and one sigma, m.
   std::optional<ScalarPrior> depth_m;
   std::vector<MapFeature> features;
+  std::vector<SeenTag> tags;  ///< a map keeps them as observations of control points
 };
 
 /// A feature of an old keyframe and one of a new keyframe that show the same point: indices.

@@ -59,13 +59,15 @@ DiveMapping::DiveMapping(MapFile* own, MapDive dive, const MapFile* earlier, con
       options_(options),
       verifier_(options.verifier),
       search_(options.candidates),
-      graph_(options.graph) {
+      graph_(options.graph),
+      tags_(options.tags) {
   change_.emplace(own_->change());
   dive_.id = change_->addDive(dive_);
   if (earlier_ != nullptr) loadEarlier();
   DivePlacement start = options_.start;
   if (earlier_ == nullptr) start = DivePlacement{};
   known_.startDive(dive_number_, start);
+  tags_.startDive(dive_number_);
   map_from_odom_ = start.map_from_odom;
   is_placed_ = earlier_ == nullptr;
 }
@@ -96,6 +98,7 @@ void DiveMapping::loadEarlier() {
         depth_datum_m_ = keyframe.depth_m->value + pose.translation.z();
     }
   }
+  tags_.load(*earlier_);
 }
 
 MapKeyframe DiveMapping::full(KeyframeId id) const {
@@ -165,6 +168,13 @@ void DiveMapping::record(const Loop& loop) {
   ledger_.back().inlier_matches.clear();
 }
 
+DiveTags::Join DiveMapping::joining() {
+  return [this](KeyframeId id) {
+    joinGraph(id);
+    return graph_.contains(id);
+  };
+}
+
 void DiveMapping::joinGraph(KeyframeId earlier) {
   if (graph_.contains(earlier)) return;
   const StoredKeyframe row = *earlier_->keyframe(earlier);
@@ -210,6 +220,49 @@ void DiveMapping::use(std::vector<VerifiedLoop> decided, MappingStep* step) {
   }
 }
 
+void DiveMapping::use(const TagStep& tags) {
+  summary_.candidates += static_cast<int>(tags.ties.size() + tags.refused.size());
+  summary_.refused += static_cast<int>(tags.refused.size());
+  for (const Loop& refused : tags.refused) record(refused);
+  for (const TagTie& tie : tags.ties) {
+    if (known_.at(tie.row.old_keyframe).dive != dive_number_) {
+      is_placed_ = true;
+      known_.placement(dive_number_).is_known = true;
+    }
+    new_ties_.push_back(tie);
+  }
+}
+
+void DiveMapping::solve() {
+  const GraphSummary solution = graph_.solve();
+  updatePoses();
+  if (new_ties_.empty()) return;
+  const GraphCovariance covariances = graph_.covariance();
+  for (auto& [tie, place] : new_ties_) {
+    const auto sighting = std::find_if(solution.factors.begin(), solution.factors.end(),
+                                       [name = place, id = tie.new_keyframe](const FactorReport& factor) {
+                                         return factor.kind == FactorReport::Kind::Sighting &&
+                                                factor.from == id && factor.name == name;
+                                       });
+    const bool is_used = sighting != solution.factors.end() && sighting->accepted;
+    const RelativePose relative = covariances.relative(tie.old_keyframe, tie.new_keyframe);
+    tie.old_from_new = relative.from_from_to;
+    tie.covariance = relative.covariance;
+    if (!is_used) {
+      tie.status = LoopStatus::Refused;
+      tie.reason = sighting == solution.factors.end() ? "not in the graph" : sighting->reason;
+      ++summary_.refused;
+    } else {
+      known_.addLoop(tie.old_keyframe, tie.new_keyframe, relative);
+      ++summary_.verified;
+      ++summary_.accepted;
+      if (known_.at(tie.old_keyframe).dive != dive_number_) ++summary_.accepted_between_dives;
+    }
+    record(tie);
+  }
+  new_ties_.clear();
+}
+
 void DiveMapping::updatePoses() {
   for (KnownKeyframe& keyframe : known_.all()) {
     if (keyframe.dive == dive_number_) keyframe.map_from_body = graph_.pose(keyframe.id);
@@ -226,12 +279,11 @@ MappingStep DiveMapping::add(MapKeyframe keyframe) {
   std::erase_if(recent_, [&](const MapKeyframe& other) { return other.time < oldest; });
   MappingStep step;
   step.keyframe = keyframe.id;
+  use(tags_.add(keyframe, known_, &graph_, joining()));
   look(keyframe, &step);
   index_.add(keyframe);
-  if (!step.accepted.empty()) {
-    graph_.solve();
-    updatePoses();
-  }
+  step.is_solved = !step.accepted.empty() || !new_ties_.empty();
+  if (step.is_solved) solve();
   step.is_placed = is_placed_;
   step.map_from_odom = map_from_odom_;
   summary_.processor_s += threadSeconds() - start_s;
@@ -266,8 +318,8 @@ MappingSummary DiveMapping::finish(Time end) {
   if (previous_) {
     use(acceptance_.expire(previous_->id, known_, true), &last);
     registerClouds();
-    graph_.solve();
-    updatePoses();
+    use(tags_.finish(known_, &graph_, joining()));
+    solve();
     const GraphCovariance covariances = graph_.covariance();
     for (const KnownKeyframe& keyframe : known_.all()) {
       if (keyframe.dive == dive_number_)
@@ -276,8 +328,9 @@ MappingSummary DiveMapping::finish(Time end) {
   }
   for (const Loop& loop : ledger_) {
     // Loops with another map's keyframes go to the common map.
-    if (known_.at(loop.old_keyframe).dive == dive_number_) change_->addLoop(loop);
+    if (known_.at(loop.old_keyframe).dive == dive_number_ && !isTagTie(loop)) change_->addLoop(loop);
   }
+  tags_.write(known_, &*change_);
   dive_.end = end;
   change_->updateDive(dive_);
   change_->commit();

@@ -11,6 +11,7 @@
 #include "lodeline/mapping/session/loops/candidate_search.h"
 #include "lodeline/mapping/session/loops/known_keyframes.h"
 #include "lodeline/mapping/session/loops/loop_acceptance.h"
+#include "lodeline/mapping/session/tags/dive_tags.h"
 #include "lodeline/mapping/store/map_change.h"
 #include "lodeline/mapping/store/map_file.h"
 
@@ -24,6 +25,7 @@ struct MappingOptions {
   /// Where the dive begins in an earlier map, if known: east, north, up relative to that map's origin, with
   /// sigmas of the horizontal and the vertical position.
   DivePlacement start;
+  ControlSet tags;  ///< names and stated positions of tags; visits are not used
 };
 
 /// Result for one keyframe.
@@ -31,6 +33,7 @@ struct MappingStep {
   KeyframeId keyframe = -1;
   std::vector<VerifiedLoop> accepted;  ///< with this keyframe, or waiting ones that it confirms
   bool is_placed = false;              ///< whether the pose in the map is known
+  bool is_solved = false;              ///< whether loops or tags with it changed the solution
   Rigid3 map_from_odom;                ///< rotation about the vertical and translation
 };
 
@@ -62,7 +65,12 @@ class DiveMapping {
   void store(MapKeyframe* keyframe);
   void look(const MapKeyframe& keyframe, MappingStep* step);
   void use(std::vector<VerifiedLoop> decided, MappingStep* step);
+  /// Counts what became of tags. Their ties wait for the next solution.
+  void use(const TagStep& tags);
+  /// Solves the graph; the ties of tags get their poses from it.
+  void solve();
   void joinGraph(KeyframeId earlier);
+  DiveTags::Join joining();
   void updatePoses();
   /// Joins the way in and the way out by the shape of the passage.
   void registerClouds();
@@ -78,6 +86,8 @@ class DiveMapping {
   KnownKeyframes known_;
   LoopAcceptance acceptance_;
   PoseGraph graph_;
+  DiveTags tags_;
+  std::vector<TagTie> new_ties_;  ///< since the last solution
   std::optional<MapChange> change_;
   int uncommitted_ = 0;
   int dive_number_ = 1;  ///< of this dive in memory, beyond those of the earlier map

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "lodeline/diagnostics.h"
@@ -55,13 +56,54 @@ std::set<KeyframeId> redundantKeyframes(const std::vector<Loop>& ledger, const K
                                         int dive, const MapMergeOptions& options) {
   std::set<KeyframeId> redundant;
   for (const Loop& loop : ledger) {
-    if (loop.status != LoopStatus::Accepted || known.at(loop.old_keyframe).dive == dive) continue;
+    if (loop.status != LoopStatus::Accepted || isTagTie(loop)) continue;
+    if (known.at(loop.old_keyframe).dive == dive) continue;
     const double turn_rad = Quat::Identity().angularDistance(loop.old_from_new.rotation);
     if (loop.old_from_new.translation.norm() < options.redundant_distance_m &&
         turn_rad < options.redundant_turn_rad)
       redundant.insert(loop.new_keyframe);
   }
   return redundant;
+}
+
+/// The tags that a run saw, by keyframe.
+std::map<KeyframeId, std::vector<SeenTag>> tagsOf(const MapFile& run) {
+  std::map<int64_t, int> tag_of;
+  for (const ControlPoint& point : run.controlPoints()) {
+    if (point.tag) tag_of[point.id] = *point.tag;
+  }
+  std::map<KeyframeId, std::vector<SeenTag>> tags;
+  for (const ControlObservation& seen : run.controlObservations()) {
+    const auto tag = tag_of.find(seen.point);
+    if (tag != tag_of.end())
+      tags[seen.keyframe].push_back({tag->second, seen.in_body.position, seen.in_body.covariance});
+  }
+  return tags;
+}
+
+/// Tags whose position a run states.
+ControlSet statedTags(const MapFile& run) {
+  ControlSet tags;
+  for (const ControlPoint& point : run.controlPoints()) {
+    if (point.tag && point.position) tags.add(point);
+  }
+  return tags;
+}
+
+/// Copies the control points and observations of a dive. Points that the map has keep their position.
+void copyControl(const MapFile& source, const MapFile& map, MapChange* change) {
+  std::map<std::string, ControlPoint> known;
+  for (const ControlPoint& point : map.controlPoints()) known[point.name] = point;
+  std::map<int64_t, int64_t> id_of;
+  for (const ControlPoint& point : source.controlPoints()) {
+    const auto same = known.find(point.name);
+    const bool is_complete = same != known.end() && (same->second.position || !point.position);
+    id_of[point.id] = is_complete ? same->second.id : change->putControlPoint(point);
+  }
+  for (ControlObservation seen : source.controlObservations()) {
+    seen.point = id_of.at(seen.point);
+    change->addControlObservation(seen);
+  }
 }
 
 void addStart(const DiveStart& start, const std::string& dive, KeyframeId first, MapChange* change) {
@@ -95,11 +137,17 @@ MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& op
   const bool is_first = map->dives().empty();
   MappingOptions mapping_options = options.mapping;
   mapping_options.start.is_known = false;
+  mapping_options.tags = statedTags(run);
   if (options.start) mapping_options.start = placementOf(*options.start, run.fullKeyframe(ids.front()));
 
   TemporaryMap temporary(map->path());
   DiveMapping mapping(&temporary.file(), dive, is_first ? nullptr : map, mapping_options);
-  for (const KeyframeId id : ids) mapping.add(run.fullKeyframe(id));
+  const std::map<KeyframeId, std::vector<SeenTag>> tags = tagsOf(run);
+  for (const KeyframeId id : ids) {
+    MapKeyframe keyframe = run.fullKeyframe(id);
+    if (const auto seen = tags.find(id); seen != tags.end()) keyframe.tags = seen->second;
+    mapping.add(std::move(keyframe));
+  }
   MergedDive merged;
   merged.name = dive.name;
   merged.summary = mapping.finish(dive.end.value_or(dive.start));
@@ -122,7 +170,10 @@ MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& op
     if (row.solved) change.setSolution(keyframe.id, *row.solved);
   }
   source.forEachEdge(from, [&](const OdometryEdge& edge) { change.addEdge(edge); });
-  for (const Loop& loop : merged.ledger) change.addLoop(loop);
+  for (const Loop& loop : merged.ledger) {
+    if (!isTagTie(loop)) change.addLoop(loop);
+  }
+  copyControl(source, *map, &change);
   if (options.start) addStart(*options.start, dive.name, rows.front().keyframe.id, &change);
   change.commit();
   return merged;

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "lodeline/geometry/so3.h"
 #include "lodeline/io/calibration/rig_text.h"
 #include "lodeline/mapping/session/loops/loop_ledger.h"
+#include "lodeline/mapping/session/tags/control_report.h"
 #include "lodeline/output/files/world_turn.h"
 
 namespace lodeline {
@@ -31,6 +34,8 @@ MapDive diveOf(const RunMappingRequest& request, const Rig& rig) {
   return dive;
 }
 
+bool hasSizes(const TagOptions& tags) { return tags.size_m > 0.0 || !tags.sizes_m.empty(); }
+
 }  // namespace
 
 RunMapping::RunMapping(const RunMappingRequest& request, const Rig& rig, Diagnostics* diagnostics)
@@ -43,10 +48,15 @@ RunMapping::RunMapping(const RunMappingRequest& request, const Rig& rig, Diagnos
     earlier_.emplace(MapFile::open(request_.earlier_map, MapFile::Access::Read));
   const fs::path file = request_.folder / "map.db";
   removeMap(file);
+  fs::remove(request_.folder / "control.csv");
   own_.emplace(MapFile::create(file, {}));
   mapping_ = std::make_unique<DiveMapping>(&*own_, diveOf(request_, rig), earlier_ ? &*earlier_ : nullptr,
                                            request_.mapping);
   is_placed_ = !earlier_;
+  for (size_t i = 0; hasSizes(request_.tags) && i < rig.cameras.size(); ++i) {
+    tag_observers_.emplace_back(describer_.cameras()[i], rig.cameras[i].body_from_camera, static_cast<int>(i),
+                                request_.tags);
+  }
   thread_ = std::make_unique<MappingThread>(
       [this](MapKeyframe keyframe) { return mapping_->add(std::move(keyframe)); });
 }
@@ -62,15 +72,32 @@ bool RunMapping::add(const FramePacket& packet, const FrameEstimate& estimate, s
     const cv::Mat& rig_mask = odometry.frontEnd().fixedStructures().front().mask();
     MapKeyframe keyframe = describer_.describe(packet.images.front(), odometry.tracks(), estimate,
                                                odometry.estimator(), rig_mask);
+    keyframe.tags = tagsIn(packet);
     if (const std::optional<MappingStep> step = thread_->add(std::move(keyframe))) take(*step);
   }
   if (stamp && is_placed_) trajectory_.write(*stamp, map_from_odom_ * estimate.state.world_from_body);
   return is_keyframe;
 }
 
+std::vector<SeenTag> RunMapping::tagsIn(const FramePacket& packet) const {
+  std::vector<SeenTag> tags;
+  for (size_t i = 0; i < std::min(tag_observers_.size(), packet.images.size()); ++i) {
+    if (packet.images[i].empty()) continue;
+    for (const TagSighting& seen : tag_observers_[i].observe(packet.images[i])) {
+      // The errors of the size are the same in all cameras, so one of them speaks for all.
+      const bool is_known =
+          std::any_of(tags.begin(), tags.end(), [&](const SeenTag& other) { return other.tag == seen.tag; });
+      if (seen.centre_B && !is_known)
+        tags.push_back({seen.tag, seen.centre_B->position, seen.centre_B->covariance});
+    }
+  }
+  return tags;
+}
+
 void RunMapping::take(const MappingStep& step) {
   map_from_odom_ = step.map_from_odom;
   is_placed_ = step.is_placed;
+  is_solved_ = is_solved_ || step.is_solved;
   accepted_.insert(accepted_.end(), step.accepted.begin(), step.accepted.end());
 }
 
@@ -92,11 +119,39 @@ void RunMapping::writeLedger() const {
   }
 }
 
+void RunMapping::writeKeyframes() const {
+  PoseWriter keyframes(request_.folder / "keyframes_map.tum");
+  if (!mapping_->summary().is_placed) return;
+  for (const KnownKeyframe& keyframe : mapping_->known().all()) {
+    if (keyframe.dive == mapping_->dive()) keyframes.write(keyframe.time, keyframe.map_from_body);
+  }
+}
+
+std::optional<Rigid3> RunMapping::mapFromOdom(const FrameEstimate& newest) const {
+  if (!is_placed_) return std::nullopt;
+  const auto& north_rad = newest.sensors.of<MagnetometerEstimate>().north_from_world_rad;
+  if (earlier_ || is_solved_ || !north_rad) return map_from_odom_;
+  return Rigid3(so3::exp(*north_rad * Vec3::UnitZ()), Vec3::Zero());
+}
+
+void RunMapping::reportTags() const {
+  const KnownKeyframes& known = mapping_->known();
+  for (const Loop& loop : mapping_->ledger()) {
+    if (loop.source != kTagSource || loop.status != LoopStatus::Refused) continue;
+    diagnostics_->report(
+        Severity::Warning, "tag_refused",
+        fmt::format("at {} ns: {}", known.at(loop.new_keyframe).time.nanoseconds(), loop.reason));
+  }
+}
+
 MappingSummary RunMapping::finish(const MagnetometerEstimate& last) {
   for (const MappingStep& step : thread_->finish()) take(step);
   const MappingSummary summary = mapping_->finish(newest_);
   closures_ = loopClosures(accepted_, mapping_->known(), mapping_->dive(), describer_.cameras());
   writeLedger();
+  writeKeyframes();
+  writeControlReport(request_.folder / "control.csv", *own_);
+  reportTags();
   if (const std::optional<WorldTurn> turn = WorldTurn::of(last); turn && !earlier_)
     turnTrajectoryFile(request_.folder / "trajectory_map.tum", *turn);
   if (!summary.is_placed) {

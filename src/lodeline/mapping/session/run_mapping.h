@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/packet_odometry.h"
+#include "lodeline/mapping/control/tags/tag_observer.h"
 #include "lodeline/mapping/recognition/keyframe_describer.h"
 #include "lodeline/mapping/session/dive_mapping.h"
 #include "lodeline/mapping/session/keyframe_choice.h"
@@ -19,12 +21,14 @@ namespace lodeline {
 
 /// What a run tells its map beside its keyframes.
 struct RunMappingRequest {
-  std::filesystem::path folder;       ///< for map.db, loops.csv and trajectory_map.tum
+  std::filesystem::path folder;       ///< for map.db, loops.csv and the poses in the map
   std::filesystem::path earlier_map;  ///< a map to start from; empty for none
   std::string name;                   ///< of the dive
   std::string recording;              ///< as the user gave it
   KeyframeChoiceOptions keyframes;
   MappingOptions mapping;
+  /// Tags on the line; none are looked for where no size is known.
+  TagOptions tags;
 };
 
 /// The map of a dive while its run goes on: chooses and describes keyframes, finds loops on another thread,
@@ -40,24 +44,31 @@ class RunMapping {
   bool add(const FramePacket& packet, const FrameEstimate& estimate, std::optional<Time> stamp,
            const PacketOdometry& odometry);
 
-  /// Completes map.db, loops.csv and trajectory_map.tum.
+  /// Completes map.db, loops.csv and trajectory_map.tum; writes keyframes_map.tum, and control.csv where tags
+  /// were seen.
   MappingSummary finish(const MagnetometerEstimate& last);
 
   /// What the batch solution needs, after finish(): accepted loops within the dive, and poses that close
   /// them.
   const LoopClosures& closures() const { return closures_; }
-  /// Rotation about the vertical and translation from the odometry's world to the map's.
-  const Rigid3& mapFromOdom() const { return map_from_odom_; }
+  /// Rotation about the vertical and translation from the odometry's world to the map's. Without an earlier
+  /// map and before a loop, it is the rotation to the north that `newest` knows, or the identity. Empty while
+  /// the place in an earlier map is unknown.
+  std::optional<Rigid3> mapFromOdom(const FrameEstimate& newest) const;
   bool isPlaced() const { return is_placed_; }
 
  private:
   void take(const MappingStep& step);
+  std::vector<SeenTag> tagsIn(const FramePacket& packet) const;
   void writeLedger() const;
+  void writeKeyframes() const;
+  void reportTags() const;
 
   RunMappingRequest request_;
   Diagnostics* diagnostics_;
   KeyframeChoice choice_;
   KeyframeDescriber describer_;
+  std::deque<TagObserver> tag_observers_;  ///< one for each camera; empty where tags are not looked for
   std::optional<MapFile> earlier_;
   std::optional<MapFile> own_;
   std::unique_ptr<DiveMapping> mapping_;
@@ -65,6 +76,7 @@ class RunMapping {
   PoseWriter trajectory_;
   Rigid3 map_from_odom_;
   bool is_placed_ = false;
+  bool is_solved_ = false;  ///< whether loops or tags have moved the dive in the map
   Time newest_;
   std::vector<VerifiedLoop> accepted_;
   LoopClosures closures_;

@@ -87,6 +87,56 @@ class KeyframeMaker {
   std::vector<std::shared_ptr<const Camera>> cameras_;
 };
 
+/// Sees the tags on the line of a cave, as TagObserver does in images.
+class TagViewer {
+ public:
+  TagViewer(const Rig& true_rig, const MappedDiveOptions& options)
+      : options_(options),
+        random_(options.dive_seed, "mapped_dive/tags"),
+        camera_(makeCamera(true_rig.cameras.front())),
+        calibration_(true_rig.cameras.front()) {
+    const CavePlan plan = planCave(options.cave);
+    tags_ = placeTags(plan.cave, plan.line, options.tags, options.cave.seed);
+  }
+
+  std::vector<SeenTag> look(const Rigid3& cave_from_body) {
+    std::vector<SeenTag> seen;
+    for (const LineTag& tag : tags_) {
+      const Rigid3 body_from_tag = cave_from_body.inverse() * tag.cave_from_tag;
+      if (!isVisible(body_from_tag)) continue;
+      const Vec3 ray = body_from_tag.translation.normalized();
+      const double distance_m = body_from_tag.translation.norm();
+      const double along_m = kAlong * distance_m, across_m = kAcross * distance_m;
+      const Vec3 error = across_m * random_.normal3() + along_m * random_.normal() * ray;
+      const auto number = options_.tag_numbers.find(tag.id);
+      seen.push_back({number == options_.tag_numbers.end() ? tag.id : number->second,
+                      body_from_tag.translation + error,
+                      across_m * across_m * Mat3::Identity() + along_m * along_m * ray * ray.transpose()});
+    }
+    return seen;
+  }
+
+ private:
+  static constexpr double kAlong = 0.02, kAcross = 0.003;  // one sigma over the distance
+
+  bool isVisible(const Rigid3& body_from_tag) const {
+    const Vec3 centre_C = calibration_.body_from_camera.inverse() * body_from_tag.translation;
+    const Vec3 out_C =
+        calibration_.body_from_camera.rotation.conjugate() * (body_from_tag.rotation * Vec3::UnitZ());
+    if (centre_C.z() < 0.3 || centre_C.norm() > 3.0) return false;
+    if (-out_C.dot(centre_C.normalized()) < 0.5) return false;
+    const auto pixel = camera_->project(centre_C);
+    return pixel && pixel->x() > 40 && pixel->y() > 40 && pixel->x() < calibration_.width_px - 40 &&
+           pixel->y() < calibration_.height_px - 40;
+  }
+
+  MappedDiveOptions options_;
+  Random random_;
+  std::shared_ptr<const Camera> camera_;
+  CameraCalibration calibration_;
+  std::vector<LineTag> tags_;
+};
+
 }  // namespace
 
 MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::path& file,
@@ -111,13 +161,14 @@ MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::p
   TruthComparison comparison;
   KeyframeChoice choice(KeyframeChoiceOptions{});
   KeyframeMaker maker(rig, wanted);
+  TagViewer viewer(dive.mounted.rig, wanted);
   MapFile own = MapFile::create(file, {});
   MapDive row;
   row.name = file.stem().string();
   DiveMapping mapping(&own, row, earlier, wanted.mapping);
   Rigid3 map_from_odom;
   bool placed = earlier == nullptr;
-  std::map<KeyframeId, Rigid3> true_poses;
+  std::map<KeyframeId, Rigid3> true_in_odometry;
   Time last;
   while (const auto frame = simulation.next()) {
     const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
@@ -127,8 +178,14 @@ MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::p
     last = estimate.time;
     if (choice.add(estimate)) {
       record.keepNewest();
-      const MappingStep step = mapping.add(maker.make(frame->tracks, estimate, estimator, simulation));
-      true_poses[step.keyframe] = compared.true_world_from_body;
+      MapKeyframe keyframe = maker.make(frame->tracks, estimate, estimator, simulation);
+      if (!wanted.recognizes_places) keyframe.features.clear();
+      Rigid3 cave_from_body = frame->truth.motion.world_from_body;
+      cave_from_body.translation -= cave_origin_W;
+      keyframe.tags = viewer.look(cave_from_body);
+      const MappingStep step = mapping.add(keyframe);
+      true_in_odometry[step.keyframe] = compared.true_world_from_body;
+      true_poses[step.keyframe] = cave_from_body;
       accepted.insert(accepted.end(), step.accepted.begin(), step.accepted.end());
       map_from_odom = step.map_from_odom;
       placed = step.is_placed;
@@ -144,9 +201,9 @@ MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::p
   ledger = mapping.ledger();
   closures = loopClosures(accepted, mapping.known(), mapping.dive(), maker.cameras());
   for (const Loop& loop : ledger) {
-    if (loop.status != LoopStatus::Accepted || true_poses.count(loop.old_keyframe) == 0) continue;
+    if (loop.status != LoopStatus::Accepted || true_in_odometry.count(loop.old_keyframe) == 0) continue;
     const Rigid3 true_relative =
-        true_poses.at(loop.old_keyframe).inverse() * true_poses.at(loop.new_keyframe);
+        true_in_odometry.at(loop.old_keyframe).inverse() * true_in_odometry.at(loop.new_keyframe);
     loop_errors_m.push_back((true_relative.translation - loop.old_from_new.translation).norm());
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "lodeline/batch/estimator_log.h"
@@ -22,6 +23,11 @@ struct MappedDiveOptions {
   double alike_share = 0.05;  ///< of the points
   /// Errors of the given calibration: focal lengths and baseline, relative, and the second camera's rotation.
   double focal_length_error = 0.003, baseline_error = 0.005, rotation_error_rad = 0.001;
+  /// AprilTags on the line, seen with errors of a real camera. `tag_numbers`: of tags that carry the number
+  /// of another one.
+  int tags = 0;
+  std::map<int, int> tag_numbers;
+  bool recognizes_places = true;  ///< false: keyframes have no features, as in silt
   MappingOptions mapping;
 };
 
@@ -40,6 +46,7 @@ struct MappedDive {
   std::vector<Rigid3> true_in_simulation;  ///< true poses in the simulator's world, same frames
   MappingSummary summary;
   std::vector<Loop> ledger;
+  std::map<KeyframeId, Rigid3> true_poses;  ///< of the keyframes, in the frame of the cave
   std::vector<VerifiedLoop> accepted;
   LoopClosures closures;
   /// Distance between the true positions of the keyframes of each accepted loop within the dive, and the

@@ -30,6 +30,12 @@ FrameEstimate estimateAt(int second) {
   return estimate;
 }
 
+/// The map turns to north when it is found. A loop in the tenth second moves the dive by 3 m to the north.
+Rigid3 mapFromWorldAt(int second) {
+  const Quat north_from_world(Eigen::AngleAxisd(second < 6 ? 0.0 : 0.5 * M_PI, Vec3::UnitZ()));
+  return {north_from_world, Vec3(0.0, second < 10 ? 0.0 : 3.0, 0.0)};
+}
+
 TEST(LiveBrowser, ShowsWhatIsTold) {
   if (const std::string missing = test::browserMissing(); !missing.empty()) GTEST_SKIP() << missing;
   bool passed = false;
@@ -41,7 +47,8 @@ TEST(LiveBrowser, ShowsWhatIsTold) {
       FrameEstimate estimate = estimateAt(second);
       if (second > 0) summary.add(estimate);
       summary.wall_s = summary.recordingSeconds() / 1.5;
-      server.sendAndKeep("state", liveState(estimate, summary, second, {{1.0F, 2.0F, -0.5F}}));
+      server.sendAndKeep("state",
+                         liveState(estimate, summary, second, {{1.0F, 2.0F, -0.5F}}, mapFromWorldAt(second)));
     }
     server.sendAndKeep("picture", R"({"t_s":12,"jpeg":"AAAA"})");
     browser = std::thread([&passed, url = server.url()] { passed = test::passesInBrowser("live.mjs", url); });

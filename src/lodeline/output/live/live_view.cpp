@@ -1,6 +1,7 @@
 #include "lodeline/output/live/live_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "lodeline/output/files/sample_pictures.h"
@@ -42,6 +43,16 @@ nlohmann::ordered_json numbersOf(const FrameEstimate& estimate) {
           {"reprojection_rms [sigma]", shortNumber(estimate.reprojection_rms_sigmas)}};
 }
 
+/// Pose of the body and azimuth of the odometry's world in the map.
+nlohmann::ordered_json mapPose(const FrameEstimate& estimate, const Rigid3& map_from_world) {
+  const Vec3 p = map_from_world * estimate.state.world_from_body.translation;
+  const Vec3 east = map_from_world.rotation * Vec3::UnitX();
+  return {{"x_m", shortNumber(p.x())},
+          {"y_m", shortNumber(p.y())},
+          {"z_m", shortNumber(p.z())},
+          {"turned_rad", shortNumber(std::atan2(east.y(), east.x()))}};
+}
+
 Vec3 cameraAxis_B(const Rig& rig) { return rig.cameras.front().body_from_camera.rotation * Vec3::UnitZ(); }
 
 }  // namespace
@@ -56,11 +67,13 @@ std::string livePage(const std::string& name, const std::string& data, const Vec
 }
 
 std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s,
-                      const std::vector<Eigen::Vector3f>& landmarks_W) {
+                      const std::vector<Eigen::Vector3f>& landmarks_W,
+                      const std::optional<Rigid3>& map_from_world) {
   nlohmann::ordered_json json;
   json["t_s"] = shortNumber(t_s);
   const bool has_pose = estimate.status != Status::Waiting;
   if (has_pose) json["numbers"] = numbersOf(estimate);
+  if (has_pose && map_from_world) json["map"] = mapPose(estimate, *map_from_world);
   const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
   json["words"] = {{"status", toString(estimate.status)}, {"magnetometer", toString(magnetometer.status)}};
   json["run"] = {{"frames", summary.frames()},
@@ -93,14 +106,15 @@ std::vector<Eigen::Vector3f> LiveView::takeLandmarks() {
 }
 
 void LiveView::show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
-                    const FrontEnd& front_end, const std::vector<MapPoint>& landmarks) {
+                    const FrontEnd& front_end, const std::vector<MapPoint>& landmarks,
+                    const std::optional<Rigid3>& map_from_world) {
   for (const MapPoint& landmark : landmarks) landmarks_W_.push_back(landmark.position_W.cast<float>());
   if (!first_time_) first_time_ = packet.time;
   const double t_s = (packet.time - *first_time_).seconds();
   const Clock::time_point now = Clock::now();
   if (now >= next_state_) {
     next_state_ = now + kStatePause;
-    server_.sendAndKeep("state", liveState(estimate, summary, t_s, takeLandmarks()));
+    server_.sendAndKeep("state", liveState(estimate, summary, t_s, takeLandmarks(), map_from_world));
   }
   if (now < next_picture_ || !server_.isWatched()) return;
   const std::vector<uint8_t> jpeg = trackPicture(packet, front_end, kPictureWidth_px);

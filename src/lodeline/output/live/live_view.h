@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,10 @@ class FrontEnd;
 std::string livePage(const std::string& name, const std::string& data, const Vec3& camera_axis_B);
 
 /// Message to the browser on a frame, in JSON (`State` in web/src/live.ts). `landmarks_W`: new ones, m.
+/// `map_from_world`: by the map of the run, empty where there is none.
 std::string liveState(const FrameEstimate& estimate, const RunSummary& summary, double t_s,
-                      const std::vector<Eigen::Vector3f>& landmarks_W = {});
+                      const std::vector<Eigen::Vector3f>& landmarks_W = {},
+                      const std::optional<Rigid3>& map_from_world = std::nullopt);
 
 /// Shows a run in the browser while it is in progress: the state of the newest frame a few times per second,
 /// its image with the tracks less often. It does not influence the run, except for the computing time.
@@ -35,9 +38,11 @@ class LiveView {
 
   std::string url() const { return server_.url(); }
 
-  /// To be called after each frame, with the landmarks that left the window; does nothing for most frames.
+  /// To be called after each frame, with the landmarks that left the window, and the pose of the odometry's
+  /// world in the map if there is one; does nothing for most frames.
   void show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
-            const FrontEnd& front_end, const std::vector<MapPoint>& landmarks);
+            const FrontEnd& front_end, const std::vector<MapPoint>& landmarks,
+            const std::optional<Rigid3>& map_from_world = std::nullopt);
 
  private:
   std::vector<Eigen::Vector3f> takeLandmarks();

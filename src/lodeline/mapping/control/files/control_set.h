@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct ControlVisit {
 struct ControlSet {
   std::vector<ControlPoint> points;
   std::vector<ControlVisit> visits;
+  std::map<int, double> tag_sizes_m;  ///< edge of the black square by number, where it is stated
 
   const ControlPoint* find(const std::string& name) const;
   /// Adds a point. One of the same name and kind gains what it lacks. Throws InputError naming both origins

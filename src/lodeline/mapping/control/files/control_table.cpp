@@ -18,7 +18,7 @@ using Triple = std::array<Column, 3>;
 
 /// The columns of a table of control points.
 struct ControlColumns {
-  Column name, kind, tag, time, dive, horizontal_sigma, vertical_sigma;
+  Column name, kind, tag, size, time, dive, horizontal_sigma, vertical_sigma;
   Triple geodetic, grid, local;
 };
 
@@ -32,6 +32,8 @@ ControlColumns columnsOf(const std::vector<ColumnName>& names) {
     if (name.hasWord({"sigma", "accuracy", "std"}))
       take(name.hasWord({"vertical", "v", "height", "up"}) ? &columns.vertical_sigma
                                                            : &columns.horizontal_sigma);
+    else if (name.hasWord({"size", "edge"}))
+      take(&columns.size);
     else if (name.hasWord({"name", "station", "point"}))
       take(&columns.name);
     else if (name.hasWord({"kind", "type"}))
@@ -196,7 +198,17 @@ class ControlTable {
     if (point.kind == ControlKind::Gps && !point.position && set->find(point.name) == nullptr)
       fail(fmt::format("'{}' has no position", point.name));
     set->add(point);
+    addSize(point, set);
     addVisit(point, set);
+  }
+
+  void addSize(const ControlPoint& point, ControlSet* set) const {
+    const auto size_m = length_m(columns_.size);
+    if (!size_m) return;
+    if (!point.tag) fail(fmt::format("'{}' has a size but is no tag", point.name));
+    if (!(*size_m > 0.0)) fail("the size of a tag is not positive");
+    const auto [stated, is_new] = set->tag_sizes_m.try_emplace(*point.tag, *size_m);
+    if (!is_new && stated->second != *size_m) fail(fmt::format("tag {} has two sizes", *point.tag));
   }
 
   void addVisit(const ControlPoint& point, ControlSet* set) {

@@ -30,6 +30,15 @@ class ControlTableTest : public ::testing::Test {
   ControlReadOptions options_{.site = GeodeticPosition{20.5, -87.4, 8.0}, .grid_origin = {}};
 };
 
+TEST_F(ControlTableTest, ReadsSizesOfTags) {
+  const ControlSet set = read("name,tag,size [cm]\nnear,3,15\n,4,\nnear,3,15\n");
+  ASSERT_EQ(set.tag_sizes_m.size(), 1u);
+  EXPECT_DOUBLE_EQ(set.tag_sizes_m.at(3), 0.15);
+  EXPECT_THAT(refusal("name,tag,size [m]\nnear,3,0\n"), HasSubstr("not positive"));
+  EXPECT_THAT(refusal("name,tag,size [m]\nnear,3,0.15\nnear,3,0.2\n"), HasSubstr("two sizes"));
+  EXPECT_THAT(refusal("name,tag,size [m]\nmark,,0.15\n"), HasSubstr("is no tag"));
+}
+
 TEST_F(ControlTableTest, TurnsDegreesIntoMetresOfTheMap) {
   const ControlSet set = read(
       "name,kind,latitude,longitude,height [m],horizontal sigma [m],vertical sigma [m],time [s]\n"

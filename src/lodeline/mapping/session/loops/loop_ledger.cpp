@@ -12,15 +12,14 @@ constexpr const char* kHeader =
     "#new_time [ns],old_time [ns],new_dive,old_dive,source,status,reason,matches,inliers,covered_share,"
     "rms [sigma],mahalanobis_squared,dx [m],dy [m],dz [m],turn [deg],sigma_dx [m],sigma_dy [m],sigma_dz [m]";
 
-/// A text as one field of a CSV file: in quotes where it contains a comma or a quote.
-std::string field(const std::string& text) {
+}  // namespace
+
+std::string csvField(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
-
-}  // namespace
 
 LoopLedger::LoopLedger(const std::filesystem::path& file) : file_(file), stream_(openOutput(file)) {
   stream_ << kHeader << '\n';
@@ -37,9 +36,9 @@ void LoopLedger::write(const Loop& loop, const LoopPlaces& places) {
   const double turn_deg = so3::log(loop.old_from_new.rotation).norm() * 180.0 / M_PI;
   const Vec3 sigma = loop.covariance.diagonal().head<3>().cwiseMax(0.0).cwiseSqrt();
   stream_ << fmt::format("{},{},{},{},{},{},{},{},{},{:.3f},{:.3f},{:.3f}", places.new_time.nanoseconds(),
-                         places.old_time.nanoseconds(), field(places.new_dive), field(places.old_dive),
-                         loop.source, toString(loop.status), field(loop.reason), loop.matches, loop.inliers,
-                         loop.covered_share, loop.rms_sigmas, loop.mahalanobis_squared);
+                         places.old_time.nanoseconds(), csvField(places.new_dive), csvField(places.old_dive),
+                         loop.source, toString(loop.status), csvField(loop.reason), loop.matches,
+                         loop.inliers, loop.covered_share, loop.rms_sigmas, loop.mahalanobis_squared);
   // A candidate that was never aligned has no pose.
   if (loop.inliers > 0) {
     stream_ << fmt::format(",{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f}\n", moved.x(), moved.y(),

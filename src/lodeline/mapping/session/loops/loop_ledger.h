@@ -14,6 +14,9 @@ struct LoopPlaces {
   Time old_time, new_time;
 };
 
+/// A text as one field of a CSV file: in quotes where it contains a comma or a quote.
+std::string csvField(const std::string& text);
+
 /// Writes `loops.csv`: one row for each candidate with all its numbers, and the reason for which it went no
 /// further. Each row is flushed, so that an interrupted run keeps the ledger.
 class LoopLedger {

@@ -54,6 +54,75 @@ TEST(RunPage, HoldsWhatTheFilesOfTheRunSay) {
   EXPECT_TRUE(run["evaluation"].is_null());
 }
 
+TEST(RunPage, HoldsLoopsLedgerAndControl) {
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path() / "dive");
+  Diagnostics diagnostics;
+  const auto map = runPageJson(folder.path() / "dive", std::nullopt, &diagnostics)["map"];
+  EXPECT_EQ(map["pairs"], 5);
+  ASSERT_EQ(map["loops"].size(), 2u);
+  EXPECT_EQ(map["loops"][0]["new_t_s"], 10.0);
+  EXPECT_EQ(map["loops"][0]["old_t_s"], 2.0);
+  ASSERT_EQ(map["outcomes"].size(), 3u);
+  for (const auto& outcome : map["outcomes"]) {
+    const std::string reason = outcome["reason"];
+    if (outcome["status"] == "candidate") {
+      EXPECT_EQ(reason, "… matches, … needed");
+    }
+    if (outcome["status"] == "refused") {
+      EXPECT_EQ(reason, "tag 7 hangs 3.20 m away");
+    }
+    EXPECT_EQ(outcome["count"], outcome["t_s"].size());
+  }
+  ASSERT_EQ(map["path"]["t_s"].size(), 14u);
+  EXPECT_NEAR(map["path"]["x"][0].get<double>(), 2.5, 1e-6);
+  ASSERT_EQ(map["control"].size(), 2u);
+  EXPECT_EQ(map["control"][1]["name"], "tag 7, old");
+  EXPECT_EQ(map["control"][1]["error_m"][0], 3.2);
+  EXPECT_TRUE(map["control"][1]["is_blunder"]);
+  EXPECT_EQ(diagnostics.count("run_file_cut_off"), 0);
+}
+
+TEST(RunPage, LeavesOutThePathInTheFrameOfAnotherDive) {
+  const TemporaryFolder folder;
+  test::TestRun run;
+  run.old_dive = "other";
+  test::writeTestRun(folder.path() / "dive", run);
+  Diagnostics diagnostics;
+  const auto map = runPageJson(folder.path() / "dive", std::nullopt, &diagnostics)["map"];
+  EXPECT_TRUE(map["loops"][1]["old_t_s"].is_null());
+  EXPECT_EQ(map["loops"][1]["old_dive"], "other");
+  EXPECT_TRUE(map["path"].is_null());
+}
+
+TEST(RunPage, HasNoMapWhereMappingWasOff) {
+  const TemporaryFolder folder;
+  test::TestRun run;
+  run.map = false;
+  test::writeTestRun(folder.path() / "dive", run);
+  Diagnostics diagnostics;
+  EXPECT_TRUE(runPageJson(folder.path() / "dive", std::nullopt, &diagnostics)["map"].is_null());
+}
+
+TEST(RunPage, NamesABadLineOfTheLedger) {
+  const TemporaryFolder folder;
+  const std::filesystem::path dive = folder.path() / "dive";
+  test::writeTestRun(dive);
+  std::ifstream stream(dive / "loops.csv");
+  const std::string good((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  Diagnostics diagnostics;
+  // An incomplete last line of a run that was killed.
+  std::ofstream(dive / "loops.csv") << good << "17000,5";
+  EXPECT_EQ(runPageJson(dive, std::nullopt, &diagnostics)["map"]["pairs"], 5);
+  EXPECT_EQ(diagnostics.count("run_file_cut_off"), 1);
+  std::ofstream(dive / "loops.csv") << good << "17000,5\n" << good.substr(good.find('\n') + 1);
+  EXPECT_THROW(runPageJson(dive, std::nullopt, &diagnostics), InputError);
+  std::string wrong = good;
+  wrong.replace(wrong.find("17000000", wrong.find('\n')), 4, "when");
+  std::ofstream(dive / "loops.csv") << wrong;
+  EXPECT_THROW(runPageJson(dive, std::nullopt, &diagnostics), InputError);
+}
+
 TEST(RunPage, ShowsTheRefinedResultFirst) {
   const TemporaryFolder folder;
   const std::filesystem::path dive = folder.path() / "dive";

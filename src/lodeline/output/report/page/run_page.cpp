@@ -10,6 +10,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/files/landmark_file.h"
 #include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/page/map_page.h"
 #include "lodeline/output/report/page/row_choice.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/util/csv_fields.h"
@@ -124,6 +125,7 @@ nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<Repo
   json["pictures"] = picturesJson(run / "pictures", origin_ns);
   json["timings"] = optionalTable(run / "timings.csv", origin_ns, diagnostics);
   json["magnetometer"] = magnetometerJson(run, json["summary"], origin_ns, diagnostics);
+  json["map"] = runMapJson(run, origin_ns, diagnostics);
   json["evaluation"] = nullptr;
   if (reference) json["evaluation"] = runEvaluationJson(run, *reference, origin_ns);
   return json;

@@ -74,6 +74,40 @@ void writePictures(const std::filesystem::path& folder, const TestRun& run) {
   }
 }
 
+/// A ledger of five pairs, two of them loops, the keyframes in the
+/// map half a metre east of the odometry, and two sightings of a tag.
+void writeMap(const std::filesystem::path& folder, const TestRun& run) {
+  const auto stamp = [](double t_s) { return timeAt(t_s).nanoseconds(); };
+  const auto row = [&](double new_s, double old_s, const char* old_dive, const char* end) {
+    return fmt::format("{},{},dive,{},{}\n", stamp(new_s), stamp(old_s), old_dive, end);
+  };
+  const std::string numbers = ",0.2,0.8,1.5,0.1,0,0,2.0,0.01,0.01,0.01";
+  const std::string no_pose = ",0,0,0,nan,nan,nan,nan,nan,nan,nan";
+  std::string ledger =
+      "#new_time [ns],old_time [ns],new_dive,old_dive,source,status,reason,matches,inliers,covered_share,"
+      "rms [sigma],mahalanobis_squared,dx [m],dy [m],dz [m],turn [deg],sigma_dx [m],sigma_dy [m],"
+      "sigma_dz [m]\n";
+  ledger += row(10, 2, "dive", ("geometry,accepted,,60,40" + numbers).c_str());
+  ledger += row(11, 4, run.old_dive, ("appearance,accepted,,50,30" + numbers).c_str());
+  ledger += row(6, 1, "dive", ("geometry,candidate,\"12 matches, 15 needed\",12,0" + no_pose).c_str());
+  ledger += row(7, 1, "dive", ("geometry,candidate,\"9 matches, 15 needed\",9,0" + no_pose).c_str());
+  ledger += row(8, 3, "dive", ("tag,refused,tag 7 hangs 3.20 m away,1,0" + no_pose).c_str());
+  writeOutput(folder / "loops.csv", ledger);
+  std::string poses = "#t x y z qx qy qz qw\n";
+  for (double t_s = 0.0; t_s < run.frames / run.rate_hz; t_s += 1.0) {
+    const Vec3 p = poseAt(t_s).translation + 0.5 * Vec3::UnitX();
+    const Quat& q = poseAt(t_s).rotation;
+    poses += fmt::format("{}.{:09} {:.6f} {:.6f} {:.6f} {} {} {} {}\n", stamp(t_s) / 1'000'000'000,
+                         stamp(t_s) % 1'000'000'000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  writeOutput(folder / "keyframes_map.tum", poses);
+  writeOutput(folder / "control.csv",
+              "#name,kind,time [ns],east [m],north [m],up [m],sigma_east [m],sigma_north [m],sigma_up "
+              "[m],chi_squared,blunder\n" +
+                  fmt::format("tag 3,tag,{},0.02,-0.01,0.005,0.02,0.02,0.02,1.3,no\n", stamp(3)) +
+                  fmt::format("\"tag 7, old\",tag,{},3.2,0.1,0.0,0.02,0.02,0.02,812.0,yes\n", stamp(8)));
+}
+
 }  // namespace
 
 void writeTestRun(const std::filesystem::path& folder, const TestRun& run) {
@@ -106,6 +140,7 @@ void writeTestRun(const std::filesystem::path& folder, const TestRun& run) {
     timings.write(estimate.time, times, 0.0);
   }
   writePictures(folder / "pictures", run);
+  if (run.map) writeMap(folder, run);
   Diagnostics diagnostics;
   diagnostics.report(Severity::Warning, "test", "a name with </script> in it");
   writeOutput(folder / "run.json", summary.json(diagnostics));

@@ -10,6 +10,8 @@ struct TestRun {
   int landmarks_per_frame = 5;
   int pictures = 6;
   int picture_width_px = 64;
+  bool map = true;                ///< with loops.csv, keyframes_map.tum and control.csv
+  const char* old_dive = "dive";  ///< of the second loop
 };
 
 /// Writes an output folder as `lodeline run` would for a swim along a spiral, with the same writers: every
