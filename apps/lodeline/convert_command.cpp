@@ -8,7 +8,7 @@
 
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/rosbag1/convert/convert.h"
+#include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/file_kind.h"

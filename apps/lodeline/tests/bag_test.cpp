@@ -1,6 +1,6 @@
 #include "apps/lodeline/tests/test_room.h"
 #include "lodeline/io/euroc/csv_reader.h"
-#include "lodeline/io/rosbag1/test_bag.h"
+#include "lodeline/io/rosbag/test_bag.h"
 
 // Tests of `lodeline run` and `lodeline convert` with ROS 1 bags.
 
