@@ -4,7 +4,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/test_recording.h"
 #include "lodeline/io/rosbag/bag_source.h"
-#include "lodeline/io/rosbag/convert/bag_writer.h"
+#include "lodeline/io/rosbag/convert/ros1_writer.h"
 #include "lodeline/io/rosbag/messages.h"
 
 namespace lodeline {
@@ -22,7 +22,7 @@ class BagStampsTest : public testing::Test {
   template <typename StampOf>
   void write(const StampOf& stampOf) {
     try {
-      BagWriter writer(bag_, "none");
+      Ros1Writer writer(bag_, "none");
       for (int i = 0; i < 100; ++i) {
         const ImuSample sample{stampOf(i), Vec3(i, 2.0, 3.0), Vec3(4.0, 5.0, 9.8)};
         writer.write("/imu", messages::kImu.name, received(i),

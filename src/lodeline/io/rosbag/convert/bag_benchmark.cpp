@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-#include "lodeline/io/rosbag/convert/bag_writer.h"
+#include "lodeline/io/rosbag/convert/ros1_writer.h"
 #include "lodeline/io/rosbag/image_messages.h"
 #include "lodeline/io/rosbag/messages.h"
 #include "lodeline/io/rosbag/ros1/ros1_bag.h"
@@ -18,7 +18,7 @@ namespace {
 std::filesystem::path makeBag(const std::string& compression) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("lodeline_benchmark_" + compression + ".bag");
-  BagWriter writer(file, compression);
+  Ros1Writer writer(file, compression);
   cv::Mat pixels(480, 752, CV_8UC1);
   cv::RNG random(1);
   random.fill(pixels, cv::RNG::NORMAL, 90.0, 8.0);

@@ -1,137 +1,45 @@
 #include "lodeline/io/rosbag/convert/bag_writer.h"
 
 #include <fmt/core.h>
-#include <geometry_msgs/PoseStamped.h>
-#include <rosbag/bag.h>
-#include <sensor_msgs/CompressedImage.h>
-#include <sensor_msgs/FluidPressure.h>
-#include <sensor_msgs/Image.h>
-#include <sensor_msgs/Imu.h>
-#include <sensor_msgs/LaserScan.h>
-#include <sensor_msgs/MagneticField.h>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/rosbag/convert/database_writer.h"
+#include "lodeline/io/rosbag/convert/mcap_writer.h"
+#include "lodeline/io/rosbag/convert/ros1_writer.h"
 
 namespace lodeline {
 namespace {
 
-/// Description of a message type as rosbag requires it.
-struct TypeDescription {
-  const char* name;
-  const char* md5sum;
-  const char* definition;
-};
-
-template <typename Message>
-TypeDescription describe() {
-  return {ros::message_traits::DataType<Message>::value(), ros::message_traits::MD5Sum<Message>::value(),
-          ros::message_traits::Definition<Message>::value()};
+/// The compression to use. Throws UsageError where the format does not have it.
+std::string settleCompression(BagFormat format, const std::string& given) {
+  const bool is_mcap = format == BagFormat::Mcap;
+  if (given.empty()) return is_mcap ? "zstd" : "none";
+  const bool is_possible = given == "none" || (given == "lz4" && format != BagFormat::Database) ||
+                           (given == "bz2" && format == BagFormat::Ros1) || (given == "zstd" && is_mcap);
+  if (is_possible) return given;
+  throw UsageError(
+      fmt::format("--compression {}: ROS 1 bags have none, lz4, bz2; MCAP has none, lz4, zstd; "
+                  "db3 has none",
+                  given));
 }
-
-TypeDescription describe(const std::string& type) {
-  for (const TypeDescription& known :
-       {describe<sensor_msgs::Imu>(), describe<sensor_msgs::MagneticField>(),
-        describe<sensor_msgs::FluidPressure>(), describe<sensor_msgs::LaserScan>(),
-        describe<sensor_msgs::Image>(), describe<sensor_msgs::CompressedImage>(),
-        describe<geometry_msgs::PoseStamped>()}) {
-    if (type == known.name) return known;
-  }
-  throw std::logic_error("no definition of " + type);
-}
-
-/// Serialized bytes with the description of their type. ROS's own message structs are not used because those
-/// of Debian 12 do not compile as C++20.
-struct SerializedMessage {
-  TypeDescription type;
-  wire::Bytes bytes;
-};
 
 }  // namespace
-}  // namespace lodeline
 
-namespace ros {
-namespace message_traits {
-
-template <>
-struct MD5Sum<lodeline::SerializedMessage> {
-  static const char* value(const lodeline::SerializedMessage& message) { return message.type.md5sum; }
-};
-template <>
-struct DataType<lodeline::SerializedMessage> {
-  static const char* value(const lodeline::SerializedMessage& message) { return message.type.name; }
-};
-template <>
-struct Definition<lodeline::SerializedMessage> {
-  static const char* value(const lodeline::SerializedMessage& message) { return message.type.definition; }
-};
-
-}  // namespace message_traits
-
-namespace serialization {
-
-template <>
-struct Serializer<lodeline::SerializedMessage> {
-  template <typename Stream>
-  static void write(Stream& stream, const lodeline::SerializedMessage& message) {
-    std::memcpy(stream.advance(static_cast<uint32_t>(message.bytes.size())), message.bytes.data(),
-                message.bytes.size());
+std::unique_ptr<BagWriter> makeBagWriter(const std::filesystem::path& target, BagFormat format,
+                                         const std::string& compression) {
+  const std::string settled = settleCompression(format, compression);
+  if (format == BagFormat::Ros1) return std::make_unique<Ros1Writer>(target, settled);
+  const std::string extension = format == BagFormat::Mcap ? ".mcap" : ".db3";
+  std::filesystem::path file = target, metadata;
+  if (target.extension() != extension) {
+    const std::filesystem::path folder = target.has_filename() ? target : target.parent_path();
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    file = folder / (folder.filename().string() + "_0" + extension);
+    metadata = folder / "metadata.yaml";
   }
-  static uint32_t serializedLength(const lodeline::SerializedMessage& message) {
-    return static_cast<uint32_t>(message.bytes.size());
-  }
-};
-
-}  // namespace serialization
-}  // namespace ros
-
-namespace lodeline {
-
-class BagWriter::Implementation {
- public:
-  std::filesystem::path file;
-  rosbag::Bag bag;
-
-  template <typename Work>
-  void guarded(const Work& work) {
-    try {
-      work();
-    } catch (const ros::Exception& error) {
-      throw InputError(fmt::format("{}: cannot be written ({}); is there space and permission?",
-                                   file.string(), error.what()));
-    }
-  }
-};
-
-BagWriter::BagWriter(const std::filesystem::path& file, const std::string& compression)
-    : implementation_(std::make_unique<Implementation>()) {
-  implementation_->file = file;
-  implementation_->guarded([&] {
-    rosbag::Bag& bag = implementation_->bag;
-    bag.open(file.string(), rosbag::bagmode::Write);
-    if (compression == "bz2") bag.setCompression(rosbag::compression::BZ2);
-    if (compression == "lz4") bag.setCompression(rosbag::compression::LZ4);
-  });
-}
-
-BagWriter::~BagWriter() = default;
-
-void BagWriter::write(const std::string& topic, const std::string& type, Time received, wire::Bytes message) {
-  if (!wire::isWritable(received)) {
-    throw InputError(
-        fmt::format("{}: a bag cannot hold the stamp {} ns of topic {}: its times lie between 1970 "
-                    "and 2106",
-                    implementation_->file.string(), received.nanoseconds(), topic));
-  }
-  // ROS treats the time 0 as undefined; the smallest time is 1 ns.
-  const int64_t ns = std::max<int64_t>(received.nanoseconds(), 1);
-  const ros::Time time(static_cast<uint32_t>(ns / 1'000'000'000), static_cast<uint32_t>(ns % 1'000'000'000));
-  implementation_->guarded([&] {
-    implementation_->bag.write(topic, time, SerializedMessage{describe(type), std::move(message)});
-  });
-}
-
-void BagWriter::close() {
-  implementation_->guarded([&] { implementation_->bag.close(); });
+  if (format == BagFormat::Mcap) return std::make_unique<McapWriter>(file, settled, metadata);
+  return std::make_unique<DatabaseWriter>(file, metadata);
 }
 
 }  // namespace lodeline

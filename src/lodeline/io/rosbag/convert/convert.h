@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/rosbag/convert/bag_writer.h"
 
 namespace lodeline {
 
@@ -13,8 +14,10 @@ struct ConvertOptions {
   /// Files that describe the rig and, for bags, topics by sensor, as in BagOptions.
   std::vector<std::filesystem::path> rig_files;
   std::map<std::string, std::string> topics;
-  /// Compression of the new bag: "none", "lz4" or "bz2".
-  std::string compression = "none";
+  /// Format of the new bag.
+  BagFormat format = BagFormat::Ros1;
+  /// Compression of the new bag; see makeBagWriter().
+  std::string compression;
 };
 
 struct ConvertSummary {
@@ -37,6 +40,17 @@ ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std
 /// read.
 ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::filesystem::path& folder,
                                   const ConvertOptions& options, Diagnostics* diagnostics);
+
+/// Converts a bag to a bag of any format. Topics, stamps and times of recording are kept. Between bags of ROS
+/// 2, the messages of all types keep their bytes. Between ROS 1 and ROS 2, types that Lodeline reads are
+/// converted, and other topics are left out (`convert_left_out`); sequence numbers of headers, which ROS 2
+/// does not have, become 0. The rig files are written as one beside the new bag. Throws InputError where the
+/// target exists or the bag cannot be read.
+ConvertSummary convertBagToBag(const std::filesystem::path& bag, const std::filesystem::path& target,
+                               const ConvertOptions& options, Diagnostics* diagnostics);
+
+/// Throws InputError where a bag or the rig file beside it exists.
+void requireAbsent(const std::filesystem::path& bag);
 
 /// Topic of the true poses in bags written by Lodeline.
 inline constexpr const char* kTruthTopic = "/ground_truth/pose";

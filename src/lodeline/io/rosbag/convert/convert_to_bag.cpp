@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <functional>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
@@ -60,7 +61,7 @@ class FolderConversion {
       : layout_(findEurocLayout(folder, optionsFor(folder, options.rig_files))),
         diagnostics_(diagnostics),
         source_(folder, optionsFor(folder, options.rig_files), diagnostics),
-        writer_(bag, options.compression) {}
+        writer_(makeBagWriter(bag, options.format, options.compression)) {}
 
   ConvertSummary run() {
     std::vector<Pull> streams;
@@ -78,7 +79,7 @@ class FolderConversion {
       streams.push_back([&] { return truePose(&*truth_reader); });
     }
     merge(streams);
-    writer_.close();
+    writer_->close();
     return std::move(summary_);
   }
 
@@ -94,7 +95,7 @@ class FolderConversion {
     received = std::max(received, stamp);
     topics_[sensor] = topic;
     ++summary_.readings[sensor];
-    writer_.write(topic, type.name, received, std::move(message));
+    writer_->write(topic, type.name, received, std::move(message));
   }
 
   uint32_t sequence(const std::string& sensor) { return static_cast<uint32_t>(summary_.readings[sensor]); }
@@ -199,7 +200,7 @@ class FolderConversion {
   EurocLayout layout_;
   Diagnostics* diagnostics_;
   EurocSource source_;
-  BagWriter writer_;
+  std::unique_ptr<BagWriter> writer_;
   ConvertSummary summary_;
   std::map<std::string, Time> received_;
   std::map<std::string, std::string> topics_;
@@ -208,14 +209,18 @@ class FolderConversion {
 
 }  // namespace
 
-ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std::filesystem::path& bag,
-                                  const ConvertOptions& options, Diagnostics* diagnostics) {
-  const std::filesystem::path rig_file = rigFileBeside(bag);
-  for (const std::filesystem::path& file : {bag, rig_file}) {
+void requireAbsent(const std::filesystem::path& bag) {
+  for (const std::filesystem::path& file : {bag, rigFileBeside(bag)}) {
     if (std::filesystem::exists(file)) {
       throw InputError(file.string() + ": is there already; choose another name or delete it");
     }
   }
+}
+
+ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std::filesystem::path& bag,
+                                  const ConvertOptions& options, Diagnostics* diagnostics) {
+  requireAbsent(bag);
+  const std::filesystem::path rig_file = rigFileBeside(bag);
   FolderConversion conversion(folder, bag, options, diagnostics);
   ConvertSummary summary = conversion.run();
   writeRigFile(conversion.layout(), conversion.topics(), rig_file);

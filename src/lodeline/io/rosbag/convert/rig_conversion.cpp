@@ -42,6 +42,29 @@ void copyMask(const std::filesystem::path& from_folder, const std::filesystem::p
   (*node)["mask"] = target.filename().string();
 }
 
+/// Adds a section, its mask copied beside the rig file.
+void addSection(const RigSection& section, const std::string& sensor,
+                const std::map<std::string, std::string>& topics, const std::filesystem::path& file,
+                YAML::Node* root) {
+  YAML::Node node = YAML::Clone(section.node);
+  node.remove("rostopic");
+  const auto topic = topics.find(sensor);
+  if (topic != topics.end()) node["topic"] = topic->second;
+  std::filesystem::path mask = file;
+  mask.replace_extension(sensor + "_mask");
+  copyMask(section.file.parent_path(), mask, &node);
+  (*root)[sensor] = node;
+}
+
+/// Marks an IMU section of Kalibr without a rate as Kalibr's.
+void markKalibr(const RigFile& rig, YAML::Node* root) {
+  const auto imu = rig.sections.find("imu0");
+  if (imu == rig.sections.end() || !(*root)["imu0"].IsDefined()) return;
+  if (imu->second.keys == SectionKeys::Kalibr && !(*root)["imu0"]["update_rate"].IsDefined()) {
+    (*root)["imu0"]["update_rate"] = 0;  // 0 means unknown
+  }
+}
+
 }  // namespace
 
 void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::string>& topics,
@@ -50,15 +73,7 @@ void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::st
   const RigFile rig = readFolderCalibration(layout, &reported_when_read_in_earnest);
   YAML::Node root;
   const auto add = [&](const std::string& in_folder, const std::string& sensor) {
-    const RigSection& section = rig.sections.at(in_folder);
-    YAML::Node node = YAML::Clone(section.node);
-    node.remove("rostopic");
-    const auto topic = topics.find(sensor);
-    if (topic != topics.end()) node["topic"] = topic->second;
-    std::filesystem::path mask = file;
-    mask.replace_extension(sensor + "_mask");
-    copyMask(section.file.parent_path(), mask, &node);
-    root[sensor] = node;
+    addSection(rig.sections.at(in_folder), sensor, topics, file, &root);
   };
   for (size_t i = 0; i < layout.camera_indices.size(); ++i) {
     add(fmt::format("cam{}", layout.camera_indices[i]), fmt::format("cam{}", i));
@@ -66,10 +81,17 @@ void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::st
   for (const char* sensor : kSingleSensors) {
     if (topics.contains(sensor) && rig.sections.contains(sensor)) add(sensor, sensor);
   }
-  if (root["imu0"].IsDefined() && rig.sections.at("imu0").keys == SectionKeys::Kalibr &&
-      !root["imu0"]["update_rate"].IsDefined()) {
-    root["imu0"]["update_rate"] = 0;  // marks the section as Kalibr's; 0 means unknown
-  }
+  markKalibr(rig, &root);
+  writeYaml(root, file);
+}
+
+void writeRigFile(const RigFile& rig, const std::map<std::string, std::string>& topics,
+                  const std::filesystem::path& file) {
+  std::map<std::string, std::string> settled = rig.topics;
+  for (const auto& [sensor, topic] : topics) settled[sensor] = topic;
+  YAML::Node root;
+  for (const auto& [sensor, section] : rig.sections) addSection(section, sensor, settled, file, &root);
+  markKalibr(rig, &root);
   writeYaml(root, file);
 }
 

@@ -16,6 +16,11 @@ namespace lodeline {
 void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::string>& topics,
                   const std::filesystem::path& file);
 
+/// Writes the sections of rig files as one rig file. `topics`: by sensor, with priority over those in the
+/// files.
+void writeRigFile(const RigFile& rig, const std::map<std::string, std::string>& topics,
+                  const std::filesystem::path& file);
+
 /// Writes the sections of a rig file as sensor.yaml files in `folder`/mav0, and Kalibr's sections as Kalibr's
 /// files in `folder`. Numbers are copied digit by digit. Masks are copied.
 void writeFolderCalibration(const RigFile& rig_file, const std::filesystem::path& folder);

@@ -67,8 +67,7 @@ class FieldWriter {
 
   void align(size_t size) {
     if (!is_cdr_) return;
-    const size_t past = (bytes_.size() - kCdrHeader) % size;
-    if (past != 0) bytes_.resize(bytes_.size() + size - past);
+    while ((bytes_.size() - kCdrHeader) % size != 0) bytes_.push_back(0);
   }
 
   bool is_cdr_;

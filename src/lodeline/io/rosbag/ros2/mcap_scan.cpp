@@ -57,7 +57,7 @@ class McapScan {
 
   void checkMagic() const {
     const wire::Bytes start = file_.read(0, mcap::kMagic.size());
-    if (std::equal(start.begin(), start.end(), mcap::kMagic.begin(), mcap::kMagic.end())) return;
+    if (std::string_view(reinterpret_cast<const char*>(start.data()), start.size()) == mcap::kMagic) return;
     throw InputError(fmt::format("{}: {}", file_.path().string(),
                                  start.empty() ? "empty or unreadable; an MCAP file was expected"
                                                : "no MCAP file (its first bytes are others)"));
