@@ -97,7 +97,9 @@ TEST_F(Ros2BagsTest, RecoversATruncatedMcapAtAnyLength) {
       size_t messages = 0;
       try {
         messages = readable(file, &diagnostics);
-        EXPECT_EQ(diagnostics.count("bag_truncated") + diagnostics.count("bag_unindexed"), 1) << length;
+        const int reports = diagnostics.count("bag_truncated") + diagnostics.count("bag_unindexed");
+        // A file that lacks a part of the bytes after its summary is whole.
+        EXPECT_EQ(reports, length + 40 < content.size() ? 1 : 0) << length;
       } catch (const InputError& error) {
         EXPECT_THAT(error.what(), HasSubstr("no message")) << length;
       }

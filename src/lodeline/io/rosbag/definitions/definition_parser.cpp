@@ -198,7 +198,7 @@ class Parser {
     // ROS 2 gives a message without fields one byte.
     if (fields.empty() && serialization_ == Serialization::Cdr) {
       Field dummy;
-      dummy.name = "structure_needs_at_least_one_member";
+      dummy.name = kPlaceholder;
       fields.push_back(dummy);
     }
     result_.messages[place].fields = std::move(fields);

@@ -130,11 +130,9 @@ TEST(MessageConversionTest, TakesFieldsByNameInAnyOrder) {
                          Serialization::Cdr};
   const MessageForm to{parseDefinition("a/B", "float64 X\nstring s\n", Serialization::Ros1),
                        Serialization::Ros1};
-  FieldWriter writer(Serialization::Cdr);
-  writer.text("hey");
-  writer.numbers(wire::Bytes{5}, 1, false);
-  writer.numbers(wire::Bytes{0, 0, 0, 0, 0, 0, 0xF0, 0x3F}, 8, false);
-  EXPECT_EQ(MessageConversion(from, to).convert(writer.take()),
+  const wire::Bytes message = {0, 1, 0, 0, 4, 0, 0, 0, 'h', 'e', 'y', 0, 5,    0,
+                               0, 0, 0, 0, 0, 0, 0, 0, 0,   0,   0,   0, 0xF0, 0x3F};
+  EXPECT_EQ(MessageConversion(from, to).convert(message),
             (wire::Bytes{0, 0, 0, 0, 0, 0, 0xF0, 0x3F, 3, 0, 0, 0, 'h', 'e', 'y'}));
 }
 

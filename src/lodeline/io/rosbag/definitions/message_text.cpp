@@ -33,6 +33,10 @@ class Printer {
     put("{{");
     const char* separator = "";
     for (const Field& field : message.fields) {
+      if (field.name == kPlaceholder) {
+        reader_.skip(type_, field);
+        continue;
+      }
       put("{}{}: ", separator, field.name);
       putField(field);
       separator = ", ";

@@ -44,6 +44,9 @@ struct MessageDescription {
   std::vector<Field> fields;
 };
 
+/// The field that ROS 2 gives a message without fields.
+inline constexpr const char* kPlaceholder = "structure_needs_at_least_one_member";
+
 /// A message type and all types in its fields; the type itself is the first. No type contains itself.
 struct TypeDescription {
   std::vector<MessageDescription> messages;
