@@ -37,7 +37,7 @@ test: everything check-format
 # all readers, each for ten seconds on its corpus. The layers are those that read what others wrote, and those that the
 # rest computes with. The layers from the estimator up take longer to build so than all of these, and the estimator's
 # tests work through whole simulated scenes: `make test-sanitized-all` adds them.
-SANITIZED = util tables streams geometry cameras magnetometer imu ahrs io rosbag1 frontend factors evaluation
+SANITIZED = util tables streams geometry cameras magnetometer imu ahrs io rosbag frontend factors evaluation
 test-sanitized: test-dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers $(SANITIZED:%=%_test)

@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/io/rosbag1/bag_source.h"
+#include "lodeline/io/rosbag/bag_source.h"
 
 // ROS 1 bags: records, chunks, and the messages of every sensor without images.
 

@@ -1,6 +1,6 @@
 #include "fuzzed_file.h"
 #include "lodeline/io/images/image_loader.h"
-#include "lodeline/io/rosbag1/image_messages.h"
+#include "lodeline/io/rosbag/image_messages.h"
 
 // Image messages; the first byte selects the kind.
 

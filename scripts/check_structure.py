@@ -25,7 +25,7 @@ FOLDER_OF_PUBLIC = {
     "types.h": "src/lodeline/util",
     "rig.h": "src/lodeline/sensors",
     "recording.h": "src/lodeline/io/synchronizer",
-    "rosbag.h": "src/lodeline/io/rosbag1",
+    "rosbag.h": "src/lodeline/io/rosbag",
     "estimate.h": "src/lodeline/imu",
     "trajectory.h": "src/lodeline/evaluation/trajectory",
     "odometry.h": "src/lodeline/api",

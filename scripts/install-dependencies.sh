@@ -16,7 +16,7 @@ build=(
   nlohmann-json3-dev zlib1g-dev libdeflate-dev
   libapriltag-dev  # boards for the calibration of cameras
   libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev
-  libbz2-dev liblz4-dev  # ROS 1 bags
+  libbz2-dev liblz4-dev libzstd-dev  # ROS bags
   gnuplot-nox
   libcpp-httplib-dev
 )

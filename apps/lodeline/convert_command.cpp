@@ -5,10 +5,11 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <memory>
+#include <optional>
 
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/rosbag1/convert/convert.h"
+#include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/file_kind.h"
@@ -20,8 +21,19 @@ struct ConvertArguments {
   std::string source;
   std::string target;
   BagArguments bag;
-  std::string compression = "none";
+  std::string compression;
+  std::string format;
 };
+
+/// Format of the bag to write; nothing for a folder in the EuRoC layout.
+std::optional<BagFormat> targetFormat(const ConvertArguments& arguments) {
+  const std::string extension = std::filesystem::path(arguments.target).extension().string();
+  const bool is_named = arguments.format.empty();
+  if (is_named ? extension == ".bag" : arguments.format == "ros1") return BagFormat::Ros1;
+  if (is_named ? extension == ".mcap" : arguments.format == "mcap") return BagFormat::Mcap;
+  if (is_named ? extension == ".db3" : arguments.format == "db3") return BagFormat::Database;
+  return std::nullopt;
+}
 
 ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* diagnostics) {
   ConvertOptions options;
@@ -31,11 +43,15 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
   const RecognizedFile source = recognizeFile(arguments.source);
   const bool from_bag = isBag(arguments.source);
   const bool is_other = !from_bag && !source.isFolder();
-  if (is_other) refuseFile(source, "convert takes a bag (NAME.bag) and a folder, in either order");
-  if (from_bag == isBag(arguments.target)) {
-    throw UsageError("convert takes a bag (NAME.bag) and a folder, in either order");
+  if (is_other) refuseFile(source, "convert takes a ROS bag or a folder with mav0");
+  const std::optional<BagFormat> format = targetFormat(arguments);
+  options.format = format.value_or(BagFormat::Ros1);
+  if (!from_bag && !format) {
+    throw UsageError("a folder becomes a bag: name DST NAME.bag, NAME.mcap or NAME.db3, or give --format");
   }
-  if (from_bag) return convertBagToFolder(arguments.source, arguments.target, options, diagnostics);
+  if (from_bag && !format)
+    return convertBagToFolder(arguments.source, arguments.target, options, diagnostics);
+  if (from_bag) return convertBagToBag(arguments.source, arguments.target, options, diagnostics);
   if (!options.topics.empty()) throw UsageError("--topic is for reading a bag; here one is written");
   return convertFolderToBag(arguments.source, arguments.target, options, diagnostics);
 }
@@ -57,21 +73,38 @@ void convert(const ConvertArguments& arguments) {
 
 void addConvertCommand(CLI::App& program) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command =
-      program.add_subcommand("convert", "Turn a ROS 1 bag into an EuRoC folder, or a folder into a bag");
-  command->add_option("SRC", arguments->source, "NAME.bag, or a folder with mav0 (EuRoC ASL layout)")
+  CLI::App* command = program.add_subcommand(
+      "convert", "Turn a recording into another format: EuRoC folder, ROS 1 bag, ROS 2 bag (MCAP, SQLite)");
+  command
+      ->add_option("SRC", arguments->source,
+                   "a ROS bag (.bag, .mcap, .db3, or the folder of a ROS 2 bag), or a folder with mav0 "
+                   "(EuRoC ASL layout)")
       ->required();
-  command->add_option("DST", arguments->target, "the other one; must not be there yet")->required();
+  command
+      ->add_option("DST", arguments->target,
+                   "NAME.bag, NAME.mcap, NAME.db3, or a folder; must not be there yet")
+      ->required();
   addBagOptions(&arguments->bag, command);
-  command->add_option("--compression", arguments->compression, "of the chunks of a bag that is written")
-      ->check(CLI::IsMember({"none", "lz4", "bz2"}))
-      ->capture_default_str();
+  command
+      ->add_option(
+          "--format", arguments->format,
+          "what DST becomes, where its name does not tell: folder (EuRoC), ros1, mcap, db3; the last two "
+          "make a folder with metadata.yaml for `ros2 bag` unless DST ends in .mcap or .db3")
+      ->check(CLI::IsMember({"folder", "ros1", "mcap", "db3"}));
+  command
+      ->add_option(
+          "--compression", arguments->compression,
+          "of the chunks of a bag that is written: none, lz4, bz2 (ROS 1), zstd (MCAP); ROS 1 bags have "
+          "none without it, MCAP has zstd")
+      ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
   command->footer(
       "Readings, stamps and pixels are kept; what the other format cannot hold is told. The calibration of "
       "a\n"
-      "folder goes into NAME.rig.yaml beside NAME.bag, and is found there again.\n"
+      "folder goes into NAME.rig.yaml beside the bag, and is found there again.\n"
       "Examples:\n"
       "  lodeline convert dive1 dive1.bag\n"
+      "  lodeline convert dive1 dive1.mcap\n"
+      "  lodeline convert dive1.bag dive1_ros2 --format db3\n"
       "  lodeline convert dive1.bag dive1 --rig camchain-imucam.yaml --rig imu.yaml\n"
       "  lodeline convert dive1.bag dive1 --topic cam0=/left/image_raw --topic cam1=/right/image_raw");
   command->callback([arguments] { convert(*arguments); });

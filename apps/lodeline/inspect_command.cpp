@@ -4,14 +4,20 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <iostream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
+#include <optional>
 
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/io/csv/plain_source.h"
+#include "lodeline/io/rosbag/bag_kinds.h"
+#include "lodeline/io/rosbag/bag_listing.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
@@ -23,6 +29,7 @@ struct InspectArguments {
   std::string data;
   BagArguments bag;
   std::string json;
+  std::optional<size_t> list_elements;
   std::vector<double> site;
   std::string date;
 };
@@ -34,6 +41,18 @@ std::optional<Vec3> siteField(const InspectArguments& arguments) {
   if (arguments.site.empty()) return std::nullopt;
   const GeodeticPosition site{arguments.site[0], arguments.site[1], arguments.site[2]};
   return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
+}
+
+/// Prints every message of a bag.
+void listBag(const InspectArguments& arguments) {
+  if (!isBag(arguments.data)) throw UsageError("--messages is for ROS bags");
+  Diagnostics diagnostics;
+  const std::unique_ptr<BagFile> bag = openBagFile(arguments.data, &diagnostics);
+  fmt::print("{}", topicsText(*bag));
+  std::fflush(stdout);
+  listMessages(bag.get(), *arguments.list_elements, &std::cout);
+  std::cout.flush();
+  fmt::print("{}", findingsText(diagnostics));
 }
 
 /// Opens a recording, even if no estimate is possible from it.
@@ -49,6 +68,7 @@ std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& argum
 }
 
 void inspectRecording(const InspectArguments& arguments) {
+  if (arguments.list_elements) return listBag(arguments);
   cv::setNumThreads(1);
   InspectionOptions options;
   options.site_field_W = siteField(arguments);
@@ -56,6 +76,9 @@ void inspectRecording(const InspectArguments& arguments) {
       inspect([&](Diagnostics* diagnostics) { return openWhatThereIs(arguments, diagnostics); }, options);
   if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(inspectionJson(inspection)) + "\n");
   fmt::print("{}", inspectionText(inspection));
+  if (!isBag(arguments.data)) return;
+  Diagnostics reported_above;
+  fmt::print("{}", topicsText(*openBagFile(arguments.data, &reported_above)));
 }
 
 }  // namespace
@@ -66,9 +89,16 @@ void addInspectCommand(CLI::App& program) {
       program.add_subcommand("inspect", "Tell what is wrong with a recording, the most harmful first");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout), a ROS 1 bag, or a CSV file of IMU readings")
+                   "folder with mav0 (EuRoC ASL layout), a ROS bag (.bag, .mcap, .db3, or the folder of a "
+                   "ROS 2 bag), or a CSV file of IMU readings")
       ->required();
   addBagOptions(&arguments->bag, command);
+  command
+      ->add_option("--messages", arguments->list_elements,
+                   "for a bag: print every message of every topic instead, with N elements of long arrays")
+      ->type_name("N")
+      ->expected(0, 1)
+      ->default_str("16");
   command->add_option("--json", arguments->json, "write all figures to this file");
   command
       ->add_option("--site", arguments->site,
@@ -82,6 +112,7 @@ void addInspectCommand(CLI::App& program) {
       "what each finding means.\n"
       "Examples:\n"
       "  lodeline inspect dive1\n"
+      "  lodeline inspect dive1.mcap --messages\n"
       "  lodeline inspect dive1.bag --rig rig.yaml --json inspection.json --site 29.83,-82.60,0 --date "
       "2026-11-21");
   command->callback([arguments] { inspectRecording(*arguments); });

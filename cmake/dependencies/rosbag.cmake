@@ -1,6 +1,9 @@
-# ROS 1 bags: bzip2 and LZ4 to read them; to write them librosbag-storage, which may be missing.
+# ROS bags: bzip2, LZ4, Zstandard and SQLite to read them. Writing bags of ROS 1 needs librosbag-storage, which may be
+# missing.
 lodeline_find(BZip2)
 lodeline_find_library(lz4::lz4 lz4frame.h lz4)
+lodeline_find_library(zstd::zstd zstd.h zstd)
+lodeline_find(SQLite3)
 # Its CMake files ask for catkin; the packages that its headers take lie in folders of their own.
 if(NOT TARGET rosbag_storage::rosbag_storage)
   add_library(rosbag_storage::rosbag_storage INTERFACE IMPORTED)

@@ -13,8 +13,8 @@
 
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/io/rosbag1/bag_file.h"
-#include "lodeline/io/rosbag1/topic_choice.h"
+#include "lodeline/io/rosbag/ros1/ros1_bag.h"
+#include "lodeline/io/rosbag/topic_choice.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
 #include "lodeline_ros/message_types.h"
@@ -121,7 +121,7 @@ class NodeTest : public ::testing::Test {
   void play(const std::function<double()>& pose_time_s) {
     ros::NodeHandle node;
     Diagnostics diagnostics;
-    BagFile bag(this->bag(), &diagnostics);
+    Ros1Bag bag(this->bag(), &diagnostics);
     std::vector<std::pair<BagEntry, const ros::Publisher*>> order;
     std::deque<ros::Publisher> publishers;
     for (const BagTopic& topic : bag.topics()) {
@@ -142,7 +142,7 @@ class NodeTest : public ::testing::Test {
       const double time_s = entry.received.seconds();
       if (time_s > start_s + kDuration_s + 1.0) break;
       ASSERT_TRUE(waitUntil([&] { return time_s < std::max(pose_time_s(), start_s) + kLead_s; }));
-      publisher->publish(RawMessage{bag.read(entry).value()});
+      publisher->publish(RawMessage{bag.stored(entry).value()});
     }
   }
 

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "lodeline/io/rosbag1/wire.h"
+#include "lodeline/io/rosbag/chunks/wire.h"
 
 namespace lodeline {
 

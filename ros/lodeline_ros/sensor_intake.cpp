@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/rosbag1/checked_reading.h"
-#include "lodeline/io/rosbag1/image_messages.h"
-#include "lodeline/io/rosbag1/messages.h"
+#include "lodeline/io/rosbag/checked_reading.h"
+#include "lodeline/io/rosbag/image_messages.h"
+#include "lodeline/io/rosbag/messages.h"
 
 namespace lodeline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "apps/lodeline/simulate/simulate_recording.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/rosbag1/convert/convert.h"
+#include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/magnetometer/calibration/calibrate_magnetometer.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 #include "lodeline/pipeline/available_images.h"
@@ -193,7 +193,7 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
       std::any_of(all.begin(), all.end(), [&](const Scenario& s) { return s.name == input; });
   if (is_scenario) {
     if (!prepareScenario(input, request, prepared)) return false;
-  } else if (fs::is_directory(input)) {
+  } else if (fs::is_directory(input) && !isBag(input)) {
     prepareFolder(input, request, prepared);
   } else if (isBag(input)) {
     prepareFolder(convertedBag(input, request), request, prepared);

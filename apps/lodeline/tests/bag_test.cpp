@@ -1,6 +1,6 @@
 #include "apps/lodeline/tests/test_room.h"
 #include "lodeline/io/euroc/csv_reader.h"
-#include "lodeline/io/rosbag1/test_bag.h"
+#include "lodeline/io/rosbag/test_bag.h"
 
 // Tests of `lodeline run` and `lodeline convert` with ROS 1 bags.
 
@@ -170,7 +170,7 @@ TEST_F(BagTest, SaysWhatToDo) {
   const Execution no_rig = runProgram(fmt::format("run {} -o {}", quoted(bag), quoted(output_)));
   EXPECT_EQ(no_rig.exit_code, 1);
   EXPECT_THAT(no_rig.output, HasSubstr("describe the rig with --rig FILE"));
-  EXPECT_EQ(runProgram(fmt::format("convert {} {}", quoted(bag), quoted(bag))).exit_code, 2);
+  EXPECT_EQ(runProgram(fmt::format("convert {} {}", quoted(bag), quoted(bag))).exit_code, 1);
   EXPECT_EQ(runProgram(fmt::format("convert {} {}", quoted(bag), quoted(recording_.data))).exit_code, 1);
   EXPECT_EQ(runProgram(fmt::format("convert {} {}", quoted(recording_.data), quoted(bag))).exit_code, 1);
   EXPECT_EQ(runProgram(fmt::format("run {} -o {} --topic cam0", quoted(bag), quoted(output_))).exit_code, 2);

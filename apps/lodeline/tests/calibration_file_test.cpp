@@ -78,8 +78,12 @@ TEST_F(CalibrationFileTest, FilesOfAWrongKindAreNamed) {
   folder_.write("ros2/ros2_0.db3", "SQLite format 3\0"s);
   folder_.write("loose/1.png", "");
   const std::vector<std::pair<const char*, const char*>> kinds = {
-      {"dive.zip", "an archive"},       {"dive.mp4", "a film"},      {"dive.db3", "rosbags-convert"},
-      {"dive.mcap", "rosbags-convert"}, {"ros2", "rosbags-convert"}, {"loose", "pictures without a list"}};
+      {"dive.zip", "an archive"},
+      {"dive.mp4", "a film"},
+      {"dive.db3", "cannot be opened as a SQLite database"},
+      {"dive.mcap", "holds no message"},
+      {"ros2", "cannot be opened as a SQLite database"},
+      {"loose", "pictures without a list"}};
   for (const auto& [name, words] : kinds) {
     for (const std::string& command :
          {fmt::format("run {} -o {}", quoted(path(name)), quoted(output_)),

@@ -1,5 +1,5 @@
 #include "apps/lodeline/tests/test_room.h"
-#include "lodeline/io/rosbag1/test_bag.h"
+#include "lodeline/io/rosbag/test_bag.h"
 
 // Tests of `lodeline inspect` as a program.
 

@@ -8,7 +8,7 @@
 
 #include "lodeline/evaluation/figures/plots.h"
 #include "lodeline/io/calibration/rig_text.h"
-#include "lodeline/io/rosbag1/bag_source.h"
+#include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/rig_calibration/report/rig_report.h"
 #include "lodeline/util/files/output_file.h"

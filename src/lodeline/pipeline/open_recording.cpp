@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/util/files/file_kind.h"
@@ -33,26 +36,27 @@ std::map<std::string, std::string> topicsOf(const BagArguments& arguments) {
 
 bool isBag(const std::filesystem::path& data) {
   const RecognizedFile recognized = recognizeFile(data);
-  if (recognized.kind == FileKind::Ros1Bag) return true;
+  constexpr std::array kBags = {FileKind::Ros1Bag, FileKind::Ros2Bag, FileKind::Mcap, FileKind::Ros2Folder};
+  if (std::find(kBags.begin(), kBags.end(), recognized.kind) != kBags.end()) return true;
+  if (recognized.kind != FileKind::Missing) return false;
   const std::string name = data.filename().string();
-  return recognized.kind == FileKind::Missing &&
-         (data.extension() == ".bag" || name.ends_with(".bag.active"));
+  const std::string extension = data.extension().string();
+  return extension == ".bag" || extension == ".mcap" || extension == ".db3" || name.ends_with(".bag.active");
 }
 
 bool isTableOfReadings(const std::filesystem::path& data) {
   const RecognizedFile recognized = recognizeFile(data);
-  if (recognized.isFolder() || recognized.kind == FileKind::Ros1Bag) return false;
-  if (isBag(data)) return false;  // its reader reports a missing one
+  if (recognized.isFolder() || isBag(data)) return false;  // their readers report a missing one
   if (recognized.kind != FileKind::Table && recognized.kind != FileKind::Text) {
     refuseFile(
         recognized,
-        "give a folder with mav0, a ROS 1 bag, or a CSV file of readings (docs/reference/file-formats.md)");
+        "give a folder with mav0, a ROS bag, or a CSV file of readings (docs/reference/file-formats.md)");
   }
   return true;
 }
 
 void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments) {
-  if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data)) return;
+  if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data) || isBag(data)) return;
   throw UsageError(
       fmt::format("--rig is for ROS bags here; {} is {}", data.string(), recognizeFile(data).what));
 }

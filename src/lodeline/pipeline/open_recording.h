@@ -8,7 +8,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_rig.h"
-#include "lodeline/io/rosbag1/bag_source.h"
+#include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {

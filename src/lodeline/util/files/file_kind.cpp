@@ -16,9 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-constexpr const char* kConvertRos2 =
-    "Lodeline reads ROS 1 bags; make one with `pip install rosbags` and "
-    "`rosbags-convert --src FOLDER --dst dive.bag` (give the folder that holds metadata.yaml)";
 constexpr const char* kFilm =
     "a film holds no stamps and no readings that Lodeline reads; record images with stamps and an IMU (a ROS "
     "1 "
@@ -38,8 +35,8 @@ constexpr std::array kSignatures = {
     Signature{0, "#ROSBAG V"sv, FileKind::Ros1Bag, "a ROS 1 bag", ""},
     Signature{0, "#ROSRECORD"sv, FileKind::Ros1Bag, "a ROS 1 bag of an old format", ""},
     Signature{0, "SQLite format 3\0"sv, FileKind::Ros2Bag, "a SQLite database, as ROS 2 bags are",
-              kConvertRos2},
-    Signature{0, "\x89MCAP0\r\n"sv, FileKind::Mcap, "a bag of ROS 2 (MCAP)", kConvertRos2},
+              ""},
+    Signature{0, "\x89MCAP0\r\n"sv, FileKind::Mcap, "a bag of ROS 2 (MCAP)", ""},
     Signature{0, "PK\3\4"sv, FileKind::Archive, "an archive (zip)", kUnpack},
     Signature{0, "PK\5\6"sv, FileKind::Archive, "an empty archive (zip)", ""},
     Signature{0, "7z\xBC\xAF\x27\x1C"sv, FileKind::Archive, "an archive (7z)", kUnpack},
@@ -89,8 +86,8 @@ struct Extension {
 };
 
 constexpr std::array kExtensions = {
-    Extension{".db3", FileKind::Ros2Bag, "a ROS 2 bag, by its name", kConvertRos2},
-    Extension{".mcap", FileKind::Mcap, "a ROS 2 bag, by its name", kConvertRos2},
+    Extension{".db3", FileKind::Ros2Bag, "a ROS 2 bag, by its name", ""},
+    Extension{".mcap", FileKind::Mcap, "a ROS 2 bag, by its name", ""},
     Extension{".bag", FileKind::Ros1Bag, "a ROS 1 bag, by its name", ""},
     Extension{".tar", FileKind::Archive, "an archive, by its name", kUnpack},
     Extension{".zip", FileKind::Archive, "an archive, by its name", kUnpack},
@@ -107,6 +104,13 @@ std::string lowerExtension(const fs::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
+}
+
+/// Whether the name is that of a file of a ROS 2 bag, which may be packed: .db3, .mcap, .db3.zstd, .mcap.zstd.
+bool isNamedAsRos2Bag(fs::path path) {
+  if (lowerExtension(path) == ".zstd") path.replace_extension();
+  const std::string extension = lowerExtension(path);
+  return extension == ".db3" || extension == ".mcap";
 }
 
 template <typename Range>
@@ -164,6 +168,9 @@ RecognizedFile recognizeText(const fs::path& path, std::string_view head) {
 
 RecognizedFile recognizeRegular(const fs::path& path) {
   const std::string head = headOf(path);
+  if (lowerExtension(path) == ".zstd" && isNamedAsRos2Bag(path)) {
+    return {path, FileKind::Ros2Bag, "a packed file of a ROS 2 bag", ""};
+  }
   for (const Signature& known : kSignatures) {
     if (head.size() < known.offset) continue;
     if (std::string_view(head).substr(known.offset).starts_with(known.bytes)) {
@@ -200,7 +207,7 @@ void take(const fs::directory_entry& entry, Entries* entries) {
   }
   entries->has_run = entries->has_run || name == "run.json";
   entries->has_metadata = entries->has_metadata || name == "metadata.yaml";
-  entries->has_ros2 = entries->has_ros2 || extension == ".db3" || extension == ".mcap";
+  entries->has_ros2 = entries->has_ros2 || isNamedAsRos2Bag(entry.path());
   if (extension == ".bag" && entries->first_bag.empty()) entries->first_bag = name;
   if (isOneOf(extension, kPictures)) {
     ++entries->pictures;
@@ -222,7 +229,7 @@ RecognizedFile recognizeFolder(const fs::path& path) {
     take(*entry, &entries);
   }
   if (entries.has_mav0 || entries.has_sensor) return {path, FileKind::EurocFolder, "a recording", ""};
-  if (entries.has_ros2) return {path, FileKind::Ros2Folder, "a ROS 2 bag", kConvertRos2};
+  if (entries.has_ros2) return {path, FileKind::Ros2Folder, "a ROS 2 bag", ""};
   if (entries.has_run) {
     return {path, FileKind::RunFolder, "the results of a run",
             "run, inspect and calibrate take the recording; evaluate, export and report take results"};

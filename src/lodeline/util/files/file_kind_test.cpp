@@ -66,7 +66,6 @@ TEST_F(FileKindTest, TellsFoldersApart) {
   recognize("ros2/metadata.yaml", "a: 1");
   recognize("ros2/dive_0.db3", "");
   EXPECT_EQ(recognizeFile(folder_ / "ros2").kind, FileKind::Ros2Folder);
-  EXPECT_THAT(recognizeFile(folder_ / "ros2").advice, HasSubstr("rosbags-convert"));
   recognize("loose/1.png", "");
   recognize("loose/2.JPG", "");
   EXPECT_THAT(recognizeFile(folder_ / "loose").what, HasSubstr("2 pictures"));

@@ -1,0 +1,231 @@
+#include <fmt/core.h>
+
+#include <functional>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+
+#include "lodeline/diagnostics.h"
+#include "lodeline/io/euroc/csv_reader.h"
+#include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/io/images/image_loader.h"
+#include "lodeline/io/rosbag/bag_source.h"
+#include "lodeline/io/rosbag/convert/bag_writer.h"
+#include "lodeline/io/rosbag/convert/convert.h"
+#include "lodeline/io/rosbag/convert/rig_conversion.h"
+#include "lodeline/io/rosbag/image_messages.h"
+#include "lodeline/io/rosbag/messages.h"
+
+namespace lodeline {
+namespace {
+
+/// A reading that is not written yet.
+struct Outgoing {
+  Time time;
+  std::function<void()> write;
+};
+using Pull = std::function<std::optional<Outgoing>()>;
+
+/// Writes the readings of several streams in the order of their stamps; each stream keeps its own order.
+void merge(const std::vector<Pull>& streams) {
+  std::vector<std::optional<Outgoing>> heads;
+  for (const Pull& pull : streams) heads.push_back(pull());
+  while (true) {
+    std::optional<size_t> first;
+    for (size_t i = 0; i < heads.size(); ++i) {
+      if (heads[i] && (!first || heads[i]->time < heads[*first]->time)) first = i;
+    }
+    if (!first) return;
+    heads[*first]->write();
+    heads[*first] = streams[*first]();
+  }
+}
+
+/// Options for all parts of a folder; a recording may have only inertial and magnetic readings.
+EurocOptions optionsFor(const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& rig_files) {
+  EurocOptions options;
+  options.rig_files = rig_files;
+  options.with_cameras = false;
+  const EurocLayout layout = findEurocLayout(folder, options);
+  for (const auto& entry : std::filesystem::directory_iterator(layout.mav0)) {
+    if (entry.path().filename().string().starts_with("cam")) options.with_cameras = true;
+  }
+  return options;
+}
+
+class FolderConversion {
+ public:
+  FolderConversion(const std::filesystem::path& folder, const std::filesystem::path& bag,
+                   const ConvertOptions& options, Diagnostics* diagnostics)
+      : layout_(findEurocLayout(folder, optionsFor(folder, options.rig_files))),
+        diagnostics_(diagnostics),
+        source_(folder, optionsFor(folder, options.rig_files), diagnostics),
+        writer_(makeBagWriter(bag, options.format, options.compression)) {}
+
+  ConvertSummary run() {
+    std::vector<Pull> streams;
+    for (size_t i = 0; i < source_.rig().cameras.size(); ++i) {
+      streams.push_back([this, i] { return image(i); });
+    }
+    streams.push_back([this] { return imu(); });
+    streams.push_back([this] { return magnetometer(); });
+    streams.push_back([this] { return depth(); });
+    streams.push_back([this] { return sonar(); });
+    const std::filesystem::path truth = layout_.csv("state_groundtruth_estimate0");
+    std::optional<CsvReader> truth_reader;
+    if (std::filesystem::exists(truth)) {
+      truth_reader.emplace(truth, CsvContent::TruePose, diagnostics_);
+      streams.push_back([&] { return truePose(&*truth_reader); });
+    }
+    merge(streams);
+    writer_->close();
+    return std::move(summary_);
+  }
+
+  const EurocLayout& layout() const { return layout_; }
+  const std::map<std::string, std::string>& topics() const { return topics_; }
+
+ private:
+  /// Counts and writes a message of a sensor. A bag returns messages in the order of their reception times,
+  /// so these must not decrease even where the stamps do.
+  void write(const std::string& sensor, const std::string& topic, const messages::Type& type, Time stamp,
+             wire::Bytes message) {
+    Time& received = received_.try_emplace(sensor, stamp).first->second;
+    received = std::max(received, stamp);
+    topics_[sensor] = topic;
+    ++summary_.readings[sensor];
+    writer_->write(topic, type.name, received, std::move(message));
+  }
+
+  uint32_t sequence(const std::string& sensor) { return static_cast<uint32_t>(summary_.readings[sensor]); }
+
+  void reportRounded(const std::string& what, Time time, double given, double kept) {
+    if (given == kept) return;
+    diagnostics_->report(Severity::Notice, "convert_rounded",
+                         fmt::format("{} {} at {} ns is kept as {}: the message holds no more", what, given,
+                                     time.nanoseconds(), kept));
+  }
+
+  std::optional<Outgoing> imu() {
+    const std::optional<ImuSample> sample = source_.nextRecordedImu();
+    if (!sample) return std::nullopt;
+    return Outgoing{sample->time, [this, sample] {
+                      write("imu0", "/imu0", messages::kImu, sample->time,
+                            messages::imu(*sample, sequence("imu0")));
+                    }};
+  }
+
+  std::optional<Outgoing> magnetometer() {
+    const std::optional<MagnetometerSample> sample = source_.nextMagnetometer();
+    if (!sample) return std::nullopt;
+    return Outgoing{sample->time, [this, sample] {
+                      write("mag0", "/mag0", messages::kMagneticField, sample->time,
+                            messages::magneticField(*sample, sequence("mag0")));
+                    }};
+  }
+
+  std::optional<Outgoing> depth() {
+    const std::optional<DepthSample> sample = source_.nextDepth();
+    if (!sample) return std::nullopt;
+    return Outgoing{sample->time, [this, sample] {
+                      const WaterColumn water;
+                      reportRounded("depth", sample->time, sample->depth_m,
+                                    water.depth_m(water.pressure_Pa(sample->depth_m)));
+                      write("pressure0", "/pressure0", messages::kFluidPressure, sample->time,
+                            messages::fluidPressure(*sample, water, sequence("pressure0")));
+                    }};
+  }
+
+  std::optional<Outgoing> sonar() {
+    const std::optional<SonarSample> sample = source_.nextSonar();
+    if (!sample) return std::nullopt;
+    return Outgoing{sample->time, [this, sample] {
+                      wire::Bytes message = messages::laserScan(*sample, sequence("sonar0"));
+                      const std::vector<SonarSample> kept = messages::parseLaserScan(message);
+                      if (!kept.empty()) {
+                        reportRounded("sonar range", sample->time, sample->range_m, kept.front().range_m);
+                        reportRounded("sonar angle", sample->time, sample->angle_rad, kept.front().angle_rad);
+                      }
+                      write("sonar0", "/sonar0", messages::kLaserScan, sample->time, std::move(message));
+                    }};
+  }
+
+  std::optional<Outgoing> image(size_t camera) {
+    std::optional<PendingImage> pending = source_.nextImage(camera);
+    if (!pending) return std::nullopt;
+    const Time time = pending->time;
+    return Outgoing{time, [this, camera, pending = std::move(*pending)] { writeImage(camera, pending); }};
+  }
+
+  /// The first image of a camera determines the type of its messages, because a topic has one type.
+  void writeImage(size_t camera, const PendingImage& pending) {
+    const std::string sensor = fmt::format("cam{}", camera);
+    StoredImage stored = pending.stored();
+    const bool is_raw = raw_.try_emplace(sensor, isPng(stored.file)).first->second;
+    if (stored.problem.empty() && is_raw) {
+      stored.pixels = cv::imdecode(stored.file, cv::IMREAD_UNCHANGED);
+      if (stored.pixels.empty()) stored.problem = pending.name + ": image damaged or of unknown kind";
+    }
+    if (!stored.problem.empty()) {
+      diagnostics_->report(Severity::Warning, "image_unreadable", stored.problem + "; left out");
+      return;
+    }
+    const std::string topic = fmt::format("/{}/image_raw", sensor);
+    if (is_raw) {
+      write(sensor, topic, messages::kImage, pending.time,
+            messages::image(pending.time, sensor, stored.pixels, sequence(sensor)));
+    } else {
+      write(sensor, topic + "/compressed", messages::kCompressedImage, pending.time,
+            messages::compressedImage(pending.time, sensor, stored.file, sequence(sensor)));
+    }
+  }
+
+  std::optional<Outgoing> truePose(CsvReader* reader) {
+    CsvRow row;
+    if (!reader->next(&row)) return std::nullopt;
+    if (row.text.size() > 0) {
+      diagnostics_->report(Severity::Notice, "convert_truth",
+                           fmt::format("{}: velocities and biases are left out; a bag keeps the true poses",
+                                       reader->file().string()));
+    }
+    const std::vector<double>& n = row.numbers;
+    const messages::StampedPosition pose{row.time, Rigid3(Quat(n[3], n[4], n[5], n[6]), Vec3(n.data()))};
+    return Outgoing{row.time, [this, pose] {
+                      write("truth", kTruthTopic, messages::kPoseStamped, pose.time,
+                            messages::poseStamped(pose, sequence("truth")));
+                    }};
+  }
+
+  EurocLayout layout_;
+  Diagnostics* diagnostics_;
+  EurocSource source_;
+  std::unique_ptr<BagWriter> writer_;
+  ConvertSummary summary_;
+  std::map<std::string, Time> received_;
+  std::map<std::string, std::string> topics_;
+  std::map<std::string, bool> raw_;
+};
+
+}  // namespace
+
+void requireAbsent(const std::filesystem::path& bag) {
+  for (const std::filesystem::path& file : {bag, rigFileBeside(bag)}) {
+    if (std::filesystem::exists(file)) {
+      throw InputError(file.string() + ": is there already; choose another name or delete it");
+    }
+  }
+}
+
+ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std::filesystem::path& bag,
+                                  const ConvertOptions& options, Diagnostics* diagnostics) {
+  requireAbsent(bag);
+  const std::filesystem::path rig_file = rigFileBeside(bag);
+  FolderConversion conversion(folder, bag, options, diagnostics);
+  ConvertSummary summary = conversion.run();
+  writeRigFile(conversion.layout(), conversion.topics(), rig_file);
+  summary.rig_file = rig_file;
+  return summary;
+}
+
+}  // namespace lodeline

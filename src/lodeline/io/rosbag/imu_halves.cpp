@@ -1,0 +1,62 @@
+#include "lodeline/io/rosbag/imu_halves.h"
+
+#include <algorithm>
+
+#include "lodeline/io/rosbag/checked_reading.h"
+#include "lodeline/io/rosbag/messages.h"
+
+namespace lodeline {
+namespace {
+
+constexpr int kLongestGapInSteps = 4;
+
+}  // namespace
+
+ImuContent contentOf(const BagTopic& topic, BagFile* bag) {
+  ImuContent content;
+  for (const BagEntry& entry : topic.entries) {
+    const std::optional<wire::Bytes> message = bag->read(topic, entry);
+    std::string problem;
+    const std::optional<ImuSample> sample =
+        message ? messages::checkedReading(*message, messages::parseImu, &problem) : std::nullopt;
+    if (!sample) continue;
+    content.has_gyroscope = content.has_gyroscope || !sample->angular_velocity_B.isZero(0.0);
+    content.has_accelerometer = content.has_accelerometer || !sample->specific_force_B.isZero(0.0);
+    if (content.isWhole()) break;
+  }
+  return content;
+}
+
+bool ImuHalves::advance(const Next& accelerometer) {
+  std::optional<ImuSample> reading = accelerometer();
+  // Readings that go back in time cannot bracket another reading.
+  while (reading && after_ && reading->time <= after_->time) reading = accelerometer();
+  before_ = after_;
+  after_ = reading;
+  if (before_ && after_) {
+    const Duration step = after_->time - before_->time;
+    usual_step_ = usual_step_ ? std::min(*usual_step_, step) : step;
+  }
+  return after_.has_value();
+}
+
+std::optional<ImuSample> ImuHalves::next(const Next& gyroscope, const Next& accelerometer) {
+  while (std::optional<ImuSample> sample = gyroscope()) {
+    while (!after_ || after_->time < sample->time) {
+      if (!advance(accelerometer)) return std::nullopt;
+    }
+    if (sample->time == after_->time) {
+      sample->specific_force_B = after_->specific_force_B;
+      return sample;
+    }
+    if (!before_ || sample->time < before_->time) continue;
+    const double step_s = (after_->time - before_->time).seconds();
+    if (step_s > kLongestGapInSteps * usual_step_->seconds()) continue;
+    const double share = (sample->time - before_->time).seconds() / step_s;
+    sample->specific_force_B = (1.0 - share) * before_->specific_force_B + share * after_->specific_force_B;
+    return sample;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lodeline
