@@ -87,7 +87,7 @@ void GraphProblem::hold() {
     Vec6 sigmas;
     sigmas << Vec3::Constant(kWeakPosition_m), Vec3::Constant(kWeakRotation_rad);
     state.weak->append(state.pose.data(), kPoseSize, sigmas);
-    problem_->AddResidualBlock(new PriorFactor(*state.weak), nullptr, state.pose.data());
+    addCertain(std::make_unique<PriorFactor>(*state.weak), {state.pose.data()});
   }
   if (nodes_.empty()) return;
   if (held_ < 0) held_ = nodes_.begin()->first;

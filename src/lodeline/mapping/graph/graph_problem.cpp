@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/graph/factors/heading_factor.h"
@@ -19,8 +20,10 @@ namespace {
 
 ceres::Problem::Options problemOptions() {
   ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.enable_fast_removal = true;
   return options;
 }
 
@@ -56,21 +59,24 @@ void GraphProblem::add(const GraphEdge& edge) {
   auto factor = std::make_unique<RelativePoseFactor>(edge.relative);
   if (!edge.robust) {
     join(edge.from, edge.to);
-    problem_->AddResidualBlock(factor.release(), nullptr, from.pose.data(), to.pose.data());
+    chains_.add(edge.from, edge.to, edge.relative);
+    certain_edges_.push_back(edge);
+    addCertain(std::move(factor), {from.pose.data(), to.pose.data()});
     return;
   }
   ReportedFactor& loop = report(FactorReport::Kind::Loop, true, edge.from, 6);
   loop.to = edge.to;
+  loop.relative = edge.relative;
   loop.residual = [measured = edge.relative.from_from_to, &from, &to]() -> Eigen::VectorXd {
     return errorBetween(measured, poseFromBlock(from.pose.data()).inverse() * poseFromBlock(to.pose.data()));
   };
-  loop.block = problem_->AddResidualBlock(factor.release(), &loop.loss, from.pose.data(), to.pose.data());
+  loop.function = std::move(factor);
+  loop.parameters = {from.pose.data(), to.pose.data()};
 }
 
 void GraphProblem::add(const TiltMeasurement& measurement) {
   Node& tilted = node(measurement.node, "tilt");
-  problem_->AddResidualBlock(new TiltFactor(measurement.up_B, measurement.sigma_rad), nullptr,
-                             tilted.pose.data());
+  addCertain(std::make_unique<TiltFactor>(measurement.up_B, measurement.sigma_rad), {tilted.pose.data()});
   has_tilt_ = true;
 }
 
@@ -80,7 +86,7 @@ void GraphProblem::add(const HeadingMeasurement& measurement) {
   const double present =
       azimuthOf(poseFromBlock(headed.pose.data()).rotation * measurement.odom_from_body.conjugate());
   DiveNumber& azimuth = numberOf(headed.dive, present, kWeakRotation_rad, &azimuths_);
-  problem_->AddResidualBlock(factor.release(), nullptr, headed.pose.data(), &azimuth.value);
+  addCertain(std::move(factor), {headed.pose.data(), &azimuth.value});
 }
 
 void GraphProblem::add(const HeightMeasurement& measurement) {
@@ -88,7 +94,7 @@ void GraphProblem::add(const HeightMeasurement& measurement) {
   auto factor = std::make_unique<HeightFactor>(measurement.height_m, measurement.sigma_m);
   DiveNumber& offset =
       numberOf(high.dive, measurement.height_m - high.pose[2], kWeakPosition_m, &height_offsets_);
-  problem_->AddResidualBlock(factor.release(), nullptr, high.pose.data(), &offset.value);
+  addCertain(std::move(factor), {high.pose.data(), &offset.value});
 }
 
 void GraphProblem::add(const PositionMeasurement& measurement) {
@@ -101,7 +107,9 @@ void GraphProblem::add(const PositionMeasurement& measurement) {
   reported.residual = [measurement, &placed]() -> Eigen::VectorXd {
     return poseFromBlock(placed.pose.data()) * measurement.point_B - measurement.position_W;
   };
-  reported.block = problem_->AddResidualBlock(factor.release(), &reported.loss, placed.pose.data());
+  reported.function = std::move(factor);
+  reported.parameters = {placed.pose.data()};
+  if (!measurement.robust) setWeight(&reported, 1.0);
   addMeasuredPosition(measurement.position_W);
 }
 
@@ -121,7 +129,7 @@ void GraphProblem::add(const GraphLandmark& landmark) {
     const Eigen::LLT<Eigen::MatrixXd> information(landmark.covariance.inverse());
     state.prior.sqrt_information = information.matrixU();
   }
-  problem_->AddResidualBlock(new PriorFactor(state.prior), nullptr, state.position_W.data());
+  addCertain(std::make_unique<PriorFactor>(state.prior), {state.position_W.data()});
 }
 
 void GraphProblem::add(const Sighting& sighting) {
@@ -148,8 +156,9 @@ void GraphProblem::add(const Sighting& sighting) {
   reported.residual = [measured = sighting.point_B, &from, &seen]() -> Eigen::VectorXd {
     return poseFromBlock(from.pose.data()).inverse() * seen.position_W - measured;
   };
-  reported.block =
-      problem_->AddResidualBlock(factor.release(), &reported.loss, from.pose.data(), seen.position_W.data());
+  reported.function = std::move(factor);
+  reported.parameters = {from.pose.data(), seen.position_W.data()};
+  if (!sighting.robust) setWeight(&reported, 1.0);
 }
 
 void GraphProblem::add(const AzimuthPrior& prior) {
@@ -169,7 +178,7 @@ GraphProblem::DiveNumber& GraphProblem::numberOf(int dive, double first_value, d
   if (is_new) {
     number.value = first_value;
     number.prior.append(&number.value, 1, Eigen::VectorXd::Constant(1, weak_sigma));
-    problem_->AddResidualBlock(new PriorFactor(number.prior), nullptr, &number.value);
+    addCertain(std::make_unique<PriorFactor>(number.prior), {&number.value});
   }
   return number;
 }
@@ -191,7 +200,14 @@ ReportedFactor& GraphProblem::report(FactorReport::Kind kind, bool is_robust, Ke
   added.is_robust = is_robust;
   added.from = node;
   added.degrees_of_freedom = degrees_of_freedom;
+  added.loss.weight = 0.0;
   return added;
+}
+
+void GraphProblem::addCertain(std::unique_ptr<ceres::CostFunction> function,
+                              const std::vector<double*>& parameters) {
+  problem_->AddResidualBlock(function.get(), nullptr, parameters);
+  functions_.push_back(std::move(function));
 }
 
 GraphProblem::Node& GraphProblem::node(KeyframeId id, const char* what) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -15,6 +16,7 @@
 #include "lodeline/factors/prior_factor.h"
 #include "lodeline/mapping/graph/graph_covariance.h"
 #include "lodeline/mapping/graph/graph_elements.h"
+#include "lodeline/mapping/graph/motion/odometry_chains.h"
 
 namespace lodeline {
 
@@ -36,13 +38,24 @@ struct ReportedFactor {
   KeyframeId from = -1, to = -1;
   bool is_robust = true;
   int degrees_of_freedom = 6;
+  bool is_new = true;                           ///< not yet part of a solution
+  RelativePose relative;                        ///< measured, of loops
+  double gate_chi_squared = 0.0;                ///< of loops, see LoopGate
+  bool is_doubtful = false;                     ///< see RobustSolution
+  std::vector<const ReportedFactor*> agreeing;  ///< loops, see neighbouringLoops()
+  int disagreeing = 0;                          ///< neighbouring loops
   WeightLoss loss;
-  ceres::ResidualBlockId block = nullptr;
+  std::unique_ptr<ceres::CostFunction> function;
+  std::vector<double*> parameters;
+  ceres::ResidualBlockId block = nullptr;     ///< null where the weight is 0
   std::function<Eigen::VectorXd()> residual;  ///< without whitening, at the present estimate
+
+  bool isLoop() const { return kind == FactorReport::Kind::Loop; }
+  bool isUsed() const { return loss.weight > 0.0; }
 };
 
 /// The parameters and residuals of a pose graph as a problem of Ceres, and the directions that are held. It
-/// lives as long as its graph: factors are added to it and never removed.
+/// lives as long as its graph. Factors of weight 0 are not in the problem, so that they fill in no matrix.
 class GraphProblem {
  public:
   GraphProblem();
@@ -61,10 +74,16 @@ class GraphProblem {
   /// Holds what the measurements leave open, see PoseGraph. To be called before each solution.
   void hold();
   ceres::Solver::Summary solve(int most_iterations);
-  double chiSquared(const ReportedFactor& factor);
+  /// Sets the weight of a factor; 0 takes it out of the problem.
+  void setWeight(ReportedFactor* factor, double weight);
+  /// Places the nodes of each chain by odometry, from its first node.
+  void restoreChains();
+  double chiSquared(const ReportedFactor& factor) const;
   std::shared_ptr<const GraphCovariance::Factorization> factorization();
 
   std::deque<ReportedFactor>& reported() { return reported_; }
+  const std::vector<GraphEdge>& certainEdges() const { return certain_edges_; }
+  const OdometryChains& chains() const { return chains_; }
   bool contains(KeyframeId id) const { return nodes_.count(id) > 0; }
   size_t size() const { return nodes_.size(); }
   Rigid3 pose(KeyframeId id) const;
@@ -102,6 +121,7 @@ class GraphProblem {
   DiveNumber& numberOf(int dive, double first_value, double weak_sigma, std::map<int, DiveNumber>* numbers);
   static void setPrior(double value, double sigma, const char* what, DiveNumber* number);
   ReportedFactor& report(FactorReport::Kind kind, bool is_robust, KeyframeId node, int degrees_of_freedom);
+  void addCertain(std::unique_ptr<ceres::CostFunction> function, const std::vector<double*>& parameters);
   KeyframeId partOf(KeyframeId id);
   void join(KeyframeId a, KeyframeId b);
   void addMeasuredPosition(const Vec3& position_W);
@@ -112,6 +132,9 @@ class GraphProblem {
   std::map<int, DiveNumber> azimuths_, height_offsets_;
   std::map<std::string, LandmarkState> landmarks_;
   std::deque<ReportedFactor> reported_;
+  std::vector<std::unique_ptr<ceres::CostFunction>> functions_;  ///< of all other factors
+  std::vector<GraphEdge> certain_edges_;
+  OdometryChains chains_;
   std::vector<std::unique_ptr<ceres::Manifold>> manifolds_;
   bool has_tilt_ = false;
   KeyframeId held_ = -1;                    ///< the first node at the first solution

@@ -29,12 +29,33 @@ ceres::Solver::Summary GraphProblem::solve(int most_iterations) {
   return summary;
 }
 
-double GraphProblem::chiSquared(const ReportedFactor& factor) {
-  double half_chi_squared = 0.0;
-  if (!problem_->EvaluateResidualBlock(factor.block, false, &half_chi_squared, nullptr, nullptr)) {
+void GraphProblem::setWeight(ReportedFactor* factor, double weight) {
+  factor->loss.weight = weight;
+  if (weight > 0.0 && !factor->block) {
+    factor->block = problem_->AddResidualBlock(factor->function.get(), &factor->loss, factor->parameters);
+  } else if (weight <= 0.0 && factor->block) {
+    problem_->RemoveResidualBlock(factor->block);
+    factor->block = nullptr;
+  }
+}
+
+void GraphProblem::restoreChains() {
+  for (const std::vector<KeyframeId>& chain : chains_.nodes()) {
+    const Rigid3 world_from_first = pose(chain.front());
+    for (const KeyframeId id : chain) {
+      if (id == chain.front()) continue;
+      poseToBlock(world_from_first * chains_.relative(chain.front(), id).from_from_to,
+                  nodes_.at(id).pose.data());
+    }
+  }
+}
+
+double GraphProblem::chiSquared(const ReportedFactor& factor) const {
+  Eigen::VectorXd whitened(factor.function->num_residuals());
+  if (!factor.function->Evaluate(factor.parameters.data(), whitened.data(), nullptr)) {
     throw EstimationError("the pose graph: a residual has no value");
   }
-  return 2.0 * half_chi_squared;
+  return whitened.squaredNorm();
 }
 
 std::shared_ptr<const GraphCovariance::Factorization> GraphProblem::factorization() {

@@ -75,11 +75,8 @@ class PoseGraph {
   GraphCovariance covariance() const;
 
  private:
-  /// Weights all robust factors from the start, as GraduatedWeights does.
-  void graduate(GraphSummary* summary);
-  void leastSquares(int most_iterations, GraphSummary* summary);
-
   PoseGraphOptions options_;
+  bool was_solved_ = false;
   std::unique_ptr<GraphProblem> problem_;
 };
 

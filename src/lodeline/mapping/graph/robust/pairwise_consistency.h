@@ -24,10 +24,17 @@ struct ConsistentLoops {
 /// Pose of the second keyframe in the first by odometry, within one dive.
 using OdometryBetween = std::function<RelativePose(KeyframeId, KeyframeId)>;
 
-/// chi^2 with 6 degrees of freedom of the circuit through two loops a and b and the odometry between their
-/// ends. The way old_a -> new_a -> new_b and the way old_a -> old_b -> new_b must give the same pose within
-/// the sum of their covariances.
-double circuitChiSquared(const Loop& a, const Loop& b, const OdometryBetween& odometry);
+/// The circuit through two loops a and b and the odometry between their ends: the pose of new_b in old_a by
+/// the way old_a -> new_a -> new_b and by the way old_a -> old_b -> new_b, and the sum of the covariances of
+/// both ways.
+struct Circuit {
+  Rigid3 by_a, by_b;
+  Mat6 covariance = Mat6::Zero();
+
+  /// chi^2 of the difference of both ways, 6 degrees of freedom.
+  double chiSquared() const { return mahalanobisSquared(by_a, by_b, covariance); }
+};
+Circuit circuitOf(const Loop& a, const Loop& b, const OdometryBetween& odometry);
 
 /// Pairwise consistency maximization: J. G. Mangelson, D. Dominic, R. M. Eustice, R. Vasudevan, "Pairwise
 /// consistent measurement set maximization for robust multi-robot map merging", ICRA 2018. All loops must

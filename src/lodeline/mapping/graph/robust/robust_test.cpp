@@ -146,7 +146,7 @@ TEST_F(TwoDives, TrueLoopsHaveChiSquaredOfSixDegreesOfFreedom) {
   double sum = 0.0;
   int count = 0;
   for (size_t k = 0; k < 80; k += 4) {
-    const double chi_squared = circuitChiSquared(truth(k), truth(k + 6), odometry());
+    const double chi_squared = circuitOf(truth(k), truth(k + 6), odometry()).chiSquared();
     sum += chi_squared;
     ++count;
   }

@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "lodeline/mapping/graph/pose_graph.h"
+#include "lodeline/mapping/graph/test_false_edges.h"
+#include "lodeline/util/files/test_data.h"
+
+namespace lodeline {
+namespace {
+
+struct Case {
+  double share = 0.0;  ///< of false loops among all
+  int run = 1;         ///< consecutive false loops that agree with each other
+};
+
+struct Solution {
+  std::map<KeyframeId, Rigid3> poses;
+  double sigma_m = 0.0;  ///< RMS of the reported sigmas of positions, three axes
+  int true_loops = 0, true_accepted = 0, false_accepted = 0;
+};
+
+/// Multi-storey parking garage, 1661 poses and 4615 loops, with sigmas of 0.1 m and 0.1 rad for all edges.
+G2oGraph garage(const std::filesystem::path& file) {
+  G2oGraph graph = readG2o(file);
+  for (GraphEdge& edge : graph.edges) edge.relative.covariance = 0.01 * Mat6::Identity();
+  return graph;
+}
+
+Solution solved(const G2oGraph& graph, const std::vector<GraphEdge>& false_loops) {
+  PoseGraph problem;
+  for (const auto& [id, pose] : graph.nodes) problem.addNode(id, 0, pose);
+  Solution solution;
+  for (const GraphEdge& edge : graph.edges) {
+    problem.add(edge);
+    solution.true_loops += edge.robust ? 1 : 0;
+  }
+  for (const GraphEdge& edge : false_loops) problem.add(edge);
+  const GraphSummary summary = problem.solve();
+  EXPECT_TRUE(summary.converged);
+  for (size_t i = 0; i < summary.factors.size(); ++i) {
+    const bool is_true = i < static_cast<size_t>(solution.true_loops);
+    if (summary.factors[i].accepted) ++(is_true ? solution.true_accepted : solution.false_accepted);
+  }
+  solution.poses = problem.poses();
+  const GraphCovariance covariance = problem.covariance();
+  double sum = 0.0;
+  int count = 0;
+  for (KeyframeId id = 20; graph.nodes.count(id) > 0; id += 40, ++count) {
+    sum += covariance.of(id).topLeftCorner<3, 3>().trace();
+  }
+  solution.sigma_m = std::sqrt(sum / count);
+  return solution;
+}
+
+class FalseEdges : public testing::TestWithParam<Case> {};
+
+TEST_P(FalseEdges, OfTheParkingGarageAreRefusedAndTrueOnesKept) {
+  const auto file = testData("pose_graphs/parking-garage.g2o");
+  if (!file) GTEST_SKIP() << missingTestData("pose_graphs/parking-garage.g2o");
+  const G2oGraph graph = garage(*file);
+  const Solution clean = solved(graph, {});
+  EXPECT_EQ(clean.true_accepted, clean.true_loops);
+  const double ratio = GetParam().share / (1.0 - GetParam().share);
+  std::mt19937_64 generator(1);
+  const auto count = static_cast<size_t>(std::lround(ratio * clean.true_loops));
+  const Solution found =
+      solved(graph, falseEdges(graph, count, GetParam().run, 0.01 * Mat6::Identity(), &generator));
+  const double difference_m = rmsDistance_m(found.poses, clean.poses);
+  const double error = std::hypot(clean.sigma_m, difference_m) / clean.sigma_m;
+  std::printf(
+      "%zu false loops in runs of %d: %d false and %d of %d true loops accepted, %.4f m from the clean "
+      "solution of sigma %.3f m, error x %.4f\n",
+      count, GetParam().run, found.false_accepted, found.true_accepted, found.true_loops, difference_m,
+      clean.sigma_m, error);
+  EXPECT_EQ(found.false_accepted, 0);
+  EXPECT_GE(found.true_accepted, 0.95 * found.true_loops);
+  EXPECT_LE(error, 1.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shares, FalseEdges,
+                         testing::Values(Case{0.1, 1}, Case{0.3, 1}, Case{0.5, 1}, Case{0.1, 5}, Case{0.3, 5},
+                                         Case{0.5, 5}),
+                         [](const auto& info) {
+                           return std::to_string(std::lround(100.0 * info.param.share)) + "PercentInRunsOf" +
+                                  std::to_string(info.param.run);
+                         });
+
+}  // namespace
+}  // namespace lodeline
