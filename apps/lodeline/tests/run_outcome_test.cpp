@@ -20,8 +20,9 @@ using ::testing::HasSubstr;
 using RunOutcome = RoomTest;
 
 std::vector<std::string> writtenFiles() {
-  std::vector<std::string> files = {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply",
-                                    "run.json",    "map.db",         "loops.csv",  "trajectory_map.tum"};
+  std::vector<std::string> files = {"config.yaml",   "trajectory.tum",     "states.csv",
+                                    "landmarks.ply", "run.json",           "map.db",
+                                    "loops.csv",     "trajectory_map.tum", "keyframes_map.tum"};
   if (!pageTemplate().empty()) files.push_back("report.html");
   return files;
 }
