@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 #include "apps/lodeline/tests/test_room.h"
@@ -20,8 +21,9 @@ using ::testing::HasSubstr;
 using RunOutcome = RoomTest;
 
 std::vector<std::string> writtenFiles() {
-  std::vector<std::string> files = {"config.yaml", "trajectory.tum", "states.csv", "landmarks.ply",
-                                    "run.json",    "map.db",         "loops.csv",  "trajectory_map.tum"};
+  std::vector<std::string> files = {"config.yaml",   "trajectory.tum",     "states.csv",
+                                    "landmarks.ply", "run.json",           "map.db",
+                                    "loops.csv",     "trajectory_map.tum", "keyframes_map.tum"};
   if (!pageTemplate().empty()) files.push_back("report.html");
   return files;
 }
@@ -39,6 +41,15 @@ TEST_F(RunOutcome, FolderWithoutRecordingIsNamed) {
   const Execution result = run();
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.output, AllOf(HasSubstr(recording_.data.string()), HasSubstr("mav0")));
+}
+
+TEST_F(RunOutcome, ABadFileOfTagsIsNamedBeforeAnythingIsWritten) {
+  const std::filesystem::path tags = folder_.path() / "tags.csv";
+  std::ofstream(tags) << "name,tag\nnear,3\n";
+  const Execution result = run("--set tags.control=" + tags.string());
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, HasSubstr("no size of a tag is known"));
+  EXPECT_FALSE(std::filesystem::exists(output_));
 }
 
 TEST_F(RunOutcome, TakesMav0ItselfToo) {

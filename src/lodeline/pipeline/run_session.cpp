@@ -84,6 +84,8 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
       attitude_(source->rig(), attitudeOptions(options), &unheard_),
       summary_(describe(request, options, source->rig())) {
   if (!folder_.empty()) {
+    // Before anything is written, because it reads files that the settings name.
+    const RunMappingRequest mapping = mappingRequest(request, options, diagnostics);
     createOutputFolder(folder_);
     lock_.emplace(folder_);
     removeRefinedFiles(folder_);
@@ -91,8 +93,7 @@ RunSession::RunSession(const RunRequest& request, const Settings& settings, cons
     writeSettings(folder_, settings);
     output_.emplace(folder_, loop_.odometry().estimator(),
                     RunOutputOptions{request.draw_tracks_s, request.sample_pictures});
-    if (options.loops || !request.map.empty())
-      mapping_.emplace(mappingRequest(request, options, diagnostics), source->rig(), diagnostics);
+    if (options.loops || !request.map.empty()) mapping_.emplace(mapping, source->rig(), diagnostics);
   }
   start_ = Clock::now();
   start_processor_s_ = ProcessUsage::now().processor_s;

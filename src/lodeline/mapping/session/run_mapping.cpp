@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "lodeline/geometry/so3.h"
 #include "lodeline/io/calibration/rig_text.h"
+#include "lodeline/mapping/control/control_residual.h"
 #include "lodeline/mapping/session/loops/loop_ledger.h"
+#include "lodeline/mapping/session/map_solution.h"
 #include "lodeline/mapping/session/tags/control_report.h"
 #include "lodeline/output/files/world_turn.h"
 
@@ -134,6 +137,26 @@ std::optional<Rigid3> RunMapping::mapFromOdom(const FrameEstimate& newest) const
   return Rigid3(so3::exp(*north_rad * Vec3::UnitZ()), Vec3::Zero());
 }
 
+void RunMapping::solveForStatedTags() {
+  std::set<int64_t> seen;
+  for (const ControlObservation& observation : own_->controlObservations()) seen.insert(observation.point);
+  const std::vector<ControlPoint> points = own_->controlPoints();
+  const bool is_stated = std::any_of(points.begin(), points.end(), [&](const ControlPoint& point) {
+    return point.position && seen.count(point.id) > 0;
+  });
+  if (!is_stated) return;
+  try {
+    solveMap(&*own_, {request_.mapping.graph, request_.mapping.factors});
+  } catch (const EstimationError& error) {
+    diagnostics_->report(Severity::Warning, "tags_not_solved",
+                         std::string("the positions of tags do not place the map: ") + error.what());
+    return;
+  }
+  const auto poseOf = [this](KeyframeId id) { return own_->keyframe(id)->solved; };
+  for (const std::string& text : blunderTexts(controlResiduals(controlFactorsOf(*own_), poseOf)))
+    diagnostics_->report(Severity::Warning, "tag_refused", text);
+}
+
 void RunMapping::reportTags() const {
   const KnownKeyframes& known = mapping_->known();
   for (const Loop& loop : mapping_->ledger()) {
@@ -150,6 +173,7 @@ MappingSummary RunMapping::finish(const MagnetometerEstimate& last) {
   closures_ = loopClosures(accepted_, mapping_->known(), mapping_->dive(), describer_.cameras());
   writeLedger();
   writeKeyframes();
+  solveForStatedTags();
   writeControlReport(request_.folder / "control.csv", *own_);
   reportTags();
   if (const std::optional<WorldTurn> turn = WorldTurn::of(last); turn && !earlier_)

@@ -62,6 +62,8 @@ class RunMapping {
   std::vector<SeenTag> tagsIn(const FramePacket& packet) const;
   void writeLedger() const;
   void writeKeyframes() const;
+  /// Puts the stored solution into the frame of the stated positions of tags, where some of these were seen.
+  void solveForStatedTags();
   void reportTags() const;
 
   RunMappingRequest request_;
