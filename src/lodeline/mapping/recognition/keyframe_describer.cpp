@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/frontend/detection/corner_detector.h"
 #include "lodeline/frontend/detection/mask.h"
+#include "lodeline/mapping/recognition/keypoints/blob_detector.h"
+#include "lodeline/mapping/recognition/keypoints/stereo_points.h"
 #include "lodeline/mapping/recognition/upright_descriptors.h"
 #include "lodeline/util/settings/option_check.h"
 
@@ -49,41 +50,75 @@ std::vector<MapFeature> trackedFeatures(const FrameTracks& tracks, const FrameGe
   return features;
 }
 
-/// Adds corners that are not tracked.
-void addCorners(const cv::Mat& image, const cv::Mat& visible, const FrameGeometry& geometry,
-                const KeyframeDescriberOptions& options, std::vector<MapFeature>* features) {
-  // Half the usual side of a cell would place twice as many points; closer ones share most of their patch.
-  constexpr double kDistance_px = 8.0;
-  constexpr int kLevels = 2;
-  const int missing = options.features - static_cast<int>(features->size());
-  if (missing <= 0) return;
-  std::vector<Eigen::Vector2f> occupied;
-  for (const MapFeature& feature : *features) occupied.push_back(feature.rays.front().pixel.cast<float>());
-  const CornerDetector detector({.max_tracks = options.features, .min_distance_px = kDistance_px});
-  int added = 0;
-  for (const Eigen::Vector2f& pixel : detector.detect(ImagePyramid(image, kLevels), visible, occupied)) {
-    if (added == missing) break;
-    const auto ray = geometry.rayOf(0, pixel.cast<double>(), options.corner_sigma_px);
+
+/// Distance expected along a ray: that of the nearest tracked points, in the image.
+double expectedDistance_m(const std::vector<MapFeature>& tracked, const Vec2& pixel) {
+  double weights = 0.0, inverse = 0.0;
+  for (const MapFeature& feature : tracked) {
+    if (!feature.point_B || feature.track < 0) continue;
+    const double apart2 = (feature.rays.front().pixel - pixel).squaredNorm();
+    const double weight = 1.0 / ((apart2 + 25.0) * (apart2 + 25.0));
+    weights += weight;
+    inverse += weight / (*feature.point_B - feature.rays.front().origin_B).norm();
+  }
+  return weights > 0.0 ? weights / inverse : 2.0;
+}
+
+/// Adds blobs that are not tracked.
+void addBlobs(const std::vector<cv::Mat>& images, const EvenedImage& evened, const cv::Mat& visible, const FrameGeometry& geometry,
+                const KeyframeDescriberOptions& options, std::vector<MapFeature>* features, std::vector<double>* sizes) {
+  static const double kSigma = env("R_KSIGMA", 1.0);
+  std::vector<BodyRay> rays;
+  std::vector<double> distances_m, new_sizes;
+  for (const Keypoint& point : detectBlobs(evened, visible, options.features)) {
+    const auto ray = geometry.rayOf(0, point.pixel, kSigma);
     if (!ray) continue;
-    features->emplace_back().rays.push_back(*ray);
-    ++added;
+    rays.push_back(*ray);
+    new_sizes.push_back(point.size_px);
+    distances_m.push_back(expectedDistance_m(*features, point.pixel));
+  }
+  std::vector<MapFeature> added;
+  for (const BodyRay& ray : rays) added.emplace_back().rays.push_back(ray);
+  for (size_t camera = 1; camera < images.size(); ++camera) {
+    if (images[camera].empty()) continue;
+    const auto found = secondRays(images[0], images[camera], static_cast<int>(camera), geometry, rays, distances_m, kSigma);
+    for (size_t i = 0; i < rays.size(); ++i)
+      if (found[i]) added[i].rays.push_back(*found[i]);
+  }
+  for (size_t i = 0; i < added.size(); ++i) {
+    if (added[i].rays.size() > 1) {
+      if (const auto point = pointOfRays(-1, added[i].rays)) {
+        added[i].point_B = point->point_B;
+        added[i].distance_sigma_m = point->distance_sigma_m;
+      }
+    }
+    features->push_back(std::move(added[i]));
+    sizes->push_back(new_sizes[i]);
   }
 }
 
 /// Describes all features; those too near to the edge of the image are dropped.
-void addDescriptors(const cv::Mat& image, const Camera& camera, const Vec3& up_C,
-                    std::vector<MapFeature>* features) {
+void addDescriptors(const EvenedImage& image, const Camera& camera, const Vec3& up_C,
+                    std::vector<MapFeature>* features, const std::vector<double>& sizes) {
+  static const double kFixed = env("R_FIXED", 0.0), kMetric = env("R_METRIC", 0.0);
   std::vector<PointToDescribe> points;
+  size_t i = 0;
   for (const MapFeature& feature : *features) {
     const Vec2& pixel = feature.rays.front().pixel;
-    points.push_back({pixel, upInImage(camera, pixel, up_C)});
+    double size = sizes[i++];
+    if (kFixed > 0) size = kFixed;
+    if (kMetric > 0) {
+      const double d = feature.point_B ? (*feature.point_B - feature.rays.front().origin_B).norm() : expectedDistance_m(*features, pixel);
+      size = std::clamp(kMetric * camera.focalLengthsOnAxis_px().mean() * image.scale / d, 3.2, 16.0);
+    }
+    points.push_back({pixel, size, upInImage(camera, pixel, up_C)});
   }
   const auto descriptors = uprightDescriptors(image, points);
   std::vector<MapFeature> described;
-  for (size_t i = 0; i < descriptors.size(); ++i) {
-    if (!descriptors[i]) continue;
-    described.push_back(std::move((*features)[i]));
-    described.back().descriptor = *descriptors[i];
+  for (size_t k = 0; k < descriptors.size(); ++k) {
+    if (!descriptors[k]) continue;
+    described.push_back(std::move((*features)[k]));
+    described.back().descriptor = *descriptors[k];
   }
   *features = std::move(described);
 }
@@ -122,16 +157,17 @@ KeyframeDescriber::KeyframeDescriber(const Rig& rig, const KeyframeDescriberOpti
   mask_ = loadMask(rig.cameras.front());
 }
 
-MapKeyframe KeyframeDescriber::describe(const cv::Mat& image, const FrameTracks& tracks,
+MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks,
                                         const FrameEstimate& estimate, const Estimator& estimator,
                                         const cv::Mat& visible) const {
-  return describe(image, tracks, estimate, frameGeometry(estimator, cameras_, tracks), visible);
+  return describe(images, tracks, estimate, frameGeometry(estimator, cameras_, tracks), visible);
 }
 
-MapKeyframe KeyframeDescriber::describe(const cv::Mat& image, const FrameTracks& tracks,
+MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks,
                                         const FrameEstimate& estimate, const FrameGeometry& geometry,
                                         const cv::Mat& visible) const {
   const Camera& camera = *cameras_.front();
+  const cv::Mat& image = images.front();
   const CameraCalibration& calibration = camera.calibration();
   if (image.type() != CV_8UC1 || image.cols != calibration.width_px || image.rows != calibration.height_px) {
     throw InputError(fmt::format("image at {} ns: not an 8-bit grey image of {} x {} px, as camera '{}' has",
@@ -142,10 +178,13 @@ MapKeyframe KeyframeDescriber::describe(const cv::Mat& image, const FrameTracks&
   if (!visible.empty()) free = mask_.empty() ? visible : cv::Mat(mask_ & visible);
   MapKeyframe keyframe = keyframeOf(estimate);
   keyframe.features = trackedFeatures(tracks, geometry);
-  addCorners(image, free, geometry, options_, &keyframe.features);
+  std::vector<double> sizes(keyframe.features.size(), env("R_TSIZE", 6.4));
+  if (env("R_NOTRACKS", 0) > 0) { sizes.clear(); }
+  const EvenedImage evened(image, camera);
+  addBlobs(images, evened, free, geometry, options_, &keyframe.features, &sizes);
   const Quat odom_from_camera =
       estimate.state.world_from_body.rotation * geometry.body_from_cameras.front().rotation;
-  addDescriptors(image, camera, odom_from_camera.conjugate() * Vec3::UnitZ(), &keyframe.features);
+  addDescriptors(evened, camera, odom_from_camera.conjugate() * Vec3::UnitZ(), &keyframe.features, sizes);
   return keyframe;
 }
 

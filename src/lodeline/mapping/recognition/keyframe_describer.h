@@ -33,10 +33,10 @@ class KeyframeDescriber {
   /// are of that frame. `visible`: 8-bit, zero where the rig itself covers the view
   /// (FrontEnd::fixedStructures()); empty for nothing but the mask of the calibration. Id and dive are left
   /// to the map. Throws InputError where the image is not that of the calibration.
-  MapKeyframe describe(const cv::Mat& image, const FrameTracks& tracks, const FrameEstimate& estimate,
+  MapKeyframe describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks, const FrameEstimate& estimate,
                        const Estimator& estimator, const cv::Mat& visible = {}) const;
   /// The same with a given geometry.
-  MapKeyframe describe(const cv::Mat& image, const FrameTracks& tracks, const FrameEstimate& estimate,
+  MapKeyframe describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks, const FrameEstimate& estimate,
                        const FrameGeometry& geometry, const cv::Mat& visible = {}) const;
 
   const std::vector<std::shared_ptr<const Camera>>& cameras() const { return cameras_; }

@@ -1,6 +1,8 @@
 #include "lodeline/mapping/recognition/upright_descriptors.h"
 
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <numbers>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -8,56 +10,53 @@
 namespace lodeline {
 namespace {
 
-constexpr int kPatch_px = 31;
-constexpr float kHalving = 0.5F;
+constexpr int kElements = 128;
 
-/// Direction of the intensity centroid of a disc, rad (Rublee et al. 2011, section 3.2).
-double centroidDirection(const cv::Mat& half, const cv::Point2f& centre) {
-  constexpr int kRadius = kPatch_px / 2;
-  const int u = cvRound(centre.x), v = cvRound(centre.y);
-  double moment_x = 0.0, moment_y = 0.0;
-  for (int y = -kRadius; y <= kRadius; ++y) {
-    const auto* row = half.ptr<uint8_t>(v + y);
-    for (int x = -kRadius; x <= kRadius; ++x) {
-      if (x * x + y * y > kRadius * kRadius) continue;
-      moment_x += x * row[u + x];
-      moment_y += y * row[u + x];
-    }
+/// Two bits for each of the 128 elements: whether it exceeds the median of all, and their upper quartile.
+Descriptor binarized(const float* elements) {
+  std::array<float, kElements> sorted;
+  std::copy_n(elements, kElements, sorted.begin());
+  const auto middle = sorted.begin() + kElements / 2, quarter = sorted.begin() + 3 * kElements / 4;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const float median = *middle;
+  std::nth_element(middle, quarter, sorted.end());
+  const float upper = *quarter;
+  Descriptor descriptor;
+  for (size_t i = 0; i < kElements; ++i) {
+    descriptor.bits[i / 64] |= static_cast<uint64_t>(elements[i] > median) << (i % 64);
+    descriptor.bits[2 + i / 64] |= static_cast<uint64_t>(elements[i] > upper) << (i % 64);
   }
-  return std::atan2(moment_y, moment_x);
+  return descriptor;
 }
 
 }  // namespace
 
-std::vector<std::optional<Descriptor>> uprightDescriptors(const cv::Mat& image,
+std::vector<std::optional<Descriptor>> uprightDescriptors(const EvenedImage& image,
                                                           const std::vector<PointToDescribe>& points) {
-  cv::Mat half;
-  cv::resize(image, half, {}, kHalving, kHalving, cv::INTER_AREA);
-  // A turned patch reaches further than half its side.
-  constexpr int kBorder = kPatch_px / 2 + 4;
-  const cv::Rect2f inside(kBorder, kBorder, static_cast<float>(half.cols - 2 * kBorder - 1),
-                          static_cast<float>(half.rows - 2 * kBorder - 1));
+  static const double kMagnify = env("R_MAG", 1.0);
   std::vector<cv::KeyPoint> keypoints;
   for (size_t i = 0; i < points.size(); ++i) {
-    // The centre of a pixel of the half-size image lies between two of the image.
-    const cv::Point2f centre((static_cast<float>(points[i].pixel.x()) - 0.5F) * kHalving,
-                             (static_cast<float>(points[i].pixel.y()) - 0.5F) * kHalving);
-    if (!inside.contains(centre)) continue;
-    const double direction_rad = points[i].up_rad ? *points[i].up_rad : centroidDirection(half, centre);
-    const auto direction_deg = static_cast<float>(direction_rad * 180.0 / std::numbers::pi);
-    keypoints.emplace_back(centre, static_cast<float>(kPatch_px), direction_deg, 0.0F, 0,
-                           static_cast<int>(i));
+    const Vec2 at = image.fromRecorded(points[i].pixel);
+    const double direction_rad = points[i].up_rad.value_or(0.0);
+    const double size = points[i].size_px * kMagnify;
+    // octave and layer whose blur is nearest: sigma = 1.6 * 2^(octave + layer / 3) with size = 2 sigma
+    const double level = 3.0 * std::log2(std::max(0.5 * size / 1.6, 1.0));
+    int k = std::clamp(static_cast<int>(std::lround(level)), 0, 11);
+    const int octave = k / 3, layer = k % 3;
+    cv::KeyPoint p(cv::Point2f(static_cast<float>(at.x()), static_cast<float>(at.y())), static_cast<float>(size),
+                   static_cast<float>(direction_rad * 180.0 / std::numbers::pi), 0.0F, octave | (layer << 8), static_cast<int>(i));
+    if (p.angle < 0) p.angle += 360.0F;
+    const double reach = 3.0 * 0.5 * size * 2.0;
+    if (at.x() < reach || at.y() < reach || at.x() > image.grey.cols - 1 - reach || at.y() > image.grey.rows - 1 - reach) continue;
+    keypoints.push_back(p);
   }
   std::vector<std::optional<Descriptor>> result(points.size());
   if (keypoints.empty()) return result;
+  static const auto sift = cv::SIFT::create(0, 3);
   cv::Mat rows;
-  const auto orb = cv::ORB::create(static_cast<int>(keypoints.size()), 2.0F, 1, kBorder - 2, 0, 2,
-                                   cv::ORB::HARRIS_SCORE, kPatch_px);
-  orb->compute(half, keypoints, rows);
-  for (size_t k = 0; k < keypoints.size(); ++k) {
-    Descriptor& descriptor = result[static_cast<size_t>(keypoints[k].class_id)].emplace();
-    std::memcpy(descriptor.bits.data(), rows.ptr(static_cast<int>(k)), sizeof(descriptor.bits));
-  }
+  sift->compute(image.grey, keypoints, rows);
+  for (size_t k = 0; k < keypoints.size(); ++k)
+    result[static_cast<size_t>(keypoints[k].class_id)] = binarized(rows.ptr<float>(static_cast<int>(k)));
   return result;
 }
 

@@ -1,26 +1,23 @@
 #pragma once
 
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <vector>
 
 #include "lodeline/mapping/keyframe/descriptor.h"
-#include "lodeline/types.h"
+#include "lodeline/mapping/recognition/keypoints/evened_image.h"
 
 namespace lodeline {
 
 /// Image point to be described.
 struct PointToDescribe {
-  Vec2 pixel = Vec2::Zero();
-  /// Direction in the image, clockwise from the x axis, that the descriptor turns with, rad; empty for that
-  /// of the intensity centroid.
+  Vec2 pixel = Vec2::Zero();  ///< in the image as recorded
+  double size_px = 0.0;       ///< diameter of what is described, in the evened image
+  /// Direction in the image, clockwise from the x axis, that the descriptor turns with, rad; 0 where empty.
   std::optional<double> up_rad;
 };
 
-/// Descriptors of image points: the 256 comparisons of ORB in a patch of 31 x 31 px on the half-size image.
-/// There, patches are as large as those of the front end, and noise is lower. Empty for points whose patch is
-/// not in the image. `image`: 8-bit grey.
-std::vector<std::optional<Descriptor>> uprightDescriptors(const cv::Mat& image,
+/// Descriptors of image points. Empty for points whose patch is not in the image.
+std::vector<std::optional<Descriptor>> uprightDescriptors(const EvenedImage& image,
                                                           const std::vector<PointToDescribe>& points);
 
 }  // namespace lodeline

@@ -58,7 +58,7 @@ bool RunMapping::add(const FramePacket& packet, const FrameEstimate& estimate, s
   const bool is_keyframe = !packet.images.front().empty() && choice_.add(estimate);
   if (is_keyframe) {
     const cv::Mat& rig_mask = odometry.frontEnd().fixedStructures().front().mask();
-    MapKeyframe keyframe = describer_.describe(packet.images.front(), odometry.tracks(), estimate,
+    MapKeyframe keyframe = describer_.describe(packet.images, odometry.tracks(), estimate,
                                                odometry.estimator(), rig_mask);
     if (const std::optional<MappingStep> step = thread_->add(std::move(keyframe))) take(*step);
   }

@@ -1,6 +1,7 @@
 #include "lodeline/mapping/recognition/verification/descriptor_matcher.h"
 
 #include <Eigen/Eigenvalues>
+#include "lodeline/mapping/recognition/keypoints/evened_image.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,9 +14,9 @@ namespace {
 
 /// Bits in which descriptors of one point may differ. Those of different points differ in 128 +- 15 or so:
 /// four sigmas less.
-constexpr int kMostBits = 68;
+static const int kMostBits = static_cast<int>(env("R_BITS", 68));
 /// Distance of the nearest descriptor relative to that of the next one, for different points.
-constexpr double kMostOfNext = 0.9;
+static const double kMostOfNext = env("R_RATIO", 0.9);
 /// Distance beyond all others.
 constexpr int kOutOfReach = kDescriptorBits + 1;
 
