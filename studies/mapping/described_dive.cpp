@@ -65,8 +65,7 @@ DescribedDive::DescribedDive(const std::filesystem::path& folder) {
     ++frames;
     if (estimate.status == Status::Waiting || packet->images[0].empty() || !choice.add(estimate)) continue;
     const double before_s = threadSeconds();
-    keyframes.push_back(describer.describe(packet->images, odometry.tracks(), estimate,
-                                           odometry.estimator(),
+    keyframes.push_back(describer.describe(packet->images, odometry.tracks(), estimate, odometry.estimator(),
                                            odometry.frontEnd().fixedStructures()[0].mask()));
     describing_s += threadSeconds() - before_s;
     keyframes.back().id = static_cast<KeyframeId>(keyframes.size()) - 1;

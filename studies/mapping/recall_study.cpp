@@ -31,7 +31,7 @@ struct Stages {
   int in_view = 0, repeated = 0, within_bits = 0, matched = 0;
   std::vector<double> bits;
   int first = 0, among_3 = 0, among_8 = 0;
-  int nearest_verified = 0, candidate_verified = 0, clip_verified = 0;
+  int nearest_verified = 0, candidate_verified = 0, clip_verified = 0, local_verified = 0;
   int wrong = 0, impossible = 0, impossible_accepted = 0;
   double nees = 0, error_m = 0, error_deg = 0;
   int errors = 0;
@@ -89,11 +89,15 @@ class Study {
       ++stages_.nearest_verified;
     } else {
       ++stages_.reasons[std::regex_replace(loop.reason, std::regex("-?[0-9]+(\\.[0-9]+)?"), "#")];
+      fmt::print("  {}\n", loop.reason);
     }
     stages_.candidate_verified += isFound(n, new_.keyframes[n], similar, true) ? 1 : 0;
+    // A clip is found where one of its keyframes is.
     const size_t first = n >= 2 ? n - 2 : 0;
     const MapKeyframe clip = mergeKeyframes(std::span(new_.keyframes).subspan(first, n - first + 1));
-    stages_.clip_verified += isFound(n, clip, index_.query(clip, kCandidates), false) ? 1 : 0;
+    const auto like_clip = index_.query(clip, kCandidates);
+    stages_.clip_verified += isFound(n, clip, like_clip, false) ? 1 : 0;
+    stages_.local_verified += isFound(n, new_.keyframes[n], similar, false, 1) ? 1 : 0;
   }
 
   Loop verify(size_t o, const MapKeyframe& keyframe) {
@@ -105,18 +109,26 @@ class Study {
   }
 
   bool isFound(size_t n, const MapKeyframe& keyframe, const std::vector<SimilarKeyframe>& similar,
-               bool with_errors) {
+               bool with_errors, size_t neighbours = 0) {
     bool found = false;
     for (const SimilarKeyframe& candidate : similar) {
       const auto o = static_cast<size_t>(candidate.id);
-      const Loop loop = verify(o, keyframe);
+      const Loop loop =
+          neighbours == 0 ? verify(o, keyframe) : LoopVerifier().verify(localMap(o, neighbours), keyframe);
       if (loop.status != LoopStatus::Verified) continue;
       found = true;
       const Rigid3 truth = trueOldFromNew(o, n);
       Eigen::Matrix<double, 6, 1> error;
       error << truth.translation - loop.old_from_new.translation,
           so3::log(truth.rotation * loop.old_from_new.rotation.conjugate());
-      if (error.head<3>().norm() > 0.3 || error.tail<3>().norm() > 5.0 * kDegree) ++stages_.wrong;
+      if (error.head<3>().norm() > 0.3 || error.tail<3>().norm() > 5.0 * kDegree) {
+        ++stages_.wrong;
+        fmt::print(
+            "  wrong by {:.2f} m {:.1f} deg, claimed {:.2f} m, squared {:.1f}, {} inliers cover {:.2f}\n",
+            error.head<3>().norm(), error.tail<3>().norm() / kDegree,
+            std::sqrt(loop.covariance.topLeftCorner<3, 3>().trace()),
+            error.dot(loop.covariance.ldlt().solve(error)), loop.inliers, loop.covered_share);
+      }
       if (!with_errors) continue;
       ++stages_.errors;
       stages_.nees += error.dot(loop.covariance.ldlt().solve(error));
@@ -124,6 +136,13 @@ class Study {
       stages_.error_deg += error.tail<3>().norm() / kDegree;
     }
     return found;
+  }
+
+  /// An old keyframe with the features of its neighbours on either side.
+  MapKeyframe localMap(size_t o, size_t neighbours) const {
+    const size_t first = o - std::min(o, neighbours);
+    const size_t last = std::min(o + neighbours, old_.keyframes.size() - 1);
+    return mergeKeyframes(std::span(old_.keyframes).subspan(first, last - first + 1), o - first);
   }
 
   /// Repetition of the points of the old keyframe that the truth places in the new image.
@@ -199,6 +218,7 @@ void print(Stages s) {
   share("nearest verified", s.nearest_verified);
   share("candidate verified", s.candidate_verified);
   share("clip verified", s.clip_verified);
+  share("in local map", s.local_verified);
   fmt::print("wrong poses              {}\n", s.wrong);
   fmt::print("pairs of other places    {}, accepted {}\n", s.impossible, s.impossible_accepted);
   const double e = std::max(1, s.errors);

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <vector>
-#include "lodeline/mapping/recognition/keypoints/evened_image.h"
 
 #include "lodeline/mapping/keyframe/map_keyframe.h"
 
@@ -13,7 +12,7 @@ struct DescriptorIndexOptions {
   /// Features of a keyframe that are indexed: those with a position first.
   int features_per_keyframe = 200;
   /// Largest number of bits in which a descriptor and a similar one differ.
-  int max_distance = static_cast<int>(env("R_INDEX", 50));
+  int max_distance = 50;
 
   /// Throws UsageError where a value is out of its range.
   void check() const;

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/frontend/detection/mask.h"
 #include "lodeline/mapping/recognition/keypoints/blob_detector.h"
+#include "lodeline/mapping/recognition/keypoints/scene_distance.h"
 #include "lodeline/mapping/recognition/keypoints/stereo_points.h"
 #include "lodeline/mapping/recognition/upright_descriptors.h"
 #include "lodeline/util/settings/option_check.h"
@@ -50,75 +54,85 @@ std::vector<MapFeature> trackedFeatures(const FrameTracks& tracks, const FrameGe
   return features;
 }
 
+/// Standard deviation with which the patch around a pixel is found in another image of the same time, px. A
+/// blob is found less accurately at another visit.
+constexpr double kStereoSigma_px = 0.6;
 
-/// Distance expected along a ray: that of the nearest tracked points, in the image.
-double expectedDistance_m(const std::vector<MapFeature>& tracked, const Vec2& pixel) {
-  double weights = 0.0, inverse = 0.0;
-  for (const MapFeature& feature : tracked) {
-    if (!feature.point_B || feature.track < 0) continue;
-    const double apart2 = (feature.rays.front().pixel - pixel).squaredNorm();
-    const double weight = 1.0 / ((apart2 + 25.0) * (apart2 + 25.0));
-    weights += weight;
-    inverse += weight / (*feature.point_B - feature.rays.front().origin_B).norm();
-  }
-  return weights > 0.0 ? weights / inverse : 2.0;
-}
-
-/// Adds blobs that are not tracked.
-void addBlobs(const std::vector<cv::Mat>& images, const EvenedImage& evened, const cv::Mat& visible, const FrameGeometry& geometry,
-                const KeyframeDescriberOptions& options, std::vector<MapFeature>* features, std::vector<double>* sizes) {
-  static const double kSigma = env("R_KSIGMA", 1.0);
-  std::vector<BodyRay> rays;
-  std::vector<double> distances_m, new_sizes;
-  for (const Keypoint& point : detectBlobs(evened, visible, options.features)) {
-    const auto ray = geometry.rayOf(0, point.pixel, kSigma);
+/// Features at the blobs of the image, with rays of all cameras that see them, and positions.
+std::vector<MapFeature> blobFeatures(const EvenedImage& evened, const std::vector<cv::Mat>& images,
+                                     const cv::Mat& visible, const FrameGeometry& geometry,
+                                     const SceneDistance& scene, const KeyframeDescriberOptions& options) {
+  std::vector<ExpectedPoint> expected;
+  std::vector<MapFeature> features;
+  for (const Vec2& pixel : detectBlobs(evened, visible, options.features)) {
+    const auto ray = geometry.rayOf(0, pixel, kStereoSigma_px);
     if (!ray) continue;
-    rays.push_back(*ray);
-    new_sizes.push_back(point.size_px);
-    distances_m.push_back(expectedDistance_m(*features, point.pixel));
+    expected.push_back({*ray, scene.at(pixel).distance_m});
+    features.emplace_back().rays.push_back(*ray);
   }
-  std::vector<MapFeature> added;
-  for (const BodyRay& ray : rays) added.emplace_back().rays.push_back(ray);
   for (size_t camera = 1; camera < images.size(); ++camera) {
     if (images[camera].empty()) continue;
-    const auto found = secondRays(images[0], images[camera], static_cast<int>(camera), geometry, rays, distances_m, kSigma);
+    const auto rays = raysOfFurtherCamera(images.front(), images[camera], static_cast<int>(camera), geometry,
+                                          expected, kStereoSigma_px);
     for (size_t i = 0; i < rays.size(); ++i)
-      if (found[i]) added[i].rays.push_back(*found[i]);
+      if (rays[i]) features[i].rays.push_back(*rays[i]);
   }
-  for (size_t i = 0; i < added.size(); ++i) {
-    if (added[i].rays.size() > 1) {
-      if (const auto point = pointOfRays(-1, added[i].rays)) {
-        added[i].point_B = point->point_B;
-        added[i].distance_sigma_m = point->distance_sigma_m;
-      }
-    }
-    features->push_back(std::move(added[i]));
-    sizes->push_back(new_sizes[i]);
-  }
+  return features;
 }
 
-/// Describes all features; those too near to the edge of the image are dropped.
-void addDescriptors(const EvenedImage& image, const Camera& camera, const Vec3& up_C,
-                    std::vector<MapFeature>* features, const std::vector<double>& sizes) {
-  static const double kFixed = env("R_FIXED", 0.0), kMetric = env("R_METRIC", 0.0);
-  std::vector<PointToDescribe> points;
-  size_t i = 0;
-  for (const MapFeature& feature : *features) {
-    const Vec2& pixel = feature.rays.front().pixel;
-    double size = sizes[i++];
-    if (kFixed > 0) size = kFixed;
-    if (kMetric > 0) {
-      const double d = feature.point_B ? (*feature.point_B - feature.rays.front().origin_B).norm() : expectedDistance_m(*features, pixel);
-      size = std::clamp(kMetric * camera.focalLengthsOnAxis_px().mean() * image.scale / d, 3.2, 16.0);
+/// Sets the position of a blob: where its rays cross or, where there is but one image, on the surface of the
+/// tracked points around it.
+void place(const SceneDistance& scene, bool is_single_image, MapFeature* feature) {
+  if (feature->rays.size() > 1) {
+    if (const auto point = pointOfRays(-1, feature->rays)) {
+      feature->point_B = point->point_B;
+      feature->distance_sigma_m = point->distance_sigma_m;
     }
-    points.push_back({pixel, size, upInImage(camera, pixel, up_C)});
+  }
+  if (!is_single_image) return;
+  const BodyRay& ray = feature->rays.front();
+  const ExpectedDistance expected = scene.at(ray.pixel);
+  if (!expected.relative_sigma) return;
+  feature->point_B = ray.origin_B + expected.distance_m * ray.bearing_B;
+  feature->distance_sigma_m = *expected.relative_sigma * expected.distance_m;
+}
+
+/// Adds blobs, and keeps as many features as the keyframe may have: those with a position first.
+void addBlobs(std::vector<MapFeature> blobs, int most, std::vector<MapFeature>* features) {
+  features->insert(features->end(), std::make_move_iterator(blobs.begin()),
+                   std::make_move_iterator(blobs.end()));
+  std::vector<size_t> order(features->size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&](size_t i) { return (*features)[i].point_B.has_value(); });
+  order.resize(std::min(order.size(), static_cast<size_t>(most)));
+  // Tracks rise: the map file stores differences of their numbers.
+  std::sort(order.begin(), order.end());
+  std::vector<MapFeature> kept;
+  for (const size_t i : order) kept.push_back(std::move((*features)[i]));
+  *features = std::move(kept);
+}
+
+/// Describes all features, in patches of one size on the rock; those too near to the edge of the image are
+/// dropped.
+void addDescriptors(const EvenedImage& image, const Camera& camera, const Vec3& up_C,
+                    const SceneDistance& scene, std::vector<MapFeature>* features) {
+  // The patch is twelve sigmas wide: a quarter of a metre.
+  constexpr double kSigma_m = 0.02, kFinest_px = 1.6, kCoarsest_px = 8.0;
+  std::vector<PointToDescribe> points;
+  for (const MapFeature& feature : *features) {
+    const BodyRay& ray = feature.rays.front();
+    const double distance_m =
+        feature.point_B ? (*feature.point_B - ray.origin_B).norm() : scene.at(ray.pixel).distance_m;
+    const double sigma_px = std::clamp(kSigma_m * image.focal_px / distance_m, kFinest_px, kCoarsest_px);
+    points.push_back({ray.pixel, sigma_px, upInImage(camera, ray.pixel, up_C)});
   }
   const auto descriptors = uprightDescriptors(image, points);
   std::vector<MapFeature> described;
-  for (size_t k = 0; k < descriptors.size(); ++k) {
-    if (!descriptors[k]) continue;
-    described.push_back(std::move((*features)[k]));
-    described.back().descriptor = *descriptors[k];
+  for (size_t i = 0; i < descriptors.size(); ++i) {
+    if (!descriptors[i]) continue;
+    described.push_back(std::move((*features)[i]));
+    described.back().descriptor = *descriptors[i];
   }
   *features = std::move(described);
 }
@@ -144,9 +158,7 @@ MapKeyframe keyframeOf(const FrameEstimate& estimate) {
 }  // namespace
 
 void KeyframeDescriberOptions::check() const {
-  OptionCheck("keyframe_describer")
-      .atLeast("features", features, 1)
-      .positive("corner_sigma_px", corner_sigma_px);
+  OptionCheck("keyframe_describer").atLeast("features", features, 1).positive("blob_sigma_px", blob_sigma_px);
 }
 
 KeyframeDescriber::KeyframeDescriber(const Rig& rig, const KeyframeDescriberOptions& options)
@@ -178,13 +190,20 @@ MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, cons
   if (!visible.empty()) free = mask_.empty() ? visible : cv::Mat(mask_ & visible);
   MapKeyframe keyframe = keyframeOf(estimate);
   keyframe.features = trackedFeatures(tracks, geometry);
-  std::vector<double> sizes(keyframe.features.size(), env("R_TSIZE", 6.4));
-  if (env("R_NOTRACKS", 0) > 0) { sizes.clear(); }
+  const SceneDistance scene(keyframe.features, camera.focalLengthsOnAxis_px().mean());
   const EvenedImage evened(image, camera);
-  addBlobs(images, evened, free, geometry, options_, &keyframe.features, &sizes);
+  std::vector<MapFeature> blobs = blobFeatures(evened, images, free, geometry, scene, options_);
+  const auto count =
+      std::count_if(images.begin(), images.end(), [](const cv::Mat& taken) { return !taken.empty(); });
+  const double ray_sigma = options_.blob_sigma_px / (evened.scale * kStereoSigma_px);
+  for (MapFeature& blob : blobs) {
+    place(scene, count == 1, &blob);
+    blob.rays.front().sigma_rad *= ray_sigma;
+  }
+  addBlobs(std::move(blobs), options_.features, &keyframe.features);
   const Quat odom_from_camera =
       estimate.state.world_from_body.rotation * geometry.body_from_cameras.front().rotation;
-  addDescriptors(evened, camera, odom_from_camera.conjugate() * Vec3::UnitZ(), &keyframe.features, sizes);
+  addDescriptors(evened, camera, odom_from_camera.conjugate() * Vec3::UnitZ(), scene, &keyframe.features);
   return keyframe;
 }
 
