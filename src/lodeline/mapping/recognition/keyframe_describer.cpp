@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/frontend/detection/corner_detector.h"
 #include "lodeline/frontend/detection/mask.h"
+#include "lodeline/mapping/recognition/keypoints/blob_detector.h"
+#include "lodeline/mapping/recognition/keypoints/scene_distance.h"
+#include "lodeline/mapping/recognition/keypoints/stereo_points.h"
 #include "lodeline/mapping/recognition/upright_descriptors.h"
 #include "lodeline/util/settings/option_check.h"
 
@@ -49,34 +54,78 @@ std::vector<MapFeature> trackedFeatures(const FrameTracks& tracks, const FrameGe
   return features;
 }
 
-/// Adds corners that are not tracked.
-void addCorners(const cv::Mat& image, const cv::Mat& visible, const FrameGeometry& geometry,
-                const KeyframeDescriberOptions& options, std::vector<MapFeature>* features) {
-  // Half the usual side of a cell would place twice as many points; closer ones share most of their patch.
-  constexpr double kDistance_px = 8.0;
-  constexpr int kLevels = 2;
-  const int missing = options.features - static_cast<int>(features->size());
-  if (missing <= 0) return;
-  std::vector<Eigen::Vector2f> occupied;
-  for (const MapFeature& feature : *features) occupied.push_back(feature.rays.front().pixel.cast<float>());
-  const CornerDetector detector({.max_tracks = options.features, .min_distance_px = kDistance_px});
-  int added = 0;
-  for (const Eigen::Vector2f& pixel : detector.detect(ImagePyramid(image, kLevels), visible, occupied)) {
-    if (added == missing) break;
-    const auto ray = geometry.rayOf(0, pixel.cast<double>(), options.corner_sigma_px);
+/// Standard deviation with which the patch around a pixel is found in another image of the same time, px. A
+/// blob is found less accurately at another visit.
+constexpr double kStereoSigma_px = 0.6;
+
+/// Features at the blobs of the image, with rays of all cameras that see them, and positions.
+std::vector<MapFeature> blobFeatures(const EvenedImage& evened, const std::vector<cv::Mat>& images,
+                                     const cv::Mat& visible, const FrameGeometry& geometry,
+                                     const SceneDistance& scene, const KeyframeDescriberOptions& options) {
+  std::vector<ExpectedPoint> expected;
+  std::vector<MapFeature> features;
+  for (const Vec2& pixel : detectBlobs(evened, visible, options.features)) {
+    const auto ray = geometry.rayOf(0, pixel, kStereoSigma_px);
     if (!ray) continue;
-    features->emplace_back().rays.push_back(*ray);
-    ++added;
+    expected.push_back({*ray, scene.at(pixel).distance_m});
+    features.emplace_back().rays.push_back(*ray);
   }
+  for (size_t camera = 1; camera < images.size(); ++camera) {
+    if (images[camera].empty()) continue;
+    const auto rays = raysOfFurtherCamera(images.front(), images[camera], static_cast<int>(camera), geometry,
+                                          expected, kStereoSigma_px);
+    for (size_t i = 0; i < rays.size(); ++i)
+      if (rays[i]) features[i].rays.push_back(*rays[i]);
+  }
+  return features;
 }
 
-/// Describes all features; those too near to the edge of the image are dropped.
-void addDescriptors(const cv::Mat& image, const Camera& camera, const Vec3& up_C,
-                    std::vector<MapFeature>* features) {
+/// Sets the position of a blob: where its rays cross or, where there is but one image, on the surface of the
+/// tracked points around it.
+void place(const SceneDistance& scene, bool is_single_image, MapFeature* feature) {
+  if (feature->rays.size() > 1) {
+    if (const auto point = pointOfRays(-1, feature->rays)) {
+      feature->point_B = point->point_B;
+      feature->distance_sigma_m = point->distance_sigma_m;
+    }
+  }
+  if (!is_single_image) return;
+  const BodyRay& ray = feature->rays.front();
+  const ExpectedDistance expected = scene.at(ray.pixel);
+  if (!expected.relative_sigma) return;
+  feature->point_B = ray.origin_B + expected.distance_m * ray.bearing_B;
+  feature->distance_sigma_m = *expected.relative_sigma * expected.distance_m;
+}
+
+/// Adds blobs, and keeps as many features as the keyframe may have: those with a position first.
+void addBlobs(std::vector<MapFeature> blobs, int most, std::vector<MapFeature>* features) {
+  features->insert(features->end(), std::make_move_iterator(blobs.begin()),
+                   std::make_move_iterator(blobs.end()));
+  std::vector<size_t> order(features->size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&](size_t i) { return (*features)[i].point_B.has_value(); });
+  order.resize(std::min(order.size(), static_cast<size_t>(most)));
+  // Tracks rise: the map file stores differences of their numbers.
+  std::sort(order.begin(), order.end());
+  std::vector<MapFeature> kept;
+  for (const size_t i : order) kept.push_back(std::move((*features)[i]));
+  *features = std::move(kept);
+}
+
+/// Describes all features, in patches of one size on the rock; those too near to the edge of the image are
+/// dropped.
+void addDescriptors(const EvenedImage& image, const Camera& camera, const Vec3& up_C,
+                    const SceneDistance& scene, std::vector<MapFeature>* features) {
+  // The patch is twelve sigmas wide: a quarter of a metre.
+  constexpr double kSigma_m = 0.02, kFinest_px = 1.6, kCoarsest_px = 8.0;
   std::vector<PointToDescribe> points;
   for (const MapFeature& feature : *features) {
-    const Vec2& pixel = feature.rays.front().pixel;
-    points.push_back({pixel, upInImage(camera, pixel, up_C)});
+    const BodyRay& ray = feature.rays.front();
+    const double distance_m =
+        feature.point_B ? (*feature.point_B - ray.origin_B).norm() : scene.at(ray.pixel).distance_m;
+    const double sigma_px = std::clamp(kSigma_m * image.focal_px / distance_m, kFinest_px, kCoarsest_px);
+    points.push_back({ray.pixel, sigma_px, upInImage(camera, ray.pixel, up_C)});
   }
   const auto descriptors = uprightDescriptors(image, points);
   std::vector<MapFeature> described;
@@ -109,9 +158,7 @@ MapKeyframe keyframeOf(const FrameEstimate& estimate) {
 }  // namespace
 
 void KeyframeDescriberOptions::check() const {
-  OptionCheck("keyframe_describer")
-      .atLeast("features", features, 1)
-      .positive("corner_sigma_px", corner_sigma_px);
+  OptionCheck("keyframe_describer").atLeast("features", features, 1).positive("blob_sigma_px", blob_sigma_px);
 }
 
 KeyframeDescriber::KeyframeDescriber(const Rig& rig, const KeyframeDescriberOptions& options)
@@ -122,16 +169,17 @@ KeyframeDescriber::KeyframeDescriber(const Rig& rig, const KeyframeDescriberOpti
   mask_ = loadMask(rig.cameras.front());
 }
 
-MapKeyframe KeyframeDescriber::describe(const cv::Mat& image, const FrameTracks& tracks,
+MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks,
                                         const FrameEstimate& estimate, const Estimator& estimator,
                                         const cv::Mat& visible) const {
-  return describe(image, tracks, estimate, frameGeometry(estimator, cameras_, tracks), visible);
+  return describe(images, tracks, estimate, frameGeometry(estimator, cameras_, tracks), visible);
 }
 
-MapKeyframe KeyframeDescriber::describe(const cv::Mat& image, const FrameTracks& tracks,
+MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks,
                                         const FrameEstimate& estimate, const FrameGeometry& geometry,
                                         const cv::Mat& visible) const {
   const Camera& camera = *cameras_.front();
+  const cv::Mat& image = images.front();
   const CameraCalibration& calibration = camera.calibration();
   if (image.type() != CV_8UC1 || image.cols != calibration.width_px || image.rows != calibration.height_px) {
     throw InputError(fmt::format("image at {} ns: not an 8-bit grey image of {} x {} px, as camera '{}' has",
@@ -142,10 +190,20 @@ MapKeyframe KeyframeDescriber::describe(const cv::Mat& image, const FrameTracks&
   if (!visible.empty()) free = mask_.empty() ? visible : cv::Mat(mask_ & visible);
   MapKeyframe keyframe = keyframeOf(estimate);
   keyframe.features = trackedFeatures(tracks, geometry);
-  addCorners(image, free, geometry, options_, &keyframe.features);
+  const SceneDistance scene(keyframe.features, camera.focalLengthsOnAxis_px().mean());
+  const EvenedImage evened(image, camera);
+  std::vector<MapFeature> blobs = blobFeatures(evened, images, free, geometry, scene, options_);
+  const auto count =
+      std::count_if(images.begin(), images.end(), [](const cv::Mat& taken) { return !taken.empty(); });
+  const double ray_sigma = options_.blob_sigma_px / (evened.scale * kStereoSigma_px);
+  for (MapFeature& blob : blobs) {
+    place(scene, count == 1, &blob);
+    blob.rays.front().sigma_rad *= ray_sigma;
+  }
+  addBlobs(std::move(blobs), options_.features, &keyframe.features);
   const Quat odom_from_camera =
       estimate.state.world_from_body.rotation * geometry.body_from_cameras.front().rotation;
-  addDescriptors(image, camera, odom_from_camera.conjugate() * Vec3::UnitZ(), &keyframe.features);
+  addDescriptors(evened, camera, odom_from_camera.conjugate() * Vec3::UnitZ(), scene, &keyframe.features);
   return keyframe;
 }
 

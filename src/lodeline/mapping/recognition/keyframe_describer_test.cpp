@@ -28,13 +28,13 @@ MapKeyframe keyframeOfFrame(const TestSequence& sequence, int frame) {
                           0.001);
 }
 
-TEST(KeyframeDescriber, DescribesTracksAndFurtherCorners) {
+TEST(KeyframeDescriber, DescribesTracksAndBlobs) {
   const TestSequence sequence(TestLight::daylight());
   const MapKeyframe keyframe = keyframeOfFrame(sequence, 0);
-  int tracked = 0, corners = 0, points = 0;
+  int tracked = 0, blobs = 0, points = 0;
   for (const MapFeature& feature : keyframe.features) {
     tracked += feature.track >= 0 ? 1 : 0;
-    corners += feature.track < 0 ? 1 : 0;
+    blobs += feature.track < 0 ? 1 : 0;
     ASSERT_FALSE(feature.rays.empty());
     EXPECT_EQ(feature.rays.front().camera, 0);
     EXPECT_NEAR(feature.rays.front().bearing_B.norm(), 1.0, 1e-9);
@@ -45,7 +45,7 @@ TEST(KeyframeDescriber, DescribesTracksAndFurtherCorners) {
     EXPECT_GT(feature.distance_sigma_m, 0.0);
   }
   EXPECT_GT(tracked, 150);
-  EXPECT_GT(corners, 50);
+  EXPECT_GT(blobs, 50);
   EXPECT_GT(points, 120);
   EXPECT_LE(keyframe.features.size(), 400u);
 }
@@ -78,7 +78,7 @@ TEST(KeyframeDescriber, LeavesOutWhatTheRigCovers) {
   FrameGeometry geometry;
   geometry.cameras = describer.cameras();
   geometry.body_from_cameras.resize(2);
-  const MapKeyframe keyframe = describer.describe(image, {}, {}, geometry, visible);
+  const MapKeyframe keyframe = describer.describe({image}, {}, {}, geometry, visible);
   EXPECT_GT(keyframe.features.size(), 50u);
   for (const MapFeature& feature : keyframe.features) EXPECT_GE(feature.rays.front().pixel.x(), 299.0);
 }
@@ -89,16 +89,18 @@ TEST(KeyframeDescriber, RefusesImagesOfAnotherSize) {
   FrameGeometry geometry;
   geometry.cameras = describer.cameras();
   geometry.body_from_cameras.resize(2);
-  EXPECT_THROW(describer.describe(cv::Mat(100, 100, CV_8U, cv::Scalar(0)), {}, {}, geometry), InputError);
-  EXPECT_THROW(describer.describe(cv::Mat(480, 752, CV_8UC3, cv::Scalar::all(0)), {}, {}, geometry),
+  EXPECT_THROW(describer.describe({cv::Mat(100, 100, CV_8U, cv::Scalar(0))}, {}, {}, geometry), InputError);
+  EXPECT_THROW(describer.describe({cv::Mat(480, 752, CV_8UC3, cv::Scalar::all(0))}, {}, {}, geometry),
                InputError);
   EXPECT_THROW(KeyframeDescriber(Rig{}), InputError);
   EXPECT_THROW(KeyframeDescriber(sequence.rig(), {.features = 0}), UsageError);
 }
 
 TEST(UprightDescriptors, TurnWithTheVertical) {
-  const cv::Mat image = TestSequence(TestLight::daylight()).images(0).front();
-  constexpr double kTurned_rad = 0.7, kUp_rad = -std::numbers::pi / 2.0;
+  const TestSequence sequence(TestLight::daylight());
+  const cv::Mat image = sequence.images(0).front();
+  const auto camera = makeCamera(sequence.rig().cameras.front());
+  constexpr double kTurned_rad = 0.7, kUp_rad = -std::numbers::pi / 2.0, kSigma_px = 2.5;
   const Vec2 centre(376.0, 240.0);
   cv::Mat turned;
   // OpenCV turns counterclockwise, in degrees.
@@ -109,12 +111,14 @@ TEST(UprightDescriptors, TurnWithTheVertical) {
   for (int i = 0; i < 20; ++i) {
     const Vec2 from_centre(40.0 * (i % 5 - 2), 40.0 * (i / 5 - 2));
     const Vec2 moved = centre + Eigen::Rotation2Dd(kTurned_rad) * from_centre;
-    before.push_back({centre + from_centre, kUp_rad});
-    after.push_back({moved, kUp_rad + kTurned_rad});
-    unturned.push_back({moved, kUp_rad});
+    before.push_back({centre + from_centre, kSigma_px, kUp_rad});
+    after.push_back({moved, kSigma_px, kUp_rad + kTurned_rad});
+    unturned.push_back({moved, kSigma_px, kUp_rad});
   }
-  const auto first = uprightDescriptors(image, before);
-  const auto second = uprightDescriptors(turned, after), third = uprightDescriptors(turned, unturned);
+  const EvenedImage evened(image, *camera), evened_turned(turned, *camera);
+  const auto first = uprightDescriptors(evened, before);
+  const auto second = uprightDescriptors(evened_turned, after);
+  const auto third = uprightDescriptors(evened_turned, unturned);
   double with = 0.0, without = 0.0;
   for (size_t i = 0; i < before.size(); ++i) {
     ASSERT_TRUE(first[i] && second[i] && third[i]);
@@ -126,8 +130,11 @@ TEST(UprightDescriptors, TurnWithTheVertical) {
 }
 
 TEST(UprightDescriptors, AreEmptyAtTheEdge) {
-  const cv::Mat image(200, 200, CV_8U, cv::Scalar(7));
-  const auto described = uprightDescriptors(image, {{Vec2(3.0, 100.0), 0.0}, {Vec2(100.0, 100.0), {}}});
+  const TestSequence sequence(TestLight::daylight());
+  const auto camera = makeCamera(sequence.rig().cameras.front());
+  const EvenedImage plain(cv::Mat(480, 752, CV_8U, cv::Scalar(7)), *camera);
+  const auto described =
+      uprightDescriptors(plain, {{Vec2(3.0, 100.0), 2.5, 0.0}, {Vec2(100.0, 100.0), 2.5, {}}});
   EXPECT_FALSE(described[0]);
   EXPECT_TRUE(described[1]);
 }

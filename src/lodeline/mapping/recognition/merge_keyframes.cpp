@@ -60,25 +60,35 @@ void checkClip(std::span<const MapKeyframe> clip) {
 
 }  // namespace
 
-MapKeyframe mergeKeyframes(std::span<const MapKeyframe> clip) {
+MapKeyframe mergeKeyframes(std::span<const MapKeyframe> clip, size_t reference) {
   checkClip(clip);
-  const MapKeyframe& last = clip.back();
-  MapKeyframe merged = last;
-  // The newest view of a point comes first: its pose is that of the result.
-  for (size_t k = clip.size() - 1; k-- > 0;) {
-    const Rigid3 last_from_this = last.odom_from_body.inverse() * clip[k].odom_from_body;
-    const Drift drift(clip[k], last);
+  if (reference >= clip.size())
+    throw UsageError("the reference of keyframes to be merged is not one of them");
+  const MapKeyframe& centre = clip[reference];
+  MapKeyframe merged = centre;
+  const auto add = [&](const MapKeyframe& keyframe) {
+    const Rigid3 centre_from_this = centre.odom_from_body.inverse() * keyframe.odom_from_body;
+    const Drift drift(keyframe, centre);
     const size_t before = merged.features.size();
-    for (const MapFeature& feature : clip[k].features) {
-      MapFeature carried = carriedOver(feature, last_from_this, drift);
+    for (const MapFeature& feature : keyframe.features) {
+      MapFeature carried = carriedOver(feature, centre_from_this, drift);
       const auto end = merged.features.begin() + static_cast<ptrdiff_t>(before);
       if (std::none_of(merged.features.begin(), end,
                        [&](const MapFeature& other) { return isSame(other, carried); })) {
         merged.features.push_back(std::move(carried));
       }
     }
+  };
+  // The view of a point that is nearest in time comes first: its pose is the most accurate.
+  for (size_t apart = 1; apart < clip.size(); ++apart) {
+    if (apart <= reference) add(clip[reference - apart]);
+    if (reference + apart < clip.size()) add(clip[reference + apart]);
   }
   return merged;
+}
+
+MapKeyframe mergeKeyframes(std::span<const MapKeyframe> clip) {
+  return mergeKeyframes(clip, clip.empty() ? 0 : clip.size() - 1);
 }
 
 }  // namespace lodeline

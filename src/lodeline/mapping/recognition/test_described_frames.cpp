@@ -25,7 +25,7 @@ MapKeyframe keyframeOfImages(const Rig& rig, const std::vector<cv::Mat>& images,
   estimate.time = tracks.time;
   estimate.state.world_from_body = world_from_body;
   estimate.covariance.diagonal().segment<2>(3).setConstant(tilt_sigma_rad * tilt_sigma_rad);
-  return describer.describe(images.front(), tracks, estimate, geometry);
+  return describer.describe(images, tracks, estimate, geometry);
 }
 
 }  // namespace lodeline

@@ -142,10 +142,10 @@ void DiveMapping::store(MapKeyframe* keyframe) {
 void DiveMapping::look(const MapKeyframe& keyframe, MappingStep* step) {
   for (const LoopCandidateKeyframe& candidate : search_.find(keyframe, known_, index_)) {
     const MapKeyframe old_keyframe = full(candidate.id);
-    // Without a prediction, a clip tells more than a single image.
-    const bool by_clip = !candidate.prediction;
-    Loop loop = by_clip ? verifier_.verify(old_keyframe, mergeKeyframes({recent_.begin(), recent_.end()}))
-                        : verifier_.verify(old_keyframe, keyframe, candidate.prediction);
+    Loop loop = verifier_.verify(old_keyframe, keyframe, candidate.prediction);
+    // Without a prediction, a clip may tell what a single image does not.
+    const bool by_clip = !candidate.prediction && loop.status == LoopStatus::Matched && recent_.size() > 1;
+    if (by_clip) loop = verifier_.verify(old_keyframe, mergeKeyframes({recent_.begin(), recent_.end()}));
     loop.old_keyframe = candidate.id;
     loop.new_keyframe = keyframe.id;
     loop.source = candidate.source;

@@ -17,10 +17,14 @@ bool KeyframeChoice::add(const FrameEstimate& estimate) {
   if (!sees) return false;
   const NavigationState& now = estimate.state;
   if (last_) {
-    if ((now.time - last_->time).seconds() < options_.least_interval_s) return false;
+    const double interval_s = (now.time - last_->time).seconds();
+    if (interval_s < options_.least_interval_s) return false;
+    const bool is_late = interval_s >= options_.usual_interval_s;
     const Rigid3 last_from_now = last_->world_from_body.inverse() * now.world_from_body;
     const double turn_rad = Quat::Identity().angularDistance(last_from_now.rotation);
-    if (last_from_now.translation.norm() < options_.distance_m && turn_rad < options_.turn_rad) return false;
+    const double needed_m = is_late ? options_.least_distance_m : options_.distance_m;
+    const double needed_rad = is_late ? options_.least_turn_rad : options_.turn_rad;
+    if (last_from_now.translation.norm() < needed_m && turn_rad < needed_rad) return false;
   }
   last_ = now;
   return true;

@@ -1,6 +1,7 @@
 #include "lodeline/mapping/session/relocalizer.h"
 
 #include <algorithm>
+#include <set>
 
 #include "lodeline/mapping/graph/motion/relative_pose.h"
 #include "lodeline/mapping/graph/robust/robust_weights.h"
@@ -10,15 +11,10 @@ namespace lodeline {
 namespace {
 
 constexpr int kMostCandidates = 8;
-constexpr size_t kNeeded = 2;  // keyframes of the map that agree
+constexpr size_t kMostOfClip = 3;  // keyframes of a clip that are examined singly
+constexpr size_t kNeeded = 2;      // keyframes of the map that agree
 // Probability with which two true places count as agreeing: 3 sigma.
 constexpr double kAgreement = 0.9973;
-
-struct Found {
-  Rigid3 map_from_body;
-  Mat6 covariance;
-  Loop loop;
-};
 
 Mat6 turned(const Quat& rotation, const Mat6& covariance) {
   Mat6 turn = Mat6::Zero();
@@ -39,22 +35,35 @@ Relocalizer::Relocalizer(const MapFile& map, const LoopVerifierOptions& options)
   }
 }
 
-std::optional<PlaceInMap> Relocalizer::find(std::span<const MapKeyframe> clip, std::string* reason) const {
-  const MapKeyframe merged = mergeKeyframes(clip);
+std::vector<Relocalizer::Found> Relocalizer::examine(const MapKeyframe& keyframe,
+                                                     const Rigid3& seen_from_last,
+                                                     std::string* reason) const {
   std::vector<Found> places;
-  *reason = "no keyframe of the map looks alike";
-  for (const SimilarKeyframe& similar : index_.query(merged, kMostCandidates)) {
-    Loop loop = verifier_.verify(map_.fullKeyframe(similar.id), merged);
+  for (const SimilarKeyframe& similar : index_.query(keyframe, kMostCandidates)) {
+    Loop loop = verifier_.verify(map_.fullKeyframe(similar.id), keyframe);
     loop.old_keyframe = similar.id;
-    loop.new_keyframe = merged.id;
+    loop.new_keyframe = keyframe.id;
     loop.source = "appearance";
     if (loop.status != LoopStatus::Verified) {
-      if (places.empty()) *reason = loop.reason;
+      *reason = loop.reason;
       continue;
     }
     const Rigid3 map_from_old = map_.keyframe(similar.id)->solved->map_from_body;
-    places.push_back(
-        {map_from_old * loop.old_from_new, turned(map_from_old.rotation, loop.covariance), loop});
+    places.push_back({map_from_old * loop.old_from_new * seen_from_last,
+                      turned(map_from_old.rotation, loop.covariance), loop});
+  }
+  return places;
+}
+
+std::optional<PlaceInMap> Relocalizer::find(std::span<const MapKeyframe> clip, std::string* reason) const {
+  *reason = "no keyframe of the map looks alike";
+  // The whole clip, and the newest keyframes each by itself.
+  std::vector<Found> places = examine(mergeKeyframes(clip), Rigid3(), reason);
+  const size_t first = clip.size() - std::min(clip.size(), kMostOfClip);
+  for (size_t k = first; k < clip.size() && clip.size() > 1; ++k) {
+    const Rigid3 this_from_last = clip[k].odom_from_body.inverse() * clip.back().odom_from_body;
+    const std::vector<Found> found = examine(clip[k], this_from_last, reason);
+    places.insert(places.end(), found.begin(), found.end());
   }
   const double limit = chiSquaredQuantile(kAgreement, 6);
   // The place with which most others agree; neighbouring keyframes of the map are as accurate as odometry.
@@ -71,7 +80,9 @@ std::optional<PlaceInMap> Relocalizer::find(std::span<const MapKeyframe> clip, s
     }
     if (agreeing.size() > best.size()) best = agreeing;
   }
-  if (best.size() < kNeeded) {
+  std::set<KeyframeId> agreeing_ids;
+  for (const size_t i : best) agreeing_ids.insert(places[i].loop.old_keyframe);
+  if (agreeing_ids.size() < kNeeded) {
     if (!places.empty()) *reason = "only one keyframe of the map agrees with the clip";
     return std::nullopt;
   }

@@ -30,6 +30,17 @@ class Relocalizer {
   std::optional<PlaceInMap> find(std::span<const MapKeyframe> clip, std::string* reason) const;
 
  private:
+  /// A place of the clip's last keyframe by one keyframe of the map.
+  struct Found {
+    Rigid3 map_from_body;
+    Mat6 covariance;
+    Loop loop;
+  };
+  /// Places by the keyframes of the map that look like `keyframe`. `seen_from_last`: pose of the clip's last
+  /// body in that of `keyframe`. `reason` receives why candidates were refused.
+  std::vector<Found> examine(const MapKeyframe& keyframe, const Rigid3& seen_from_last,
+                             std::string* reason) const;
+
   const MapFile& map_;
   LoopVerifier verifier_;
   DescriptorIndex index_;

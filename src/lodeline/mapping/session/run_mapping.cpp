@@ -26,6 +26,18 @@ void removeMap(const fs::path& file) {
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(file.string() + suffix);
 }
 
+/// The images of a packet that were taken at its time; empty ones in place of others.
+std::vector<cv::Mat> simultaneousImages(const FramePacket& packet) {
+  constexpr double kMost_s = 1e-4;
+  std::vector<cv::Mat> images = packet.images;
+  for (size_t camera = 1; camera < images.size(); ++camera) {
+    const bool is_late =
+        camera < packet.image_delays_s.size() && std::abs(packet.image_delays_s[camera]) > kMost_s;
+    if (is_late) images[camera] = cv::Mat();
+  }
+  return images;
+}
+
 MapDive diveOf(const RunMappingRequest& request, const Rig& rig) {
   MapDive dive;
   dive.name = request.name;
@@ -73,7 +85,7 @@ bool RunMapping::add(const FramePacket& packet, const FrameEstimate& estimate, s
   const bool is_keyframe = !packet.images.front().empty() && choice_.add(estimate);
   if (is_keyframe) {
     const cv::Mat& rig_mask = odometry.frontEnd().fixedStructures().front().mask();
-    MapKeyframe keyframe = describer_.describe(packet.images.front(), odometry.tracks(), estimate,
+    MapKeyframe keyframe = describer_.describe(simultaneousImages(packet), odometry.tracks(), estimate,
                                                odometry.estimator(), rig_mask);
     keyframe.tags = tagsIn(packet);
     if (const std::optional<MappingStep> step = thread_->add(std::move(keyframe))) take(*step);

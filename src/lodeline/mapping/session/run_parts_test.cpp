@@ -33,6 +33,14 @@ TEST(KeyframeChoice, TakesFramesThatHaveMovedOrTurned) {
   EXPECT_TRUE(choice.add(turned));
 }
 
+TEST(KeyframeChoice, TakesSmallerMotionsOfARigThatStaysNearby) {
+  KeyframeChoice choice({});
+  EXPECT_TRUE(choice.add(at(1.0, 0.0)));
+  EXPECT_FALSE(choice.add(at(2.0, 0.15))) << "too early for so little";
+  EXPECT_TRUE(choice.add(at(2.6, 0.15)));
+  EXPECT_FALSE(choice.add(at(60.0, 0.16))) << "at rest";
+}
+
 TEST(KeyframeChoice, RefusesOptionsThatMakeNoSense) {
   KeyframeChoiceOptions options;
   options.distance_m = 0.0;

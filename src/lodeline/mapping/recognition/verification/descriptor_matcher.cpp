@@ -11,11 +11,10 @@
 namespace lodeline {
 namespace {
 
-/// Bits in which descriptors of one point may differ. Those of different points differ in 128 +- 15 or so:
-/// four sigmas less.
+/// Bits in which descriptors of one point may differ. Those of different points differ in about 112.
 constexpr int kMostBits = 68;
 /// Distance of the nearest descriptor relative to that of the next one, for different points.
-constexpr double kMostOfNext = 0.9;
+constexpr double kMostOfNext = 0.93;
 /// Distance beyond all others.
 constexpr int kOutOfReach = kDescriptorBits + 1;
 
@@ -120,12 +119,22 @@ int nearest(int count, const auto& distance) {
   return best;
 }
 
-/// Whether the nearest element is clearly nearer than any of another track.
+/// Whether two features show one point: the same track, or positions that agree. In a merged keyframe, a
+/// point occurs as often as its descriptors differ.
+bool isOnePoint(const MapFeature& a, const MapFeature& b) {
+  constexpr double kSamePlace = 0.02;  // relative to the distance
+  if (a.track >= 0 && a.track == b.track) return true;
+  if (!a.point_B || !b.point_B) return false;
+  const double reach_m = kSamePlace * (*a.point_B - a.rays.front().origin_B).norm();
+  return (*a.point_B - *b.point_B).squaredNorm() < reach_m * reach_m;
+}
+
+/// Whether the nearest element is clearly nearer than any of another point.
 bool isDistinct(int best, int count, const auto& distance, const std::vector<MapFeature>& features) {
-  const TrackId track = features[static_cast<size_t>(best)].track;
+  const MapFeature& nearest = features[static_cast<size_t>(best)];
   for (int i = 0; i < count; ++i) {
-    const TrackId other = features[static_cast<size_t>(i)].track;
-    if (i != best && (track < 0 || other != track) && distance(best) > kMostOfNext * distance(i))
+    if (i != best && distance(best) > kMostOfNext * distance(i) &&
+        !isOnePoint(nearest, features[static_cast<size_t>(i)]))
       return false;
   }
   return true;
