@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -112,6 +113,16 @@ std::string whyUnusable(const Parsed& image, const Encoding* encoding) {
                      image.width, image.height, image.encoding, image.step);
 }
 
+/// Whether the format of a CompressedImage is that of a film, whose images depend on those before.
+bool isFilm(std::string_view format) {
+  constexpr std::array kFilms = {"h264", "h.264", "h265", "h.265", "hevc", "av1", "vp9"};
+  std::string lower(format);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::any_of(kFilms.begin(), kFilms.end(),
+                     [&](const char* film) { return lower.find(film) != std::string::npos; });
+}
+
 StoredImage storedImage(ImageForm form, std::span<const uint8_t> message, const std::string& name) {
   return form == ImageForm::Compressed ? compressedImageFile(message, name) : imagePixels(message, name);
 }
@@ -165,10 +176,15 @@ StoredImage compressedImageFile(std::span<const uint8_t> message, const std::str
     reader.take<uint32_t>();
     reader.takeTime();
     reader.takeText();
-    reader.takeText();  // the format as text; the bytes identify it more reliably
+    // The bytes of a file identify its format more reliably than this text; those of a film do not.
+    const std::string_view format = reader.takeText();
     const std::span<const uint8_t> file = reader.takeSized();
     result.file.assign(file.begin(), file.end());
     if (file.empty()) result.problem = name + ": holds no image";
+    if (isFilm(format)) {
+      result.problem =
+          fmt::format("{}: encoding '{}' is not supported; record JPEG, PNG or raw images", name, format);
+    }
   } catch (const wire::Reader::CutOff& error) {
     result.problem = fmt::format("{}: {}", name, error.what());
   }
