@@ -118,8 +118,11 @@ TEST(PoseGraph, RefusesRunsOfFalseLoopsThatAgreeWithEachOther) {
   ASSERT_EQ(summary.factors.size(), 30 + loops.size());
   int true_accepted = 0;
   for (size_t i = 0; i < summary.factors.size(); ++i) {
-    if (i < 30) EXPECT_FALSE(summary.factors[i].accepted) << i;
-    if (i >= 30) true_accepted += summary.factors[i].accepted ? 1 : 0;
+    if (i < 30) {
+      EXPECT_FALSE(summary.factors[i].accepted) << i;
+    } else {
+      true_accepted += summary.factors[i].accepted ? 1 : 0;
+    }
   }
   EXPECT_GE(true_accepted, 0.95 * static_cast<double>(loops.size()));
   EXPECT_LT(alignedRmse_m(posesOf(graph), dive.truth), 1.0);

@@ -20,6 +20,8 @@ constexpr int kMostRounds = 40;
 constexpr int kMostFinalRounds = 10;
 /// Least support in a batch, relative to its largest.
 constexpr double kSupportOfBatch = 0.75;
+/// Agreement among refused loops that counts as what false loops reach: all but one in a hundred.
+constexpr double kAgreementQuantile = 0.99;
 /// Share of refused loops that would pass a gate, above which passing it is no evidence.
 constexpr double kMostShare = 1e-3;
 /// Rounds in which refused loops are tried again.
@@ -143,8 +145,11 @@ void RobustSolution::tryRefused() {
 }
 
 RobustSolution::Factors RobustSolution::weaklySupported() const {
-  std::ptrdiff_t least = 0;
-  for (const ReportedFactor* loop : refusedLoops()) least = std::max(least, 1 + agreeing(*loop, false));
+  std::vector<std::ptrdiff_t> among_refused;
+  for (const ReportedFactor* loop : refusedLoops()) among_refused.push_back(agreeing(*loop, false));
+  std::sort(among_refused.begin(), among_refused.end());
+  const auto place = static_cast<size_t>(kAgreementQuantile * static_cast<double>(among_refused.size()));
+  const std::ptrdiff_t least = among_refused.empty() ? 0 : 1 + among_refused[place];
   Factors weak = robust(true);
   std::erase_if(
       weak, [&](const ReportedFactor* loop) { return !loop->isLoop() || agreeing(*loop, true) >= least; });
