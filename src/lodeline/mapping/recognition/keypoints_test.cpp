@@ -6,7 +6,7 @@
 #include "lodeline/frontend/test_sequence.h"
 #include "lodeline/mapping/recognition/keypoints/blob_detector.h"
 #include "lodeline/mapping/recognition/keypoints/scene_distance.h"
-#include "lodeline/mapping/recognition/keypoints/stereo_points.h"
+#include "lodeline/mapping/recognition/stereo_points.h"
 
 namespace lodeline {
 namespace {
