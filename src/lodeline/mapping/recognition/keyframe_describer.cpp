@@ -11,7 +11,7 @@
 #include "lodeline/frontend/detection/mask.h"
 #include "lodeline/mapping/recognition/keypoints/blob_detector.h"
 #include "lodeline/mapping/recognition/keypoints/scene_distance.h"
-#include "lodeline/mapping/recognition/keypoints/stereo_points.h"
+#include "lodeline/mapping/recognition/stereo_points.h"
 #include "lodeline/mapping/recognition/upright_descriptors.h"
 #include "lodeline/util/settings/option_check.h"
 

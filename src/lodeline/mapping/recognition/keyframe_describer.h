@@ -10,7 +10,7 @@ struct KeyframeDescriberOptions {
   /// Largest number of features of a keyframe, and of blobs that are detected.
   int features = 360;
   /// Standard deviation of a blob along each axis, px of the evened image.
-  double blob_sigma_px = 0.8;
+  double blob_sigma_px = 0.6;
 
   /// Throws UsageError where a value is out of its range.
   void check() const;

@@ -21,7 +21,6 @@
 namespace lodeline {
 namespace {
 
-Vec3 upInBodyDbg(const MapKeyframe& k) { return k.odom_from_body.rotation.conjugate() * Vec3::UnitZ(); }
 /// The cameras of EuRoC's rig, by the files beside the image pairs.
 Rig eurocRig() {
   const auto camera = [](const char* name, double fx, double fy, double cx, double cy,
@@ -71,8 +70,9 @@ class LoopPairs : public testing::Test {
       const auto image = [&](const char* side) {
         return cv::imread((*folder / fmt::format("{}_img_{}.png", side, i)).string(), cv::IMREAD_GRAYSCALE);
       };
-      // Only roll and pitch are used.
-      keyframes_.push_back(keyframeOfImages(eurocRig(), {image("left"), image("right")}, truth_[i], 0.005));
+      // Only roll and pitch are used. The orientations of this sequence's truth are off by up to two degrees:
+      // 104 of 127 matches between the pairs 0 and 1 agree on a tilt that differs by 1.9 degrees.
+      keyframes_.push_back(keyframeOfImages(eurocRig(), {image("left"), image("right")}, truth_[i], 0.02));
       keyframes_.back().id = static_cast<KeyframeId>(i);
     }
   }
@@ -87,25 +87,7 @@ class LoopPairs : public testing::Test {
 TEST_F(LoopPairs, OfOnePlaceAreVerified) {
   for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 0), std::pair(2, 3), std::pair(3, 2)}) {
     const Loop loop = verify(static_cast<size_t>(a), static_cast<size_t>(b));
-    {
-      const Rigid3 truth = truth_[static_cast<size_t>(a)].inverse() * truth_[static_cast<size_t>(b)];
-      const Vec3 turn = so3::log(truth.rotation * loop.old_from_new.rotation.conjugate());
-      const Vec3 up = upInBodyDbg(keyframes_[static_cast<size_t>(a)]);
-      const Vec3 dp = truth.translation - loop.old_from_new.translation;
-      int tracked = 0;
-      for (const auto& m : loop.inlier_matches)
-        tracked += keyframes_[static_cast<size_t>(a)].features[static_cast<size_t>(m.old_feature)].track >= 0;
-      std::printf(
-          "DBG turn %.2f %.2f %.2f deg, about up %.2f, dp %.3f %.3f %.3f sig_p %.3f sig_r %.2f tracked "
-          "inliers %d nees %.1f\n",
-          turn.x() * 57.3, turn.y() * 57.3, turn.z() * 57.3, up.dot(turn) * 57.3, dp.x(), dp.y(), dp.z(),
-          std::sqrt(loop.covariance.topLeftCorner<3, 3>().trace()),
-          57.3 * std::sqrt(loop.covariance.bottomRightCorner<3, 3>().trace()), tracked, 0.0);
-    }
-    std::printf("DBG %d %d matches %d inliers %d rms %.2f error %.3f cover %.2f nfeat %zu: %s\n", a, b,
-                loop.matches, loop.inliers, loop.rms_sigmas, errorOf_m(loop), loop.covered_share,
-                keyframes_[static_cast<size_t>(a)].features.size(), loop.reason.c_str());
-    EXPECT_EQ(loop.status, LoopStatus::Verified) << a << " " << b << ": " << loop.reason;
+    ASSERT_EQ(loop.status, LoopStatus::Verified) << a << " " << b << ": " << loop.reason;
     EXPECT_LT(errorOf_m(loop), 0.1);
   }
 }
@@ -191,7 +173,6 @@ TEST(Mh01Relocalisation, FindsClipsOfTheEndInAMapOfTheStart) {
       const Rigid3 expected = trueBody(old_keyframe).inverse() * trueBody(clip);
       const double error_m = (expected.translation - loop.old_from_new.translation).norm();
       if (loop.status != LoopStatus::Verified) continue;
-      if (error_m > 0.014) std::printf("DBG err %.4f inliers %d of %d cover %.2f sigma %.4f apart %.2f\n", error_m, loop.inliers, loop.matches, loop.covered_share, std::sqrt(loop.covariance.topLeftCorner<3,3>().trace()), expected.translation.norm());
       ++verified;
       is_found = true;
       worst_m = std::max(worst_m, error_m);

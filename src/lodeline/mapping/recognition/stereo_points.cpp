@@ -1,4 +1,4 @@
-#include "lodeline/mapping/recognition/keypoints/stereo_points.h"
+#include "lodeline/mapping/recognition/stereo_points.h"
 
 #include <cmath>
 
