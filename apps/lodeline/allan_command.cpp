@@ -171,7 +171,7 @@ void addAllanCommand(CLI::App& program) {
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout) or ROS 1 bag, cameras and calibration may be "
+                   "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras and calibration may be "
                    "missing; or a CSV "
                    "file")
       ->required();

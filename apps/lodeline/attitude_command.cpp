@@ -161,7 +161,7 @@ void addAttitudeCommand(CLI::App& program) {
       "attitude", "Orientation and heading from gyroscope, accelerometer and magnetometer, without images");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout) or ROS 1 bag, cameras may be missing; or a CSV file")
+                   "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras may be missing; or a CSV file")
       ->required();
   addBagOptions(&arguments->bag, command);
   command

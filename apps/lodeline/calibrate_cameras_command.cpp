@@ -18,7 +18,7 @@ namespace lodeline {
 namespace {
 
 const char* const kFooter =
-    R"(DATA is a folder in the EuRoC layout or a ROS 1 bag. Images of one camera are enough; inertial
+    R"(DATA is a folder in the EuRoC layout or a ROS bag. Images of one camera are enough; inertial
 readings give the place on the IMU and the delay as well.
 The board is a grid of AprilTags (36h11), described in Kalibr's format:
   {target_type: aprilgrid, tagCols: 6, tagRows: 6, tagSize: 0.055, tagSpacing: 0.3}
@@ -136,7 +136,7 @@ void addCalibrateCamerasCommand(CLI::App& calibrate_command) {
   const auto arguments = std::make_shared<CamerasArguments>();
   CLI::App* command = calibrate_command.add_subcommand(
       "cameras", "Lenses, ports, poses and delay of cameras from a board, with uncertainties and a verdict");
-  command->add_option("DATA", arguments->data, "recording or ROS 1 bag")->required();
+  command->add_option("DATA", arguments->data, "recording or ROS bag")->required();
   command->add_option("-o,--output", arguments->output, "folder to write")->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("--board", arguments->board,

@@ -26,7 +26,7 @@ namespace {
 
 const char* const kCalibrateFooter =
     R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
-ROS 1 bag (--rig may be missing; the noise of a usual IMU is assumed then),
+ROS bag (--rig may be missing; the noise of a usual IMU is assumed then),
 a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
 How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
 while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure.
@@ -154,8 +154,7 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
       "magnetometer",
       "Soft iron, hard iron, rotation to the IMU and lag, with their uncertainties and a verdict");
   command
-      ->add_option("DATA", arguments->data,
-                   "recording, ROS 1 bag, CSV file or, with --compare, a calibration")
+      ->add_option("DATA", arguments->data, "recording, ROS bag, CSV file or, with --compare, a calibration")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,

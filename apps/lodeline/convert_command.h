@@ -4,7 +4,7 @@
 
 namespace lodeline {
 
-/// `lodeline convert SRC DST`: converts an EuRoC folder to a ROS 1 bag, or a bag to a folder.
+/// `lodeline convert SRC DST`: converts between EuRoC folders, ROS 1 bags and ROS 2 bags.
 void addConvertCommand(CLI::App& program);
 
 }  // namespace lodeline

@@ -75,7 +75,8 @@ void executeRun(RunRequest request) {
 void addRunOptions(RunRequest* arguments, CLI::App* command) {
   command
       ->add_option("DATA", arguments->data,
-                   "folder that contains mav0 (EuRoC ASL layout), or mav0 itself; or a ROS 1 bag (NAME.bag)")
+                   "folder that contains mav0 (EuRoC ASL layout), or mav0 itself; or a ROS bag (.bag, .mcap, "
+                   ".db3, folder)")
       ->required();
   command->add_option("-o,--output", arguments->output, "folder for the results; made where it is missing")
       ->required();

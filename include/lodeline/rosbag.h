@@ -11,9 +11,9 @@
 
 namespace lodeline {
 
-/// Parts of a ROS 1 bag to read, and where its rig is described.
+/// Parts of a ROS bag to read, and where its rig is described.
 struct BagOptions {
-  /// Files that describe the rig (see readRigFiles). Empty: NAME.rig.yaml beside NAME.bag.
+  /// Files that describe the rig (see readRigFiles). Empty: NAME.rig.yaml beside the bag.
   std::vector<std::filesystem::path> rig_files;
   /// Topics by sensor ("cam0", "imu0", …), with priority over those in the rig files. The two topics of a
   /// divided IMU are separated by a comma.
@@ -28,7 +28,7 @@ struct BagOptions {
   bool use_received_times = false;
 };
 
-/// Opens a ROS 1 bag. Throws InputError where it is no bag, or no rig file describes its sensors, and
+/// Opens a ROS bag. Throws InputError where it is no bag, or no rig file describes its sensors, and
 /// UsageError for a topic of a sensor that the rig does not have. `diagnostics` must outlive the source.
 std::unique_ptr<RecordedSource> openBag(const std::filesystem::path& bag, const BagOptions& options,
                                         Diagnostics* diagnostics);

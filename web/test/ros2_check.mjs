@@ -2,15 +2,15 @@
 //
 //   node ros2_check.mjs list FILE.mcap         per topic: name, type, number of messages, sums over their values
 //   node ros2_check.mjs values FILE.mcap       a line of JSON for each message
-//   node ros2_check.mjs hex                    lines "TYPE<tab>DEFINITION in JSON<tab>HEX" from the input, as values
 import { createHash } from "node:crypto";
 import { open, readFile } from "node:fs/promises";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
+import { CdrReader, EncapsulationKind } from "@foxglove/cdr";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { decompress as decompressZstd } from "fzstd";
 
-/// LZ4 frames with independent or linked blocks, as a check of our own writer by another decoder is not in the packages.
+/// Unpacks an LZ4 frame; the packages have no decoder for LZ4.
 function unpackLz4(packed, size) {
   const out = new Uint8Array(Number(size));
   const view = new DataView(packed.buffer, packed.byteOffset, packed.byteLength);
@@ -81,6 +81,7 @@ async function readMcap(path, visit) {
       const definitions = parse(new TextDecoder().decode(schema.data), { ros2: true });
       readers.set(schema.id, new MessageReader(definitions));
     }
+    if (new CdrReader(message.data).kind !== EncapsulationKind.CDR_LE) throw new Error("not little-endian CDR");
     visit(channel, schema, message, readers.get(schema.id).readMessage(message.data));
     ++indexed;
   }
@@ -104,9 +105,5 @@ if (command === "values") {
   });
   for (const [name, { count, sum }] of [...topics].sort()) console.log(`${name} ${count} ${sum.digest("hex")}`);
 } else {
-  for (const line of (await readFile(0, "utf8")).split("\n").filter((l) => l)) {
-    const [type, definition, hex] = line.split("\t");
-    const reader = new MessageReader(parse(JSON.parse(definition), { ros2: true }));
-    console.log(`${type} ${JSON.stringify(reader.readMessage(Uint8Array.from(Buffer.from(hex, "hex"))), plain)}`);
-  }
+  throw new Error(`unknown command ${command}`);
 }

@@ -169,7 +169,7 @@ void addCompareCommand(CLI::App& program) {
       "compare", "Compare methods of using the magnetometer on recordings with ground truth");
   command
       ->add_option("DATA|SCENARIO", request->inputs,
-                   "folders in the EuRoC ASL layout or ROS 1 bags, with ground truth, or scenarios of "
+                   "folders in the EuRoC ASL layout or ROS bags, with ground truth, or scenarios of "
                    "`lodeline simulate`")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")

@@ -202,8 +202,7 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
     std::string names;
     for (const Scenario& s : all) names += (names.empty() ? "" : ", ") + s.name;
     const RecognizedFile recognized = recognizeFile(input);
-    if (recognized.kind != FileKind::Missing)
-      refuseFile(recognized, "give a folder with mav0, or a ROS 1 bag");
+    if (recognized.kind != FileKind::Missing) refuseFile(recognized, "give a folder with mav0, or a ROS bag");
     throw UsageError(
         fmt::format("{}: neither a folder, a bag nor a scenario; scenarios are {}", input, names));
   }

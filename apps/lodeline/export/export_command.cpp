@@ -60,7 +60,7 @@ void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
   command->add_flag("--no-splays", arguments->no_splays, "leave the legs to the walls out");
   command->add_option(
       "--recording", arguments->recording,
-      "the run's recording, a folder or a ROS 1 bag: its sonar adds walls; COLMAP takes cameras "
+      "the run's recording, a folder or a ROS bag: its sonar adds walls; COLMAP takes cameras "
       "and images from it");
   addBagOptions(&arguments->bag, command);
 }

@@ -11,7 +11,7 @@ void addBagOptions(BagArguments* arguments, CLI::App* command) {
       ->add_option("--rig", arguments->rig_files,
                    "calibration of the rig: rig.yaml, or files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3, "
                    "OKVIS, Basalt; "
-                   "without it NAME.rig.yaml beside NAME.bag, or what lies in the folder")
+                   "without it NAME.rig.yaml beside the bag, or what lies in the folder")
       ->type_name("FILE");
   command
       ->add_option(

@@ -102,10 +102,11 @@ messages::ImageForm formOf(const BagTopic& topic) {
 std::filesystem::path rigFileBeside(const std::filesystem::path& bag) {
   std::filesystem::path file = bag.has_filename() ? bag : bag.parent_path();
   if (file.extension() == ".zstd") file.replace_extension();
+  // The name of a folder, which may not exist yet, can have dots.
   const std::string extension = file.extension().string();
-  if (extension == ".bag" || extension == ".db3" || extension == ".mcap" || extension == ".active") {
-    file.replace_extension();
-  }
+  const bool is_bag = extension == ".bag" || extension == ".db3" || extension == ".mcap";
+  std::error_code ignored;
+  if (is_bag || std::filesystem::is_regular_file(bag, ignored)) file.replace_extension();
   file += ".rig.yaml";
   return file;
 }

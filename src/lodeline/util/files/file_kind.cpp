@@ -18,7 +18,6 @@ using namespace std::string_view_literals;
 
 constexpr const char* kFilm =
     "a film holds no stamps and no readings that Lodeline reads; record images with stamps and an IMU (a ROS "
-    "1 "
     "bag, or a folder with mav0: docs/reference/file-formats.md)";
 constexpr const char* kUnpack = "unpack it and give the folder or the bag that it holds";
 
@@ -34,8 +33,7 @@ struct Signature {
 constexpr std::array kSignatures = {
     Signature{0, "#ROSBAG V"sv, FileKind::Ros1Bag, "a ROS 1 bag", ""},
     Signature{0, "#ROSRECORD"sv, FileKind::Ros1Bag, "a ROS 1 bag of an old format", ""},
-    Signature{0, "SQLite format 3\0"sv, FileKind::Ros2Bag, "a SQLite database, as ROS 2 bags are",
-              ""},
+    Signature{0, "SQLite format 3\0"sv, FileKind::Ros2Bag, "a SQLite database, as ROS 2 bags are", ""},
     Signature{0, "\x89MCAP0\r\n"sv, FileKind::Mcap, "a bag of ROS 2 (MCAP)", ""},
     Signature{0, "PK\3\4"sv, FileKind::Archive, "an archive (zip)", kUnpack},
     Signature{0, "PK\5\6"sv, FileKind::Archive, "an empty archive (zip)", ""},
@@ -106,7 +104,8 @@ std::string lowerExtension(const fs::path& path) {
   return extension;
 }
 
-/// Whether the name is that of a file of a ROS 2 bag, which may be packed: .db3, .mcap, .db3.zstd, .mcap.zstd.
+/// Whether the name is that of a file of a ROS 2 bag, which may be packed: .db3, .mcap, .db3.zstd,
+/// .mcap.zstd.
 bool isNamedAsRos2Bag(fs::path path) {
   if (lowerExtension(path) == ".zstd") path.replace_extension();
   const std::string extension = lowerExtension(path);
