@@ -165,6 +165,25 @@ void DiveMapping::record(const Loop& loop) {
   ledger_.back().inlier_matches.clear();
 }
 
+void DiveMapping::recordRefused(const GraphSummary& solution) {
+  auto next = ledger_.begin();
+  for (const FactorReport& factor : solution.factors) {
+    if (factor.kind != FactorReport::Kind::Loop) continue;
+    next = std::find_if(next, ledger_.end(), [&](const Loop& loop) {
+      return loop.status == LoopStatus::Accepted && loop.old_keyframe == factor.from &&
+             loop.new_keyframe == factor.to;
+    });
+    if (next == ledger_.end()) return;
+    if (!factor.accepted) {
+      next->status = LoopStatus::Refused;
+      next->reason = factor.reason;
+      --summary_.accepted;
+      ++summary_.refused;
+    }
+    ++next;
+  }
+}
+
 void DiveMapping::joinGraph(KeyframeId earlier) {
   if (graph_.contains(earlier)) return;
   const StoredKeyframe row = *earlier_->keyframe(earlier);
@@ -266,7 +285,7 @@ MappingSummary DiveMapping::finish(Time end) {
   if (previous_) {
     use(acceptance_.expire(previous_->id, known_, true), &last);
     registerClouds();
-    graph_.solve();
+    recordRefused(graph_.solve());
     updatePoses();
     const GraphCovariance covariances = graph_.covariance();
     for (const KnownKeyframe& keyframe : known_.all()) {

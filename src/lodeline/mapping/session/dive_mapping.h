@@ -67,6 +67,8 @@ class DiveMapping {
   /// Joins the way in and the way out by the shape of the passage.
   void registerClouds();
   void record(const Loop& loop);
+  /// Marks the loops that the solution refuses in the ledger, which has them in the same order.
+  void recordRefused(const GraphSummary& solution);
 
   MapFile* own_;
   MapDive dive_;
