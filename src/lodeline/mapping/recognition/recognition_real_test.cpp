@@ -70,8 +70,8 @@ class LoopPairs : public testing::Test {
       const auto image = [&](const char* side) {
         return cv::imread((*folder / fmt::format("{}_img_{}.png", side, i)).string(), cv::IMREAD_GRAYSCALE);
       };
-      // Only roll and pitch are used. The orientations of this sequence's truth are off by up to two degrees:
-      // 104 of 127 matches between the pairs 0 and 1 agree on a tilt that differs by 1.9 degrees.
+      // Only roll and pitch are used. Of the matches between the pairs 0 and 1, 104 of 127 agree on a tilt
+      // that differs from this truth by 1.9 degrees. It is not known which of both is wrong.
       keyframes_.push_back(keyframeOfImages(eurocRig(), {image("left"), image("right")}, truth_[i], 0.02));
       keyframes_.back().id = static_cast<KeyframeId>(i);
     }

@@ -175,6 +175,25 @@ DiveTags::Join DiveMapping::joining() {
   };
 }
 
+void DiveMapping::recordRefused(const GraphSummary& solution) {
+  auto next = ledger_.begin();
+  for (const FactorReport& factor : solution.factors) {
+    if (factor.kind != FactorReport::Kind::Loop) continue;
+    next = std::find_if(next, ledger_.end(), [&](const Loop& loop) {
+      return loop.status == LoopStatus::Accepted && !isTagTie(loop) && loop.old_keyframe == factor.from &&
+             loop.new_keyframe == factor.to;
+    });
+    if (next == ledger_.end()) return;
+    if (!factor.accepted) {
+      next->status = LoopStatus::Refused;
+      next->reason = factor.reason;
+      --summary_.accepted;
+      ++summary_.refused;
+    }
+    ++next;
+  }
+}
+
 void DiveMapping::joinGraph(KeyframeId earlier) {
   if (graph_.contains(earlier)) return;
   const StoredKeyframe row = *earlier_->keyframe(earlier);
@@ -233,10 +252,10 @@ void DiveMapping::use(const TagStep& tags) {
   }
 }
 
-void DiveMapping::solve() {
+GraphSummary DiveMapping::solve() {
   const GraphSummary solution = graph_.solve();
   updatePoses();
-  if (new_ties_.empty()) return;
+  if (new_ties_.empty()) return solution;
   const GraphCovariance covariances = graph_.covariance();
   for (auto& [tie, place] : new_ties_) {
     const auto sighting = std::find_if(solution.factors.begin(), solution.factors.end(),
@@ -261,6 +280,7 @@ void DiveMapping::solve() {
     record(tie);
   }
   new_ties_.clear();
+  return solution;
 }
 
 void DiveMapping::updatePoses() {
@@ -319,7 +339,7 @@ MappingSummary DiveMapping::finish(Time end) {
     use(acceptance_.expire(previous_->id, known_, true), &last);
     registerClouds();
     use(tags_.finish(known_, &graph_, joining()));
-    solve();
+    recordRefused(solve());
     const GraphCovariance covariances = graph_.covariance();
     for (const KnownKeyframe& keyframe : known_.all()) {
       if (keyframe.dive == dive_number_)

@@ -68,13 +68,15 @@ class DiveMapping {
   /// Counts what became of tags. Their ties wait for the next solution.
   void use(const TagStep& tags);
   /// Solves the graph; the ties of tags get their poses from it.
-  void solve();
+  GraphSummary solve();
   void joinGraph(KeyframeId earlier);
   DiveTags::Join joining();
   void updatePoses();
   /// Joins the way in and the way out by the shape of the passage.
   void registerClouds();
   void record(const Loop& loop);
+  /// Marks the loops that the solution refuses in the ledger, which has them in the same order.
+  void recordRefused(const GraphSummary& solution);
 
   MapFile* own_;
   MapDive dive_;
