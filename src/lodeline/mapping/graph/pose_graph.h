@@ -29,9 +29,8 @@ struct PoseGraphOptions {
 /// a weak prior of 1 km and 10 rad at its initial pose; the result stays defined where all its loops are
 /// refused.
 ///
-/// Robust factors are weighted by GraduatedWeights. A solution starts from the last one: loops refused before
-/// stay refused unless they now agree. While everything else agrees this takes one least-squares problem;
-/// otherwise the graduation starts again from all weights 1.
+/// RobustSolution decides which robust factors are used. A solution starts from the last one: where new loops
+/// agree with it, they are added. Where any is refused, all begins anew from the odometry.
 ///
 /// The result depends on the input and its order only (one thread). Errors of input throw InputError.
 class PoseGraph {
