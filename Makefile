@@ -77,6 +77,7 @@ tidy: test-dependencies
 loops: everything
 	build/release/bin/batch_test --gtest_also_run_disabled_tests --gtest_filter='Loops.*'
 	build/release/bin/cloud_test --gtest_also_run_disabled_tests --gtest_filter='FalseClouds.*:CloudGain.*'
+	build/release/bin/graph_real_test --gtest_also_run_disabled_tests
 
 bench: everything
 	./scripts/benchmark.sh
