@@ -254,6 +254,7 @@ void DiveMapping::use(const TagStep& tags) {
 
 GraphSummary DiveMapping::solve() {
   const GraphSummary solution = graph_.solve();
+  has_north_ = has_north_ || graph_.azimuthSigma(dive_number_).has_value();
   updatePoses();
   if (new_ties_.empty()) return solution;
   const GraphCovariance covariances = graph_.covariance();
@@ -302,8 +303,8 @@ MappingStep DiveMapping::add(MapKeyframe keyframe) {
   use(tags_.add(keyframe, known_, &graph_, joining()));
   look(keyframe, &step);
   index_.add(keyframe);
-  step.is_solved = !step.accepted.empty() || !new_ties_.empty();
-  if (step.is_solved) solve();
+  if (!step.accepted.empty() || !new_ties_.empty()) solve();
+  step.has_north = has_north_;
   step.is_placed = is_placed_;
   step.map_from_odom = map_from_odom_;
   summary_.processor_s += threadSeconds() - start_s;

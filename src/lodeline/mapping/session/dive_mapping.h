@@ -33,7 +33,7 @@ struct MappingStep {
   KeyframeId keyframe = -1;
   std::vector<VerifiedLoop> accepted;  ///< with this keyframe, or waiting ones that it confirms
   bool is_placed = false;              ///< whether the pose in the map is known
-  bool is_solved = false;              ///< whether loops or tags with it changed the solution
+  bool has_north = false;              ///< whether a solution has turned the map to the magnetometer's north
   Rigid3 map_from_odom;                ///< rotation about the vertical and translation
 };
 
@@ -99,6 +99,7 @@ class DiveMapping {
   std::vector<MapKeyframe> recent_;      ///< the last seconds, with features
   std::optional<double> depth_datum_m_;  ///< depth at height 0 of the map
   Rigid3 map_from_odom_;
+  bool has_north_ = false;
   bool is_placed_ = true;
   std::vector<Loop> ledger_;
   MappingSummary summary_;

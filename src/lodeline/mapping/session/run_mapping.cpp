@@ -90,7 +90,10 @@ bool RunMapping::add(const FramePacket& packet, const FrameEstimate& estimate, s
     keyframe.tags = tagsIn(packet);
     if (const std::optional<MappingStep> step = thread_->add(std::move(keyframe))) take(*step);
   }
-  if (stamp && is_placed_) trajectory_.write(*stamp, map_from_odom_ * estimate.state.world_from_body);
+  if (stamp && is_placed_) {
+    trajectory_.write(*stamp, map_from_odom_ * estimate.state.world_from_body);
+    ++rows_;
+  }
   return is_keyframe;
 }
 
@@ -112,7 +115,7 @@ std::vector<SeenTag> RunMapping::tagsIn(const FramePacket& packet) const {
 void RunMapping::take(const MappingStep& step) {
   map_from_odom_ = step.map_from_odom;
   is_placed_ = step.is_placed;
-  is_solved_ = is_solved_ || step.is_solved;
+  if (step.has_north && !rows_before_north_) rows_before_north_ = rows_;
   accepted_.insert(accepted_.end(), step.accepted.begin(), step.accepted.end());
 }
 
@@ -145,8 +148,8 @@ void RunMapping::writeKeyframes() const {
 std::optional<Rigid3> RunMapping::mapFromOdom(const FrameEstimate& newest) const {
   if (!is_placed_) return std::nullopt;
   const auto& north_rad = newest.sensors.of<MagnetometerEstimate>().north_from_world_rad;
-  if (earlier_ || is_solved_ || !north_rad) return map_from_odom_;
-  return Rigid3(so3::exp(*north_rad * Vec3::UnitZ()), Vec3::Zero());
+  if (earlier_ || rows_before_north_ || !north_rad) return map_from_odom_;
+  return Rigid3(so3::exp(*north_rad * Vec3::UnitZ()), Vec3::Zero()) * map_from_odom_;
 }
 
 void RunMapping::solveForStatedTags() {
@@ -189,7 +192,7 @@ MappingSummary RunMapping::finish(const MagnetometerEstimate& last) {
   writeControlReport(request_.folder / "control.csv", *own_);
   reportTags();
   if (const std::optional<WorldTurn> turn = WorldTurn::of(last); turn && !earlier_)
-    turnTrajectoryFile(request_.folder / "trajectory_map.tum", *turn);
+    turnTrajectoryFile(request_.folder / "trajectory_map.tum", *turn, rows_before_north_.value_or(rows_));
   if (!summary.is_placed) {
     diagnostics_->report(Severity::Warning, "not_in_map",
                          request_.earlier_map.string() +

@@ -78,7 +78,8 @@ class RunMapping {
   PoseWriter trajectory_;
   Rigid3 map_from_odom_;
   bool is_placed_ = false;
-  bool is_solved_ = false;  ///< whether loops or tags have moved the dive in the map
+  size_t rows_ = 0;                          ///< of trajectory_map.tum
+  std::optional<size_t> rows_before_north_;  ///< written before a solution turned the map to north
   Time newest_;
   std::vector<VerifiedLoop> accepted_;
   LoopClosures closures_;

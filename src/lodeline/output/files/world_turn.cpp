@@ -134,8 +134,9 @@ void rewrite(const fs::path& file, const std::function<std::string(const std::st
   fs::rename(temporary, file);
 }
 
+bool isPose(const std::string& line) { return !line.empty() && line.front() != '#'; }
+
 std::string turnedPose(const std::string& line, const WorldTurn& turn) {
-  if (line.empty() || line.front() == '#') return line;
   std::istringstream fields(line);
   std::string stamp;
   Vec3 p;
@@ -157,8 +158,12 @@ std::optional<WorldTurn> WorldTurn::of(const MagnetometerEstimate& last) {
 
 Vec3 WorldTurn::apply(const Vec3& vector_W) const { return rotationOf(*this) * vector_W; }
 
-void turnTrajectoryFile(const fs::path& file, const WorldTurn& turn) {
-  rewrite(file, [&](const std::string& line) { return turnedPose(line, turn); });
+void turnTrajectoryFile(const fs::path& file, const WorldTurn& turn, std::optional<size_t> most) {
+  size_t poses = 0;
+  rewrite(file, [&](const std::string& line) {
+    if (!isPose(line) || (most && poses++ >= *most)) return line;
+    return turnedPose(line, turn);
+  });
 }
 
 void turnStateFiles(const fs::path& folder, const std::string& suffix, const WorldTurn& turn) {

@@ -23,9 +23,10 @@ struct WorldTurn {
   Vec3 apply(const Vec3& vector_W) const;
 };
 
-/// Rotates the poses of a file in TUM format. Replaces the file atomically by renaming. Throws InputError
-/// where it cannot be read or written.
-void turnTrajectoryFile(const std::filesystem::path& file, const WorldTurn& turn);
+/// Rotates the first `most` poses of a file in TUM format, or all. Replaces the file atomically by renaming.
+/// Throws InputError where it cannot be read or written.
+void turnTrajectoryFile(const std::filesystem::path& file, const WorldTurn& turn,
+                        std::optional<size_t> most = std::nullopt);
 
 /// Rotates `trajectory<suffix>.tum` and `states<suffix>.csv` of StateWriter. Each file is replaced atomically
 /// by renaming. Throws InputError where a file cannot be read or written.

@@ -83,6 +83,20 @@ TEST_F(TurnedRun, PointsToNorthFromTheFirstPoseOn) {
   EXPECT_NEAR(states.numbers.at("field_y [T]")[3], 24e-6, 1e-13);
 }
 
+// The last rows of a map are already in a world that points north.
+TEST_F(TurnedRun, TurnsOnlyTheFirstPosesWhereTheOthersPointNorth) {
+  const std::filesystem::path file = folder_ / "trajectory.tum";
+  turnTrajectoryFile(file, turn_, 2);
+  Diagnostics diagnostics;
+  const Trajectory turned = readTrajectory(file, {}, diagnostics);
+  ASSERT_EQ(turned.poses.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) {
+    const Vec3 before = estimateAt(static_cast<int>(i)).state.world_from_body.translation;
+    const Vec3 expected = i < 2 ? Vec3(so3::exp(kTurn_rad * Vec3::UnitZ()) * before) : before;
+    EXPECT_LT((turned.poses[i].world_from_body.translation - expected).norm(), 1e-8) << i;
+  }
+}
+
 TEST_F(TurnedRun, SaysWhereEachRowTookNorthToBe) {
   turnStateFiles(folder_, "", turn_);
   Diagnostics diagnostics;
