@@ -12,6 +12,7 @@
 
 #include "apps/lodeline/allan_command.h"
 #include "apps/lodeline/attitude_command.h"
+#include "apps/lodeline/batch/batch_command.h"
 #include "apps/lodeline/calibrate_command.h"
 #include "apps/lodeline/calibration_file_commands.h"
 #include "apps/lodeline/compare/compare_command.h"
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   lodeline::addRefineCommand(program);
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);
+  lodeline::addBatchCommand(program);
   lodeline::addExportCommand(program);
   lodeline::addMapCommand(program);
   lodeline::addReportCommand(program);
@@ -90,6 +92,8 @@ int main(int argc, char** argv) {
     // A path that cannot be resolved: circular links, missing permissions, too many open files.
     const auto reason = error.path1().string() + ": " + error.code().message();
     return fail("bad input", lodeline::InputError(reason), kBadInput);
+  } catch (const lodeline::BatchError& error) {
+    return fail("items failed", error, kBadInput);
   } catch (const lodeline::UsageError& error) {
     return fail("bad usage", error, kBadUsage);
   } catch (const lodeline::EstimationError& error) {

@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "apps/lodeline/compare/azimuth_method.h"
+#include "apps/lodeline/shared/program_file.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
 #include "lodeline/trajectory.h"
@@ -20,23 +20,13 @@ namespace fs = std::filesystem;
 
 const char* const kDoneFile = "made_from.txt";
 
-/// Identifies the build of the program (FNV-1a hash of its own file).
-uint64_t programFingerprint() {
-  uint64_t hash = 14695981039346656037u;
-  for (const char byte : readFileBytes("/proc/self/exe")) {
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211u;
-  }
-  return hash;
-}
-
 /// Text of everything that influences the result, to detect whether a run exists already.
 std::string identity(const RunRequest& request) {
   RunSettings options;
   Settings settings;
   applyRequest(request, &settings, &options);
   std::ostringstream text;
-  static const uint64_t program = programFingerprint();
-  text << fmt::format("lodeline {}, build {:016x}\n", LODELINE_VERSION, program)
+  text << fmt::format("lodeline {}, build {:016x}\n", LODELINE_VERSION, programFingerprint())
        << fs::weakly_canonical(request.data).string() << "\n";
   const fs::path mav0 = fs::is_directory(fs::path(request.data) / "mav0") ? fs::path(request.data) / "mav0"
                                                                           : fs::path(request.data);

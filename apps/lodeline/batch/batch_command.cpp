@@ -1,0 +1,120 @@
+#include "apps/lodeline/batch/batch_command.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/lodeline/batch/batch_list.h"
+#include "apps/lodeline/batch/batch_summary.h"
+#include "apps/lodeline/batch/batch_worker.h"
+#include "apps/lodeline/batch/item_claim.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/util/files/output_file.h"
+
+namespace lodeline {
+namespace {
+
+const char* const kBatchFooter =
+    R"(LIST.yaml has recordings × variants × seeds; paths in it start at its folder (docs/how-to/process-many-dives.md):
+  recordings:
+    - {data: dives/peacock1, name: peacock1, args: [--mag-calibration, mag.yaml], truth: truth/peacock1.tum}
+    - {simulate: cave1_short --metres 60, name: cave}
+  variants:
+    - {name: plain}
+    - {name: left, set: {source.cameras: [0]}}
+  seeds: [1, 2]
+Several processes may work on one folder at the same time; each item is made once.
+Results: results/NAME, failed/NAME, table.csv, table.md.
+Examples:
+  lodeline batch LIST.yaml -o season --jobs 4
+  lodeline batch LIST.yaml -o season --shard 3/100
+  lodeline batch LIST.yaml -o season --retry
+  lodeline batch LIST.yaml -o season --summary --against last_season)";
+
+struct BatchArguments {
+  std::string list;
+  std::string output;
+  std::string shard = "1/1";
+  std::string against;
+  bool only_summary = false;
+  bool no_wait = false;
+  BatchWork work;
+};
+
+/// Replaces a file at once, so that other processes never read half of it.
+void replaceFile(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path temporary = file.string() + "." + processLabel();
+  writeOutput(temporary, text);
+  std::filesystem::rename(temporary, file);
+}
+
+/// Writes the tables of the whole list.
+void writeSummary(const BatchList& list, const BatchFolder& folder, const BatchArguments& arguments) {
+  const std::vector<BatchRow> rows = batchRows(list, folder, arguments.against);
+  createOutputFolder(folder.path());
+  replaceFile(folder.path() / "table.csv", batchCsv(rows));
+  const std::string markdown = batchMarkdown(rows);
+  replaceFile(folder.path() / "table.md", markdown);
+  if (!arguments.work.quiet) fmt::print("{}", markdown);
+  if (!arguments.only_summary) return;
+  const auto failed =
+      std::count_if(rows.begin(), rows.end(), [](const BatchRow& row) { return row.status == "failed"; });
+  if (failed > 0) throw BatchError(fmt::format("{} of {}; table.md says why", failed, rows.size()));
+}
+
+void runBatch(BatchArguments arguments) {
+  arguments.work.shard = batchShardFromText(arguments.shard);
+  arguments.work.wait = !arguments.no_wait;
+  if (!arguments.against.empty() && !std::filesystem::is_directory(arguments.against)) {
+    throw UsageError(fmt::format("--against {}: there is no such folder", arguments.against));
+  }
+  const BatchList list = readBatchList(arguments.list);
+  const BatchFolder folder(arguments.output);
+  if (arguments.only_summary) return writeSummary(list, folder, arguments);
+  const BatchCounts counts = workOnBatch(list, folder, arguments.work);
+  writeSummary(list, folder, arguments);
+  if (!arguments.work.quiet) {
+    fmt::print(stderr, "made {}, kept {}, failed {}, left to others {}\n", counts.made, counts.kept,
+               counts.failed, counts.elsewhere);
+  }
+  if (counts.failed > 0) {
+    throw BatchError(fmt::format("{} of {}; table.md says why", counts.failed,
+                                 counts.made + counts.kept + counts.failed + counts.elsewhere));
+  }
+}
+
+}  // namespace
+
+void addBatchCommand(CLI::App& program) {
+  const auto arguments = std::make_shared<BatchArguments>();
+  CLI::App* command =
+      program.add_subcommand("batch", "Run many recordings with several settings, on one or many machines");
+  command->add_option("LIST", arguments->list, "YAML list of recordings, variants and seeds")->required();
+  command->add_option("-o,--output", arguments->output, "folder for the results; made where it is missing")
+      ->required();
+  command->add_option("--shard", arguments->shard, "work only on part I of N")
+      ->type_name("I/N")
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->work.jobs, "runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--retry", arguments->work.retry, "run again what failed before");
+  command->add_flag("--no-wait", arguments->no_wait, "end while other processes still work on items");
+  command
+      ->add_option("--stale-after-s", arguments->work.stale_after_s,
+                   "a lock from another machine that was not renewed for so long is taken over")
+      ->check(CLI::Range(60.0, 1e6))
+      ->capture_default_str();
+  command->add_flag("--summary", arguments->only_summary, "run nothing; write the tables anew");
+  command->add_option("--against", arguments->against, "output folder of another batch to compare with");
+  command->add_flag("-q,--quiet", arguments->work.quiet, "no progress and no table");
+  command->footer(kBatchFooter);
+  command->callback([arguments] { runBatch(*arguments); });
+}
+
+}  // namespace lodeline

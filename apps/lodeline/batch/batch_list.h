@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lodeline/trajectory.h"
+
+namespace lodeline {
+
+/// One run of a batch: a recording, a variant of the settings, and a seed.
+struct BatchItem {
+  std::string name;       ///< unique: RECORDING.VARIANT or RECORDING.VARIANT.SEED
+  std::string recording;  ///< name of the recording
+  std::string variant;    ///< name of the variant
+  std::optional<int> seed;
+  std::string data;                    ///< recording as the list names it; empty where it is simulated
+  std::vector<std::string> simulate;   ///< words after `lodeline simulate`, without -o; else empty
+  std::string simulated_name;          ///< name of the folder of the simulated recording
+  std::string truth;                   ///< ground truth as the list names it; empty for none
+  std::vector<std::string> arguments;  ///< words after `lodeline run`, without recording and -o
+};
+
+/// A list of runs.
+struct BatchList {
+  std::filesystem::path folder;  ///< absolute folder of the list; relative paths in the list start here
+  AlignmentType alignment = AlignmentType::SE3;
+  std::vector<BatchItem> items;  ///< recordings × variants × seeds, in the order of the list
+};
+
+/// Reads a list of runs. Throws UsageError with file and line for an unknown key, a missing or repeated name,
+/// a file that does not exist, or a setting that `lodeline run` does not have.
+BatchList readBatchList(const std::filesystem::path& file);
+
+/// A part of a batch, for jobs on several machines.
+struct BatchShard {
+  size_t index = 0;  ///< from 0
+  size_t count = 1;
+
+  bool contains(size_t item) const { return item % count == index; }
+};
+
+/// Shard from "I/N" with I from 1 to N. Throws UsageError.
+BatchShard batchShardFromText(const std::string& text);
+
+}  // namespace lodeline
