@@ -81,17 +81,19 @@ void addMapFileOptions(CLI::App* command, ExportArguments* arguments) {
 void addExportCommand(CLI::App& program) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand(
-      "export", "A run as files for surveyors and map makers: Survex, Therion, GIS, 3-D");
+      "export", "A run as files for surveyors and map makers: Survex, Therion, GIS, 3-D, Foxglove");
   command->add_option("RUN", arguments->runs, "folders that `lodeline run` wrote; several make one project")
       ->required();
   command->add_option("-o,--output", arguments->output, "folder for the files; without it, RUN/export");
   addMapFileOptions(command, arguments.get());
   addDepthOptions(command, &arguments->depth);
+  addFoxgloveOptions(command, &arguments->foxglove);
   command->footer(
       "Every file begins with where it is from, which north it uses and what was applied.\n"
       "Examples:\n"
       "  lodeline export out --format survex,therion,kml --entrance 29.83,-82.60,10 --date 2026-11-21\n"
       "  lodeline export out --format csv,ply -o map\n"
+      "  lodeline export out --format mcap --images\n"
       "  lodeline export dive1 dive2 --format therion --name cave -o map --entrance 29.83,-82.60,10\n"
       "  lodeline export out --format survex --depth-profile computer.csv --correct-depth");
   command->callback([arguments] { exportRuns(*arguments); });

@@ -59,7 +59,7 @@ DiveMapOptions mapOptions(const ExportArguments& arguments) {
 std::vector<MapFormat> wantedFormats(const ExportArguments& arguments) {
   std::vector<MapFormat> formats;
   for (const std::string& name : arguments.formats) formats.push_back(mapFormatFromString(name));
-  if (formats.empty() && arguments.depth.file.empty()) {
+  if (formats.empty() && arguments.depth.file.empty() && !arguments.foxglove.is_wanted) {
     throw UsageError("nothing to do: name formats with --format, or a --depth-profile to compare with");
   }
   const bool is_single = arguments.runs.size() == 1;
@@ -118,9 +118,10 @@ std::filesystem::path outputFolder(const ExportArguments& arguments) {
 
 std::string depthTableName(const DiveMap& map) { return map.name + "_depth_profile.csv"; }
 
-void expectOwnFolder(const ExportedDive& dive, const std::vector<MapFormat>& formats,
-                     const std::filesystem::path& folder) {
+void expectOwnFolder(const ExportArguments& arguments, const ExportedDive& dive,
+                     const std::vector<MapFormat>& formats, const std::filesystem::path& folder) {
   std::vector<std::string> names = {depthTableName(dive.map)};
+  if (arguments.foxglove.is_wanted) names.push_back(foxgloveFileName(dive.map.name));
   for (MapFormat format : formats) {
     for (const std::string& name : mapFileNames(dive.map.name, format)) names.push_back(name);
   }
@@ -165,7 +166,8 @@ void writeProjects(const ExportArguments& arguments, const std::vector<MapFormat
 
 }  // namespace
 
-void exportRuns(const ExportArguments& arguments) {
+void exportRuns(ExportArguments arguments) {
+  takeFoxglove(&arguments.formats, &arguments.foxglove);
   wantedFormats(arguments);  // refuses wrong arguments before anything is read
   Diagnostics diagnostics;
   std::vector<RunFolder> runs;
@@ -178,10 +180,15 @@ void exportDives(const ExportArguments& arguments, std::vector<RunFolder> runs, 
   const std::vector<ExportedDive> dives = makeDives(arguments, formats, std::move(runs), diagnostics);
   const std::filesystem::path folder = outputFolder(arguments);
   if (!arguments.overwrite) {
-    for (const ExportedDive& dive : dives) expectOwnFolder(dive, formats, folder);
+    for (const ExportedDive& dive : dives) expectOwnFolder(arguments, dive, formats, folder);
   }
   std::vector<std::filesystem::path> files;
-  for (const ExportedDive& dive : dives) writeDive(dive, formats, folder, &files);
+  for (const ExportedDive& dive : dives) {
+    writeDive(dive, formats, folder, &files);
+    if (!arguments.foxglove.is_wanted) continue;
+    files.push_back(folder / foxgloveFileName(dive.map.name));
+    writeFoxglove(arguments.foxglove, dive.map.run_folder, files.back(), diagnostics);
+  }
   if (dives.size() > 1) writeProjects(arguments, formats, dives, folder, &files);
   for (const ExportedDive& dive : dives) {
     if (dives.size() > 1) fmt::print("{}:\n", dive.map.name);
