@@ -118,6 +118,15 @@ class BatchWorker {
       ++counts_.kept;
       ++finished_;
     }
+    tidy(*open.item);
+  }
+
+  /// Removes what a process left that was killed between its last result and the release of its lock.
+  void tidy(const BatchItem& item) const {
+    std::error_code ignored;
+    if (!std::filesystem::exists(folder_.lock(item.name), ignored)) return;
+    const auto claim = ItemClaim::take(folder_.lock(item.name), work_.stale_after_s);
+    if (claim) std::filesystem::remove_all(folder_.work(item.name), ignored);
   }
 
   void report(const char* event, const BatchItem& item) {

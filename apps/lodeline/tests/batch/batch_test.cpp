@@ -43,12 +43,14 @@ TEST_F(BatchRuns, EvaluatesAndTabulatesAllAndRunsNothingAgain) {
 
 TEST_F(BatchRuns, AChangedRecordingIsRunAgainAlone) {
   ASSERT_EQ(batch("--shard 1/4").exit_code, 0);  // dives 0 and 4
+  copyRecording(4);
   editLines(recording(4) / "mav0/imu0/data.csv",
             [](std::vector<std::string>& lines) { lines.emplace_back("# a remark"); });
   EXPECT_THAT(batch("--shard 1/4").output, HasSubstr("made 1, kept 1, failed 0"));
 }
 
 TEST_F(BatchRuns, AFailureIsRecordedAndOthersGoOn) {
+  copyRecording(4);
   std::filesystem::remove(recording(4) / "mav0/imu0/data.csv");
   const Execution first = batch("--shard 1/4");
   EXPECT_EQ(first.exit_code, 1);
@@ -117,7 +119,7 @@ TEST_F(BatchRuns, AWrongListIsNamedWithItsLine) {
   expectRefused("variants: []\n", "1", "recordings");
   expectRefused("recordings: [dive0\nseeds: [1]\n", "2", "not valid YAML");
   expectRefused(one + "  - {data: dive9}\n", "3", "dive9 does not exist");
-  expectRefused(one + "  - {data: dive1, trust: truth.tum}\n", "3", "did you mean 'truth'?");
+  expectRefused(one + "  - {data: dive1, trut: truth.tum}\n", "3", "did you mean 'truth'?");
   expectRefused(one + "  - {data: dive1, truth: none.tum}\n", "3", "none.tum does not exist");
   expectRefused(one + "  - dive0\n", "3", "used twice");
   expectRefused(one + "  - {name: x}\n", "3", "`data` and `simulate`");

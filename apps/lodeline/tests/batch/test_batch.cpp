@@ -11,13 +11,26 @@ namespace lodeline::test {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// One recording for all tests, since making it takes longer than most of them.
+const RoomRecording& sharedRoom() {
+  static const TemporaryFolder folder;
+  static const RoomRecording room = writeRoomRecording(folder.path());
+  return room;
+}
+
+}  // namespace
+
 BatchTest::BatchTest() : list_(folder_.path() / "list.yaml"), output_(folder_.path() / "out") {
-  const RoomRecording room = writeRoomRecording(folder_.path() / "room");
-  fs::copy_file(room.truth, folder_.path() / "truth.tum");
-  for (int i = 0; i < kBatchRecordings; ++i) {
-    fs::copy(room.data, recording(i), fs::copy_options::recursive);
-  }
+  fs::copy_file(sharedRoom().truth, folder_.path() / "truth.tum");
+  for (int i = 0; i < kBatchRecordings; ++i) fs::create_directory_symlink(sharedRoom().data, recording(i));
   writeList();
+}
+
+void BatchTest::copyRecording(int number) const {
+  fs::remove(recording(number));
+  fs::copy(sharedRoom().data, recording(number), fs::copy_options::recursive);
 }
 
 fs::path BatchTest::recording(int number) const { return folder_.path() / fmt::format("dive{}", number); }

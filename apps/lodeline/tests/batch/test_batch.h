@@ -17,7 +17,7 @@ namespace lodeline::test {
 
 inline constexpr int kBatchRecordings = 8;
 
-/// Tests of `lodeline batch` on eight copies of a room recording.
+/// Tests of `lodeline batch` on eight recordings of a room.
 class BatchTest : public testing::Test {
  protected:
   BatchTest();
@@ -28,6 +28,8 @@ class BatchTest : public testing::Test {
   /// Starts a worker in the background, whose messages go to `log`.
   pid_t startWorker(const std::string& log, const std::vector<std::string>& options = {}) const;
   std::filesystem::path recording(int number) const;
+  /// Gives a recording files of its own, to be changed; before, all are links to one.
+  void copyRecording(int number) const;
   /// Waits up to a minute for so many results.
   void waitForResults(size_t count) const;
   /// Waits for the end of a worker; its exit code, or -1 where a signal ended it.
