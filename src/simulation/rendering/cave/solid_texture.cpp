@@ -87,7 +87,7 @@ int8_t quantize(float value) {
 SolidTexture::SolidTexture(uint64_t seed) {
   const int n = kSize;
   std::vector<RockValue> values(static_cast<size_t>(n) * n * n);
-  const auto index = [n](int x, int y, int z) {
+  const auto index = [](int x, int y, int z) {
     return (static_cast<size_t>(z & (n - 1)) * n + (y & (n - 1))) * n + (x & (n - 1));
   };
   tbb::parallel_for(0, n, [&](int z) {
