@@ -48,9 +48,9 @@ nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns,
   json["numbers"] = nlohmann::json::object();
   json["words"] = nlohmann::json::object();
   for (const auto& [name, values] : table.numbers) {
-    const bool is_left_out = std::any_of(left_out.begin(), left_out.end(), [&](const std::string& beginning) {
-      return name.rfind(beginning, 0) == 0;
-    });
+    const bool is_left_out = std::any_of(
+        left_out.begin(), left_out.end(),
+        [&, &column = name](const std::string& beginning) { return column.rfind(beginning, 0) == 0; });
     if (!is_left_out) json["numbers"][name] = shortNumbers(values, choice.rows);
   }
   for (const auto& [name, values] : table.words) {
