@@ -17,7 +17,7 @@ struct ChildCommand {
   std::filesystem::path errors;    ///< file for its standard error, which is replaced
 };
 
-/// Starts this program as a child, in a process group of its own. The system kills it when this process dies.
+/// Starts this program as a child process in a new process group. The system kills it when this process dies.
 /// Throws std::runtime_error where no process can be made.
 pid_t startChild(const ChildCommand& command);
 

@@ -28,7 +28,7 @@ class BatchTest : public testing::Test {
   /// Starts a worker in the background, whose messages go to `log`.
   pid_t startWorker(const std::string& log, const std::vector<std::string>& options = {}) const;
   std::filesystem::path recording(int number) const;
-  /// Gives a recording files of its own, to be changed; before, all are links to one.
+  /// Replaces the links of a recording by copies of the files, which a test can change.
   void copyRecording(int number) const;
   /// Waits up to a minute for so many results.
   void waitForResults(size_t count) const;

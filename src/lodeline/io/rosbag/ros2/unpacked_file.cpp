@@ -24,7 +24,7 @@ bool isZstd(const std::filesystem::path& file) {
   return stream.read(start.data(), start.size()) && start == kZstd;
 }
 
-/// Creates an empty file with a name of its own.
+/// Creates an empty temporary file with a unique name.
 std::filesystem::path emptyTemporary() {
   std::string name = (std::filesystem::temp_directory_path() / "lodeline_bag_XXXXXX").string();
   const int descriptor = ::mkstemp(name.data());
