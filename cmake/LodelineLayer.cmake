@@ -132,8 +132,8 @@ endfunction()
 # they run beside each other.
 function(lodeline_test target label layer)
   add_executable(${target} ${ARGN})
-  target_link_libraries(${target} PRIVATE lodeline_${layer} lodeline_test_data GTest::gtest GTest::gmock
-                                          GTest::gtest_main)
+  target_link_libraries(${target} PRIVATE lodeline_${layer} lodeline_test_data lodeline_test_main GTest::gtest
+                                          GTest::gmock)
   lodeline_use_precompiled(${target} tests)
   if(label STREQUAL real)
     gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
