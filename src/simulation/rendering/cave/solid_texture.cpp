@@ -27,6 +27,9 @@ inline void addWeighted(const Byte8& voxels, const Float8& weight, Float8& sum) 
   sum += __builtin_convertvector(wide, Float8) * weight;
 }
 
+constexpr int kSize = 128;  // voxels along an edge; 8 MB of four bytes each
+constexpr int kLevels = 6;
+
 /// Slopes are stored up to this magnitude (m/m).
 constexpr float kSlopeRange = 2.0f;
 
@@ -82,73 +85,16 @@ int8_t quantize(float value) {
   return static_cast<int8_t>(std::lround(127.0f * std::clamp(value, -1.0f, 1.0f)));
 }
 
-}  // namespace
-
-SolidTexture::SolidTexture(uint64_t seed) {
-  const int n = kSize;
-  std::vector<RockValue> values(static_cast<size_t>(n) * n * n);
-  const auto index = [](int x, int y, int z) {
-    return (static_cast<size_t>(z & (n - 1)) * n + (y & (n - 1))) * n + (x & (n - 1));
-  };
-  tbb::parallel_for(0, n, [&](int z) {
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x)
-        values[index(x, y, z)] =
-            rockValue(Vec3f(x, y, z) / static_cast<float>(n), static_cast<uint32_t>(seed));
-  });
-  strew(kPits, Random(seed, "texture/pits"), n, values);
-  strew(kGrains, Random(seed, "texture/grains"), n, values);
-  double mean = 0.0;
-  for (const RockValue& value : values) mean += value.reflectance;
-  const float offset = static_cast<float>(mean / static_cast<double>(values.size()));
-
-  levels_.push_back({n, std::vector<Voxel>(static_cast<size_t>(n) * n * (n + 1))});
-  tbb::parallel_for(0, n, [&](int z) {
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x <= n; ++x) {
-        const float half = 0.5f * n / kSlopeRange;
-        Voxel& voxel = levels_[0].voxels[(static_cast<size_t>(z) * n + y) * (n + 1) + x];
-        voxel.channel[0] = quantize(values[index(x, y, z)].reflectance - offset);
-        voxel.channel[1] =
-            quantize(half * (values[index(x + 1, y, z)].height - values[index(x - 1, y, z)].height));
-        voxel.channel[2] =
-            quantize(half * (values[index(x, y + 1, z)].height - values[index(x, y - 1, z)].height));
-        voxel.channel[3] =
-            quantize(half * (values[index(x, y, z + 1)].height - values[index(x, y, z - 1)].height));
-      }
-  });
-  while (static_cast<int>(levels_.size()) < kLevels) addCoarserLevel();
-}
-
-void SolidTexture::addCoarserLevel() {
-  const Level& fine = levels_.back();
-  const int n = fine.size / 2;
-  Level coarse{n, std::vector<Voxel>(static_cast<size_t>(n) * n * (n + 1))};
-  for (int z = 0; z < n; ++z)
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x <= n; ++x)
-        for (int c = 0; c < 4; ++c) {
-          int sum = 0;
-          for (int corner = 0; corner < 8; ++corner) {
-            const size_t line =
-                static_cast<size_t>(2 * z + (corner >> 2)) * fine.size + 2 * y + (corner >> 1 & 1);
-            sum += fine.voxels[line * (fine.size + 1) + 2 * (x % n) + (corner & 1)].channel[c];
-          }
-          coarse.voxels[(static_cast<size_t>(z) * n + y) * (n + 1) + x].channel[c] =
-              static_cast<int8_t>(std::lround(sum / 8.0));
-        }
-  levels_.push_back(std::move(coarse));
-}
-
 // The function with the largest share of the rendering time.
 LODELINE_WIDE_VECTORS
-TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footprint_m) const {
+TextureSample sampleLevels(const std::vector<TextureLevel>& levels, const Vec3f& point, float tile_m,
+                           float footprint_m) {
   const float finest_m = tile_m / kSize;
   const float level = footprint_m <= finest_m ? 0.0f : std::max(0.0f, roughLog2(footprint_m / finest_m));
   if (level >= kLevels) return {};  // all details are finer than a pixel: returns the mean
 
   const auto trilinear = [&](int which) {
-    const Level& grid = levels_[which];
+    const TextureLevel& grid = levels[which];
     const float scale = static_cast<float>(grid.size) / tile_m;
     // Voxel centres of a coarser level are between those of the finer one.
     const float shift = 0.5f * (1.0f - static_cast<float>(grid.size) / kSize);
@@ -183,6 +129,68 @@ TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footp
   sample.reflectance = value[0] * (1.0f / 127.0f);
   sample.slope = Vec3f(value[1], value[2], value[3]) * (kSlopeRange / 127.0f);
   return sample;
+}
+
+}  // namespace
+
+SolidTexture::SolidTexture(uint64_t seed) {
+  const int n = kSize;
+  std::vector<RockValue> values(static_cast<size_t>(n) * n * n);
+  const auto index = [](int x, int y, int z) {
+    return (static_cast<size_t>(z & (n - 1)) * n + (y & (n - 1))) * n + (x & (n - 1));
+  };
+  tbb::parallel_for(0, n, [&](int z) {
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        values[index(x, y, z)] =
+            rockValue(Vec3f(x, y, z) / static_cast<float>(n), static_cast<uint32_t>(seed));
+  });
+  strew(kPits, Random(seed, "texture/pits"), n, values);
+  strew(kGrains, Random(seed, "texture/grains"), n, values);
+  double mean = 0.0;
+  for (const RockValue& value : values) mean += value.reflectance;
+  const float offset = static_cast<float>(mean / static_cast<double>(values.size()));
+
+  levels_.push_back({n, std::vector<TextureLevel::Voxel>(static_cast<size_t>(n) * n * (n + 1))});
+  tbb::parallel_for(0, n, [&](int z) {
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x <= n; ++x) {
+        const float half = 0.5f * n / kSlopeRange;
+        TextureLevel::Voxel& voxel = levels_[0].voxels[(static_cast<size_t>(z) * n + y) * (n + 1) + x];
+        voxel.channel[0] = quantize(values[index(x, y, z)].reflectance - offset);
+        voxel.channel[1] =
+            quantize(half * (values[index(x + 1, y, z)].height - values[index(x - 1, y, z)].height));
+        voxel.channel[2] =
+            quantize(half * (values[index(x, y + 1, z)].height - values[index(x, y - 1, z)].height));
+        voxel.channel[3] =
+            quantize(half * (values[index(x, y, z + 1)].height - values[index(x, y, z - 1)].height));
+      }
+  });
+  while (static_cast<int>(levels_.size()) < kLevels) addCoarserLevel();
+}
+
+void SolidTexture::addCoarserLevel() {
+  const TextureLevel& fine = levels_.back();
+  const int n = fine.size / 2;
+  TextureLevel coarse{n, std::vector<TextureLevel::Voxel>(static_cast<size_t>(n) * n * (n + 1))};
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x <= n; ++x)
+        for (int c = 0; c < 4; ++c) {
+          int sum = 0;
+          for (int corner = 0; corner < 8; ++corner) {
+            const size_t line =
+                static_cast<size_t>(2 * z + (corner >> 2)) * fine.size + 2 * y + (corner >> 1 & 1);
+            sum += fine.voxels[line * (fine.size + 1) + 2 * (x % n) + (corner & 1)].channel[c];
+          }
+          coarse.voxels[(static_cast<size_t>(z) * n + y) * (n + 1) + x].channel[c] =
+              static_cast<int8_t>(std::lround(sum / 8.0));
+        }
+  levels_.push_back(std::move(coarse));
+}
+
+TextureSample SolidTexture::sample(const Vec3f& point, float tile_m, float footprint_m) const {
+  return sampleLevels(levels_, point, tile_m, footprint_m);
 }
 
 }  // namespace lodeline

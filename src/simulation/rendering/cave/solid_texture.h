@@ -13,6 +13,15 @@ struct TextureSample {
   Vec3f slope = Vec3f::Zero();  ///< gradient of the relief (m/m), to be projected onto the surface
 };
 
+/// One level of the pyramid of a texture: a cube of voxels.
+struct TextureLevel {
+  struct Voxel {
+    int8_t channel[4];  ///< reflectance, slope x y z; scaled by 127
+  };
+  int size = 0;
+  std::vector<Voxel> voxels;  ///< x fastest; every row repeats its first voxel at its end
+};
+
 /// A precomputed cube of rock texture, repeated periodically in space: pits, cracks, grains and stains over
 /// five octaves. Sampling it at several tile sizes gives detail from millimetres to metres. This costs only
 /// memory reads, an order of magnitude less than evaluating noise for every pixel. A pyramid of box-filtered
@@ -26,20 +35,9 @@ class SolidTexture {
   TextureSample sample(const Vec3f& point, float tile_m, float footprint_m) const;
 
  private:
-  static constexpr int kSize = 128;  ///< voxels along an edge; 8 MB of four bytes each
-  static constexpr int kLevels = 6;
-
-  struct Voxel {
-    int8_t channel[4];  ///< reflectance, slope x y z; scaled by 127
-  };
-  struct Level {
-    int size = 0;
-    std::vector<Voxel> voxels;  ///< x fastest; every row repeats its first voxel at its end
-  };
-
   void addCoarserLevel();
 
-  std::vector<Level> levels_;
+  std::vector<TextureLevel> levels_;
 };
 
 }  // namespace lodeline
