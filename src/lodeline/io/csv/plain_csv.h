@@ -27,6 +27,10 @@ struct PlainCsvOptions {
   /// The table belongs to a magnetometer. Columns x, y, z without a sensor name then hold the field, the
   /// field keeps its numbers where no unit is stated, and times may be missing.
   bool is_magnetometer = false;
+  /// Quantity of columns x, y, z without a sensor name, where the name of the file states it.
+  std::optional<Quantity> bare_columns = std::nullopt;
+  /// Tesla per unit of a field without a stated unit, where the documentation of the program states it.
+  std::optional<double> field_unit_T = std::nullopt;
 };
 
 /// Reads a single table (TableReader) row by row. It has a time and readings of gyroscope, accelerometer and
@@ -79,6 +83,7 @@ class PlainCsv {
   static const std::array<UnitGuess, 5> kFieldGuesses;
 
   void findColumns();
+  void takeBareColumns(const TriadColumns& columns);
   void assumeColumns();
   void requireKnownUnits(Quantity quantity, const std::optional<Triad>& triad) const;
   void readFirstRows();

@@ -176,4 +176,6 @@ SensorColumns findSensorColumns(const std::vector<ColumnName>& columns) {
   return result;
 }
 
+std::optional<Quantity> quantityOfName(const ColumnName& name) { return quantityByWords(name, ""); }
+
 }  // namespace lodeline

@@ -35,4 +35,7 @@ struct SensorColumns {
 /// accelerations without gravity do not count as readings.
 SensorColumns findSensorColumns(const std::vector<ColumnName>& columns);
 
+/// The sensor that the words of a name state, such as the name of a file: "Gyroscope", "TotalAcceleration".
+std::optional<Quantity> quantityOfName(const ColumnName& name);
+
 }  // namespace lodeline

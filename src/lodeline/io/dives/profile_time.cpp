@@ -1,4 +1,6 @@
-#include "lodeline/output/survey/profile/profile_time.h"
+#include "lodeline/io/dives/profile_time.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -32,8 +34,8 @@ std::optional<double> parseClock(std::string_view text) {
   return seconds;
 }
 
-/// Removes "Z", "+02:00", "-0430" from the end of a time of day and returns the offset in seconds; empty
-/// where it is malformed.
+/// Removes "Z", "+02:00", "-0430" from the end of a time of day and returns the
+/// offset in seconds; empty where it is malformed.
 std::optional<double> takeOffset(std::string_view* clock) {
   if (clock->ends_with('Z')) {
     clock->remove_suffix(1);
@@ -52,8 +54,8 @@ std::optional<double> takeOffset(std::string_view* clock) {
   return direction * (3600.0 * hours + 60.0 * minutes);
 }
 
-/// Days since 1970 of "2026-11-21", "21.11.2026", "11/21/2026"; with slashes the month comes first unless it
-/// is not a valid month.
+/// Days since 1970 of "2026-11-21", "21.11.2026", "11/21/2026"; with slashes
+/// the month comes first unless it is not a valid month.
 std::optional<double> parseDay(std::string_view text) {
   int parts[3];
   size_t lengths[3];
@@ -80,7 +82,8 @@ std::optional<double> parseDay(std::string_view text) {
   return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
 }
 
-/// Seconds of a time of day: "10:34", "10:34:00.5", "3:04 PM", "12:00:00+02:00" (less its offset).
+/// Seconds of a time of day: "10:34", "10:34:00.5", "3:04 PM", "12:00:00+02:00"
+/// (less its offset).
 std::optional<double> parseTimeOfDay(std::string_view clock) {
   double afternoon_s = 0.0;
   bool has_twelve_hours = false;
@@ -115,6 +118,22 @@ std::optional<double> parseProfileTime(std::string_view text) {
   if (std::optional<double> date = parseDate(text)) return date;
   if (text.find_first_of("aApP") != std::string_view::npos) return parseTimeOfDay(text);
   return parseClock(text);
+}
+
+std::string profileStart(std::string_view date) {
+  // The offset from UTC is left out: the text shows the clock of the diver.
+  const size_t time = date.find('T');
+  const size_t offset = time == std::string_view::npos ? time : date.find_first_of("Z+-", time);
+  const std::optional<double> start_s = parseDate(date.substr(0, offset));
+  constexpr double kLatest_s = 1e11;
+  if (!start_s || std::abs(*start_s) > kLatest_s) return "";
+  const std::chrono::sys_seconds start{std::chrono::seconds(std::llround(*start_s))};
+  const auto day = std::chrono::floor<std::chrono::days>(start);
+  const std::chrono::year_month_day ymd(day);
+  const std::chrono::hh_mm_ss clock(start - day);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}", static_cast<int>(ymd.year()),
+                     static_cast<unsigned>(ymd.month()), static_cast<unsigned>(ymd.day()),
+                     clock.hours().count(), clock.minutes().count(), clock.seconds().count());
 }
 
 }  // namespace lodeline

@@ -1,4 +1,4 @@
-#include "lodeline/output/survey/profile/profile_columns.h"
+#include "lodeline/io/dives/profile_columns.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -23,7 +23,8 @@ const Words kOtherTimes = {"max",  "maximum", "stop",   "surface", "tts",  "rema
                            "deco", "average", "ndl",    "next",    "last", "interval",  "offset", "total",
                            "zone", "bottom",  "ascent", "start",   "end",  "no"};
 
-/// Clarity of a name: 0 if it does not match, 3 for a single word, 4 for that of each sample.
+/// Clarity of a name: 0 if it does not match, 3 for a single word, 4 for that
+/// of each sample.
 int plainness(const ColumnName& name, Words wanted, Words others) {
   if (!name.hasWord(wanted) || name.hasWord(others)) return 0;
   if (name.hasWord({"sample"})) return 4;

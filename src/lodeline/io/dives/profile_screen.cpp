@@ -1,8 +1,9 @@
-#include "lodeline/output/survey/profile/profile_screen.h"
+#include "lodeline/io/dives/profile_screen.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace lodeline {
 namespace {
@@ -32,7 +33,8 @@ double longestStep(const Rows& rows) {
 /// Test whether one reading can follow another.
 class Succession {
  public:
-  explicit Succession(const Rows& rows) : longest_s_(longestStep(rows)) {}
+  Succession(const Rows& rows, bool has_stated_dives)
+      : longest_s_(has_stated_dives ? std::numeric_limits<double>::max() : longestStep(rows)) {}
 
   bool operator()(const ProfileRow& before, const ProfileRow& after) const {
     const double step_s = after.time_s - before.time_s;
@@ -43,7 +45,8 @@ class Succession {
   double longest_s_;
 };
 
-/// The rows with a day added after each midnight of a clock that counts to 24 h.
+/// The rows with a day added after each midnight of a clock that counts to 24
+/// h.
 Rows pastMidnight(Rows rows) {
   constexpr double kDay_s = 86400.0, kHalfDay_s = 43200.0;
   double added_s = 0.0;
@@ -66,7 +69,8 @@ Rows inOrder(Rows rows) {
   return rows;
 }
 
-/// Sequences without a jump in time. Up to three rows that do not fit are dropped if a later row fits.
+/// Sequences without a jump in time. Up to three rows that do not fit are
+/// dropped if a later row fits.
 std::vector<Rows> stretches(const Rows& rows, const Succession& follows, const PassOverRow& pass_over) {
   constexpr size_t kAhead = 3;
   std::vector<Rows> parts;
@@ -91,13 +95,13 @@ std::vector<Rows> stretches(const Rows& rows, const Succession& follows, const P
 
 }  // namespace
 
-std::vector<Rows> splitDives(const Rows& all, const PassOverRow& pass_over) {
-  constexpr size_t kFewestRows = 5;
+std::vector<Rows> splitDives(const Rows& all, bool has_stated_dives, const PassOverRow& pass_over) {
+  constexpr size_t kFewestRows = 5, kFewestOfStatedDive = 2;
   const Rows rows = pastMidnight(inOrder(all));
-  const Succession follows(rows);
+  const Succession follows(rows, has_stated_dives);
   std::vector<Rows> dives;
   for (Rows& part : stretches(rows, follows, pass_over)) {
-    if (part.size() < kFewestRows) {
+    if (part.size() < (has_stated_dives ? kFewestOfStatedDive : kFewestRows)) {
       for (const ProfileRow& row : part)
         pass_over(row, "its time fits neither the rows before nor those after");
     } else if (!dives.empty() && follows(dives.back().back(), part.front())) {

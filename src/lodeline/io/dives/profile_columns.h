@@ -16,8 +16,9 @@ struct ProfileColumns {
   std::optional<size_t> dive;  ///< number of the dive
 };
 
-/// The columns by their names; empty where none is the depth of each sample. Among several candidates, the
-/// first with the clearest name is used ("Sample Depth", then "Depth", then "Depth below surface").
+/// The columns by their names; empty where none is the depth of each sample.
+/// Among several candidates, the first with the clearest name is used ("Sample
+/// Depth", then "Depth", then "Depth below surface").
 std::optional<ProfileColumns> profileColumns(const std::vector<ColumnName>& names);
 
 }  // namespace lodeline

@@ -1,4 +1,4 @@
-#include "lodeline/output/survey/profile/depth_profile.h"
+#include "lodeline/io/dives/depth_profile.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,7 +6,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
-#include "lodeline/output/survey/profile/profile_time.h"
+#include "lodeline/io/dives/profile_time.h"
 
 namespace lodeline {
 namespace {
@@ -51,9 +51,10 @@ TEST_F(DepthProfileTest, KnowsTheUnitsOfItsHeader) {
 }
 
 TEST_F(DepthProfileTest, TakesTheColumnsOfEachSample) {
-  const DepthProfile profile = read(
-      rows("\"dive number\",\"date\",\"time\",\"max depth\",\"sample time (min)\",\"sample depth (m)\"\n",
-           "\"1\",\"2026-11-21\",\"12:00:00\",\"30\",\"0:{0:02}\",\"{0}.25\"\n"));
+  const DepthProfile profile =
+      read(rows("\"dive number\",\"date\",\"time\",\"max depth\",\"sample time "
+                "(min)\",\"sample depth (m)\"\n",
+                "\"1\",\"2026-11-21\",\"12:00:00\",\"30\",\"0:{0:02}\",\"{0}.25\"\n"));
   ASSERT_EQ(profile.readings.size(), 12U);
   EXPECT_EQ(profile.readings[7].time_s, 7.0);
   EXPECT_EQ(profile.readings[7].depth_m, 7.25);
@@ -86,7 +87,9 @@ TEST_F(DepthProfileTest, TakesTheDepthOfTheMomentAndNoOther) {
   };
   expectDepths("Time (s),Average Depth (m),Max Depth (m),Depth (m),Stop Depth (m)");
   expectDepths("Time (sec),avg_depth,Max Time,depth_m,First Stop Depth");
-  expectDepths("time [s],Mean Depth [m],Deco Ceiling Depth [m],Sample Depth [m],Depth [m]");
+  expectDepths(
+      "time [s],Mean Depth [m],Deco Ceiling Depth [m],Sample Depth "
+      "[m],Depth [m]");
   expectDepths("Zeit (s),Mittlere Tiefe (m),max. Tiefe (m),Tiefe (m),Temperatur");
   expectRefusal(rows("Time (s),Average Depth (m)\n", "{0}0,{0}.5\n"), "Average Depth");
 }
@@ -104,7 +107,8 @@ TEST_F(DepthProfileTest, KnowsOtherUnitsOfDepthAndRefusesUnknownOnes) {
 
 TEST_F(DepthProfileTest, ReadsQuotedDecimalCommas) {
   const std::string header =
-      "\"dive number\",\"time\",\"sample time (min)\",\"sample depth (m)\",\"sample heartrate\"\n";
+      "\"dive number\",\"time\",\"sample time (min)\",\"sample depth "
+      "(m)\",\"sample heartrate\"\n";
   const DepthProfile comma = read(rows(header, "\"7\",\"10:34:00\",\"0:{0:02}\",\"{0},2\",\n"));
   const DepthProfile point = read(rows(header, "\"7\",\"10:34:00\",\"0:{0:02}\",\"{0}.2\",\n"));
   ASSERT_EQ(comma.readings.size(), 12U);
@@ -114,10 +118,10 @@ TEST_F(DepthProfileTest, ReadsQuotedDecimalCommas) {
 
 TEST_F(DepthProfileTest, ReadsTheSecondHeaderOfAShearwater) {
   const auto text = [](const char* imperial) {
-    return rows(
-        std::string("Dive Number,Imperial Units,Start Date,Max Depth,Max Time\n60,") + imperial +
-            ",11/21/2026 10:34:00 AM,52.5,4\nTime (sec),Depth,First Stop Depth,Time To Surface (min)\n",
-        "{0}0,{0}.5,90,80\n");
+    return rows(std::string("Dive Number,Imperial Units,Start Date,Max Depth,Max Time\n60,") + imperial +
+                    ",11/21/2026 10:34:00 AM,52.5,4\nTime (sec),Depth,First Stop "
+                    "Depth,Time To Surface (min)\n",
+                "{0}0,{0}.5,90,80\n");
   };
   const DepthProfile metres = read(text("False")), feet = read(text("True"));
   ASSERT_EQ(metres.readings.size(), 12U);
@@ -128,12 +132,11 @@ TEST_F(DepthProfileTest, ReadsTheSecondHeaderOfAShearwater) {
 }
 
 TEST_F(DepthProfileTest, ReadsASeabearWithoutTimes) {
-  const DepthProfile profile = read(
-      rows(
-          "//SEABEAR DIVING TECHNOLOGY\n//Surface pressure: 0.970 bar\n//Log interval: 5 s\n\nDepth;NDT;TTS\n"
-          "1;1;1\n0;1;2\n\n",
-          "{0}.5;\n") +
-      "12.5;200;0\n");
+  const DepthProfile profile = read(rows("//SEABEAR DIVING TECHNOLOGY\n//Surface pressure: 0.970 "
+                                         "bar\n//Log interval: 5 s\n\nDepth;NDT;TTS\n"
+                                         "1;1;1\n0;1;2\n\n",
+                                         "{0}.5;\n") +
+                                    "12.5;200;0\n");
   ASSERT_EQ(profile.readings.size(), 13U);
   EXPECT_EQ(profile.readings[3].depth_m, 3.5);
   EXPECT_EQ(profile.readings[3].time_s - profile.readings[0].time_s, 15.0);
@@ -141,26 +144,30 @@ TEST_F(DepthProfileTest, ReadsASeabearWithoutTimes) {
 }
 
 TEST_F(DepthProfileTest, ReadsLogsInXml) {
-  const auto ssrf =
-      readAll(rows("<divelog program='subsurface' version='3'><dives><dive number='1'><divecomputer>\n",
-                   "<sample time='{0}:30 min' depth='{0}.25 m' temp='9.0 C'/>\n") +
-                  rows("</divecomputer></dive><dive number='2'><divecomputer model='x'>\n",
-                       "<sample time='0:{0:02} min' depth='{0}.5 m'/>\n") +
-                  "</divecomputer></dive></dives></divelog>\n",
-              "dives.ssrf");
+  const auto ssrf = readAll(rows("<divelog program='subsurface' version='3'><dives><dive "
+                                 "number='1'><divecomputer>\n",
+                                 "<sample time='{0}:30 min' depth='{0}.25 m' temp='9.0 C'/>\n") +
+                                rows("</divecomputer></dive><dive number='2'><divecomputer "
+                                     "model='x'>\n",
+                                     "<sample time='0:{0:02} min' depth='{0}.5 m'/>\n") +
+                                "</divecomputer></dive></dives></divelog>\n",
+                            "dives.ssrf");
   ASSERT_EQ(ssrf.size(), 2U);
   EXPECT_EQ(ssrf[0].readings[3].time_s, 210.0);
   EXPECT_EQ(ssrf[0].readings[3].depth_m, 3.25);
   EXPECT_EQ(ssrf[1].readings[3].time_s, 3.0);
   EXPECT_EQ(ssrf[1].dive, "lines 15 to 26");
-  const auto udcf =
-      readAll(rows("<profile udcf='1'><units>Imperial</units><repgroup><dive><samples><delta>30</delta>",
-                   "<d>{0}</d>") +
-              "</samples></dive></repgroup></profile>");
+  const auto udcf = readAll(rows("<profile "
+                                 "udcf='1'><units>Imperial</"
+                                 "units><repgroup><dive><samples><delta>30</delta>",
+                                 "<d>{0}</d>") +
+                            "</samples></dive></repgroup></profile>");
   EXPECT_EQ(udcf.at(0).readings[3].time_s, 90.0);
   EXPECT_NEAR(udcf[0].readings[3].depth_m, 3 * 0.3048, 1e-12);
-  const auto uddf = readAll(rows("<?xml version='1.0'?><uddf><profiledata><repetitiongroup><dive><samples>",
-                                 "<waypoint><depth>{0}.5</depth><divetime>{0}0</divetime></waypoint>") +
+  const auto uddf = readAll(rows("<?xml "
+                                 "version='1.0'?><uddf><profiledata><repetitiongroup><dive><samples>",
+                                 "<waypoint><depth>{0}.5</depth><divetime>{0}0</divetime></"
+                                 "waypoint>") +
                             "</samples></dive></repetitiongroup></profiledata></uddf>");
   EXPECT_EQ(uddf.at(0).readings[3].time_s, 30.0);
   EXPECT_EQ(uddf[0].readings[3].depth_m, 3.5);
@@ -223,7 +230,8 @@ TEST_F(DepthProfileTest, ReadsTimesInTheirUsualForms) {
   };
   EXPECT_EQ(steps("time,depth\n", "{0}0,{0}\n"), 30.0);
   EXPECT_EQ(steps("time_ms,depth\n", "{0}000,{0}\n"), 3.0);
-  EXPECT_EQ(steps("time,depth\n", "17950000{0:02}000,{0}\n"), 3.0);  // milliseconds since 1970
+  EXPECT_EQ(steps("time,depth\n", "17950000{0:02}000,{0}\n"),
+            3.0);  // milliseconds since 1970
   EXPECT_EQ(steps("time (min),depth\n", "{0},{0}\n"), 180.0);
   EXPECT_EQ(steps("time (h:mm),depth\n", "0:{0:02},{0}\n"), 180.0);
   EXPECT_EQ(steps("date,time,depth\n", "2026-11-21,10:34:{0:02},{0}\n"), 3.0);

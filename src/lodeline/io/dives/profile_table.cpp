@@ -8,11 +8,11 @@
 #include <string>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/dives/profile_columns.h"
+#include "lodeline/io/dives/profile_rows.h"
+#include "lodeline/io/dives/profile_time.h"
 #include "lodeline/io/tables/table_reader.h"
 #include "lodeline/io/tables/units.h"
-#include "lodeline/output/survey/profile/profile_columns.h"
-#include "lodeline/output/survey/profile/profile_rows.h"
-#include "lodeline/output/survey/profile/profile_time.h"
 #include "lodeline/util/time/time_unit.h"
 
 namespace lodeline {
@@ -27,8 +27,8 @@ std::string lowerCase(std::string_view text) {
   return result;
 }
 
-/// Whether the names are a header: with depth and time of each sample, or a plain "Depth" where the readings
-/// are evenly spaced.
+/// Whether the names are a header: with depth and time of each sample, or a
+/// plain "Depth" where the readings are evenly spaced.
 bool isProfileHeader(const std::vector<ColumnName>& names) {
   const std::optional<ProfileColumns> columns = profileColumns(names);
   if (!columns) return false;
@@ -57,8 +57,9 @@ ProfileColumns columnsOf(const TableReader& table, const std::string& file) {
       is_named ? fmt::format("the header '{}' names no", excerpt(table.unknownHeader())) : "there are no"));
 }
 
-/// Metres per unit from lines before the header: a column "Imperial Units" with True or False below, or a
-/// line such as "Units: imperial", "# depth unit: ft".
+/// Metres per unit from lines before the header: a column "Imperial Units" with
+/// True or False below, or a line such as "Units: imperial", "# depth unit:
+/// ft".
 std::optional<double> unitInPreamble(const std::vector<std::string>& preamble) {
   constexpr double kMetresPerFoot = 0.3048;
   for (size_t i = 0; i < preamble.size(); ++i) {
@@ -107,7 +108,8 @@ std::optional<double> depthUnit(const TableReader& table, size_t column, const s
     if (name == "msw") return 1.0;
     if (name == "fsw") return 0.3048;
     throw InputError(
-        fmt::format("{}: the depths are in '{}', which is no known unit of depth; give them in one of {}",
+        fmt::format("{}: the depths are in '{}', which is no "
+                    "known unit of depth; give them in one of {}",
                     file, unit.text, knownUnits(Quantity::Length)));
   }
   return unitInPreamble(table.preamble());
@@ -125,7 +127,8 @@ std::optional<double> depthFrom(std::string_view cell, std::optional<double>* me
   return number;
 }
 
-/// Times of readings: seconds for clocks and dates; plain numbers until their unit is known.
+/// Times of readings: seconds for clocks and dates; plain numbers until their
+/// unit is known.
 class Times {
  public:
   Times(const TableReader& table, const ProfileColumns& columns) : columns_(columns) {
@@ -142,7 +145,8 @@ class Times {
 
   bool canTell() const { return columns_.time || interval_s_; }
 
-  /// Time in seconds, or a number of unknown unit (then `is_number`); empty where the row has no time.
+  /// Time in seconds, or a number of unknown unit (then `is_number`); empty
+  /// where the row has no time.
   std::optional<double> of(const TableReader& table, size_t row, bool* is_number) const {
     *is_number = false;
     if (!columns_.time) return static_cast<double>(row) * *interval_s_;
@@ -158,8 +162,8 @@ class Times {
     return day_s && *day_s > 86400.0 ? *day_s + *time_s : *time_s;
   }
 
-  /// Seconds per plain number: from the column's unit, else seconds if that is a plausible interval of a dive
-  /// log.
+  /// Seconds per plain number: from the column's unit, else seconds if that is
+  /// a plausible interval of a dive log.
   double secondsPerNumber(const std::vector<double>& numbers) const {
     if (unit_) return static_cast<double>(nanosecondsPer(*unit_)) / 1e9;
     const double largest = numbers.empty() ? 0.0 : std::abs(numbers[numbers.size() / 2]);
@@ -177,7 +181,8 @@ class Times {
   bool counts_hours_ = false;
 };
 
-/// Removes a block of up to three rows before an empty line, whose columns have another meaning.
+/// Removes a block of up to three rows before an empty line, whose columns have
+/// another meaning.
 void dropBlockBefore(std::vector<ProfileRow>* rows, std::vector<bool>* are_numbers) {
   constexpr size_t kMostRows = 3;
   for (size_t i = 1; i <= kMostRows && i < rows->size(); ++i) {
@@ -202,7 +207,8 @@ ProfileRows readProfileTable(const std::filesystem::path& file, Diagnostics* dia
   const Times times(table, columns);
   if (!times.canTell()) {
     throw InputError(
-        fmt::format("{}: the header names a depth but no time; call the columns 'time [s]' and 'depth [m]'",
+        fmt::format("{}: the header names a depth but no time; "
+                    "call the columns 'time [s]' and 'depth [m]'",
                     file.string()));
   }
   profile.metres_per_unit = depthUnit(table, columns.depth, file.string());
@@ -218,6 +224,7 @@ ProfileRows readProfileTable(const std::filesystem::path& file, Diagnostics* dia
     }
     if (columns.dive && table.cell(*columns.dive) != dive_name) {
       dive_name = table.cell(*columns.dive);
+      profile.dives.push_back({dive_name, ""});
       ++dive;
     }
     profile.rows.push_back({*time, *depth, dive, table.line()});
