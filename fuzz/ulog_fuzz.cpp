@@ -1,5 +1,5 @@
 #include "fuzzed_file.h"
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 
 // Logs of PX4. The first bytes make every input a ULog file, so that the fuzzer searches behind the header.
 

@@ -10,7 +10,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/noise_report.h"
 #include "lodeline/pipeline/open_recording.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 #include "lodeline/io/streams/stream_rate.h"
 
 namespace lodeline {

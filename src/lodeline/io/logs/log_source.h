@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/readings/sensor_log.h"
 #include "lodeline/io/streams/imu_halves.h"
 #include "lodeline/recording.h"
 

@@ -11,7 +11,7 @@
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/folder_calibration.h"
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 #include "lodeline/io/streams/imu_halves.h"
 #include "lodeline/io/streams/inertial_screen.h"
 #include "lodeline/io/streams/ordered_stream.h"

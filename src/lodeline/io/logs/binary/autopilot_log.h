@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lodeline/io/logs/binary/log_channels.h"
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/readings/sensor_log.h"
 
 namespace lodeline {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lodeline/io/logs/files/log_tables.h"
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/readings/sensor_log.h"
 
 namespace lodeline {
 

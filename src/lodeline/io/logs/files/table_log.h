@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/readings/sensor_log.h"
 
 namespace lodeline {
 

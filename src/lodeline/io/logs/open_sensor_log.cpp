@@ -1,4 +1,4 @@
-#include "lodeline/io/logs/sensor_log.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 
 #include <array>
 #include <fstream>
