@@ -173,7 +173,6 @@ TEST_F(DepthProfileTest, ReadsLogsInXml) {
   EXPECT_EQ(uddf[0].readings[3].depth_m, 3.5);
   expectRefusal("<html><body/></html>", "<html>");
   expectRefusal("<divelog><dives><dive>", "damaged XML");
-  expectRefusal("FSH|^~\\&{}|ANST01^12X456^A|ZXU|\nZDP{\n|0|1|\n", "DL7");
 }
 
 TEST_F(DepthProfileTest, PassesOverWildTimesAndGoesOn) {

@@ -115,6 +115,7 @@ std::vector<Rows> splitDives(const Rows& all, bool has_stated_dives, const PassO
 
 void screenDepths(Rows* dive, const PassOverRow& pass_over) {
   constexpr double kTooDeep = 6.0, kJump = 2.0, kAboveWater = 0.05, kDeep = 0.25;
+  constexpr size_t kFewestToCompare = 10;
   std::vector<double> depths;
   for (const ProfileRow& row : *dive) depths.push_back(row.depth);
   const bool are_heights = quantileOf(depths, 0.5) < 0.0;
@@ -127,9 +128,9 @@ void screenDepths(Rows* dive, const PassOverRow& pass_over) {
     ProfileRow row = (*dive)[i];
     row.depth = depths[i] + 0.0;
     const double before = kept.empty() ? usual : kept.back().depth;
-    const double after = i + 1 < depths.size() ? depths[i + 1] : before;
-    const bool is_wild =
-        std::abs(row.depth) > kTooDeep * usual && std::abs(row.depth - before) > kJump * usual;
+    const double after = i + 1 < depths.size() ? depths[i + 1] : 0.0;
+    const bool is_wild = depths.size() >= kFewestToCompare && std::abs(row.depth) > kTooDeep * usual &&
+                         std::abs(row.depth - before) > kJump * usual;
     const bool is_gap = row.depth == 0.0 && before > kDeep * usual && after > kDeep * usual && !kept.empty();
     if (usual > 0.0 && (is_wild || is_gap || row.depth < -kAboveWater * usual)) {
       pass_over(row, "a depth that the diver cannot have had there");

@@ -64,6 +64,8 @@ std::optional<double> unitInPreamble(const std::vector<std::string>& preamble) {
   constexpr double kMetresPerFoot = 0.3048;
   for (size_t i = 0; i < preamble.size(); ++i) {
     const std::string line = lowerCase(preamble[i]);
+    // The logs of Seabear's computers name no unit, and are in metres.
+    if (line.starts_with("//seabear")) return 1.0;
     const Separator separator = separatorOf(line);
     std::vector<std::string_view> names, values;
     std::vector<std::string> unquoted, unquoted_values;
@@ -231,6 +233,11 @@ ProfileRows readProfileTable(const std::filesystem::path& file, Diagnostics* dia
     are_numbers.push_back(is_number);
   }
   dropBlockBefore(&profile.rows, &are_numbers);
+  if (!columns.time && !profile.rows.empty()) {
+    // Counted times begin with the first reading.
+    const double first_s = profile.rows.front().time_s;
+    for (ProfileRow& row : profile.rows) row.time_s -= first_s;
+  }
   std::vector<double> numbers;
   for (size_t i = 0; i < profile.rows.size(); ++i) {
     if (are_numbers[i]) numbers.push_back(profile.rows[i].time_s);

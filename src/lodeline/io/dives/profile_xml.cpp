@@ -247,18 +247,30 @@ bool declaresEntities(const xmlDoc* document) {
   return false;
 }
 
+struct FirstError {
+  int line = 0;
+  std::string message;
+};
+
 /// Parses without network, external files and entities.
 Document parse(const std::string& text, const std::string& name) {
-  xmlResetLastError();
-  Document document(xmlReadMemory(text.data(), static_cast<int>(text.size()), nullptr, nullptr,
-                                  XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING),
+  FirstError first;
+  const std::unique_ptr<xmlParserCtxt, decltype(&xmlFreeParserCtxt)> parser(xmlNewParserCtxt(),
+                                                                            xmlFreeParserCtxt);
+  if (parser == nullptr) throw InputError(name + ": no memory to read its XML");
+  parser->_private = &first;
+  parser->sax->serror = [](void* data, auto* error) {
+    auto* kept = static_cast<FirstError*>(static_cast<xmlParserCtxt*>(data)->_private);
+    if (error->level < XML_ERR_ERROR || kept->line != 0 || error->message == nullptr) return;
+    *kept = {error->line, error->message};
+    kept->message.erase(kept->message.find_last_not_of(" \r\n") + 1);
+  };
+  Document document(xmlCtxtReadMemory(parser.get(), text.data(), static_cast<int>(text.size()), nullptr,
+                                      nullptr, XML_PARSE_NONET),
                     xmlFreeDoc);
   if (document == nullptr || xmlDocGetRootElement(document.get()) == nullptr) {
-    const auto* error = xmlGetLastError();
-    const int line = error == nullptr ? 0 : error->line;
-    std::string why = error == nullptr || error->message == nullptr ? "" : error->message;
-    why.erase(why.find_last_not_of(" \r\n") + 1);
-    throw InputError(fmt::format("{}:{}: damaged XML ({}); export the dive anew", name, line, why));
+    throw InputError(
+        fmt::format("{}:{}: damaged XML ({}); export the dive anew", name, first.line, first.message));
   }
   if (declaresEntities(document.get()))
     throw InputError(name +

@@ -15,16 +15,16 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-DataFlash open(const std::string& bytes) { return DataFlash(bytesInMemory(bytes), "a.BIN"); }
+DataFlash openBin(const std::string& bytes) { return DataFlash(bytesInMemory(bytes), "a.BIN"); }
 
-struct Value {
+struct BinValue {
   double number = 0.0;
   std::string unit;
   int instance = 0;
 };
 
-std::vector<Value> valuesOf(DataFlash* log, const std::string& topic, const std::string& field) {
-  std::vector<Value> values;
+std::vector<BinValue> binValuesOf(DataFlash* log, const std::string& topic, const std::string& field) {
+  std::vector<BinValue> values;
   for (LogMessage message; log->next(&message);) {
     if (message.format->topic != topic) continue;
     const LogField* found = message.format->field(field);
@@ -35,19 +35,19 @@ std::vector<Value> valuesOf(DataFlash* log, const std::string& topic, const std:
 }
 
 std::vector<double> numbersOf(const std::string& bytes, const std::string& field) {
-  DataFlash log = open(bytes);
+  DataFlash log = openBin(bytes);
   std::vector<double> numbers;
-  for (const Value& value : valuesOf(&log, "TST", field)) numbers.push_back(value.number);
+  for (const BinValue& value : binValuesOf(&log, "TST", field)) numbers.push_back(value.number);
   return numbers;
 }
 
 /// A log with a type of one number a message.
-test::DataFlashBytes begun() {
+test::DataFlashBytes begunBin() {
   test::DataFlashBytes log;
   log.format(10, 15, "TST", "Qf", "TimeUS,V");
   return log;
 }
-std::string numbered(float value) { return raws<uint64_t, float>(1000, value); }
+std::string binNumber(float value) { return raws<uint64_t, float>(1000, value); }
 
 TEST(DataFlash, ReadsNumbersOfEveryCode) {
   test::DataFlashBytes log;
@@ -68,8 +68,8 @@ TEST(DataFlash, AppliesTheUnitsAndMultipliersOfTheLog) {
   test::DataFlashBytes log;
   log.units().format(10, 3 + 8 + 1 + 2 + 2, "TST", "QBhc", "TimeUS,I,Mag,Tmp").unitsOf(10, "s#G?", "F-CB");
   log.message(10, raws<uint64_t, uint8_t, int16_t, int16_t>(1000, 2, -345, 1250));
-  DataFlash field = open(log.bytes());
-  const std::vector<Value> values = valuesOf(&field, "TST", "Mag");
+  DataFlash field = openBin(log.bytes());
+  const std::vector<BinValue> values = binValuesOf(&field, "TST", "Mag");
   ASSERT_EQ(values.size(), 1U);
   EXPECT_NEAR(values[0].number, -0.345, 1e-12);
   EXPECT_EQ(values[0].unit, "Gauss");
@@ -79,11 +79,11 @@ TEST(DataFlash, AppliesTheUnitsAndMultipliersOfTheLog) {
 }
 
 TEST(DataFlash, ContinuesAfterDamage) {
-  test::DataFlashBytes log = begun();
-  log.message(10, numbered(1)).junk(std::string("\xA3\x95\x63", 3) + "zeros" + std::string(40, '\0'));
-  log.message(10, numbered(2));
-  DataFlash dataflash = open(log.bytes());
-  const std::vector<Value> values = valuesOf(&dataflash, "TST", "V");
+  test::DataFlashBytes log = begunBin();
+  log.message(10, binNumber(1)).junk(std::string("\xA3\x95\x63", 3) + "zeros" + std::string(40, '\0'));
+  log.message(10, binNumber(2));
+  DataFlash dataflash = openBin(log.bytes());
+  const std::vector<BinValue> values = binValuesOf(&dataflash, "TST", "V");
   ASSERT_EQ(values.size(), 2U);
   EXPECT_EQ(values[1].number, 2);
   EXPECT_EQ(dataflash.damage().places, 1);
@@ -91,23 +91,25 @@ TEST(DataFlash, ContinuesAfterDamage) {
 }
 
 TEST(DataFlash, TellsWhereItIsCutOff) {
-  test::DataFlashBytes log = begun();
-  log.message(10, numbered(1)).message(10, numbered(2));
+  test::DataFlashBytes log = begunBin();
+  log.message(10, binNumber(1)).message(10, binNumber(2));
   for (size_t cut = 1; cut < 15; ++cut) {
-    DataFlash dataflash = open(log.bytes().substr(0, log.bytes().size() - cut));
-    EXPECT_EQ(valuesOf(&dataflash, "TST", "V").size(), 1U) << cut;
+    DataFlash dataflash = openBin(log.bytes().substr(0, log.bytes().size() - cut));
+    EXPECT_EQ(binValuesOf(&dataflash, "TST", "V").size(), 1U) << cut;
     EXPECT_TRUE(dataflash.damage().is_cut_off) << cut;
   }
 }
 
 TEST(DataFlash, PassesOverDefinitionsWithAWrongLength) {
-  test::DataFlashBytes log = begun();
-  log.format(10, 14, "TST", "Qf", "TimeUS,V").format(11, 9, "BAD", "Q?", "TimeUS,V").message(10, numbered(7));
+  test::DataFlashBytes log = begunBin();
+  log.format(10, 14, "TST", "Qf", "TimeUS,V")
+      .format(11, 9, "BAD", "Q?", "TimeUS,V")
+      .message(10, binNumber(7));
   EXPECT_THAT(numbersOf(log.bytes(), "V"), ElementsAre(7));
 }
 
 TEST(DataFlash, RefusesOtherFiles) {
-  EXPECT_THAT([] { open("nothing"); }, ThrowsMessage<InputError>(HasSubstr("DataFlash")));
+  EXPECT_THAT([] { openBin("nothing"); }, ThrowsMessage<InputError>(HasSubstr("DataFlash")));
 }
 
 }  // namespace

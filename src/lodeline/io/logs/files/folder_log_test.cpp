@@ -91,7 +91,7 @@ TEST_F(FolderLogTest, ReadsTheZipThatATelephoneGives) {
 TEST_F(FolderLogTest, TellsOfDamageWithinAZip) {
   test::ZipBytes zip;
   zip.add("Magnetometer.csv",
-          rows("\"Time (s)\",\"X (\u00b5T)\",\"Y (\u00b5T)\",\"Z (\u00b5T)\"", "{0:.3f},20.{0:.5f},1.0,-40.0",
+          rows("\"Time (s)\",\"X (\u00b5T)\",\"Y (\u00b5T)\",\"Z (\u00b5T)\"", "{0:.3f},20.5,{0:.5f},-40.0",
                10.0),
           false);
   for (int i = 0; i < 30; ++i) zip.add(fmt::format("note{}.txt", i), "x");
