@@ -89,7 +89,13 @@ void PlainCsv::findColumns() {
   requireKnownUnits(Quantity::AngularRate, gyroscope_);
   requireKnownUnits(Quantity::SpecificForce, accelerometer_);
   requireKnownUnits(Quantity::MagneticField, magnetometer_);
-  if (magnetometer_ && !magnetometer_->unit.factor) magnetometer_->unit.factor = options_.field_unit_T;
+  if (!magnetometer_ || magnetometer_->unit.factor) return;
+  magnetometer_->unit.factor = options_.field_unit_T;
+  has_relative_field_ = found.has_relative_field && !options_.field_unit_T;
+  if (!has_relative_field_) return;
+  diagnostics_->report(
+      Severity::Warning, "magnetometer_relative",
+      name_ + ": the field of Xsens has no unit; 1 is the field where the maker calibrated it");
 }
 
 void PlainCsv::takeBareColumns(const TriadColumns& columns) {

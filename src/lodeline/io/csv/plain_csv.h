@@ -61,6 +61,8 @@ class PlainCsv {
   bool hasAccelerometer() const { return accelerometer_.has_value(); }
   bool hasMagnetometer() const { return magnetometer_.has_value(); }
   bool hasTimes() const { return time_.has_value(); }  ///< false: readings get stamps 10 ms apart
+  /// Whether the field is relative to that at the place of the maker's calibration, without a unit.
+  bool hasRelativeField() const { return has_relative_field_; }
   bool statesFieldUnit() const { return magnetometer_ && magnetometer_->unit.factor.has_value(); }
 
  private:
@@ -103,6 +105,7 @@ class PlainCsv {
   std::vector<TimeColumn> times_;  ///< time columns named in the header
   std::optional<TimeColumn> time_;
   std::optional<Triad> gyroscope_, accelerometer_, magnetometer_;
+  bool has_relative_field_ = false;
   std::optional<std::size_t> instance_column_;
   std::string instance_;   ///< instance of the sensor whose rows are used
   std::deque<Row> first_;  ///< rows read in advance, not yet returned

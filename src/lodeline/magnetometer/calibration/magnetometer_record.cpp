@@ -97,6 +97,7 @@ Reading readLog(const std::filesystem::path& file, const RecordOptions& options,
   }
   Reading reading;
   if (sensors.states_field_unit) reading.unit = FieldUnit::Tesla;
+  if (sensors.has_relative_field) reading.unit = FieldUnit::Raw;
   reading.record.has_times = sensors.has_times;
   std::deque<ImuSample> gyroscope, accelerometer;
   for (LogReading row; log->next(&row);) {
@@ -162,7 +163,7 @@ void settleUnit(const std::string& data, const RecordOptions& options, std::opti
             : fmt::format("{}: no unit stated; by the field's size, {:.4g}, it is {} (--unit says "
                           "otherwise)",
                           data, size, toString(by_size)));
-  } else if (by_size != *stated) {
+  } else if (by_size != *stated && *stated != FieldUnit::Raw) {
     const bool other = by_size != FieldUnit::Raw;
     if (other) unit = by_size;
     diagnostics->report(Severity::Warning, "magnetometer_unit",

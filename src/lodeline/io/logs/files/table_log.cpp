@@ -11,6 +11,7 @@ TableLog::TableLog(const std::filesystem::path& file, const PlainCsvOptions& opt
   sensors_.has_whole_imu = sensors_.has_gyroscope && sensors_.has_accelerometer;
   sensors_.has_times = csv_.hasTimes();
   sensors_.states_field_unit = csv_.statesFieldUnit();
+  sensors_.has_relative_field = csv_.hasRelativeField();
 }
 
 bool TableLog::next(LogReading* reading) {

@@ -20,6 +20,7 @@ struct LogSensors {
   bool has_times = true;  ///< false: the stamps only number the readings, 10 ms apart
   /// Whether the unit of the field is known. Otherwise the readings have the numbers of the file.
   bool states_field_unit = false;
+  bool has_relative_field = false;  ///< see PlainCsv::hasRelativeField()
 };
 
 /// A log of inertial, magnetic and other readings, read once from its beginning to its end.
