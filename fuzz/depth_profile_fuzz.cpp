@@ -1,7 +1,7 @@
 #include "fuzzed_file.h"
-#include "lodeline/output/survey/profile/depth_profile.h"
+#include "lodeline/io/dives/depth_profile.h"
 
-// Depth profiles of dive computers: tables and logs in XML.
+// Depth profiles of dive computers: tables, XML, DL7 and archives of them.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lodeline;

@@ -8,9 +8,9 @@
 
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/csv/plain_csv.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/noise_report.h"
 #include "lodeline/pipeline/open_recording.h"
@@ -106,13 +106,13 @@ void readBag(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses
   throw InputError(arguments.data + ": holds no readings of an IMU or a magnetometer");
 }
 
-void readFile(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
-  PlainCsv file(arguments.data, diagnostics);
-  analyses->has_gyroscope = file.hasGyroscope();
-  analyses->has_accelerometer = file.hasAccelerometer();
-  analyses->has_magnetometer = file.hasMagnetometer();
-  PlainReading reading;
-  for (Part part(arguments); file.next(&reading);) {
+void readLog(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
+  const std::unique_ptr<SensorLog> log = openSensorLog(arguments.data, {}, diagnostics);
+  analyses->has_gyroscope = log->sensors().has_gyroscope;
+  analyses->has_accelerometer = log->sensors().has_accelerometer;
+  analyses->has_magnetometer = log->sensors().has_magnetometer;
+  LogReading reading;
+  for (Part part(arguments); log->next(&reading);) {
     if (!part.holds(reading.time)) continue;
     if (reading.angular_velocity) analyses->gyroscope.add(reading.time, *reading.angular_velocity);
     if (reading.specific_force) analyses->accelerometer.add(reading.time, *reading.specific_force);
@@ -137,10 +137,10 @@ void allan(const AllanArguments& arguments) {
   Analyses analyses(&diagnostics);
   refuseBagOptions(arguments.data, arguments.bag);
   refuseRigOfFolder(arguments.data, arguments.bag);
-  if (isTableOfReadings(arguments.data)) {
-    readFile(arguments, &diagnostics, &analyses);
-  } else if (isBag(arguments.data)) {
+  if (isBag(arguments.data)) {
     readBag(arguments, &diagnostics, &analyses);
+  } else if (isSensorLog(arguments.data)) {
+    readLog(arguments, &diagnostics, &analyses);
   } else {
     readFolder(arguments, &diagnostics, &analyses);
   }
@@ -172,8 +172,7 @@ void addAllanCommand(CLI::App& program) {
   command
       ->add_option("DATA", arguments->data,
                    "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras and calibration may be "
-                   "missing; or a CSV "
-                   "file")
+                   "missing; or a sensor log: a CSV file, a folder or zip of them, a log of PX4 or ArduPilot")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,

@@ -9,7 +9,6 @@
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/inspection/start_check.h"
-#include "lodeline/io/csv/plain_source.h"
 #include "lodeline/io/streams/ordered_stream.h"
 #include "lodeline/io/streams/time_span.h"
 #include "lodeline/io/synchronizer/inertial_stream.h"
@@ -56,9 +55,6 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
 
 std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
-  if (isTableOfReadings(arguments.data)) {
-    return prepared(std::make_unique<PlainSource>(arguments.data, diagnostics), arguments, diagnostics);
-  }
   EurocOptions options;
   options.with_cameras = false;
   return prepared(openRecording(arguments.data, options, arguments.bag, diagnostics), arguments, diagnostics);
@@ -160,8 +156,10 @@ void addAttitudeCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "attitude", "Orientation and heading from gyroscope, accelerometer and magnetometer, without images");
   command
-      ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras may be missing; or a CSV file")
+      ->add_option(
+          "DATA", arguments->data,
+          "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras may be missing; or a sensor log: a CSV "
+          "file, a folder or zip of them, a log of PX4 or ArduPilot")
       ->required();
   addBagOptions(&arguments->bag, command);
   command

@@ -17,7 +17,6 @@
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 
@@ -26,8 +25,8 @@ namespace {
 
 const char* const kCalibrateFooter =
     R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
-ROS bag (--rig may be missing; the noise of a usual IMU is assumed then),
-a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
+ROS bag (--rig may be missing; the noise of a usual IMU is assumed then), a log of PX4 or ArduPilot, a folder or zip of
+CSV files of a telephone, a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
 How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
 while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure.
 Examples:
@@ -93,8 +92,7 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
 MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
   refuseRigOfFolder(arguments.data, arguments.bag);
-  const bool is_packed = recognizeFile(arguments.data).kind == FileKind::Compressed;
-  if (is_packed || isTableOfReadings(arguments.data) || !isBag(arguments.data)) {
+  if (!isBag(arguments.data)) {
     return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
   }
   const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
@@ -154,7 +152,8 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
       "magnetometer",
       "Soft iron, hard iron, rotation to the IMU and lag, with their uncertainties and a verdict");
   command
-      ->add_option("DATA", arguments->data, "recording, ROS bag, CSV file or, with --compare, a calibration")
+      ->add_option("DATA", arguments->data,
+                   "recording, ROS bag, sensor log, CSV file or, with --compare, a calibration")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,

@@ -13,7 +13,6 @@
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/inspection/inspection_report.h"
-#include "lodeline/io/csv/plain_source.h"
 #include "lodeline/io/rosbag/bag_kinds.h"
 #include "lodeline/io/rosbag/bag_listing.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
@@ -58,10 +57,6 @@ void listBag(const InspectArguments& arguments) {
 /// Opens a recording, even if no estimate is possible from it.
 std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& arguments,
                                                    Diagnostics* diagnostics) {
-  if (isTableOfReadings(arguments.data)) {
-    refuseBagOptions(arguments.data, arguments.bag);
-    return std::make_unique<PlainSource>(arguments.data, diagnostics);
-  }
   EurocOptions options;
   options.needs_cameras = options.needs_imu = options.needs_calibration = false;
   return openRecording(arguments.data, options, arguments.bag, diagnostics);
@@ -88,9 +83,10 @@ void addInspectCommand(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("inspect", "Tell what is wrong with a recording, the most harmful first");
   command
-      ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout), a ROS bag (.bag, .mcap, .db3, or the folder of a "
-                   "ROS 2 bag), or a CSV file of IMU readings")
+      ->add_option(
+          "DATA", arguments->data,
+          "folder with mav0 (EuRoC ASL layout), a ROS bag (.bag, .mcap, .db3, or the folder of a "
+          "ROS 2 bag), or a sensor log: a CSV file, a folder or zip of them, a log of PX4 or ArduPilot")
       ->required();
   addBagOptions(&arguments->bag, command);
   command

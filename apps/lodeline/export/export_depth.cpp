@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/dives/dive_choice.h"
 #include "lodeline/output/survey/depth/profile_fit.h"
 #include "lodeline/output/survey/map/map_times.h"
 
@@ -23,12 +24,16 @@ std::string comparisonCsv(const std::vector<DepthComparison>& pairs) {
 }
 
 std::string describeAlignment(const DepthProfile& profile, const DepthAlignment& alignment) {
+  const DiveLabel& label = profile.label;
+  const std::string dive =
+      label.number + (label.number.empty() || label.start.empty() ? "" : " of ") + label.start;
   return fmt::format(
-      "depth profile: {}, its time + {:.2f} s (+- {:.2f} s) is the run's; {:.0f} s in common, first pose "
+      "depth profile: {}{}, depths in {}, its time + {:.2f} s (+- {:.2f} s) is the run's; {:.0f} s in "
+      "common, first pose "
       "{:.2f} m "
       "deep, rms of the differences {:.3f} m, profile / run {:.3f}",
-      profile.name, alignment.lag_s, alignment.lag_sigma_s, alignment.common_s, alignment.start_depth_m,
-      alignment.rms_m, alignment.slope);
+      profile.name, dive.empty() ? "" : ", dive " + dive, profile.unit, alignment.lag_s,
+      alignment.lag_sigma_s, alignment.common_s, alignment.start_depth_m, alignment.rms_m, alignment.slope);
 }
 
 /// Reports a difference between the start depths of the profile and of the run's own sensor. The profile's is
@@ -50,7 +55,12 @@ void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
   CLI::Option* file = command->add_option("--depth-profile", arguments->file,
                                           "log of a dive computer or a diver (CSV with time and depth, "
-                                          "Subsurface, UDDF, UDCF); compared with the run");
+                                          "Subsurface, UDDF, UDCF, Suunto, DL7); compared with the run");
+  command
+      ->add_option(
+          "--dive", arguments->dive,
+          "number of the dive in that log, or the start of its date (2026-11-21, \"2026-11-21 10:34\")")
+      ->needs(file);
   command->add_flag("--correct-depth", arguments->correct, "take the vertical from that profile")
       ->needs(file);
   command
@@ -63,8 +73,9 @@ std::string applyDepthProfile(const DepthProfileArguments& arguments, RunFolder*
                               Diagnostics* diagnostics) {
   if (!std::isfinite(arguments.lag_s.value_or(0.0)))
     throw UsageError("--profile-lag: a number of seconds is wanted");
-  const ProfileFit fit = fitProfile(readDepthProfiles(arguments.file, diagnostics), run->trajectory,
-                                    arguments.lag_s, diagnostics);
+  const std::vector<DepthProfile> dive =
+      chooseDive(readDepthProfiles(arguments.file, diagnostics), arguments.dive);
+  const ProfileFit fit = fitProfile(dive, run->trajectory, arguments.lag_s, diagnostics);
   const DepthProfile& profile = fit.profile;
   const DepthAlignment& alignment = fit.alignment;
   if (!alignment.doubt.empty()) {

@@ -12,6 +12,7 @@ namespace lodeline {
 /// Arguments of `lodeline export` for a depth profile.
 struct DepthProfileArguments {
   std::string file;  ///< empty for none
+  std::string dive;  ///< number or date; empty where the log has one
   bool correct = false;
   std::optional<double> lag_s;
 };

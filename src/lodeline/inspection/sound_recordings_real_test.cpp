@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "lodeline/inspection/inspection_report.h"
-#include "lodeline/io/csv/plain_source.h"
+#include "lodeline/io/logs/log_source.h"
 #include "lodeline/util/files/test_data.h"
 
 // Recordings without faults and images, from other manufacturers and sensors: there must be no findings.
@@ -61,7 +61,7 @@ class SoundRecordings : public testing::TestWithParam<SoundRecording> {
 
 TEST_P(SoundRecordings, NothingIsFoundWrong) {
   const Inspection inspection =
-      inspect([&](Diagnostics* diagnostics) { return std::make_unique<PlainSource>(file_, diagnostics); },
+      inspect([&](Diagnostics* diagnostics) { return std::make_unique<LogSource>(file_, diagnostics); },
               InspectionOptions());
   EXPECT_THAT(inspectionText(inspection),
               AllOf(StartsWith("nothing found that would hurt"), HasSubstr("there are no images"),

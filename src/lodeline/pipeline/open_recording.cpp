@@ -7,6 +7,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/io/logs/log_source.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {
@@ -44,17 +45,6 @@ bool isBag(const std::filesystem::path& data) {
   return extension == ".bag" || extension == ".mcap" || extension == ".db3" || name.ends_with(".bag.active");
 }
 
-bool isTableOfReadings(const std::filesystem::path& data) {
-  const RecognizedFile recognized = recognizeFile(data);
-  if (recognized.isFolder() || isBag(data)) return false;  // their readers report a missing one
-  if (recognized.kind != FileKind::Table && recognized.kind != FileKind::Text) {
-    refuseFile(
-        recognized,
-        "give a folder with mav0, a ROS bag, or a CSV file of readings (docs/reference/file-formats.md)");
-  }
-  return true;
-}
-
 void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments) {
   if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data) || isBag(data)) return;
   throw UsageError(
@@ -89,6 +79,8 @@ std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics) {
   if (!isBag(data)) {
     refuseBagOptions(data, bag_arguments);
+    const bool wants_images = options.with_cameras && options.needs_cameras;
+    if (!wants_images && isSensorLog(data)) return std::make_unique<LogSource>(data, diagnostics);
     EurocOptions folder_options = options;
     folder_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
     return std::make_unique<EurocSource>(data, folder_options, diagnostics);

@@ -26,10 +26,6 @@ std::map<std::string, std::string> topicsOf(const BagArguments& arguments);
 /// Whether a path is a ROS 1 bag, by its content, or by its name if it does not exist.
 bool isBag(const std::filesystem::path& data);
 
-/// Whether a path is a file with a table of readings; false for bags and folders. Throws InputError, with its
-/// kind, for any other file.
-bool isTableOfReadings(const std::filesystem::path& data);
-
 /// Throws UsageError for --topic where `data` is not a bag, and for --rig where it is neither a bag nor a
 /// folder.
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments);
@@ -42,8 +38,9 @@ void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& ba
 std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
                                            const BagArguments& bag_arguments, Diagnostics* diagnostics);
 
-/// Opens a folder in the EuRoC ASL layout, or a ROS 1 bag. Throws as EurocSource and BagSource do, and
-/// UsageError for --topic with a folder. `diagnostics` must outlive the source.
+/// Opens a folder in the EuRoC ASL layout, a bag or, where `options` need no cameras, a sensor log. Throws as
+/// EurocSource, BagSource and LogSource do, and UsageError for --topic without a bag. `diagnostics` must
+/// outlive the source.
 std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics);
 

@@ -20,7 +20,7 @@ constexpr char kExample[] = "`t [s], wx [rad/s], wy [rad/s], wz [rad/s], ax [m/s
 
 bool namesSensors(const std::vector<ColumnName>& columns, const PlainCsvOptions& options) {
   const SensorColumns found = findSensorColumns(columns);
-  const bool has_unnamed = options.is_magnetometer && found.unnamed;
+  const bool has_unnamed = (options.is_magnetometer || options.bare_columns) && found.unnamed;
   const bool has_triad = found.angular_rate || found.specific_force || found.field || has_unnamed;
   return has_triad && (!found.times.empty() || options.is_magnetometer);
 }
@@ -79,12 +79,7 @@ void PlainCsv::findColumns() {
   take(found.angular_rate, &gyroscope_);
   take(found.specific_force, &accelerometer_);
   take(found.field, &magnetometer_);
-  if (!magnetometer_ && options_.is_magnetometer && found.unnamed) {
-    take(found.unnamed, &magnetometer_);
-    diagnostics_->report(Severity::Notice, "csv_columns",
-                         fmt::format("{}: the columns {} name no sensor; taken for the magnetometer", name_,
-                                     found.unnamed->name));
-  }
+  if (found.unnamed) takeBareColumns(*found.unnamed);
   for (const std::string& unused : found.unused) {
     diagnostics_->report(
         Severity::Notice, "csv_columns",
@@ -94,6 +89,28 @@ void PlainCsv::findColumns() {
   requireKnownUnits(Quantity::AngularRate, gyroscope_);
   requireKnownUnits(Quantity::SpecificForce, accelerometer_);
   requireKnownUnits(Quantity::MagneticField, magnetometer_);
+  if (!magnetometer_ || magnetometer_->unit.factor) return;
+  magnetometer_->unit.factor = options_.field_unit_T;
+  has_relative_field_ = found.has_relative_field && !options_.field_unit_T;
+  if (!has_relative_field_) return;
+  diagnostics_->report(
+      Severity::Warning, "magnetometer_relative",
+      name_ + ": the field of Xsens has no unit; 1 is the field where the maker calibrated it");
+}
+
+void PlainCsv::takeBareColumns(const TriadColumns& columns) {
+  if (!options_.is_magnetometer && !options_.bare_columns) return;
+  const Quantity quantity = options_.bare_columns.value_or(Quantity::MagneticField);
+  std::optional<Triad>& triad = quantity == Quantity::AngularRate     ? gyroscope_
+                                : quantity == Quantity::SpecificForce ? accelerometer_
+                                                                      : magnetometer_;
+  if (triad) return;
+  triad = Triad{columns, 1.0};
+  triad->unit = statedUnit(table_.columns()[columns.column[0]], quantity);
+  if (options_.bare_columns) return;
+  diagnostics_->report(
+      Severity::Notice, "csv_columns",
+      fmt::format("{}: the columns {} name no sensor; taken for the magnetometer", name_, columns.name));
 }
 
 void PlainCsv::requireKnownUnits(Quantity quantity, const std::optional<Triad>& triad) const {

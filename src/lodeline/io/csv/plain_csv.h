@@ -27,6 +27,10 @@ struct PlainCsvOptions {
   /// The table belongs to a magnetometer. Columns x, y, z without a sensor name then hold the field, the
   /// field keeps its numbers where no unit is stated, and times may be missing.
   bool is_magnetometer = false;
+  /// Quantity of columns x, y, z without a sensor name, where the name of the file states it.
+  std::optional<Quantity> bare_columns = std::nullopt;
+  /// Tesla per unit of a field without a stated unit, where the documentation of the program states it.
+  std::optional<double> field_unit_T = std::nullopt;
 };
 
 /// Reads a single table (TableReader) row by row. It has a time and readings of gyroscope, accelerometer and
@@ -57,6 +61,8 @@ class PlainCsv {
   bool hasAccelerometer() const { return accelerometer_.has_value(); }
   bool hasMagnetometer() const { return magnetometer_.has_value(); }
   bool hasTimes() const { return time_.has_value(); }  ///< false: readings get stamps 10 ms apart
+  /// Whether the field is relative to that at the place of the maker's calibration, without a unit.
+  bool hasRelativeField() const { return has_relative_field_; }
   bool statesFieldUnit() const { return magnetometer_ && magnetometer_->unit.factor.has_value(); }
 
  private:
@@ -79,6 +85,7 @@ class PlainCsv {
   static const std::array<UnitGuess, 5> kFieldGuesses;
 
   void findColumns();
+  void takeBareColumns(const TriadColumns& columns);
   void assumeColumns();
   void requireKnownUnits(Quantity quantity, const std::optional<Triad>& triad) const;
   void readFirstRows();
@@ -98,6 +105,7 @@ class PlainCsv {
   std::vector<TimeColumn> times_;  ///< time columns named in the header
   std::optional<TimeColumn> time_;
   std::optional<Triad> gyroscope_, accelerometer_, magnetometer_;
+  bool has_relative_field_ = false;
   std::optional<std::size_t> instance_column_;
   std::string instance_;   ///< instance of the sensor whose rows are used
   std::deque<Row> first_;  ///< rows read in advance, not yet returned

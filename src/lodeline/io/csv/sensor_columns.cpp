@@ -172,8 +172,13 @@ SensorColumns findSensorColumns(const std::vector<ColumnName>& columns) {
     const bool is_instance = words == std::vector<std::string>{"i"} || columns[i].hasWord({"instance"}) ||
                              words == std::vector<std::string>{"device", "id"};
     if (is_instance && !result.instance) result.instance = i;
+    const bool is_xsens = words == std::vector<std::string>{"packet", "counter"} ||
+                          words == std::vector<std::string>{"sample", "time", "fine"};
+    result.has_relative_field = result.has_relative_field || is_xsens;
   }
   return result;
 }
+
+std::optional<Quantity> quantityOfName(const ColumnName& name) { return quantityByWords(name, ""); }
 
 }  // namespace lodeline

@@ -25,6 +25,8 @@ struct SensorColumns {
   std::optional<TriadColumns> unnamed;
   /// Column with the number of the sensor, in tables with rows of several sensors.
   std::optional<std::size_t> instance;
+  /// Whether the field is in units of that at the place of the maker's calibration (Xsens).
+  bool has_relative_field = false;
   /// Names of redundant triads, whose quantity is already in another triad.
   std::vector<std::string> unused;
 };
@@ -34,5 +36,8 @@ struct SensorColumns {
 /// f; m, b) or the unit (`X (µT)`) identifies the sensor. Biases, offsets, covariances, gravity and
 /// accelerations without gravity do not count as readings.
 SensorColumns findSensorColumns(const std::vector<ColumnName>& columns);
+
+/// The sensor that the words of a name state, such as the name of a file: "Gyroscope", "TotalAcceleration".
+std::optional<Quantity> quantityOfName(const ColumnName& name);
 
 }  // namespace lodeline

@@ -174,6 +174,11 @@ TEST(SensorColumns, KeepTriadsTogetherAndNameTheOthers) {
   EXPECT_THAT(two.unused, ElementsAre("mag2_x, mag2_y, mag2_z"));
 }
 
+TEST(SensorColumns, KnowThatTheFieldOfXsensHasNoUnit) {
+  EXPECT_TRUE(find("PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Mag_X,Mag_Y,Mag_Z").has_relative_field);
+  EXPECT_FALSE(find("t,mag_x,mag_y,mag_z").has_relative_field);
+}
+
 TEST(SensorColumns, KnowPartsOfTimesAndInstances) {
   const TimeColumn stamp = find("Time,header.stamp.secs,header.stamp.nsecs,mx,my,mz").times.front();
   EXPECT_EQ(stamp.column, 1u);

@@ -11,7 +11,7 @@
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/images/grey_range.h"
 #include "lodeline/io/rosbag/container/bag_file.h"
-#include "lodeline/io/rosbag/imu_halves.h"
+#include "lodeline/io/rosbag/imu_content.h"
 #include "lodeline/io/rosbag/messages.h"
 #include "lodeline/io/rosbag/topic_choice.h"
 #include "lodeline/recording.h"

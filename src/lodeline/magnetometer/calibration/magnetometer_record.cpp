@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <memory>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/csv/plain_csv.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/folder_calibration.h"
+#include "lodeline/io/logs/open_sensor_log.h"
+#include "lodeline/io/streams/imu_halves.h"
 #include "lodeline/io/streams/inertial_screen.h"
 #include "lodeline/io/streams/ordered_stream.h"
 #include "lodeline/io/streams/time_span.h"
@@ -80,26 +83,40 @@ Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) 
   return reading;
 }
 
-Reading readFile(const std::filesystem::path& file, const RecordOptions& options, Diagnostics* diagnostics) {
+Reading readLog(const std::filesystem::path& file, const RecordOptions& options, Diagnostics* diagnostics) {
   PlainCsvOptions table;
   table.is_magnetometer = true;
-  PlainCsv csv(file, diagnostics, table);
-  if (!csv.hasMagnetometer()) {
+  const std::unique_ptr<SensorLog> log = openSensorLog(file, table, diagnostics);
+  const LogSensors& sensors = log->sensors();
+  if (!sensors.has_magnetometer) {
     throw InputError(file.string() + ": names no magnetometer columns (mx, my, mz, or x, y, z)");
   }
-  if (options.unit && csv.statesFieldUnit()) {
+  if (options.unit && sensors.states_field_unit) {
     throw UsageError(file.string() +
                      ": --unit is for files that state no unit; correct the unit in its header");
   }
   Reading reading;
-  if (csv.statesFieldUnit()) reading.unit = FieldUnit::Tesla;
-  reading.record.has_times = csv.hasTimes();
-  const bool has_imu = csv.hasTimes() && csv.hasGyroscope() && csv.hasAccelerometer();
-  for (PlainReading row; csv.next(&row);) {
+  if (sensors.states_field_unit) reading.unit = FieldUnit::Tesla;
+  if (sensors.has_relative_field) reading.unit = FieldUnit::Raw;
+  reading.record.has_times = sensors.has_times;
+  std::deque<ImuSample> gyroscope, accelerometer;
+  for (LogReading row; log->next(&row);) {
     if (row.field) reading.record.magnetometer.push_back({row.time, *row.field});
-    if (!has_imu || !row.angular_velocity || !row.specific_force) continue;
-    if (!reading.record.imu.empty() && row.time <= reading.record.imu.back().time) continue;
-    reading.record.imu.push_back({row.time, *row.angular_velocity, *row.specific_force});
+    if (row.angular_velocity) gyroscope.push_back({row.time, *row.angular_velocity, Vec3::Zero()});
+    if (row.specific_force) accelerometer.push_back({row.time, Vec3::Zero(), *row.specific_force});
+  }
+  if (!sensors.has_times) return reading;
+  ImuHalves halves;
+  const auto take = [](std::deque<ImuSample>* from) -> std::optional<ImuSample> {
+    if (from->empty()) return std::nullopt;
+    const ImuSample first = from->front();
+    from->pop_front();
+    return first;
+  };
+  while (const auto sample =
+             halves.next([&] { return take(&gyroscope); }, [&] { return take(&accelerometer); })) {
+    const bool is_later = reading.record.imu.empty() || sample->time > reading.record.imu.back().time;
+    if (is_later) reading.record.imu.push_back(*sample);
   }
   return reading;
 }
@@ -146,7 +163,7 @@ void settleUnit(const std::string& data, const RecordOptions& options, std::opti
             : fmt::format("{}: no unit stated; by the field's size, {:.4g}, it is {} (--unit says "
                           "otherwise)",
                           data, size, toString(by_size)));
-  } else if (by_size != *stated) {
+  } else if (by_size != *stated && *stated != FieldUnit::Raw) {
     const bool other = by_size != FieldUnit::Raw;
     if (other) unit = by_size;
     diagnostics->report(Severity::Warning, "magnetometer_unit",
@@ -212,8 +229,7 @@ MagnetometerRecord readMagnetometerRecord(MeasurementSource& source, const std::
 
 MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
                                           Diagnostics* diagnostics) {
-  Reading reading = std::filesystem::is_regular_file(data) ? readFile(data, options, diagnostics)
-                                                           : readFolder(data, diagnostics);
+  Reading reading = isSensorLog(data) ? readLog(data, options, diagnostics) : readFolder(data, diagnostics);
   return settled(std::move(reading), data.string(), options, diagnostics);
 }
 

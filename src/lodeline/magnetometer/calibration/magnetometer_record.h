@@ -30,7 +30,7 @@ struct MagnetometerRecord {
 };
 
 /// Reads the magnetometer and, where it exists, the IMU from a recording or a table. `data` is a folder in
-/// the EuRoC ASL layout (mav0/mag0 and mav0/imu0, no sensor.yaml required) or a table (PlainCsv). A table
+/// the EuRoC ASL layout (mav0/mag0 and mav0/imu0, no sensor.yaml required) or a sensor log. A table
 /// with a header may have the magnetometer in columns x, y, z. Without a header, its rows are `t mx my mz` or
 /// `mx my mz`. A missing unit is determined from the field magnitude, and a contradicting one is corrected,
 /// both with a warning. Throws InputError where there are no magnetometer readings. Throws UsageError where

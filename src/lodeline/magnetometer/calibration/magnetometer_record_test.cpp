@@ -52,6 +52,19 @@ TEST_F(MagnetometerRecordTest, TellsTheUnitOfBareRowsByTheirSize) {
   }
 }
 
+TEST_F(MagnetometerRecordTest, TakesTheFieldOfXsensAsRaw) {
+  // 45 uT as a share of 50 uT: by its size it would be gauss.
+  folder_.write("mtx.txt",
+                "// Update Rate: 100.0Hz\nPacketCounter,SampleTimeFine,Mag_X,Mag_Y,Mag_Z\n" +
+                    rows(1.0 / 50e-6, [](int i) { return fmt::format("{},{},", i, 5000 + 100 * i); }));
+  const MagnetometerRecord record = read("mtx.txt");
+  EXPECT_TRUE(record.is_raw);
+  EXPECT_TRUE(record.has_times);
+  EXPECT_EQ((record.magnetometer[1].time - record.magnetometer[0].time).seconds(), 0.01);
+  EXPECT_NEAR(record.magnetometer[7].field_M.x(), 0.9 * test::cloud({}, 100)[7].x(), 1e-5);
+  EXPECT_EQ(diagnostics_.count("magnetometer_relative"), 1);
+}
+
 TEST_F(MagnetometerRecordTest, TakesTheUnitThatIsGiven) {
   folder_.write("rows.txt", rows(1e6, none));
   RecordOptions options;

@@ -19,6 +19,8 @@ using namespace std::string_view_literals;
 constexpr const char* kFilm =
     "a film holds no stamps and no readings that Lodeline reads; record images with stamps and an IMU (a ROS "
     "bag, or a folder with mav0: docs/reference/file-formats.md)";
+constexpr const char* kLogUse =
+    "it holds no images; `lodeline attitude`, `allan`, `inspect` and `calibrate magnetometer` read it";
 constexpr const char* kUnpack = "unpack it and give the folder or the bag that it holds";
 
 /// Magic bytes at an offset that identify a kind of file.
@@ -64,10 +66,8 @@ constexpr std::array kSignatures = {
     Signature{0, "\x89HDF\r\n"sv, FileKind::Document, "an HDF5 file", "write its readings as CSV"},
     Signature{0, "\x93NUMPY"sv, FileKind::Document, "a NumPy array", "write its rows with numpy.savetxt"},
     Signature{0, "MATLAB 5.0"sv, FileKind::Document, "a MATLAB file", "write its readings as CSV"},
-    Signature{0, "\xA3\x95"sv, FileKind::Document, "a log of ArduPilot",
-              "write its readings as CSV (mavlogdump.py --types IMU,MAG --format csv)"},
-    Signature{0, "ULog\1\x12\x35"sv, FileKind::Document, "a log of PX4",
-              "write its readings as CSV (ulog2csv)"},
+    Signature{0, "\xA3\x95"sv, FileKind::SensorLog, "a log of ArduPilot", kLogUse},
+    Signature{0, "ULog\1\x12\x35"sv, FileKind::SensorLog, "a log of PX4", kLogUse},
     Signature{0,
               "\x7F"
               "ELF"sv,

@@ -21,6 +21,7 @@ enum class FileKind {
   Archive,     ///< zip, tar, 7z, rar
   Compressed,  ///< one file compressed with gzip, bzip2, xz or zstd
   Video,
+  SensorLog,  ///< binary log of an autopilot
   Image,
   Document,  ///< PDF, HDF5, NumPy: recognized, but not usable by Lodeline
   Binary,    ///< bytes of an unknown kind

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/output/survey/profile/depth_profile.h"
+#include "lodeline/io/dives/depth_profile.h"
 #include "lodeline/survey.h"
 
 namespace lodeline {

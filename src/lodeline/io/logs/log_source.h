@@ -1,0 +1,39 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+
+#include "lodeline/io/logs/readings/sensor_log.h"
+#include "lodeline/io/streams/imu_halves.h"
+#include "lodeline/recording.h"
+
+namespace lodeline {
+
+/// A sensor log as a recording without cameras. It has an uncalibrated gyroscope, accelerometer and, where
+/// the log contains one, magnetometer, all in body axes. Where gyroscope and accelerometer have separate
+/// times, the specific force is interpolated at those of the gyroscope.
+class LogSource : public RecordedSource {
+ public:
+  /// Throws InputError like openSensorLog, and where gyroscope or accelerometer is missing. `diagnostics`
+  /// must outlive the source.
+  LogSource(const std::filesystem::path& file, Diagnostics* diagnostics);
+
+  std::optional<ImuSample> nextRecordedImu() override;
+  std::optional<PendingImage> nextImage(size_t) override { return std::nullopt; }
+  std::optional<MagnetometerSample> nextMagnetometer() override;
+
+ private:
+  bool readOne();
+  void measureRates();
+  /// The next of these readings; reads on until there is one.
+  std::optional<ImuSample> takeHalf(std::deque<ImuSample>* readings);
+
+  std::unique_ptr<SensorLog> log_;
+  ImuHalves halves_;
+  /// Readings that were read while another sensor was requested.
+  std::deque<ImuSample> imu_, gyroscope_, accelerometer_;
+  std::deque<MagnetometerSample> magnetometer_;
+};
+
+}  // namespace lodeline
