@@ -9,6 +9,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/depth/profile_fit.h"
 #include "lodeline/output/survey/map/map_times.h"
+#include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {
 namespace {
