@@ -63,7 +63,8 @@ is_up() { sinfo -h -o %T 2>/dev/null | grep -Eq 'idle|mixed|allocated'; }
 for _ in $(seq 60); do is_up && break || sleep 1; done
 is_up || { tail -n 5 "$slurm"/*.log >&2; echo "slurmd did not come up" >&2; exit 1; }
 
-is_running() { squeue -h 2>/dev/null | grep -q .; }
+# Whether tasks run or will soon; Slurm lets requeued ones wait two minutes (BeginTime).
+is_running() { squeue -h -o %r 2>/dev/null | grep -qv BeginTime; }
 # The array of the example; the same line goes on from where another array stopped.
 submit() {
   LODELINE=$lodeline sbatch --quiet --requeue --array="1-$tasks" --cpus-per-task=1 --mem=1G \
@@ -83,8 +84,9 @@ for kill in $(seq "$kills"); do
     [ -z "$task" ] || { scontrol requeue "$task" && echo "requeued task $task at $(results) results"; } || true
   fi
 done
-while [ "$(results)" -lt "$items" ] || is_running; do
+while [ "$(results)" -lt "$items" ]; do
   is_running || submit
   sleep 0.5
 done
+while is_running; do sleep 0.5; done
 check_fleet "$items"

@@ -87,7 +87,8 @@ void addBatchWorkOptions(BatchWork* work, CLI::App* command) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_flag("--retry", work->retry, "run again what failed before");
-  command->add_flag("!--no-wait", work->wait, "end while other processes still work on items");
+  command->add_flag_callback(
+      "--no-wait", [work] { work->wait = false; }, "end while other processes still work on items");
   command
       ->add_option("--stale-after-s", work->stale_after_s,
                    "a lock from another machine that was not renewed for so long is taken over")

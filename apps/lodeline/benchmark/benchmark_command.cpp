@@ -26,10 +26,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const kBenchmarkFooter =
-    R"(Sets: euroc, tumvi, uzhfpv, hilti22, tank, aqualoc (docs/how-to/public-benchmarks.md says what each folder must contain).
+    R"(Sets: euroc, tumvi, uzhfpv, hilti22, tank, aqualoc (docs/how-to/public-benchmarks.md).
 Sequences that are not there are left out. A broken one is a row with the reason.
-Results: benchmark.md, benchmark.csv, and the folders of `lodeline batch`, which list.yaml is for. Given again, the command
-makes only what is missing.
+Results: benchmark.md, benchmark.csv, and the folders of `lodeline batch` with its list.yaml.
+Given again, the command makes only what is missing.
 Examples:
   lodeline benchmark euroc datasets/euroc --jobs 4
   lodeline benchmark tumvi datasets/tumvi -o tumvi_left --set source.cameras=[0]
@@ -46,10 +46,10 @@ std::string listText(const BenchmarkSet& set, const std::vector<PreparedSequence
                      const std::vector<std::string>& settings) {
   YAML::Node root;
   root["args"].push_back("--no-report");
-  for (const std::string& setting : settings) {
-    root["args"].push_back("--set");
-    root["args"].push_back(setting);
-  }
+  YAML::Node variant;
+  variant["name"] = "default";
+  for (const std::string& setting : settings) variant["set"].push_back(setting);
+  root["variants"].push_back(variant);
   root["align"] = toString(set.alignment);
   if (set.tolerance_s) root["tolerance_s"] = *set.tolerance_s;
   for (const PreparedSequence& prepared : sequences) {

@@ -43,7 +43,7 @@ std::string benchmarkMarkdown(const BenchmarkSet& set, const std::vector<Benchma
       "trajectory "
       "while it is recorded, `loops` the one with closed loops.\n\n",
       set.title, set.about, toString(set.alignment));
-  text += "| sequence | status | path [m] | poses [%] | causal [m] | loops [m] |";
+  text += "| sequence | status | path [m] | truth covered [%] | causal [m] | loops [m] |";
   std::string line = "| --- | --- | --- | --- | --- | --- |";
   for (const PublishedMethod& method : set.published) {
     text += fmt::format(" {} [m] |", method.name);
@@ -66,7 +66,8 @@ std::string benchmarkMarkdown(const BenchmarkSet& set, const std::vector<Benchma
 }
 
 std::string benchmarkCsv(const BenchmarkSet& set, const std::vector<BenchmarkRow>& rows) {
-  std::string text = "sequence,status,path_m,poses_percent,causal_position_rmse_m,loops_position_rmse_m";
+  std::string text =
+      "sequence,status,path_m,truth_covered_percent,causal_position_rmse_m,loops_position_rmse_m";
   for (const PublishedMethod& method : set.published) text += fmt::format(",{}_m", method.name);
   text += ",reason\n";
   for (const BenchmarkRow& row : rows) {

@@ -8,7 +8,9 @@
 #include "apps/lodeline/batch/batch_folder.h"
 #include "apps/lodeline/batch/item_claim.h"
 #include "apps/lodeline/benchmark/sequence_truth.h"
+#include "apps/lodeline/shared/program_file.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/evaluation/trajectory/text_table.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {
@@ -79,9 +81,12 @@ class SequencePreparation {
       bag_.rig_files.push_back(file->string());
     }
     if (!layout_.rig_text.empty()) {
+      const fs::path file = folder_ / "rig.yaml";
       createOutputFolder(folder_);
-      replaceFile(folder_ / "rig.yaml", layout_.rig_text);
-      bag_.rig_files.push_back((folder_ / "rig.yaml").string());
+      std::error_code ignored;
+      const bool is_there = fs::is_regular_file(file, ignored) && readFileBytes(file) == layout_.rig_text;
+      if (!is_there) replaceFile(file, layout_.rig_text);
+      bag_.rig_files.push_back(file.string());
     }
     for (const std::string& file : bag_.rig_files) addArguments({"--rig", file});
   }
@@ -133,7 +138,31 @@ class SequencePreparation {
     refuseMissing("truth", missing);
   }
 
+  /// Text of all that the truth depends on. Reading it from a large bag takes long, so it is kept.
+  std::string originOfTruth(const SetTruth& truth, const fs::path& file) const {
+    std::vector<fs::path> sources(bag_.rig_files.begin(), bag_.rig_files.end());
+    sources.push_back(file.empty() ? data_ : file);
+    if (!truth.frame_numbers.empty()) sources.push_back(requireFile(truth.frame_numbers));
+    if (isBagThere()) sources.push_back(rigFileBeside(data_));
+    std::string text = fmt::format("program {:016x}\n", programFingerprint());
+    for (const fs::path& source : sources) {
+      text += fmt::format("{} of {:.6f}\n", source.string(), changeTime_s(source));
+    }
+    return text;
+  }
+
   void writeTruth(const SetTruth& truth, const fs::path& file) {
+    const fs::path origin_file = folder_ / "truth_origin.txt";
+    const std::string origin = originOfTruth(truth, file);
+    std::error_code ignored;
+    if (!fs::is_regular_file(origin_file, ignored) || readFileBytes(origin_file) != origin) {
+      makeTruth(truth, file);
+      replaceFile(origin_file, origin);
+    }
+    prepared_.truth = (folder_ / "truth.tum").string();
+  }
+
+  void makeTruth(const SetTruth& truth, const fs::path& file) {
     Diagnostics diagnostics;
     Trajectory poses = !truth.topic.empty() ? readBagPoses(data_, truth.topic, &diagnostics)
                        : truth.frame_numbers.empty()
@@ -144,7 +173,6 @@ class SequencePreparation {
     const fs::path temporary = folder_ / ("truth.tum." + processLabel());
     writeTum(poses, temporary);
     fs::rename(temporary, folder_ / "truth.tum");
-    prepared_.truth = (folder_ / "truth.tum").string();
   }
 
   fs::path requireFile(const std::string& pattern) const {
