@@ -1,5 +1,5 @@
 # The front door. Every target installs what it lacks and builds first.
-.PHONY: build everything coverage tidy fuzz faults effects dependencies test-dependencies demo experiments loops test test-sanitized test-sanitized-all bench install package format check-format clean
+.PHONY: build everything coverage tidy fuzz faults effects dependencies test-dependencies demo experiments loops fleet-test test test-sanitized test-sanitized-all bench install package format check-format clean
 PREFIX ?= /usr/local
 CODE = include src apps studies examples ros fuzz
 
@@ -78,6 +78,12 @@ loops: everything
 	build/release/bin/batch_test --gtest_also_run_disabled_tests --gtest_filter='Loops.*'
 	build/release/bin/cloud_test --gtest_also_run_disabled_tests --gtest_filter='FalseClouds.*:CloudGain.*'
 	build/release/bin/graph_real_test --gtest_also_run_disabled_tests
+
+# Slurm and Snakemake as a user has them: 200 runs each, 20 workers taken away. It takes up to an hour; see the scripts.
+fleet-test: build
+	./scripts/install-dependencies.sh fleet
+	LODELINE=build/release/bin/lodeline examples/fleet/test_slurm.sh
+	LODELINE=build/release/bin/lodeline examples/fleet/test_snakemake.sh
 
 bench: everything
 	./scripts/benchmark.sh

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04: install-dependencies.sh [build|test|ros|web|docs ...]
+# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04: install-dependencies.sh [build|test|ros|web|docs|fleet ...]
 #   build  compiler, libraries and the page's bundler: all that `make build` needs (default)
 #   test   what the tests need: those, their framework, Clang, the formatter, survey and GIS programs, a browser
 #   ros    the ROS 1 node, and bags written by `lodeline convert`
 #   web    the browser that the page is tested in
 #   docs   the tools of `make docs`
+#   fleet  the schedulers of `make fleet-test`
 # Does nothing where all of it is present.
 set -euo pipefail
 
@@ -36,20 +37,21 @@ test=(
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"
   python3-roslaunch  # roscore, for the node's test
-  python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program
+  python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs  # bags by another program
 )
 # For the page's tests; Ubuntu has no such package.
 browser=()
 grep -q '^ID=debian' /etc/os-release && browser=(chromium)
 test+=("${browser[@]}")
 web=("${browser[@]}")
+fleet=(slurm-wlm munge snakemake procps)
 docs=(mkdocs-material doxygen libjs-katex python3)
 
 packages=()
 for group in "${@:-build}"; do
   case $group in
-    build | test | ros | web | docs) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
-    *) echo "unknown group '$group'; groups are build, test, ros, web and docs" >&2 && exit 2 ;;
+    build | test | ros | web | docs | fleet) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
+    *) echo "unknown group '$group'; groups are build, test, ros, web, docs and fleet" >&2 && exit 2 ;;
   esac
 done
 

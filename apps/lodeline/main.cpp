@@ -13,6 +13,7 @@
 #include "apps/lodeline/allan_command.h"
 #include "apps/lodeline/attitude_command.h"
 #include "apps/lodeline/batch/batch_command.h"
+#include "apps/lodeline/benchmark/benchmark_command.h"
 #include "apps/lodeline/calibrate_command.h"
 #include "apps/lodeline/calibration_file_commands.h"
 #include "apps/lodeline/compare/compare_command.h"
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);
   lodeline::addBatchCommand(program);
+  lodeline::addBenchmarkCommand(program);
   lodeline::addExportCommand(program);
   lodeline::addMapCommand(program);
   lodeline::addReportCommand(program);

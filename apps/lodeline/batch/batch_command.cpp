@@ -39,27 +39,15 @@ Examples:
 struct BatchArguments {
   std::string list;
   std::string output;
-  std::string shard = "1/1";
   std::string against;
   bool only_summary = false;
-  bool no_wait = false;
   BatchWork work;
 };
-
-/// Replaces a file at once, so that other processes never read half of it.
-void replaceFile(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path temporary = file.string() + "." + processLabel();
-  writeOutput(temporary, text);
-  std::filesystem::rename(temporary, file);
-}
 
 /// Writes the tables of the whole list.
 void writeSummary(const BatchList& list, const BatchFolder& folder, const BatchArguments& arguments) {
   const std::vector<BatchRow> rows = batchRows(list, folder, arguments.against);
-  createOutputFolder(folder.path());
-  replaceFile(folder.path() / "table.csv", batchCsv(rows));
-  const std::string markdown = batchMarkdown(rows);
-  replaceFile(folder.path() / "table.md", markdown);
+  const std::string markdown = writeBatchTables(rows, folder);
   if (!arguments.work.quiet) fmt::print("{}", markdown);
   if (!arguments.only_summary) return;
   const auto failed =
@@ -67,9 +55,7 @@ void writeSummary(const BatchList& list, const BatchFolder& folder, const BatchA
   if (failed > 0) throw BatchError(fmt::format("{} of {}; table.md says why", failed, rows.size()));
 }
 
-void runBatch(BatchArguments arguments) {
-  arguments.work.shard = batchShardFromText(arguments.shard);
-  arguments.work.wait = !arguments.no_wait;
+void runBatch(const BatchArguments& arguments) {
   if (!arguments.against.empty() && !std::filesystem::is_directory(arguments.against)) {
     throw UsageError(fmt::format("--against {}: there is no such folder", arguments.against));
   }
@@ -90,6 +76,27 @@ void runBatch(BatchArguments arguments) {
 
 }  // namespace
 
+void addBatchWorkOptions(BatchWork* work, CLI::App* command) {
+  command
+      ->add_option_function<std::string>(
+          "--shard", [work](const std::string& text) { work->shard = batchShardFromText(text); },
+          "work only on part I of N")
+      ->type_name("I/N")
+      ->default_str("1/1");
+  command->add_option("--jobs", work->jobs, "runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--retry", work->retry, "run again what failed before");
+  command->add_flag_callback(
+      "--no-wait", [work] { work->wait = false; }, "end while other processes still work on items");
+  command
+      ->add_option("--stale-after-s", work->stale_after_s,
+                   "a lock from another machine that was not renewed for so long is taken over")
+      ->check(CLI::Range(60.0, 1e6))
+      ->capture_default_str();
+  command->add_flag("-q,--quiet", work->quiet, "no progress and no table");
+}
+
 void addBatchCommand(CLI::App& program) {
   const auto arguments = std::make_shared<BatchArguments>();
   CLI::App* command =
@@ -97,22 +104,9 @@ void addBatchCommand(CLI::App& program) {
   command->add_option("LIST", arguments->list, "YAML list of recordings, variants and seeds")->required();
   command->add_option("-o,--output", arguments->output, "folder for the results; made where it is missing")
       ->required();
-  command->add_option("--shard", arguments->shard, "work only on part I of N")
-      ->type_name("I/N")
-      ->capture_default_str();
-  command->add_option("--jobs", arguments->work.jobs, "runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_flag("--retry", arguments->work.retry, "run again what failed before");
-  command->add_flag("--no-wait", arguments->no_wait, "end while other processes still work on items");
-  command
-      ->add_option("--stale-after-s", arguments->work.stale_after_s,
-                   "a lock from another machine that was not renewed for so long is taken over")
-      ->check(CLI::Range(60.0, 1e6))
-      ->capture_default_str();
+  addBatchWorkOptions(&arguments->work, command);
   command->add_flag("--summary", arguments->only_summary, "run nothing; write the tables anew");
   command->add_option("--against", arguments->against, "output folder of another batch to compare with");
-  command->add_flag("-q,--quiet", arguments->work.quiet, "no progress and no table");
   command->footer(kBatchFooter);
   command->callback([arguments] { runBatch(*arguments); });
 }

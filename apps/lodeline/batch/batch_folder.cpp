@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "apps/lodeline/batch/item_claim.h"
 #include "apps/lodeline/shared/program_file.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
 #include "lodeline/util/files/output_file.h"
@@ -88,6 +89,7 @@ std::string keyOfItem(const BatchItem& item, const BatchList& list) {
   }
   for (const std::string& word : item.arguments) text += word + "\n" + contentText(word, list.folder);
   text += fmt::format("truth {} {}\n", item.truth, toString(list.alignment));
+  if (list.tolerance_s) text += fmt::format("tolerance {}\n", *list.tolerance_s);
   if (!item.truth.empty()) text += sizesText(list.folder / item.truth);
   return keyFromText(text);
 }
@@ -110,6 +112,12 @@ nlohmann::ordered_json readItemFile(const fs::path& folder) {
 
 void writeItemFile(const fs::path& folder, const nlohmann::ordered_json& json) {
   writeOutput(folder / kItemFile, jsonText(json) + "\n");
+}
+
+void replaceFile(const fs::path& file, const std::string& text) {
+  const fs::path temporary = file.string() + "." + processLabel();
+  writeOutput(temporary, text);
+  fs::rename(temporary, file);
 }
 
 void publishFolder(const fs::path& from, const fs::path& to) {

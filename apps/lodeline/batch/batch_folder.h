@@ -47,6 +47,9 @@ std::string keyOfSimulation(const BatchItem& item);
 nlohmann::ordered_json readItemFile(const std::filesystem::path& folder);
 void writeItemFile(const std::filesystem::path& folder, const nlohmann::ordered_json& json);
 
+/// Replaces a file at once, so that other processes never read half of it.
+void replaceFile(const std::filesystem::path& file, const std::string& text);
+
 /// Moves a finished folder to its place, and replaces what is there.
 void publishFolder(const std::filesystem::path& from, const std::filesystem::path& to);
 

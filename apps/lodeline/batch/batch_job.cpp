@@ -40,24 +40,40 @@ std::vector<std::string> lastLines(const fs::path& file) {
   return lines;
 }
 
+/// Position RMSE of the trajectory in which the run's loops are closed; nothing where it has no poses.
+std::optional<double> mapPositionRmse_m(const fs::path& result, const Trajectory& reference,
+                                        const EvaluationOptions& options) {
+  Diagnostics ignored;
+  try {
+    const Trajectory closed = readTrajectory(result / "trajectory_map.tum", {}, ignored);
+    return evaluate(closed, reference, options, ignored).absolute.position().rmse;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 /// Compares a result with the ground truth, writes evaluation.json and returns its main figures.
 OrderedJson evaluateResult(const fs::path& result, const std::string& name, const fs::path& truth,
-                           AlignmentType alignment) {
+                           const BatchList& list) {
   Diagnostics diagnostics;
   Trajectory estimate = readTrajectory(result, {}, diagnostics);
   estimate.name = name;
   EvaluationOptions options;
-  options.alignment = alignment;
+  options.alignment = list.alignment;
+  if (list.tolerance_s) options.association.tolerance_s = *list.tolerance_s;
   const Trajectory reference = readTrajectory(truth, {}, diagnostics);
   const Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
   writeOutput(result / "evaluation.json", jsonText(evaluationJson(evaluation, diagnostics)) + "\n");
   const double position_m = evaluation.absolute.position().rmse;
-  return {{"path_m", evaluation.reference_path_m},
-          {"position_rmse_m", position_m},
-          {"position_rmse_percent", evaluation.percentOfPath(position_m)},
-          {"rotation_rmse_deg", evaluation.absolute.rotation().rmse},
-          {"drift_percent", evaluation.percentOfPath(evaluation.drift_m)},
-          {"completion_percent", 100.0 * evaluation.completion.share}};
+  OrderedJson figures = {{"path_m", evaluation.reference_path_m},
+                         {"position_rmse_m", position_m},
+                         {"position_rmse_percent", evaluation.percentOfPath(position_m)},
+                         {"rotation_rmse_deg", evaluation.absolute.rotation().rmse},
+                         {"drift_percent", evaluation.percentOfPath(evaluation.drift_m)},
+                         {"completion_percent", 100.0 * evaluation.completion.share}};
+  const auto map_position_m = mapPositionRmse_m(result, reference, options);
+  if (map_position_m) figures["map_position_rmse_m"] = *map_position_m;
+  return figures;
 }
 
 /// Moves a log beside the results; it is missing where the child could not be started.
@@ -157,11 +173,9 @@ ItemState BatchJob::finishRun(int exit_code) {
     }
     const bool is_simulated = !item_->simulate.empty();
     if (!item_->truth.empty()) {
-      json["evaluation"] =
-          evaluateResult(work / "made", item_->name, list_->folder / item_->truth, list_->alignment);
+      json["evaluation"] = evaluateResult(work / "made", item_->name, list_->folder / item_->truth, *list_);
     } else if (is_simulated) {
-      json["evaluation"] =
-          evaluateResult(work / "made", item_->name, folder_->simulated(*item_), list_->alignment);
+      json["evaluation"] = evaluateResult(work / "made", item_->name, folder_->simulated(*item_), *list_);
     }
   } catch (const std::exception& error) {
     return fail(exit_code, "evaluate", error.what());

@@ -152,6 +152,15 @@ class BatchListReader {
     return found;
   }
 
+  std::optional<double> tolerance_s(const YAML::Node& node) const {
+    if (!node.IsDefined()) return std::nullopt;
+    double seconds = 0.0;
+    if (!YAML::convert<double>::decode(node, seconds) || !(seconds > 0.0 && seconds <= 1.0)) {
+      refuse(node, "tolerance_s is a number of seconds above 0, at most 1");
+    }
+    return seconds;
+  }
+
  private:
   static std::string defaultName(const ListedRecording& listed) {
     fs::path path =
@@ -228,7 +237,7 @@ BatchItem makeItem(const ListedRecording& recording, const ListedVariant& varian
 BatchList readBatchList(const fs::path& file) {
   const YAML::Node root = loadList(file);
   const BatchListReader reader(fs::absolute(file).lexically_normal());
-  reader.requireKeys(root, {"recordings", "variants", "seeds", "args", "align"}, "the list");
+  reader.requireKeys(root, {"recordings", "variants", "seeds", "args", "align", "tolerance_s"}, "the list");
   if (!root["recordings"].IsDefined() || !root["recordings"].IsSequence() || root["recordings"].size() == 0) {
     reader.refuse(root, "the list needs `recordings` with at least one entry");
   }
@@ -241,6 +250,7 @@ BatchList readBatchList(const fs::path& file) {
       reader.refuse(root["align"], error.what());
     }
   }
+  list.tolerance_s = reader.tolerance_s(root["tolerance_s"]);
   std::set<std::string> names;
   std::vector<ListedVariant> variants;
   if (root["variants"].IsDefined() && !root["variants"].IsSequence()) {

@@ -27,7 +27,8 @@ struct BatchItem {
 struct BatchList {
   std::filesystem::path folder;  ///< absolute folder of the list; relative paths in the list start here
   AlignmentType alignment = AlignmentType::SE3;
-  std::vector<BatchItem> items;  ///< recordings × variants × seeds, in the order of the list
+  std::optional<double> tolerance_s;  ///< greatest difference in time from a pose of the ground truth
+  std::vector<BatchItem> items;       ///< recordings × variants × seeds, in the order of the list
 };
 
 /// Reads a list of runs. Throws UsageError with file and line for an unknown key, a missing or repeated name,

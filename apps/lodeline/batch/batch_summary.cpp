@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "lodeline/util/files/output_file.h"
+
 namespace lodeline {
 namespace {
 
@@ -16,12 +18,15 @@ constexpr size_t kWorstRows = 100;
 std::optional<BatchErrors> errorsFrom(const nlohmann::ordered_json& json) {
   if (!json.is_object() || !json.contains("evaluation")) return std::nullopt;
   const auto& figures = json["evaluation"];
-  return BatchErrors{figures.value("path_m", 0.0),
+  BatchErrors errors{figures.value("path_m", 0.0),
                      figures.value("position_rmse_m", 0.0),
                      figures.value("position_rmse_percent", 0.0),
                      figures.value("rotation_rmse_deg", 0.0),
                      figures.value("drift_percent", 0.0),
-                     figures.value("completion_percent", 0.0)};
+                     figures.value("completion_percent", 0.0),
+                     {}};
+  if (figures.contains("map_position_rmse_m")) errors.map_position_rmse_m = figures["map_position_rmse_m"];
+  return errors;
 }
 
 std::optional<int> numberFrom(const nlohmann::ordered_json& json, const char* key) {
@@ -138,13 +143,21 @@ std::string comparisonTableOf(const std::vector<BatchRow>& rows) {
          text;
 }
 
+}  // namespace
+
 std::string markdownText(std::string text) {
   std::replace(text.begin(), text.end(), '|', '/');
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
-}  // namespace
+std::string writeBatchTables(const std::vector<BatchRow>& rows, const BatchFolder& folder) {
+  createOutputFolder(folder.path());
+  replaceFile(folder.path() / "table.csv", batchCsv(rows));
+  std::string markdown = batchMarkdown(rows);
+  replaceFile(folder.path() / "table.md", markdown);
+  return markdown;
+}
 
 std::vector<BatchRow> batchRows(const BatchList& list, const BatchFolder& folder, const fs::path& against) {
   std::vector<BatchRow> rows;

@@ -18,6 +18,7 @@ struct BatchErrors {
   double rotation_rmse_deg = 0.0;
   double drift_percent = 0.0;  ///< of the path
   double completion_percent = 0.0;
+  std::optional<double> map_position_rmse_m;  ///< with loops closed (trajectory_map.tum)
 };
 
 /// One item in the table of a batch.
@@ -36,6 +37,12 @@ struct BatchRow {
 /// `against` is the output folder of another batch, or empty.
 std::vector<BatchRow> batchRows(const BatchList& list, const BatchFolder& folder,
                                 const std::filesystem::path& against);
+
+/// Writes table.csv and table.md, and returns the text of the latter.
+std::string writeBatchTables(const std::vector<BatchRow>& rows, const BatchFolder& folder);
+
+/// Text of a cell of a Markdown table.
+std::string markdownText(std::string text);
 
 /// All rows with all columns.
 std::string batchCsv(const std::vector<BatchRow>& rows);

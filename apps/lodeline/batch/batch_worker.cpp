@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <fstream>
 #include <memory>
 #include <thread>
 #include <vector>
 
 #include "apps/lodeline/batch/batch_job.h"
 #include "apps/lodeline/batch/child_process.h"
+#include "apps/lodeline/batch/item_claim.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "lodeline/pipeline/stop_request.h"
 #include "lodeline/util/files/output_file.h"
@@ -129,7 +131,16 @@ class BatchWorker {
     if (claim) std::filesystem::remove_all(folder_.work(item.name), ignored);
   }
 
+  /// Records what this process did, for the user and in workers/HOST.PID.csv.
   void report(const char* event, const BatchItem& item) {
+    const double now_s =
+        std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (!record_.is_open()) {
+      const std::filesystem::path workers = folder_.path() / "workers";
+      createOutputFolder(workers);
+      record_.open(workers / (processLabel() + ".csv"), std::ios::app);
+    }
+    record_ << fmt::format("{:.3f},{},{}\n", now_s, item.name, event) << std::flush;
     if (std::string_view(event) != "started") ++finished_;
     if (!work_.quiet) fmt::print(stderr, "{} of {}: {} {}\n", finished_, total_, item.name, event);
   }
@@ -146,6 +157,7 @@ class BatchWorker {
   const BatchFolder& folder_;
   const BatchWork& work_;
   StopRequest stop_;
+  std::ofstream record_;
   double started_s_ = 0.0;  ///< on the clock of the file system
   std::deque<OpenItem> open_;
   std::vector<std::unique_ptr<BatchJob>> jobs_;

@@ -10,6 +10,7 @@
 #include "lodeline/io/dives/dive_choice.h"
 #include "lodeline/output/survey/depth/profile_fit.h"
 #include "lodeline/output/survey/map/map_times.h"
+#include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {
 namespace {

@@ -30,13 +30,13 @@ TEST_F(BatchRuns, EvaluatesAndTabulatesAllAndRunsNothingAgain) {
   EXPECT_EQ(item["evaluation"]["position_rmse_m"], evaluation["absolute"]["position_m"]["rmse"]);
   const std::string table = readText(output_ / "table.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), kBatchRecordings + 1);
-  EXPECT_THAT(readText(output_ / "table.md"), HasSubstr("| default | 8 | 8 | 0 | 8 |"));
+  EXPECT_THAT(readText(output_ / "table.md"), HasSubstr("| default | 5 | 5 | 0 | 5 |"));
 
   const auto time = std::filesystem::last_write_time(output_ / "results/dive3.default/run.json");
   const Execution second = batch();
   EXPECT_EQ(second.exit_code, 0);
   EXPECT_EQ(made(second.output), 0);
-  EXPECT_THAT(second.output, HasSubstr("made 0, kept 8, failed 0"));
+  EXPECT_THAT(second.output, HasSubstr("made 0, kept 5, failed 0"));
   EXPECT_EQ(std::filesystem::last_write_time(output_ / "results/dive3.default/run.json"), time);
   EXPECT_EQ(readText(output_ / "table.csv"), table);
 }

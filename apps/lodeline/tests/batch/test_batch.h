@@ -15,9 +15,9 @@
 
 namespace lodeline::test {
 
-inline constexpr int kBatchRecordings = 8;
+inline constexpr int kBatchRecordings = 5;
 
-/// Tests of `lodeline batch` on eight recordings of a room.
+/// Tests of `lodeline batch` on five recordings of a room.
 class BatchTest : public testing::Test {
  protected:
   BatchTest();

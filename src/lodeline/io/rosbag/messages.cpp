@@ -30,6 +30,12 @@ Vec3 takeVector(wire::Reader* reader) {
   return {x, y, reader->take<double>()};
 }
 
+Rigid3 takePose(wire::Reader* reader) {
+  const Vec3 translation = takeVector(reader);
+  const Vec3 imaginary = takeVector(reader);
+  return {Quat(reader->take<double>(), imaginary.x(), imaginary.y(), imaginary.z()), translation};
+}
+
 void putVector(const Vec3& vector, wire::Writer* writer) {
   for (const double value : {vector.x(), vector.y(), vector.z()}) writer->put(value);
 }
@@ -140,12 +146,15 @@ std::vector<SonarSample> parseLaserScan(std::span<const uint8_t> message) {
 
 StampedPosition parsePoseStamped(std::span<const uint8_t> message) {
   wire::Reader reader(message);
-  StampedPosition pose;
-  pose.time = takeHeader(&reader);
-  pose.world_from_body.translation = takeVector(&reader);
-  const Vec3 imaginary = takeVector(&reader);
-  pose.world_from_body.rotation = Quat(reader.take<double>(), imaginary.x(), imaginary.y(), imaginary.z());
-  return pose;
+  const Time time = takeHeader(&reader);
+  return {time, takePose(&reader)};
+}
+
+StampedPosition parseOdometryPose(std::span<const uint8_t> message) {
+  wire::Reader reader(message);
+  const Time time = takeHeader(&reader);
+  reader.takeText();  // frame of the body
+  return {time, takePose(&reader)};
 }
 
 wire::Bytes imu(const ImuSample& sample, uint32_t sequence) {

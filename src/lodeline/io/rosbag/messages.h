@@ -59,6 +59,8 @@ struct StampedPosition {
   Rigid3 world_from_body;
 };
 StampedPosition parsePoseStamped(std::span<const uint8_t> message);
+/// The pose of an Odometry, without covariance and velocity.
+StampedPosition parseOdometryPose(std::span<const uint8_t> message);
 
 wire::Bytes imu(const ImuSample& sample, uint32_t sequence);
 wire::Bytes magneticField(const MagnetometerSample& sample, uint32_t sequence);

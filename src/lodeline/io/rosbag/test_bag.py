@@ -6,6 +6,7 @@
     test_bag.py kinds BAG                           a message of every kind that a rig may publish
     test_bag.py halves BAG                          an IMU's gyroscope and accelerometer on topics of their own
     test_bag.py damaged BAG                         three images and readings, the headers of the second ones damaged
+    test_bag.py rename BAG OTHER OLD=NEW[:odometry] a copy with other names of topics, and poses as nav_msgs/Odometry
     test_bag.py list BAG                            topics, types, numbers of messages, sums over their bytes
 """
 import csv
@@ -179,5 +180,21 @@ def list_topics(path):
             print(topic, kind, count, digest.hexdigest())
 
 
+def rename(source, path, *names):
+    """Copies a bag with other names of topics, OLD=NEW. With OLD=NEW:odometry, poses become nav_msgs/Odometry."""
+    from nav_msgs.msg import Odometry
+    new = dict(name.split("=") for name in names)
+    with rosbag.Bag(source) as bag, rosbag.Bag(path, "w") as out:
+        for topic, message, time in bag.read_messages():
+            name, _, kind = new.get(topic, topic).partition(":")
+            if kind == "odometry":
+                odometry = Odometry()
+                odometry.header = message.header
+                odometry.child_frame_id = "body"
+                odometry.pose.pose = message.pose
+                message = odometry
+            out.write(name, message, time)
+
+
 if __name__ == "__main__":
-    {"write": write, "unclosed": unclosed, "damaged": damaged, "halves": halves, "kinds": kinds, "list": list_topics}[sys.argv[1]](*sys.argv[2:])
+    {"write": write, "unclosed": unclosed, "damaged": damaged, "halves": halves, "kinds": kinds, "list": list_topics, "rename": rename}[sys.argv[1]](*sys.argv[2:])
