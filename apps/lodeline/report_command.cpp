@@ -10,6 +10,7 @@
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
+#include "lodeline/pipeline/run_stations.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {
@@ -26,11 +27,12 @@ struct Arguments {
 
 void reportCommand(const Arguments& arguments) {
   Diagnostics diagnostics;
-  std::optional<ReportReference> reference;
+  ReportOptions options;
+  options.stations = runStationsJson;
   if (!arguments.reference.empty()) {
-    reference = {arguments.reference, alignmentTypeFromString(arguments.align)};
+    options.reference = {arguments.reference, alignmentTypeFromString(arguments.align)};
   }
-  const std::string page = reportPage(arguments.runs, reference, &diagnostics);
+  const std::string page = reportPage(arguments.runs, options, &diagnostics);
   writeOutput(arguments.output, page);
   fmt::print("{}: {:.1f} MB, {} run{}\n{}", arguments.output, 1e-6 * static_cast<double>(page.size()),
              arguments.runs.size(), arguments.runs.size() > 1 ? "s" : "", findingsText(diagnostics));

@@ -21,7 +21,7 @@ class Browser : public testing::Test {
                                const std::optional<ReportReference>& reference) const {
     Diagnostics diagnostics;
     const std::filesystem::path file = folder_.path() / "report.html";
-    writeOutput(file, reportPage(runs, reference, &diagnostics));
+    writeOutput(file, reportPage(runs, {reference}, &diagnostics));
     return file;
   }
   TemporaryFolder folder_;
