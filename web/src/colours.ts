@@ -17,7 +17,12 @@ const kViridis = [
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
 export function isDark(): boolean {
-  return dark.matches;
+  return dark.matches && !document.documentElement.classList.contains("printing");
+}
+
+/// The colours of paper, in any theme.
+export function setPrinting(isOn: boolean): void {
+  document.documentElement.classList.toggle("printing", isOn);
 }
 
 export function whenThemeChanges(action: () => void): void {

@@ -57,11 +57,15 @@ export function toggle(text: string, checked: boolean, action: (checked: boolean
   return element("label", "toggle", box, text);
 }
 
+/// Tells that everything has to be drawn, whether it is in sight or not.
+export const kDrawAll = "lodeline-draw-all";
+
 /// Calls once the element comes near the visible part of the page, or the page is printed.
 export function whenNear(node: Element, action: () => void): void {
   const call = () => {
     observer.disconnect();
     window.removeEventListener("beforeprint", call);
+    window.removeEventListener(kDrawAll, call);
     action();
   };
   const observer = new IntersectionObserver((entries) => {
@@ -69,6 +73,7 @@ export function whenNear(node: Element, action: () => void): void {
   }, { rootMargin: "300px" });
   observer.observe(node);
   window.addEventListener("beforeprint", call);
+  window.addEventListener(kDrawAll, call);
 }
 
 /// Calls at once and whenever the element changes its width or height.

@@ -5,6 +5,7 @@ import { themed, whenThemeChanges } from "./colours";
 import { button, element, whenNear, whenResized } from "./dom";
 import { fileName, saveCsv, savePng } from "./download";
 import { clock, number } from "./format";
+import { drawingOn, printable, vectorButton, type VectorDrawing } from "./vector";
 import type { View } from "./view";
 
 export interface Series {
@@ -33,6 +34,7 @@ export interface PlotSpec {
   range?: [number, number];
 }
 
+const kHeight_px = 190;
 const kSync = uPlot.sync("time");
 
 function axes(spec: PlotSpec): uPlot.Axis[] {
@@ -98,7 +100,7 @@ function drawSelection(plot: uPlot, t: number): void {
 
 function options(spec: PlotSpec, view: View, width: number): uPlot.Options {
   return {
-    width, height: spec.height_px ?? 190, padding: [8, 12, 0, 0],
+    width, height: spec.height_px ?? kHeight_px, padding: [8, 12, 0, 0],
     scales: {
       x: { time: false },
       y: { dir: spec.downwards ? -1 : 1, range: spec.range ?? ((_, low, high) => paddedRange(low, high)) },
@@ -111,6 +113,15 @@ function options(spec: PlotSpec, view: View, width: number): uPlot.Options {
         (plot) => drawSelection(plot, view.time.value)],
     },
   };
+}
+
+/// The plot on another context. uPlot draws later than it is made unless it is asked for a batch.
+function drawPlot(context: CanvasRenderingContext2D, spec: PlotSpec, view: View, width: number): void {
+  drawingOn(context, () => {
+    const plot = new uPlot({ ...options(spec, view, width), legend: { show: false } }, dataOf(spec), element("div"));
+    plot.batch(() => undefined);
+    plot.destroy();
+  });
 }
 
 /// A click that is no drag selects the moment under the pointer.
@@ -131,11 +142,16 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
   let plot: uPlot | null = null;
   let current: PlotSpec | null = null;
   const name = () => fileName(view.active.value.run.name, current?.id ?? "plot");
+  const vector: VectorDrawing = {
+    width: () => Math.max(320, drawing.clientWidth), height: () => current?.height_px ?? kHeight_px, ratio: () => devicePixelRatio,
+    draw: (context, width) => current && drawPlot(context, current, view, width),
+  };
   const tools = element("div", "tools",
     button("CSV", "Download these figures", () => current && saveCsv(name(), [
       { name: "time [s]", values: current.t_s },
       ...current.series.map((s) => ({ name: current!.unit ? `${s.label} [${current!.unit}]` : s.label, values: s.words ?? s.values })),
     ])),
+    vectorButton(name, vector),
     button("PNG", "Download this picture", () => plot && savePng(name(), plot.ctx.canvas, pictureTitle(current!))));
   const card = element("article", "card plot", element("header", "", title, tools), drawing, note);
   const make = () => {
@@ -167,7 +183,8 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
   whenNear(card, () => {
     seen = true;
     make();
-    whenResized(drawing, (width) => plot && width > 0 && plot.setSize({ width, height: current?.height_px ?? 190 }));
+    whenResized(drawing, (width) => plot && width > 0 && plot.setSize({ width, height: current?.height_px ?? kHeight_px }));
+    printable(drawing, drawing, vector);
   });
   return card;
 }
