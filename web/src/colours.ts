@@ -17,7 +17,11 @@ const kViridis = [
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
 export function isDark(): boolean {
-  return dark.matches && !document.documentElement.classList.contains("printing");
+  return dark.matches && !isPrinting();
+}
+
+export function isPrinting(): boolean {
+  return document.documentElement.classList.contains("printing");
 }
 
 /// The colours of paper, in any theme.

@@ -80,3 +80,15 @@ export function whenNear(node: Element, action: () => void): void {
 export function whenResized(node: Element, action: (width: number, height: number) => void): void {
   new ResizeObserver(() => action(node.clientWidth, node.clientHeight)).observe(node);
 }
+
+/// A table that narrow screens show as one block a row, with the heads beside the cells.
+export function table(head: (string | Node)[], rows: (string | Node)[][]): HTMLElement {
+  const heads = head.map((cell) => element("th", "", cell));
+  const lines = rows.map((row) => element("tr", "", ...row.map((cell, i) => {
+    const node = element("td", "", cell);
+    node.dataset.head = heads[i]?.textContent ?? "";
+    return node;
+  })));
+  return element("div", "scroll",
+    element("table", "", element("thead", "", element("tr", "", ...heads)), element("tbody", "", ...lines)));
+}

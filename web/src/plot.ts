@@ -1,7 +1,7 @@
 // One plot over time: a card with title, curves, legend with figures under the pointer, and downloads.
 
 import uPlot from "uplot";
-import { themed, whenThemeChanges } from "./colours";
+import { isPrinting, themed, whenThemeChanges } from "./colours";
 import { button, element, whenNear, whenResized } from "./dom";
 import { fileName, saveCsv, savePng } from "./download";
 import { clock, number } from "./format";
@@ -35,6 +35,7 @@ export interface PlotSpec {
 }
 
 const kHeight_px = 190;
+const kPrinted_px = 335; // half of a sheet
 const kSync = uPlot.sync("time");
 
 function axes(spec: PlotSpec): uPlot.Axis[] {
@@ -85,6 +86,7 @@ function paddedRange(low: number, high: number): [number, number] {
 
 /// A line at the selected pose.
 function drawSelection(plot: uPlot, t: number): void {
+  if (isPrinting()) return;
   const x = plot.valToPos(t, "x", true);
   const { left, top, width, height } = plot.bbox;
   if (!(x >= left && x <= left + width)) return;
@@ -184,8 +186,8 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
     seen = true;
     make();
     whenResized(drawing, (width) => plot && width > 0 && plot.setSize({ width, height: current?.height_px ?? kHeight_px }));
-    printable(drawing, drawing, vector);
   });
+  printable(drawing, drawing, vector, () => (card.classList.contains("wide") ? 2 * kPrinted_px : kPrinted_px));
   return card;
 }
 

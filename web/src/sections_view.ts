@@ -14,6 +14,7 @@ type Context = CanvasRenderingContext2D;
 const kMost = 24;
 const kCell_px = 150;
 const kHead_px = 20;
+const kPrinted_px = 690; // the width of a sheet
 
 /// Splays as seen along the way, to the right and up.
 function outline(station: PlacedStation): [number, number][] {
@@ -130,6 +131,6 @@ export function sectionsCard(view: View): HTMLElement | null {
   const card = element("article", "card wide sections-card", element("header", "", element("h3", "", "Cross-sections"), tools), box, note);
   view.active.watch(({ run }) => (card.hidden = !run.stations?.length));
   whenNear(card, () => whenResized(box, () => sections.draw()));
-  printable(box, sections.canvas, drawVector);
+  printable(box, sections.canvas, drawVector, () => kPrinted_px);
   return card;
 }

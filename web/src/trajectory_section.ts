@@ -100,6 +100,7 @@ function spaceCard(view: View): HTMLElement {
 }
 
 const kMapHeight_px = 360;
+const kPrinted_px = 690; // the width of a sheet
 
 function mapCard(view: View, name: ProjectionName, choices: ProjectionName[] = []): HTMLElement {
   const map = new MapView(view, name);
@@ -121,7 +122,7 @@ function mapCard(view: View, name: ProjectionName, choices: ProjectionName[] = [
       requestAnimationFrame(() => requestAnimationFrame(title));
     }));
   }
-  printable(map.node, map.canvas, drawing);
+  printable(map.node, map.canvas, drawing, () => kPrinted_px);
   return element("article", `card map-card map-${name}`, element("header", "", head, tools), map.node);
 }
 

@@ -30,10 +30,11 @@ for (const name of ["moveTo", "lineTo", "rect", "arc", "closePath", "bezierCurve
 
 type Loose = Record<string, (...values: unknown[]) => unknown>;
 
-/// A 2-D context that writes SVG and takes remembered paths.
+/// A 2-D context that writes SVG and takes remembered paths. After `svg()` it draws nothing more.
 export function svgContext(width: number, height: number): { context: Context2D; svg: () => SVGSVGElement } {
   const context = new SvgContext({ width, height, document }) as unknown as Loose & { getSvg: () => SVGSVGElement };
-  for (const name of ["stroke", "fill", "clip"]) {
+  const methods = ["stroke", "fill", "clip"];
+  for (const name of methods) {
     const plain = context[name].bind(context);
     context[name] = (path?: unknown) => {
       if (path instanceof RecordedPath) {
@@ -44,8 +45,10 @@ export function svgContext(width: number, height: number): { context: Context2D;
     };
   }
   const svg = () => {
-    const node = context.getSvg();
+    const node = context.getSvg().cloneNode(true) as SVGSVGElement;
     node.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    // uPlot draws once more when the browser has time.
+    for (const name of [...methods, ...Object.keys(Object.getPrototypeOf(context))]) context[name] = () => undefined;
     return node;
   };
   return { context: context as unknown as Context2D, svg };
@@ -81,19 +84,17 @@ export function vectorButton(name: () => string, drawing: VectorDrawing): HTMLBu
   });
 }
 
-/// Before the page is printed, puts the drawing as SVG in place of its canvas; after it, the canvas again.
-export function printable(box: HTMLElement, screen: HTMLElement, drawing: VectorDrawing): void {
+/// Before the page is printed, puts the drawing as SVG, so many px wide, in place of its canvas; after it, the
+/// canvas again.
+export function printable(box: HTMLElement, screen: HTMLElement, drawing: VectorDrawing, width: () => number): void {
   let printed: SVGSVGElement | null = null;
   window.addEventListener("beforeprint", () => {
-    if (printed || box.closest("[hidden]")) return;
-    try {
-      printed = svgOf(drawing);
-    } catch {
-      return; // the canvas is printed
-    }
+    printed?.remove();
+    if (box.closest("[hidden]")) return;
+    printed = svgOf(drawing, width());
     printed.classList.add("printed");
     screen.classList.add("unprinted");
-    box.append(printed);
+    box.prepend(printed);
   });
   window.addEventListener("afterprint", () => {
     printed?.remove();
@@ -112,9 +113,7 @@ export function printablePicture(box: HTMLElement, canvas: HTMLCanvasElement, dr
     picture.className = "printed";
     box.append(picture);
     canvas.classList.add("unprinted");
-    window.addEventListener("afterprint", () => {
-      picture.remove();
-      canvas.classList.remove("unprinted");
-    }, { once: true });
+    window.addEventListener("afterprint", () => picture.remove(), { once: true });
   });
+  window.addEventListener("afterprint", () => canvas.classList.remove("unprinted"));
 }
