@@ -3,13 +3,17 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
+#include "apps/lodeline/shared/print_page.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
+#include "lodeline/pipeline/background.h"
+#include "lodeline/pipeline/run_stations.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {
@@ -21,19 +25,49 @@ struct Arguments {
   std::vector<fs::path> runs;
   std::string reference;
   std::string align = "se3";
+  std::string background;
+  std::string background_at;
   std::string output = "report.html";
+  std::string pdf;
+  bool is_page_named = false;
 };
+
+nlohmann::ordered_json backgroundOf(const Arguments& arguments) {
+  if (arguments.background.empty()) {
+    if (arguments.background_at.empty()) return nullptr;
+    throw UsageError("--background-at: --background names no file to be placed");
+  }
+  if (!arguments.reference.empty())
+    throw UsageError(
+        "--background and --reference: the page is in the world of the reference, whose place is not known");
+  if (arguments.background_at.empty())
+    throw UsageError("--background: --background-at tells where on it the first pose is");
+  return readBackground(arguments.background, arguments.background_at);
+}
+
+void printDone(const std::string& file, size_t bytes, size_t runs) {
+  fmt::print("{}: {:.1f} MB, {} run{}\n", file, 1e-6 * static_cast<double>(bytes), runs, runs > 1 ? "s" : "");
+}
 
 void reportCommand(const Arguments& arguments) {
   Diagnostics diagnostics;
-  std::optional<ReportReference> reference;
+  ReportOptions options;
+  options.stations = runStationsJson;
   if (!arguments.reference.empty()) {
-    reference = {arguments.reference, alignmentTypeFromString(arguments.align)};
+    options.reference = {arguments.reference, alignmentTypeFromString(arguments.align)};
   }
-  const std::string page = reportPage(arguments.runs, reference, &diagnostics);
-  writeOutput(arguments.output, page);
-  fmt::print("{}: {:.1f} MB, {} run{}\n{}", arguments.output, 1e-6 * static_cast<double>(page.size()),
-             arguments.runs.size(), arguments.runs.size() > 1 ? "s" : "", findingsText(diagnostics));
+  options.background = backgroundOf(arguments);
+  const std::string page = reportPage(arguments.runs, options, &diagnostics);
+  if (arguments.pdf.empty() || arguments.is_page_named) {
+    writeOutput(arguments.output, page);
+    printDone(arguments.output, page.size(), arguments.runs.size());
+  }
+  if (!arguments.pdf.empty()) {
+    const char* path = std::getenv("PATH");
+    printPage(page, arguments.pdf, path == nullptr ? "" : path);
+    printDone(arguments.pdf, fs::file_size(arguments.pdf), arguments.runs.size());
+  }
+  fmt::print("{}", findingsText(diagnostics));
 }
 
 }  // namespace
@@ -46,13 +80,32 @@ void addReportCommand(CLI::App& program) {
   command->add_option("--reference", arguments->reference,
                       "trajectory taken as true, in any layout that `lodeline evaluate` reads");
   command->add_option("--align", arguments->align, "none, yaw, se3 or sim3")->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "file to write")->capture_default_str();
+  command
+      ->add_option("--background", arguments->background,
+                   "map under the plan: PNG or JPEG image with a world file, or GeoJSON lines")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--background-at", arguments->background_at,
+          "place of the first pose on it: LAT,LON (GeoJSON in degrees) or E,N[,TURN] in m of its grid; TURN "
+          "(degrees): its north clockwise from that of the run")
+      ->type_name("PLACE");
+  CLI::Option* output =
+      command->add_option("-o,--output", arguments->output, "page to write; with --pdf only if named")
+          ->capture_default_str();
+  command->add_option("--pdf", arguments->pdf, "print the page to this file (A4; needs Chromium)")
+      ->type_name("FILE");
   command->footer(
       "Examples:\n"
       "  lodeline report dive1_result -o dive1.html\n"
       "  lodeline report with_mag without_mag --reference dive1/truth.tum --align none -o comparison.html\n"
+      "  lodeline report dive1_result --pdf dive1.pdf\n"
+      "  lodeline report dive1_result --background plan.png --background-at 372410.5,3298801.2\n"
       "The page is one file that works without a network; docs/how-to/report.md tells what it shows.");
-  command->callback([arguments] { reportCommand(*arguments); });
+  command->callback([arguments, output] {
+    arguments->is_page_named = output->count() > 0;
+    reportCommand(*arguments);
+  });
 }
 
 }  // namespace lodeline

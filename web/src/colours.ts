@@ -17,7 +17,16 @@ const kViridis = [
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
 export function isDark(): boolean {
-  return dark.matches;
+  return dark.matches && !isPrinting();
+}
+
+export function isPrinting(): boolean {
+  return document.documentElement.classList.contains("printing");
+}
+
+/// The colours of paper, in any theme.
+export function setPrinting(isOn: boolean): void {
+  document.documentElement.classList.toggle("printing", isOn);
 }
 
 export function whenThemeChanges(action: () => void): void {

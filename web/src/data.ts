@@ -110,6 +110,35 @@ export interface RunMap {
   control: { name: string; kind: string; t_s: number; error_m: number[]; chi_squared: number; is_blunder: boolean }[];
 }
 
+/// Points in steps from the lowest corner of the box around them.
+export interface Cloud {
+  total: number; // of the file; the page may hold fewer
+  low_m: [number, number, number];
+  step_m: [number, number, number];
+  xyz: string; // base64 of 16-bit numbers, little endian: x y z x y z ...
+  rgb: string; // base64 of bytes; empty where no colours are known
+}
+
+/// A station of the survey that `lodeline export` makes of the run.
+export interface Station {
+  t_s: number;
+  left_right_up_down_m: (number | null)[];
+  splays_m: [number, number, number][]; // from the station, in the run's world
+}
+
+/// The same dive by another method; the states hold poses and, but for the map, their uncertainty.
+export interface Solution {
+  kind: "run" | "map";
+  states: Table;
+}
+
+/// What is drawn underneath the plan, in the world of the page's runs.
+export interface Background {
+  name: string;
+  lines: [number, number][][]; // x and y, m
+  image: { type: string; data: string; column_m: [number, number]; row_m: [number, number]; first_m: [number, number] } | null;
+}
+
 export interface Run {
   name: string;
   origin_ns: string;
@@ -117,7 +146,10 @@ export interface Run {
   summary: Summary;
   config: string;
   states: Table;
-  landmarks: { total: number; xyz: string }; // base64 of 32-bit floats, little endian
+  landmarks: Cloud;
+  others: Solution[];
+  walls: Cloud | null;
+  stations: Station[] | null;
   pictures: Picture[];
   timings: Table | null;
   magnetometer: Magnetometer | null;
@@ -131,6 +163,7 @@ export interface PageData {
   name?: string; // these while live
   data?: string;
   camera_axis_B?: number[];
+  background?: Background | null;
 }
 
 export function readPageData(): PageData {
@@ -139,8 +172,11 @@ export function readPageData(): PageData {
 }
 
 export function decodeFloats(base64: string): Float32Array {
-  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-  return new Float32Array(bytes.buffer);
+  return new Float32Array(decodeBytes(base64).buffer);
+}
+
+export function decodeBytes(base64: string): Uint8Array {
+  return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 }
 
 export function column(table: Table, name: string): (number | null)[] | null {

@@ -57,11 +57,15 @@ export function toggle(text: string, checked: boolean, action: (checked: boolean
   return element("label", "toggle", box, text);
 }
 
+/// Tells that everything has to be drawn, whether it is in sight or not.
+export const kDrawAll = "lodeline-draw-all";
+
 /// Calls once the element comes near the visible part of the page, or the page is printed.
 export function whenNear(node: Element, action: () => void): void {
   const call = () => {
     observer.disconnect();
     window.removeEventListener("beforeprint", call);
+    window.removeEventListener(kDrawAll, call);
     action();
   };
   const observer = new IntersectionObserver((entries) => {
@@ -69,9 +73,22 @@ export function whenNear(node: Element, action: () => void): void {
   }, { rootMargin: "300px" });
   observer.observe(node);
   window.addEventListener("beforeprint", call);
+  window.addEventListener(kDrawAll, call);
 }
 
 /// Calls at once and whenever the element changes its width or height.
 export function whenResized(node: Element, action: (width: number, height: number) => void): void {
   new ResizeObserver(() => action(node.clientWidth, node.clientHeight)).observe(node);
+}
+
+/// A table that narrow screens show as one block a row, with the heads beside the cells.
+export function table(head: (string | Node)[], rows: (string | Node)[][]): HTMLElement {
+  const heads = head.map((cell) => element("th", "", cell));
+  const lines = rows.map((row) => element("tr", "", ...row.map((cell, i) => {
+    const node = element("td", "", cell);
+    node.dataset.head = heads[i]?.textContent ?? "";
+    return node;
+  })));
+  return element("div", "scroll",
+    element("table", "", element("thead", "", element("tr", "", ...heads)), element("tbody", "", ...lines)));
 }

@@ -43,7 +43,7 @@ export function bearing(v: Vec3): number | null {
 
 /// Takes the world of a run's estimate to that of its reference, or stays where there is none.
 export class WorldMap {
-  private scale = 1;
+  scale = 1;
   private q: Quat = [1, 0, 0, 0];
   private t: Vec3 = [0, 0, 0];
 

@@ -8,7 +8,7 @@ import { kPlots } from "./plots";
 import { plotCard } from "./plot";
 import { statusCard } from "./status_strip";
 import type { Vec3 } from "./geometry";
-import { appendPose, makeTrack, refill, type Track } from "./track";
+import { appendPose, makeTracks, refill, type Track } from "./track";
 import { trajectorySection } from "./trajectory_section";
 import { View } from "./view";
 import { turnNumbers, turnPoints, turnRows } from "./world_turn";
@@ -48,7 +48,7 @@ function emptyRun(data: PageData): Run {
     name: data.name ?? "run", origin_ns: "0", config: "", evaluation: null, timings: null, magnetometer: null, map: emptyMap(), pictures: [],
     summary: { data: data.data, rig: { camera_axis_B: data.camera_axis_B }, heading: {} },
     states: { total: 0, stride: 1, t_s: [], numbers: {}, words: { status: [], magnetometer: [] } },
-    landmarks: { total: 0, xyz: "" },
+    landmarks: { total: 0, low_m: [0, 0, 0], step_m: [0, 0, 0], xyz: "", rgb: "" }, others: [], walls: null, stations: null,
   };
   for (const name of ["p_x [m]", "p_y [m]", "p_z [m]", "q_w", "q_x", "q_y", "q_z", "sigma_p_x [m]", "sigma_p_y [m]", "sigma_p_z [m]",
     "sigma_heading [rad]", "tracks", "landmarks", "reprojection_rms [sigma]"]) run.states.numbers[name] = [];
@@ -91,8 +91,8 @@ function nowPanel(): { node: HTMLElement; show: (state: State, mapPoints: number
 
 export function startLive(page: Element, data: PageData): void {
   const run = emptyRun(data);
-  const track = makeTrack(run);
-  const view = new View([track]);
+  const [track] = makeTracks(run);
+  const view = new View([[track]]);
   const now = nowPanel();
   let landmarks: number[] = []; // x y z x y z ...
   let turned_rad = 0; // what is shown, against the run's own world
@@ -142,7 +142,7 @@ export function startLive(page: Element, data: PageData): void {
   setInterval(() => {
     if (!dirty || track.t_s.length === 0) return;
     dirty = false;
-    track.landmarks = Float32Array.from(landmarks);
+    track.landmarks = { xyz: Float32Array.from(landmarks), rgb: null };
     view.active.emit();
     if (follow) view.time.set(track.t_s[track.t_s.length - 1]);
   }, kRedraw_ms);

@@ -1,13 +1,21 @@
+import { setPrinting } from "./colours";
+import { kDrawAll } from "./dom";
 import { readPageData } from "./data";
 import { startLive } from "./live";
 import { assemble } from "./page";
-import { makeTrack } from "./track";
+import { makeTracks } from "./track";
 import { View } from "./view";
+
+// Paper is light; this has to come before all that draws for it.
+window.addEventListener("beforeprint", () => setPrinting(true));
 
 const page = document.getElementById("page");
 if (page) {
   const data = readPageData();
   if (data.live) startLive(page, data);
-  else assemble(page, new View(data.runs.map(makeTrack)));
+  else assemble(page, new View(data.runs.map(makeTracks), data.background ?? null));
+  window.addEventListener("afterprint", () => setPrinting(false));
+  // For `lodeline report --pdf`: all is drawn before the browser prints.
+  if (window.location.hash === "#print") window.dispatchEvent(new Event(kDrawAll));
   document.documentElement.dataset.ready = "true";
 }

@@ -20,6 +20,31 @@ export class MapFrame {
     this.bottom = kMargin.top + h / 2 + (this.scale * (low[1] + high[1])) / 2;
   }
 
+  get perMetre(): number {
+    return this.scale;
+  }
+
+  /// Of the part inside of the rulers, px.
+  get edges(): { left: number; right: number; top: number; base: number } {
+    return { left: kMargin.left, right: this.width - kMargin.right, top: kMargin.top, base: this.height - kMargin.bottom };
+  }
+
+  /// Nearer or farther by a factor about a place of the map, px, and moved by some px.
+  zoom(factor: number, x: number, y: number, dx = 0, dy = 0): void {
+    this.scale *= factor;
+    this.left = x + factor * (this.left - x) + dx;
+    this.bottom = y + factor * (this.bottom - y) + dy;
+  }
+
+  /// Two frames with the same key put everything in the same place.
+  key(): string {
+    return [this.width, this.height, this.scale, this.left, this.bottom].map((v) => v.toFixed(3)).join();
+  }
+
+  metres(x: number, y: number): [number, number] {
+    return [(x - this.left) / this.scale, (this.bottom - y) / this.scale];
+  }
+
   x(metres: number): number {
     return this.left + this.scale * metres;
   }
@@ -31,7 +56,7 @@ export class MapFrame {
   /// Lines and figures each round number of metres.
   drawRulers(c: CanvasRenderingContext2D, labels: [string, string]): void {
     const step = niceStep(90 / this.scale);
-    const digits = step < 1 ? 1 : 0;
+    const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
     c.font = "11px system-ui, sans-serif";
     c.lineWidth = 1;
     c.strokeStyle = themed("grid");
@@ -57,8 +82,15 @@ export class MapFrame {
     c.textAlign = "center";
     c.fillText(labels[1], 0, 0);
     c.restore();
+  }
+
+  /// Nothing is drawn beyond the rulers until the context is restored.
+  clip(c: CanvasRenderingContext2D): void {
+    const { left, right, top, base } = this.edges;
+    c.save();
     c.beginPath();
-    c.rect(kMargin.left, kMargin.top, right - kMargin.left, base - kMargin.top);
+    c.rect(left, top, right - left, base - top);
+    c.clip();
   }
 
   private *steps(low: number, high: number, step: number): Generator<number> {

@@ -1,6 +1,6 @@
 // The map of a run: loops, what became of all pairs that were compared, and control points.
 
-import { element, section } from "./dom";
+import { element, section, table } from "./dom";
 import { clock, number } from "./format";
 import type { RunMap } from "./data";
 import type { View } from "./view";
@@ -11,12 +11,6 @@ function moment(view: View, t_s: number): HTMLElement {
   link.title = "Show the pose of this moment";
   link.addEventListener("click", () => view.time.set(t_s));
   return link;
-}
-
-function table(head: string[], rows: (string | Node)[][]): HTMLElement {
-  const line = (cells: (string | Node)[], tag: "th" | "td") => element("tr", "", ...cells.map((cell) => element(tag, "", cell)));
-  return element("div", "scroll",
-    element("table", "", element("thead", "", line(head, "th")), element("tbody", "", ...rows.map((r) => line(r, "td")))));
 }
 
 function moments(view: View, times: number[], count: number): HTMLElement {

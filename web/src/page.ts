@@ -14,14 +14,19 @@ import { trajectorySection } from "./trajectory_section";
 import type { Run } from "./data";
 import type { View } from "./view";
 
+const kSources = {
+  run: "causal trajectory (trajectory.tum)", refined: "refined trajectory (trajectory_refined.tum)",
+  map: "trajectory in the map (keyframes_map.tum)",
+};
+
 export function head(view: View): HTMLElement {
   const name = element("h1");
   const from = element("p", "from");
-  view.active.watch(({ run }) => {
+  view.active.watch(({ run, kind }) => {
     name.textContent = run.name;
     const rig = run.summary.rig;
     const cameras = rig?.cameras?.length ?? 0;
-    const parts = [run.is_refined ? "refined trajectory (trajectory_refined.tum)" : "causal trajectory (trajectory.tum)",
+    const parts = [kSources[kind],
       run.summary.data, cameras ? `${cameras} camera${cameras > 1 ? "s" : ""} at ${rig?.camera_rate_hz} Hz` : null,
       rig?.imu_rate_hz ? `IMU at ${rig.imu_rate_hz} Hz` : null, run.summary.program];
     from.textContent = parts.filter(Boolean).join(" · ");
@@ -42,7 +47,7 @@ function runSelect(view: View): HTMLElement {
 
 function plots(view: View): HTMLElement {
   return section("plots", "Over time",
-    element("p", "note", "Drag to zoom in, double-click to zoom out, click to select a pose; the figures of all plots follow the pointer."),
+    element("p", "note screen", "Drag to zoom in, double-click to zoom out, click to select a pose; the figures of all plots follow the pointer."),
     element("div", "grid",
       statusCard(view, "status", "Status", [{ name: "images", column: "status" }, { name: "magnetometer", column: "magnetometer" }]),
       ...kPlots.map((spec) => plotCard(view, spec.make))));
@@ -79,7 +84,7 @@ function contents(view: View): HTMLElement {
   const node = element("p", "note");
   view.active.watch(({ run }) => {
     const { states, landmarks, pictures } = run;
-    const shown = landmarks.xyz.length ? Math.floor((landmarks.xyz.length * 3) / 4 / 12) : 0;
+    const shown = landmarks.xyz.length ? Math.floor((landmarks.xyz.length * 3) / 4 / 6) : 0;
     const rows = states.t_s.length < states.total
       ? `${states.t_s.length} of ${states.total} states (each ${states.stride}th, and those where a status changes)`
       : `all ${states.total} states`;

@@ -1,10 +1,11 @@
 // One plot over time: a card with title, curves, legend with figures under the pointer, and downloads.
 
 import uPlot from "uplot";
-import { themed, whenThemeChanges } from "./colours";
+import { isPrinting, themed, whenThemeChanges } from "./colours";
 import { button, element, whenNear, whenResized } from "./dom";
 import { fileName, saveCsv, savePng } from "./download";
 import { clock, number } from "./format";
+import { drawingOn, printable, vectorButton, type VectorDrawing } from "./vector";
 import type { View } from "./view";
 
 export interface Series {
@@ -33,6 +34,8 @@ export interface PlotSpec {
   range?: [number, number];
 }
 
+const kHeight_px = 190;
+const kPrinted_px = 335; // half of a sheet
 const kSync = uPlot.sync("time");
 
 function axes(spec: PlotSpec): uPlot.Axis[] {
@@ -83,6 +86,7 @@ function paddedRange(low: number, high: number): [number, number] {
 
 /// A line at the selected pose.
 function drawSelection(plot: uPlot, t: number): void {
+  if (isPrinting()) return;
   const x = plot.valToPos(t, "x", true);
   const { left, top, width, height } = plot.bbox;
   if (!(x >= left && x <= left + width)) return;
@@ -98,7 +102,7 @@ function drawSelection(plot: uPlot, t: number): void {
 
 function options(spec: PlotSpec, view: View, width: number): uPlot.Options {
   return {
-    width, height: spec.height_px ?? 190, padding: [8, 12, 0, 0],
+    width, height: spec.height_px ?? kHeight_px, padding: [8, 12, 0, 0],
     scales: {
       x: { time: false },
       y: { dir: spec.downwards ? -1 : 1, range: spec.range ?? ((_, low, high) => paddedRange(low, high)) },
@@ -111,6 +115,15 @@ function options(spec: PlotSpec, view: View, width: number): uPlot.Options {
         (plot) => drawSelection(plot, view.time.value)],
     },
   };
+}
+
+/// The plot on another context. uPlot draws later than it is made unless it is asked for a batch.
+function drawPlot(context: CanvasRenderingContext2D, spec: PlotSpec, view: View, width: number): void {
+  drawingOn(context, () => {
+    const plot = new uPlot({ ...options(spec, view, width), legend: { show: false } }, dataOf(spec), element("div"));
+    plot.batch(() => undefined);
+    plot.destroy();
+  });
 }
 
 /// A click that is no drag selects the moment under the pointer.
@@ -131,11 +144,16 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
   let plot: uPlot | null = null;
   let current: PlotSpec | null = null;
   const name = () => fileName(view.active.value.run.name, current?.id ?? "plot");
+  const vector: VectorDrawing = {
+    width: () => Math.max(320, drawing.clientWidth), height: () => current?.height_px ?? kHeight_px, ratio: () => devicePixelRatio,
+    draw: (context, width) => current && drawPlot(context, current, view, width),
+  };
   const tools = element("div", "tools",
     button("CSV", "Download these figures", () => current && saveCsv(name(), [
       { name: "time [s]", values: current.t_s },
       ...current.series.map((s) => ({ name: current!.unit ? `${s.label} [${current!.unit}]` : s.label, values: s.words ?? s.values })),
     ])),
+    vectorButton(name, vector),
     button("PNG", "Download this picture", () => plot && savePng(name(), plot.ctx.canvas, pictureTitle(current!))));
   const card = element("article", "card plot", element("header", "", title, tools), drawing, note);
   const make = () => {
@@ -167,8 +185,9 @@ export function plotCard(view: View, spec: (view: View) => PlotSpec | null): HTM
   whenNear(card, () => {
     seen = true;
     make();
-    whenResized(drawing, (width) => plot && width > 0 && plot.setSize({ width, height: current?.height_px ?? 190 }));
+    whenResized(drawing, (width) => plot && width > 0 && plot.setSize({ width, height: current?.height_px ?? kHeight_px }));
   });
+  printable(drawing, drawing, vector, () => (card.classList.contains("wide") ? 2 * kPrinted_px : kPrinted_px));
   return card;
 }
 

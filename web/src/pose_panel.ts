@@ -3,11 +3,13 @@
 import { element } from "./dom";
 import { clock, number } from "./format";
 import { nearestIndex, type Picture } from "./data";
+import { measurePanel } from "./measure";
+import { playback } from "./playback";
 import type { Track } from "./track";
 import type { View } from "./view";
 
 function figures(track: Track, pose: number): [string, string][] {
-  const { states } = track.run;
+  const { states } = track;
   const row = track.row[pose];
   const fixed = (v: number, digits: number) => v.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   const position = ["x", "y", "z"].map((axis) => fixed(states.numbers[`p_${axis} [m]`][row] ?? NaN, 2)).join(", ");
@@ -18,10 +20,12 @@ function figures(track: Track, pose: number): [string, string][] {
     ["one sigma", `${number(track.positionSigma_m[pose], 2)} m`],
     ["Heading", plusMinus(track.heading_deg[pose], track.headingSigma_deg[pose], 1, "°")],
     ["Depth below start", `${fixed(track.depth_m[pose], 2)} m`],
-    ["Status", states.words["status"]?.[row] ?? "–"],
-    ["Tracks", `${states.numbers["tracks"]?.[row] ?? "–"}, ${states.numbers["landmarks"]?.[row] ?? "–"} of them landmarks`],
-    ["Reprojection", `${number(states.numbers["reprojection_rms [sigma]"]?.[row], 2)} σ`],
+    ...(states.words["status"] ? [["Status", states.words["status"][row]] as [string, string]] : []),
   ];
+  if (states.numbers["tracks"]) {
+    list.push(["Tracks", `${states.numbers["tracks"][row] ?? "–"}, ${states.numbers["landmarks"]?.[row] ?? "–"} of them landmarks`],
+      ["Reprojection", `${number(states.numbers["reprojection_rms [sigma]"]?.[row], 2)} σ`]);
+  }
   const magnetometer = states.words["magnetometer"]?.[row];
   if (magnetometer && magnetometer !== "off") list.push(["Magnetometer", magnetometer]);
   if (track.error_m[pose] !== null) list.push(["Error", `${number(track.error_m[pose], 3)} m`]);
@@ -61,5 +65,6 @@ export function posePanel(view: View): HTMLElement {
   };
   view.active.watch(show);
   view.time.watch(show);
-  return element("aside", "card pose", element("header", "", element("h3", "", "Selected pose"), time), slider, figure, table);
+  return element("aside", "card pose", element("header", "", element("h3", "", "Selected pose"), time), slider,
+    playback(view), figure, table, measurePanel(view));
 }

@@ -8,6 +8,7 @@ import { kKinds, kLoopColour, kMapColour, themed } from "./colours";
 import { colourScale, type Colouring } from "./colouring";
 import { niceStep } from "./format";
 import type { Vec3 } from "./geometry";
+import { pointColours, type PointColouring, type Points } from "./points";
 import { extent, loopEnds, type Track } from "./track";
 
 export type Place = { middle: THREE.Vector3; radius: number; reach: number };
@@ -52,6 +53,16 @@ export function referenceLine(track: Track): THREE.Object3D | null {
   return fatLine(path.x.map((x, i) => [x, path.y[i], path.z[i]] as Vec3), themed("ink"), 1.1, 3);
 }
 
+/// Another solution of the same run.
+export function solutionLine(track: Track): THREE.Object3D {
+  return fatLine(track.position, themed("muted"), 1.4, 1);
+}
+
+/// The line that is measured.
+export function measureLine(from: Vec3, to: Vec3): THREE.Object3D {
+  return fatLine([from, to], themed("accent"), 1.8, 5);
+}
+
 /// The way in the map, closed by loops.
 export function mapLine(track: Track): THREE.Object3D | null {
   return track.inMap.length > 1 ? fatLine(track.inMap, kMapColour, 1.8, 3) : null;
@@ -70,12 +81,25 @@ export function loopLines(track: Track): THREE.Object3D {
   return group;
 }
 
-export function landmarkCloud(track: Track): THREE.Object3D {
+const kDense = 300_000;
+
+/// Bytes of a colour as the graphics take them.
+function linear(rgb: Uint8Array): Uint8Array {
+  const table = Uint8Array.from({ length: 256 }, (_, i) => Math.round(255 * new THREE.Color().setRGB(i / 255, 0, 0, THREE.SRGBColorSpace).r));
+  return rgb.map((v) => table[v]);
+}
+
+export function pointCloud(points: Points, track: Track, colouring: PointColouring): THREE.Object3D {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(track.landmarks, 3));
+  geometry.setAttribute("position", new THREE.BufferAttribute(points.xyz, 3));
+  const { rgb } = pointColours(points, track, colouring);
+  if (rgb) geometry.setAttribute("color", new THREE.BufferAttribute(linear(rgb), 3, true));
+  const isDense = points.xyz.length / 3 > kDense;
   const material = new THREE.PointsMaterial({
-    color: themed("landmark"), size: 1.6 * Math.min(2, window.devicePixelRatio), sizeAttenuation: false,
-    transparent: true, opacity: 0.55, depthWrite: false,
+    color: rgb ? 0xffffff : themed("landmark"), vertexColors: rgb !== null, sizeAttenuation: false,
+    size: (isDense ? 1 : 1.6) * Math.min(2, window.devicePixelRatio),
+    // Blending of millions of points takes long without a graphics card.
+    transparent: !isDense, opacity: isDense ? 1 : rgb ? 0.85 : 0.55, depthWrite: isDense,
   });
   return new THREE.Points(geometry, material);
 }

@@ -5,8 +5,11 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { ViewHelper } from "three/addons/helpers/ViewHelper.js";
 import { whenThemeChanges } from "./colours";
 import { element, whenResized } from "./dom";
-import { grid, landmarkCloud, loopLines, mapLine, otherLine, placeOf, PoseMarker, referenceLine, trajectoryLine, type Place } from "./scene";
+import { shownPoints } from "./map_points";
+import { grid, loopLines, mapLine, measureLine, otherLine, pointCloud, placeOf, PoseMarker, referenceLine, solutionLine, trajectoryLine, type Place } from "./scene";
 import { poseText, Tip } from "./tip";
+import { poseAt, type Track } from "./track";
+import { printablePicture } from "./vector";
 import type { View } from "./view";
 import { worldNames } from "./world";
 
@@ -26,6 +29,7 @@ export class SpaceView {
   private compass: ViewHelper;
   private pending = 0;
   private sized = false;
+  private measured: THREE.Object3D | null = null;
 
   /// Throws where the browser has no WebGL.
   constructor(private view: View) {
@@ -43,6 +47,8 @@ export class SpaceView {
     whenResized(this.node, (width, height) => this.resize(width, height));
     view.active.watch(() => this.rebuild());
     view.colouring.watch(() => this.rebuild());
+    view.pointColouring.watch(() => this.rebuild());
+    view.mark.watch(() => this.draw());
     view.shown.watch(() => this.rebuild());
     view.time.watch(() => this.draw());
     whenThemeChanges(() => this.rebuild());
@@ -52,6 +58,10 @@ export class SpaceView {
     });
     this.node.addEventListener("pointermove", (event) => this.hover(event));
     this.node.addEventListener("pointerleave", () => this.tip.hide());
+    printablePicture(this.node, this.renderer.domElement, () => {
+      this.rebuild();
+      this.drawNow();
+    });
   }
 
   get canvas(): HTMLCanvasElement {
@@ -113,10 +123,14 @@ export class SpaceView {
     view.tracks.forEach((other, i) => {
       if (other !== track && other.position.length > 1) this.content.add(otherLine(other, i));
     });
-    if (view.shown.value.landmarks) this.content.add(landmarkCloud(track));
-    const reference = view.shown.value.reference ? referenceLine(track) : null;
+    for (const each of view.tracks) {
+      const points = shownPoints(view, each);
+      if (points) this.content.add(pointCloud(points, each, view.pointColouring.value));
+    }
+    const reference = view.shown.value.reference && track.kind !== "map" ? referenceLine(track) : null;
     if (reference) this.content.add(reference);
-    const inMap = view.shown.value.map ? mapLine(track) : null;
+    if (view.shown.value.others) for (const other of view.others()) if (other.position.length > 1) this.content.add(solutionLine(other));
+    const inMap = view.shown.value.others && track.kind !== "map" ? mapLine(track) : null;
     if (inMap) this.content.add(inMap);
     if (view.shown.value.loops && track.run.map?.loops.length) this.content.add(loopLines(track));
     this.addGround();
@@ -180,8 +194,19 @@ export class SpaceView {
         this.marker.show(track.position[pose], track.view[pose], 0.075 * distance);
       }
     }
+    this.drawMeasure(track, pose);
     this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
     this.compass.render(this.renderer);
+  }
+
+  private drawMeasure(track: Track, pose: number): void {
+    if (this.measured) this.scene.remove(this.measured);
+    this.measured = null;
+    if (this.view.mark.value === null || track.position.length === 0) return;
+    const from = poseAt(track, this.view.mark.value);
+    if (from === pose) return;
+    this.measured = measureLine(track.position[from], track.position[pose]);
+    this.scene.add(this.measured);
   }
 }

@@ -6,6 +6,7 @@ import { sequential, themed, whenThemeChanges } from "./colours";
 import { element, whenNear, whenResized } from "./dom";
 import { number } from "./format";
 import type { Magnetometer } from "./data";
+import { printablePicture } from "./vector";
 import type { View } from "./view";
 
 interface Cloud {
@@ -76,6 +77,7 @@ function draw(view: View, card: HTMLElement, drawing: HTMLElement, note: HTMLEle
   };
   view.active.watch(rebuild);
   whenThemeChanges(rebuild);
+  printablePicture(drawing, renderer.domElement, rebuild);
   whenResized(drawing, (width, height) => {
     if (width === 0 || height === 0) return;
     camera.aspect = width / height;

@@ -1,17 +1,11 @@
 // Figures against the reference, and several runs side by side.
 
 import { kKinds } from "./colours";
-import { button, element } from "./dom";
+import { button, element, table } from "./dom";
 import { saveCsv } from "./download";
 import { alignmentName, duration, number } from "./format";
 import { attitudeErrors, type Run } from "./data";
 import type { View } from "./view";
-
-function table(head: string[], rows: (string | Node)[][]): HTMLElement {
-  const line = (cells: (string | Node)[], tag: "th" | "td") => element("tr", "", ...cells.map((cell) => element(tag, "", cell)));
-  return element("div", "scroll",
-    element("table", "", element("thead", "", line(head, "th")), element("tbody", "", ...rows.map((r) => line(r, "td")))));
-}
 
 export function evaluationTable(view: View): HTMLElement {
   const node = element("div", "card");
@@ -70,8 +64,7 @@ export function comparisonTable(view: View): HTMLElement {
     name.prepend(swatch);
     return name;
   });
-  const node = table([""], rows);
-  node.querySelector("thead tr")?.append(...names.map((name) => element("th", "", name)));
+  const node = table(["", ...names], rows);
   const save = () => saveCsv("comparison", [
     { name: "figure", values: shown.map((s) => `"${s.name}"`) },
     ...view.tracks.map((t) => ({ name: t.run.name, values: shown.map((s) => s.value(t.run) ?? null) })),

@@ -9,6 +9,7 @@
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
 #include "lodeline/pipeline/run_recording.h"
+#include "lodeline/pipeline/run_stations.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {
@@ -22,16 +23,18 @@ std::string writeRunReport(const RunRequest& request) {
   const fs::path folder = request.output;
   const std::optional<fs::path> truth = referenceOfRecording(request.data);
   Diagnostics ignored;  // files just written are whole
-  std::optional<ReportReference> reference;
-  if (truth) reference = {*truth, AlignmentType::SE3};
+  ReportOptions options;
+  options.stations = runStationsJson;
+  if (truth) options.reference = {*truth, AlignmentType::SE3};
   std::string page;
   std::string remark;
   try {
-    page = reportPage({folder}, reference, &ignored);
+    page = reportPage({folder}, options, &ignored);
   } catch (const InputError& error) {
-    if (!reference) throw;
+    if (!options.reference) throw;
     remark = fmt::format("without the recording's ground truth: {}", error.what());
-    page = reportPage({folder}, std::nullopt, &ignored);
+    options.reference.reset();
+    page = reportPage({folder}, options, &ignored);
   }
   writeOutput(folder / "report.html", page);
   return remark;

@@ -75,7 +75,8 @@ std::string dataBlock(const std::string& name, const Curve& curve) {
     const Curve::Point& point = curve.points[i];
     broken = broken || (point.break_before && i > 0);
     if (i % stride != 0 && i + 1 != curve.points.size()) continue;
-    text += fmt::format("{}{:.6g} {:.6g}\n", broken ? "\n" : "", point.x, point.y);
+    const std::string value = point.value ? fmt::format(" {:.6g}", *point.value) : "";
+    text += fmt::format("{}{:.6g} {:.6g}{}\n", broken ? "\n" : "", point.x, point.y, value);
     broken = false;
   }
   return text + "EOD\n";

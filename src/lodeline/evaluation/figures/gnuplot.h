@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct Curve {
     double x = 0.0;
     double y = 0.0;
     bool break_before = false;
+    std::optional<double> value = std::nullopt;  ///< third column, for a colour
   };
   std::vector<Point> points;
 };

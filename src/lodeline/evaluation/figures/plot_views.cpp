@@ -43,7 +43,7 @@ Curves curvesAlong(const Evaluation& e, const Vec3& right, const Vec3& up) {
   for (std::size_t i = 0; i < e.pairs.size(); ++i) {
     const Vec3& p = e.aligned_estimate[i].translation;
     const bool broken = i > 0 && e.pairs.time[i] - e.pairs.time[i - 1] > gap;
-    curves.estimate.points.push_back({p.dot(right), p.dot(up), broken});
+    curves.estimate.points.push_back({p.dot(right), p.dot(up), broken, e.absolute.position_m[i].norm()});
   }
   std::size_t next_pair = 0;
   bool was_covered = false;
@@ -101,7 +101,7 @@ std::string plotCommand(const Curves& curves) {
       curves.missed.points.empty() ? "" : "$missed with lines lc '#b0b0b0' lw 1.5 title 'not covered', ";
   return fmt::format(
       "plot {}$reference with lines lc '#000000' lw 1.8 title 'reference', "
-      "$estimate with lines lc '#0072b2' lw 1.4 title 'estimate', "
+      "$estimate with lines lc palette lw 2.4 title 'estimate, coloured by error', "
       "'-' with points pt 6 ps 2 lw 2 lc '#d55e00' title 'start', "
       "'-' with points pt 4 ps 2 lw 2 lc '#d55e00' title 'end'\n{} {}\ne\n{} {}\ne\n",
       missed, start.x, start.y, end.x, end.y);
@@ -124,7 +124,9 @@ gnuplot::Figure viewFigure(const Evaluation& e, const char* name, const char* ti
       "set xlabel '{} (m)'\nset ylabel '{} (m)'\n"
       "set size ratio -1\nset tmargin 2.5\nset bmargin 5\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
       "set grid lc '#dddddd' lt 1 lw 0.7\nset border lw 0.8\nset tics nomirror out\n"
-      "set key bmargin center horizontal samplen 2\n",
+      "set key bmargin center horizontal samplen 2\n"
+      "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
+      "set cbrange [0:*]\nset cblabel 'position error (m)'\n",
       title, e.absolute.position().rmse, e.reference_path_m, alignmentTitle(e.options.alignment),
       axis_names[0], axis_names[1], x.min, x.max, y.min, y.max);
   figure.commands += plotCommand(curves);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/report/page/report_page.h"
 #include "lodeline/output/report/page/test_browser.h"
@@ -21,7 +23,7 @@ class Browser : public testing::Test {
                                const std::optional<ReportReference>& reference) const {
     Diagnostics diagnostics;
     const std::filesystem::path file = folder_.path() / "report.html";
-    writeOutput(file, reportPage(runs, reference, &diagnostics));
+    writeOutput(file, reportPage(runs, {reference}, &diagnostics));
     return file;
   }
   TemporaryFolder folder_;
@@ -42,6 +44,47 @@ TEST_F(Browser, PrintsWholeAndIsReadableOnAPhone) {
   test::writeTestReference(folder_.path() / "truth.tum", run);
   const ReportReference reference = {folder_.path() / "truth.tum", AlignmentType::SE3};
   EXPECT_TRUE(passesInBrowser("print_and_phone.mjs", pageOf({folder_.path() / "dive"}, reference)));
+}
+
+/// Stations each four seconds, one of them without a wall to the right.
+nlohmann::ordered_json testStations(const std::filesystem::path& /*run*/, int64_t /*origin_ns*/) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const double t_s : {0.0, 4.0, 8.0, 12.0}) {
+    nlohmann::json right = 0.9;
+    if (t_s == 4.0) right = nullptr;
+    json.push_back({{"t_s", t_s},
+                    {"left_right_up_down_m", {1.1, right, 0.8, 0.7}},
+                    {"splays_m", {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.8}, {-1.1, 0.0, 0.0}, {0.0, 0.0, -0.7}}}});
+  }
+  return json;
+}
+
+/// Red walls beside the way.
+void writeTestWalls(const std::filesystem::path& file) {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2000\nproperty float x\nproperty float "
+      "y\nproperty float "
+      "z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  for (int i = 0; i < 2000; ++i) {
+    const float p[3] = {3.0f * std::cos(0.01f * i), 3.0f * std::sin(0.01f * i), 0.001f * (i % 1000)};
+    text.append(reinterpret_cast<const char*>(p), sizeof(p)).append("\xc8\x20\x20");
+  }
+  writeOutput(file, text);
+}
+
+TEST_F(Browser, ShowsASurveyOnAnyScreen) {
+  test::TestRun run;
+  run.picture_width_px = 160;
+  const std::filesystem::path dive = folder_.path() / "dive";
+  test::writeTestRun(dive, run);
+  std::filesystem::copy(dive / "states.csv", dive / "states_refined.csv");
+  writeTestWalls(dive / "walls.ply");
+  ReportOptions options;
+  options.stations = testStations;
+  options.background = {{"name", "old survey"}, {"lines", {{{-3, -3}, {3, 3}}}}, {"image", nullptr}};
+  Diagnostics diagnostics;
+  writeOutput(folder_.path() / "report.html", reportPage({dive}, options, &diagnostics));
+  EXPECT_TRUE(passesInBrowser("survey.mjs", folder_.path() / "report.html"));
 }
 
 TEST_F(Browser, ComparesTwoRuns) {

@@ -41,10 +41,11 @@ std::string fillPage(const nlohmann::ordered_json& data) {
   return text;
 }
 
-std::string reportPage(const std::vector<std::filesystem::path>& runs,
-                       const std::optional<ReportReference>& reference, Diagnostics* diagnostics) {
+std::string reportPage(const std::vector<std::filesystem::path>& runs, const ReportOptions& options,
+                       Diagnostics* diagnostics) {
   nlohmann::ordered_json data = {{"live", false}, {"runs", nlohmann::ordered_json::array()}};
-  for (const auto& run : runs) data["runs"].push_back(runPageJson(run, reference, diagnostics));
+  for (const auto& run : runs) data["runs"].push_back(runPageJson(run, options, diagnostics, runs.size()));
+  data["background"] = options.background;
   return fillPage(data);
 }
 

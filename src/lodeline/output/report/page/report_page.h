@@ -2,11 +2,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "lodeline/output/report/page/run_evaluation.h"
+#include "lodeline/output/report/page/report_options.h"
 
 namespace lodeline {
 
@@ -16,7 +15,7 @@ std::string fillPage(const nlohmann::ordered_json& data);
 
 /// A self-contained HTML page of one or more runs from their output folders; docs/how-to/report.md describes
 /// its content. Throws as runPageJson() and fillPage().
-std::string reportPage(const std::vector<std::filesystem::path>& runs,
-                       const std::optional<ReportReference>& reference, Diagnostics* diagnostics);
+std::string reportPage(const std::vector<std::filesystem::path>& runs, const ReportOptions& options,
+                       Diagnostics* diagnostics);
 
 }  // namespace lodeline

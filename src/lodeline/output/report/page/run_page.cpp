@@ -11,8 +11,9 @@
 #include "lodeline/output/files/landmark_file.h"
 #include "lodeline/output/report/page/base64.h"
 #include "lodeline/output/report/page/map_page.h"
-#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/page/solutions.h"
 #include "lodeline/output/report/page/table_json.h"
+#include "lodeline/output/report/page/wall_file.h"
 #include "lodeline/util/csv_fields.h"
 
 namespace lodeline {
@@ -39,13 +40,11 @@ nlohmann::ordered_json readSummary(const fs::path& file) {
 }
 
 nlohmann::ordered_json landmarksJson(const fs::path& file, Diagnostics* diagnostics) {
-  if (!fs::exists(file)) return {{"total", 0}, {"xyz", ""}};
+  if (!fs::exists(file)) return cloudJson({}, 0);
   const std::vector<MapLandmark> all = readLandmarkFile(file, diagnostics);
-  std::vector<Eigen::Vector3f> shown;
-  for (const size_t row : chooseRows(all.size(), kMostLandmarks, {}).rows)
-    shown.push_back(all[row].position.cast<float>());
-  const auto* bytes = reinterpret_cast<const uint8_t*>(shown.data());
-  return {{"total", all.size()}, {"xyz", base64({bytes, shown.size() * sizeof(Eigen::Vector3f)})}};
+  ColouredPoints points;
+  for (const MapLandmark& landmark : all) points.positions.push_back(landmark.position.cast<float>());
+  return cloudJson(points, kMostLandmarks);
 }
 
 /// The JPEGs of SamplePictures, by time.
@@ -105,10 +104,17 @@ std::string nameOf(const fs::path& run) {
   return (absolute.has_filename() ? absolute : absolute.parent_path()).filename().string();
 }
 
+/// null where the run has no file of its walls.
+nlohmann::ordered_json wallsJson(const fs::path& file, size_t runs) {
+  if (!fs::exists(file)) return nullptr;
+  return cloudJson(readWallFile(file), kMostWallPoints / runs);
+}
+
 }  // namespace
 
-nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<ReportReference>& reference,
-                                   Diagnostics* diagnostics) {
+nlohmann::ordered_json runPageJson(const fs::path& run, const ReportOptions& options,
+                                   Diagnostics* diagnostics, size_t runs) {
+  const size_t most_rows = runs > 1 ? kMostRowsOfAllRuns / runs : kMostRows;
   const bool is_refined = fs::exists(run / "states_refined.csv");
   const RunTable states = readRunTable(run / (is_refined ? "states_refined.csv" : "states.csv"), diagnostics);
   const int64_t origin_ns = states.rows() > 0 ? states.stamp_ns.front() : 0;
@@ -118,16 +124,19 @@ nlohmann::ordered_json runPageJson(const fs::path& run, const std::optional<Repo
   json["is_refined"] = is_refined;
   json["summary"] = readSummary(run / "run.json");
   json["config"] = readWhole(run / "config.yaml");
-  // The page shows sigmas, not covariances, and the attitude filter has its own command.
-  json["states"] = tableJson(states, origin_ns, {"cov_", "attitude_", "keyframe"});
+  json["states"] = tableJson(states, origin_ns, most_rows, isForThePage);
   json["landmarks"] =
       landmarksJson(run / (is_refined ? "landmarks_refined.ply" : "landmarks.ply"), diagnostics);
+  json["others"] = otherSolutionsJson(run, is_refined, origin_ns, most_rows, diagnostics);
+  json["walls"] = wallsJson(run / "walls.ply", runs);
   json["pictures"] = picturesJson(run / "pictures", origin_ns);
   json["timings"] = optionalTable(run / "timings.csv", origin_ns, diagnostics);
   json["magnetometer"] = magnetometerJson(run, json["summary"], origin_ns, diagnostics);
   json["map"] = runMapJson(run, origin_ns, diagnostics);
+  json["stations"] = nullptr;
+  if (options.stations) json["stations"] = options.stations(run, origin_ns);
   json["evaluation"] = nullptr;
-  if (reference) json["evaluation"] = runEvaluationJson(run, *reference, origin_ns);
+  if (options.reference) json["evaluation"] = runEvaluationJson(run, *options.reference, origin_ns);
   return json;
 }
 

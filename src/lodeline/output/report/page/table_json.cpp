@@ -1,6 +1,5 @@
 #include "lodeline/output/report/page/table_json.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "lodeline/output/report/page/row_choice.h"
@@ -36,11 +35,11 @@ nlohmann::json secondsSince(int64_t origin_ns, const std::vector<int64_t>& stamp
   return json;
 }
 
-nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns,
-                                 const std::vector<std::string>& left_out) {
+nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns, size_t most,
+                                 const std::function<bool(const std::string&)>& is_wanted) {
   std::vector<const std::vector<std::string>*> words;
   for (const auto& [name, values] : table.words) words.push_back(&values);
-  const RowChoice choice = chooseRows(table.rows(), kMostRows, words);
+  const RowChoice choice = chooseRows(table.rows(), most, words);
   nlohmann::ordered_json json;
   json["total"] = table.rows();
   json["stride"] = choice.stride;
@@ -48,10 +47,7 @@ nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns,
   json["numbers"] = nlohmann::json::object();
   json["words"] = nlohmann::json::object();
   for (const auto& [name, values] : table.numbers) {
-    const bool is_left_out = std::any_of(
-        left_out.begin(), left_out.end(),
-        [&, &column = name](const std::string& beginning) { return column.rfind(beginning, 0) == 0; });
-    if (!is_left_out) json["numbers"][name] = shortNumbers(values, choice.rows);
+    if (!is_wanted || is_wanted(name)) json["numbers"][name] = shortNumbers(values, choice.rows);
   }
   for (const auto& [name, values] : table.words) {
     nlohmann::ordered_json& column = json["words"][name] = nlohmann::ordered_json::array();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@ namespace lodeline {
 
 /// Maximum number of rows of a table on a page.
 inline constexpr size_t kMostRows = 8000;
+/// The same for all runs together, where a page has several.
+inline constexpr size_t kMostRowsOfAllRuns = 12000;
 
 /// A number with six significant digits, enough for a figure; null for values that are not finite.
 nlohmann::json shortNumber(double value);
@@ -19,9 +22,9 @@ nlohmann::json shortNumbers(const std::vector<double>& values, const std::vector
 nlohmann::json secondsSince(int64_t origin_ns, const std::vector<int64_t>& stamp_ns,
                             const std::vector<size_t>& rows);
 
-/// A table in the format of the page (`Table` in web/src/data.ts), with rows from chooseRows(). Columns whose
-/// names begin with one of `left_out` are omitted.
-nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns,
-                                 const std::vector<std::string>& left_out = {});
+/// A table in the format of the page (`Table` in web/src/data.ts), with at most about `most` rows from
+/// chooseRows(), and the columns for whose names `is_wanted` is true; all where it is not set.
+nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns, size_t most = kMostRows,
+                                 const std::function<bool(const std::string&)>& is_wanted = nullptr);
 
 }  // namespace lodeline
