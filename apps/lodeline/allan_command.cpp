@@ -88,8 +88,8 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   }
 }
 
-void readBag(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
-  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
+void readRecording(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
+  const std::unique_ptr<RecordedSource> bag = openReadings(arguments.data, arguments.bag, diagnostics).source;
   Part imu_part(arguments);
   while (const std::optional<ImuSample> sample = bag->nextImu()) {
     analyses->has_gyroscope = analyses->has_accelerometer = true;
@@ -139,8 +139,8 @@ void allan(const AllanArguments& arguments) {
   refuseRigOfFolder(arguments.data, arguments.bag);
   if (isTableOfReadings(arguments.data)) {
     readFile(arguments, &diagnostics, &analyses);
-  } else if (isBag(arguments.data)) {
-    readBag(arguments, &diagnostics, &analyses);
+  } else if (isBag(arguments.data) || isVideo(arguments.data)) {
+    readRecording(arguments, &diagnostics, &analyses);
   } else {
     readFolder(arguments, &diagnostics, &analyses);
   }
@@ -171,7 +171,8 @@ void addAllanCommand(CLI::App& program) {
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras and calibration may be "
+                   "folder with mav0 (EuRoC ASL layout), ROS bag or film with telemetry, cameras and "
+                   "calibration may be "
                    "missing; or a CSV "
                    "file")
       ->required();

@@ -94,11 +94,12 @@ MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* 
   refuseBagOptions(arguments.data, arguments.bag);
   refuseRigOfFolder(arguments.data, arguments.bag);
   const bool is_packed = recognizeFile(arguments.data).kind == FileKind::Compressed;
-  if (is_packed || isTableOfReadings(arguments.data) || !isBag(arguments.data)) {
+  const bool is_readings = is_packed || isTableOfReadings(arguments.data);
+  if (is_readings || !(isBag(arguments.data) || isVideo(arguments.data))) {
     return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
   }
-  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
-  return readMagnetometerRecord(*bag, arguments.data, bag->rigFile().sections.contains("mag0"),
+  const OpenedReadings opened = openReadings(arguments.data, arguments.bag, diagnostics);
+  return readMagnetometerRecord(*opened.source, arguments.data, opened.sections.contains("mag0"),
                                 recordOptions(arguments), diagnostics);
 }
 

@@ -1,4 +1,4 @@
-#include "lodeline/io/rosbag/imu_halves.h"
+#include "lodeline/io/streams/imu_halves.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/io/rosbag/imu_halves.h"
+#include "lodeline/io/rosbag/imu_content.h"
 #include "lodeline/io/rosbag/messages.h"
 #include "lodeline/sensors/sensor_kind.h"
 

@@ -3,24 +3,11 @@
 #include <functional>
 #include <optional>
 
-#include "lodeline/io/rosbag/container/bag_file.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {
 
-/// Content of the messages of an Imu topic. Drivers of RealSense cameras publish gyroscope and accelerometer
-/// in separate topics, each with zeros for the other sensor.
-struct ImuContent {
-  bool has_gyroscope = false;
-  bool has_accelerometer = false;
-
-  bool isWhole() const { return has_gyroscope && has_accelerometer; }
-};
-
-/// Reads a topic until both vectors were non-zero once; a complete IMU takes a few messages.
-ImuContent contentOf(const BagTopic& topic, BagFile* bag);
-
-/// Merges the topics of a gyroscope and an accelerometer into one IMU. It gives one reading per gyroscope
+/// Merges the streams of a gyroscope and an accelerometer into one IMU. It gives one reading per gyroscope
 /// reading, with the specific force interpolated linearly between the accelerometer's readings before and
 /// after. It leaves out gyroscope readings before the first accelerometer reading, after the last one, and in
 /// gaps of the accelerometer longer than four of its usual steps.
@@ -28,7 +15,7 @@ class ImuHalves {
  public:
   using Next = std::function<std::optional<ImuSample>()>;
 
-  /// The next merged reading, from the next readings of both topics.
+  /// The next merged reading, from the next readings of both streams.
   std::optional<ImuSample> next(const Next& gyroscope, const Next& accelerometer);
 
  private:
