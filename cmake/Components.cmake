@@ -3,14 +3,14 @@
 set(LODELINE_core_LAYERS options util tables geometry sensors streams cameras magnetometer imu ahrs io logs board frontend
     inspection factors estimator batch evaluation calibration rig_calibration api files)
 set(LODELINE_simulation_LAYERS rendering simulation)
-set(LODELINE_rosbag_LAYERS rosbag)
+set(LODELINE_rosbag_LAYERS film rosbag video)
 set(LODELINE_survey_LAYERS dives survey)
 set(LODELINE_live_LAYERS report live)
 set(LODELINE_mapping_LAYERS keyframe store recognition graph cloud control session)
 set(LODELINE_ALL_COMPONENTS core simulation rosbag survey live mapping)
 
 option(LODELINE_WITH_SIMULATION "Build the component simulation (needs Embree)" ON)
-option(LODELINE_WITH_ROSBAG "Build the component rosbag (needs bzip2, LZ4, Zstandard and SQLite)" ON)
+option(LODELINE_WITH_ROSBAG "Build the component rosbag: bags and films (needs bzip2, LZ4, Zstandard and SQLite)" ON)
 option(LODELINE_WITH_SURVEY "Build the component survey (needs PROJ, GeographicLib and libxml2)" ON)
 option(LODELINE_WITH_MAPPING "Build the component mapping (needs SQLite)" ON)
 option(LODELINE_WITH_LIVE "Build the component live (needs cpp-httplib)" ON)

@@ -18,6 +18,7 @@ build=(
   libapriltag-dev  # boards for the calibration of cameras
   libgeographiclib-dev libproj-dev libxml2-dev libnanoflann-dev libembree-dev libtbb-dev
   libbz2-dev liblz4-dev libzstd-dev  # ROS bags
+  libavformat-dev libavcodec-dev libswscale-dev libavutil-dev  # films
   gnuplot-nox
   libcpp-httplib-dev
 )

@@ -88,8 +88,8 @@ void readFolder(const AllanArguments& arguments, Diagnostics* diagnostics, Analy
   }
 }
 
-void readBag(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
-  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
+void readRecording(const AllanArguments& arguments, Diagnostics* diagnostics, Analyses* analyses) {
+  const std::unique_ptr<RecordedSource> bag = openReadings(arguments.data, arguments.bag, diagnostics).source;
   Part imu_part(arguments);
   while (const std::optional<ImuSample> sample = bag->nextImu()) {
     analyses->has_gyroscope = analyses->has_accelerometer = true;
@@ -137,8 +137,8 @@ void allan(const AllanArguments& arguments) {
   Analyses analyses(&diagnostics);
   refuseBagOptions(arguments.data, arguments.bag);
   refuseRigOfFolder(arguments.data, arguments.bag);
-  if (isBag(arguments.data)) {
-    readBag(arguments, &diagnostics, &analyses);
+  if (isBag(arguments.data) || isVideo(arguments.data)) {
+    readRecording(arguments, &diagnostics, &analyses);
   } else if (isSensorLog(arguments.data)) {
     readLog(arguments, &diagnostics, &analyses);
   } else {
@@ -171,8 +171,9 @@ void addAllanCommand(CLI::App& program) {
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras and calibration may be "
-                   "missing; or a sensor log: a CSV file, a folder or zip of them, a log of PX4 or ArduPilot")
+                   "folder with mav0 (EuRoC ASL layout), ROS bag or film with telemetry, cameras and "
+                   "calibration may be missing; or a sensor log: a CSV file, a folder or zip of them, a log of "
+                   "PX4 or ArduPilot")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,

@@ -92,11 +92,11 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
 MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
   refuseRigOfFolder(arguments.data, arguments.bag);
-  if (!isBag(arguments.data)) {
+  if (!isBag(arguments.data) && !isVideo(arguments.data)) {
     return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
   }
-  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
-  return readMagnetometerRecord(*bag, arguments.data, bag->rigFile().sections.contains("mag0"),
+  const OpenedReadings opened = openReadings(arguments.data, arguments.bag, diagnostics);
+  return readMagnetometerRecord(*opened.source, arguments.data, opened.sections.contains("mag0"),
                                 recordOptions(arguments), diagnostics);
 }
 

@@ -42,10 +42,20 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
   options.compression = arguments.compression;
   const RecognizedFile source = recognizeFile(arguments.source);
   const bool from_bag = isBag(arguments.source);
-  const bool is_other = !from_bag && !source.isFolder();
-  if (is_other) refuseFile(source, "convert takes a ROS bag or a folder with mav0");
+  const bool from_video = !from_bag && isVideo(arguments.source);
+  const bool is_other = !from_bag && !from_video && !source.isFolder();
+  if (is_other) refuseFile(source, "convert takes a ROS bag, a film with telemetry or a folder with mav0");
   const std::optional<BagFormat> format = targetFormat(arguments);
   options.format = format.value_or(BagFormat::Ros1);
+  if (from_video) {
+    refuseBagOptions(arguments.source, arguments.bag);
+    EurocOptions everything;
+    everything.needs_calibration = false;
+    const std::unique_ptr<VideoSource> film =
+        openVideo(arguments.source, everything, arguments.bag, diagnostics);
+    return format ? convertToBag(film.get(), film->rigFile(), arguments.target, options, diagnostics)
+                  : convertToFolder(film.get(), film->rigFile(), arguments.target, diagnostics);
+  }
   if (!from_bag && !format) {
     throw UsageError("a folder becomes a bag: name DST NAME.bag, NAME.mcap or NAME.db3, or give --format");
   }
@@ -76,9 +86,10 @@ void addConvertCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "convert", "Turn a recording into another format: EuRoC folder, ROS 1 bag, ROS 2 bag (MCAP, SQLite)");
   command
-      ->add_option("SRC", arguments->source,
-                   "a ROS bag (.bag, .mcap, .db3, or the folder of a ROS 2 bag), or a folder with mav0 "
-                   "(EuRoC ASL layout)")
+      ->add_option(
+          "SRC", arguments->source,
+          "a ROS bag (.bag, .mcap, .db3, or the folder of a ROS 2 bag), a film with telemetry (.MP4; "
+          "all its chapters), or a folder with mav0 (EuRoC ASL layout)")
       ->required();
   command
       ->add_option("DST", arguments->target,
@@ -105,6 +116,7 @@ void addConvertCommand(CLI::App& program) {
       "  lodeline convert dive1 dive1.bag\n"
       "  lodeline convert dive1 dive1.mcap\n"
       "  lodeline convert dive1.bag dive1_ros2 --format db3\n"
+      "  lodeline convert GX010042.MP4 dive1 --rig rig.yaml\n"
       "  lodeline convert dive1.bag dive1 --rig camchain-imucam.yaml --rig imu.yaml\n"
       "  lodeline convert dive1.bag dive1 --topic cam0=/left/image_raw --topic cam1=/right/image_raw");
   command->callback([arguments] { convert(*arguments); });

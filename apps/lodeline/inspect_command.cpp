@@ -15,6 +15,7 @@
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/io/rosbag/bag_kinds.h"
 #include "lodeline/io/rosbag/bag_listing.h"
+#include "lodeline/io/video/video_text.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
@@ -71,6 +72,12 @@ void inspectRecording(const InspectArguments& arguments) {
       inspect([&](Diagnostics* diagnostics) { return openWhatThereIs(arguments, diagnostics); }, options);
   if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(inspectionJson(inspection)) + "\n");
   fmt::print("{}", inspectionText(inspection));
+  if (isVideo(arguments.data)) {
+    Diagnostics told_above;
+    EurocOptions everything;
+    everything.needs_calibration = false;
+    fmt::print("{}", videoText(*openVideo(arguments.data, everything, arguments.bag, &told_above)));
+  }
   if (!isBag(arguments.data)) return;
   Diagnostics reported_above;
   fmt::print("{}", topicsText(*openBagFile(arguments.data, &reported_above)));
@@ -86,7 +93,8 @@ void addInspectCommand(CLI::App& program) {
       ->add_option(
           "DATA", arguments->data,
           "folder with mav0 (EuRoC ASL layout), a ROS bag (.bag, .mcap, .db3, or the folder of a "
-          "ROS 2 bag), or a sensor log: a CSV file, a folder or zip of them, a log of PX4 or ArduPilot")
+          "ROS 2 bag), a film with telemetry (.MP4; all its chapters), or a sensor log: a CSV file, a folder "
+          "or zip of them, a log of PX4 or ArduPilot")
       ->required();
   addBagOptions(&arguments->bag, command);
   command

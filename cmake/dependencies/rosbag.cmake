@@ -1,4 +1,4 @@
-# ROS bags: bzip2, LZ4, Zstandard and SQLite to read them. Writing bags of ROS 1 needs librosbag-storage, which may be
+# Recordings in ROS bags and films: bzip2, LZ4, Zstandard and SQLite to read them. Writing bags of ROS 1 needs librosbag-storage, which may be
 # missing.
 lodeline_find(BZip2)
 lodeline_find_library(lz4::lz4 lz4frame.h lz4)
@@ -22,6 +22,21 @@ if(NOT TARGET rosbag_storage::rosbag_storage)
     target_include_directories(rosbag_storage::rosbag_storage INTERFACE ${ROSBAG_${package}_INCLUDE_DIR})
     if(NOT ROSBAG_${package}_INCLUDE_DIR)
       set(LODELINE_HAS_ROSBAG_STORAGE OFF)
+    endif()
+  endforeach()
+endif()
+# FFmpeg's libraries read films and images of H.264 and H.265; they may be missing.
+if(NOT TARGET FFmpeg::FFmpeg)
+  add_library(FFmpeg::FFmpeg INTERFACE IMPORTED)
+  set(LODELINE_HAS_FFMPEG ON)
+  foreach(library avformat avcodec swscale avutil)
+    find_path(FFMPEG_${library}_INCLUDE_DIR lib${library}/${library}.h)
+    find_library(FFMPEG_${library}_LIBRARY ${library})
+    if(FFMPEG_${library}_INCLUDE_DIR AND FFMPEG_${library}_LIBRARY)
+      target_include_directories(FFmpeg::FFmpeg INTERFACE ${FFMPEG_${library}_INCLUDE_DIR})
+      target_link_libraries(FFmpeg::FFmpeg INTERFACE ${FFMPEG_${library}_LIBRARY})
+    else()
+      set(LODELINE_HAS_FFMPEG OFF)
     endif()
   endforeach()
 endif()

@@ -11,6 +11,7 @@
 #include "lodeline/magnetometer/calibration/calibrate_magnetometer.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 #include "lodeline/pipeline/available_images.h"
+#include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"
 
@@ -134,17 +135,23 @@ void prepareFolder(const fs::path& folder, const ComparisonRequest& request, Com
   }
 }
 
-/// Converts a bag to a folder, because bags have no list of images for the comparison.
-fs::path convertedBag(const fs::path& bag, const ComparisonRequest& request) {
-  const fs::path folder = recordingsFolder(request) / (bag.stem().string() + "_from_bag");
+/// Converts a bag or a film to a folder, because these have no list of images for the comparison.
+fs::path convertedRecording(const fs::path& bag, const ComparisonRequest& request) {
+  const fs::path folder =
+      recordingsFolder(request) / (bag.stem().string() + (isBag(bag) ? "_from_bag" : "_from_film"));
   if (fs::exists(folder) && fs::last_write_time(folder) >= fs::last_write_time(bag)) return folder;
-  ConvertOptions options;
-  options.rig_files.assign(request.run.bag.rig_files.begin(), request.run.bag.rig_files.end());
-  options.topics = topicsOf(request.run.bag);
   const fs::path unfinished = folder.string() + "_unfinished";
   fs::remove_all(unfinished);
   Diagnostics diagnostics;  // the runs report faults of the data as well
-  convertBagToFolder(bag, unfinished, options, &diagnostics);
+  ConvertOptions options;
+  options.rig_files.assign(request.run.bag.rig_files.begin(), request.run.bag.rig_files.end());
+  options.topics = topicsOf(request.run.bag);
+  if (isBag(bag)) {
+    convertBagToFolder(bag, unfinished, options, &diagnostics);
+  } else {
+    const std::unique_ptr<VideoSource> film = openVideo(bag, EurocOptions(), request.run.bag, &diagnostics);
+    convertToFolder(film.get(), film->rigFile(), unfinished, &diagnostics);
+  }
   fs::remove_all(folder);
   fs::rename(unfinished, folder);
   fs::last_write_time(folder, fs::file_time_type::clock::now());
@@ -193,16 +200,17 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
       std::any_of(all.begin(), all.end(), [&](const Scenario& s) { return s.name == input; });
   if (is_scenario) {
     if (!prepareScenario(input, request, prepared)) return false;
-  } else if (fs::is_directory(input) && !isBag(input)) {
+  } else if (fs::is_directory(input) && !isBag(input) && !isVideo(input)) {
     prepareFolder(input, request, prepared);
-  } else if (isBag(input)) {
-    prepareFolder(convertedBag(input, request), request, prepared);
+  } else if (isBag(input) || isVideo(input)) {
+    prepareFolder(convertedRecording(input, request), request, prepared);
     prepared->run.bag = {};
   } else {
     std::string names;
     for (const Scenario& s : all) names += (names.empty() ? "" : ", ") + s.name;
     const RecognizedFile recognized = recognizeFile(input);
-    if (recognized.kind != FileKind::Missing) refuseFile(recognized, "give a folder with mav0, or a ROS bag");
+    if (recognized.kind != FileKind::Missing)
+      refuseFile(recognized, "give a folder with mav0, a ROS bag or a film with telemetry");
     throw UsageError(
         fmt::format("{}: neither a folder, a bag nor a scenario; scenarios are {}", input, names));
   }

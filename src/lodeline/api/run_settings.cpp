@@ -13,6 +13,8 @@ void bindRecording(Settings* settings, RunSettings* options) {
   settings->bind(
       "source.cameras", &options->source.camera_indices,
       "Numbers of the cameras to use. The first one is the reference camera. `[]` uses all cameras.");
+  settings->bind("source.image_step", &options->image_step,
+                 "Use every Nth image of each camera, such as `2` for a film of 60 images a second.");
   settings->bind("source.skip_s", &options->synchronizer.skip_s,
                  "Time at the start of the recording that the run leaves out.");
   settings->bind("source.duration_s", &options->synchronizer.duration_s,

@@ -15,6 +15,7 @@ namespace lodeline {
 /// All settings of `lodeline run`.
 struct RunSettings {
   EurocOptions source;
+  int image_step = 1;  ///< every Nth image is used
   SynchronizerOptions synchronizer;
   OdometryOptions odometry;
   std::string magnetometer_calibration;  ///< file of `lodeline calibrate magnetometer`; empty for none

@@ -8,6 +8,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/logs/log_source.h"
+#include "lodeline/io/video/video_folder.h"
 #include "lodeline/util/files/file_kind.h"
 
 namespace lodeline {
@@ -45,10 +46,20 @@ bool isBag(const std::filesystem::path& data) {
   return extension == ".bag" || extension == ".mcap" || extension == ".db3" || name.ends_with(".bag.active");
 }
 
+bool isVideo(const std::filesystem::path& data) {
+  const RecognizedFile recognized = recognizeFile(data);
+  if (recognized.kind == FileKind::Folder) return findVideoFolder(data).has_value();
+  if (recognized.kind == FileKind::Video) return recognized.advice.empty();
+  if (recognized.kind != FileKind::Missing) return false;
+  constexpr std::array kExtensions = {".mp4", ".MP4", ".mov", ".MOV", ".mkv", ".avi"};
+  return std::find(kExtensions.begin(), kExtensions.end(), data.extension().string()) != kExtensions.end();
+}
+
 void refuseRigOfFolder(const std::filesystem::path& data, const BagArguments& bag_arguments) {
-  if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data) || isBag(data)) return;
+  if (bag_arguments.rig_files.empty() || !std::filesystem::is_directory(data)) return;
+  if (isBag(data) || isVideo(data)) return;
   throw UsageError(
-      fmt::format("--rig is for ROS bags here; {} is {}", data.string(), recognizeFile(data).what));
+      fmt::format("--rig is for ROS bags and films here; {} is {}", data.string(), recognizeFile(data).what));
 }
 
 void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag_arguments) {
@@ -63,39 +74,61 @@ void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag
     const bool is_table = recognized.kind == FileKind::Table || recognized.kind == FileKind::Text;
     if (!is_table) return;  // already rejected by its kind
     throw UsageError(
-        fmt::format("--rig is for ROS bags and folders; {} is {}", data.string(), recognized.what));
+        fmt::format("--rig is for ROS bags, films and folders; {} is {}", data.string(), recognized.what));
   }
 }
 
-std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
-                                           const BagArguments& bag_arguments, Diagnostics* diagnostics) {
+OpenedReadings openReadings(const std::filesystem::path& data, const BagArguments& bag_arguments,
+                            Diagnostics* diagnostics) {
+  if (isVideo(data)) {
+    EurocOptions options;
+    options.with_cameras = options.needs_calibration = false;
+    std::unique_ptr<VideoSource> film = openVideo(data, options, bag_arguments, diagnostics);
+    RigSections sections = film->rigFile().sections;
+    return {std::move(film), std::move(sections)};
+  }
   BagOptions options = bagOptions(bag_arguments);
   options.with_cameras = false;
   options.needs_calibration = false;
-  return std::make_unique<BagSource>(bag, options, diagnostics);
+  auto bag = std::make_unique<BagSource>(data, options, diagnostics);
+  RigSections sections = bag->rigFile().sections;
+  return {std::move(bag), std::move(sections)};
+}
+
+std::unique_ptr<VideoSource> openVideo(const std::filesystem::path& film, const EurocOptions& options,
+                                       const BagArguments& bag_arguments, Diagnostics* diagnostics) {
+  VideoOptions video_options;
+  video_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
+  video_options.camera_indices = options.camera_indices;
+  video_options.with_cameras = options.with_cameras;
+  video_options.needs_calibration = options.needs_calibration;
+  return std::make_unique<VideoSource>(film, video_options, diagnostics);
 }
 
 std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics) {
-  if (!isBag(data)) {
-    refuseBagOptions(data, bag_arguments);
+  const bool is_bag = isBag(data), is_video = !is_bag && isVideo(data);
+  if (!is_bag) refuseBagOptions(data, bag_arguments);
+  if (!is_bag && !is_video) {
     const bool wants_images = options.with_cameras && options.needs_cameras;
     if (!wants_images && isSensorLog(data)) return std::make_unique<LogSource>(data, diagnostics);
     EurocOptions folder_options = options;
     folder_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
     return std::make_unique<EurocSource>(data, folder_options, diagnostics);
   }
+  if (!options.needs_calibration && bag_arguments.rig_files.empty() &&
+      !std::filesystem::exists(rigFileBeside(data))) {
+    diagnostics->report(
+        Severity::Warning, is_bag ? "bag_uncalibrated" : "video_uncalibrated",
+        fmt::format("{}: no rig file (--rig) and none beside the {} ({}); sensors are taken as they are, in "
+                    "body axes",
+                    data.string(), is_bag ? "bag" : "film", rigFileBeside(data).string()));
+  }
+  if (is_video) return openVideo(data, options, bag_arguments, diagnostics);
   BagOptions bag_options = bagOptions(bag_arguments);
   bag_options.camera_indices = options.camera_indices;
   bag_options.with_cameras = options.with_cameras;
   bag_options.needs_calibration = options.needs_calibration;
-  if (!options.needs_calibration && bag_options.rig_files.empty() &&
-      !std::filesystem::exists(rigFileBeside(data))) {
-    diagnostics->report(Severity::Warning, "bag_uncalibrated",
-                        fmt::format("{}: no rig file (--rig) and none beside the bag ({}); sensors are taken "
-                                    "as they are, in body axes",
-                                    data.string(), rigFileBeside(data).string()));
-  }
   return std::make_unique<BagSource>(data, bag_options, diagnostics);
 }
 

@@ -8,6 +8,7 @@
 
 #include "lodeline/api/recording_check.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/synchronizer/thinned_source.h"
 #include "lodeline/output/live/live_view.h"
 #include "lodeline/pipeline/output_choice.h"
 #include "lodeline/pipeline/run_progress.h"
@@ -42,7 +43,8 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
 /// Opens the recording a second time, to check its first seconds before the run.
 void checkRequested(const RunRequest& request, RunSettings* options, Diagnostics* diagnostics) {
   const SourceFactory open = [&](Diagnostics* unheard) -> std::unique_ptr<MeasurementSource> {
-    return openRecording(request.data, options->source, request.bag, unheard);
+    return everyNthImage(openRecording(request.data, options->source, request.bag, unheard),
+                         options->image_step);
   };
   checkRecording(open, request.data, options, diagnostics);
 }
@@ -94,8 +96,8 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   Settings settings;
   applyRequest(request, &settings, &options);
 
-  const std::unique_ptr<RecordedSource> source =
-      openRecording(request.data, options.source, request.bag, diagnostics);
+  const std::unique_ptr<RecordedSource> source = everyNthImage(
+      openRecording(request.data, options.source, request.bag, diagnostics), options.image_step);
   checkRequested(request, &options, diagnostics);
   RunSession session(request, settings, options, source.get(), diagnostics);
   process(&session, source->rig(), request);

@@ -14,17 +14,6 @@
 namespace lodeline {
 namespace {
 
-RigFile readRig(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics) {
-  if (!options.rig_files.empty()) return readRigFiles(options.rig_files, diagnostics);
-  const std::filesystem::path beside = rigFileBeside(bag);
-  if (std::filesystem::exists(beside)) return readRigFiles({beside}, diagnostics);
-  if (!options.needs_calibration) return {};
-  throw InputError(
-      fmt::format("{}: a bag does not hold the calibration; describe the rig with --rig FILE, or in {} "
-                  "(docs/reference/file-formats.md shows how)",
-                  bag.string(), beside.string()));
-}
-
 /// Gives every sensor in the bag a calibration, even a meaningless one.
 void addUncalibrated(const BagFile& bag, RigFile* rig_file) {
   Rig& rig = rig_file->rig;
@@ -99,23 +88,11 @@ messages::ImageForm formOf(const BagTopic& topic) {
 
 }  // namespace
 
-std::filesystem::path rigFileBeside(const std::filesystem::path& bag) {
-  std::filesystem::path file = bag.has_filename() ? bag : bag.parent_path();
-  if (file.extension() == ".zstd") file.replace_extension();
-  // The name of a folder, which may not exist yet, can have dots.
-  const std::string extension = file.extension().string();
-  const bool is_bag = extension == ".bag" || extension == ".db3" || extension == ".mcap";
-  std::error_code ignored;
-  if (is_bag || std::filesystem::is_regular_file(bag, ignored)) file.replace_extension();
-  file += ".rig.yaml";
-  return file;
-}
-
 BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options, Diagnostics* diagnostics)
     : RecordedSource(Rig()),
       bag_(openBagFile(bag, diagnostics)),
       diagnostics_(diagnostics),
-      rig_file_(readRig(bag, options, diagnostics)),
+      rig_file_(readRigOf(bag, "a bag", options.rig_files, options.needs_calibration, diagnostics)),
       use_received_times_(options.use_received_times) {
   if (!options.needs_calibration) addUncalibrated(*bag_, &rig_file_);
   if (!rig_file_.has_imu) {

@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/io/calibration/rig_beside.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/images/grey_range.h"
 #include "lodeline/io/rosbag/container/bag_file.h"
 #include "lodeline/io/rosbag/imu_content.h"
 #include "lodeline/io/rosbag/messages.h"
 #include "lodeline/io/rosbag/topic_choice.h"
+#include "lodeline/io/streams/imu_halves.h"
 #include "lodeline/recording.h"
 #include "lodeline/rosbag.h"
 #include "lodeline/sensors/sensor_kind.h"
@@ -76,8 +78,5 @@ class BagSource : public RecordedSource {
   ImuHalves halves_;                       ///< state for an IMU in two topics
   std::deque<SonarSample> echoes_;         ///< echoes of the scan that was read last
 };
-
-/// Path of NAME.rig.yaml for NAME.bag, NAME.mcap, NAME.db3 or a folder NAME.
-std::filesystem::path rigFileBeside(const std::filesystem::path& bag);
 
 }  // namespace lodeline

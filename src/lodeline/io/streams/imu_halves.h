@@ -15,7 +15,7 @@ class ImuHalves {
  public:
   using Next = std::function<std::optional<ImuSample>()>;
 
-  /// The next merged reading, from the next readings of both topics.
+  /// The next merged reading, from the next readings of both streams.
   std::optional<ImuSample> next(const Next& gyroscope, const Next& accelerometer);
 
  private:

@@ -16,9 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-constexpr const char* kFilm =
-    "a film holds no stamps and no readings that Lodeline reads; record images with stamps and an IMU (a ROS "
-    "bag, or a folder with mav0: docs/reference/file-formats.md)";
 constexpr const char* kLogUse =
     "it holds no images; `lodeline attitude`, `allan`, `inspect` and `calibrate magnetometer` read it";
 constexpr const char* kUnpack = "unpack it and give the folder or the bag that it holds";
@@ -49,13 +46,13 @@ constexpr std::array kSignatures = {
               "7zXZ\0"sv,
               FileKind::Compressed, "packed (xz)", kUnpack},
     Signature{0, "\x28\xB5\x2F\xFD"sv, FileKind::Compressed, "packed (zstd)", kUnpack},
-    Signature{4, "ftyp"sv, FileKind::Video, "a film (MP4 or MOV)", kFilm},
-    Signature{4, "moov"sv, FileKind::Video, "a film (MOV)", kFilm},
-    Signature{4, "mdat"sv, FileKind::Video, "a film (MOV)", kFilm},
-    Signature{8, "AVI "sv, FileKind::Video, "a film (AVI)", kFilm},
-    Signature{0, "\x1A\x45\xDF\xA3"sv, FileKind::Video, "a film (MKV or WebM)", kFilm},
-    Signature{0, "\0\0\1\xBA"sv, FileKind::Video, "a film (MPEG)", kFilm},
-    Signature{0, "OggS"sv, FileKind::Video, "a film (Ogg)", kFilm},
+    Signature{4, "ftyp"sv, FileKind::Video, "a film (MP4 or MOV)", ""},
+    Signature{4, "moov"sv, FileKind::Video, "a film (MOV)", ""},
+    Signature{4, "mdat"sv, FileKind::Video, "a film (MOV)", ""},
+    Signature{8, "AVI "sv, FileKind::Video, "a film (AVI)", ""},
+    Signature{0, "\x1A\x45\xDF\xA3"sv, FileKind::Video, "a film (MKV or WebM)", ""},
+    Signature{0, "\0\0\1\xBA"sv, FileKind::Video, "a film (MPEG)", ""},
+    Signature{0, "OggS"sv, FileKind::Video, "a film (Ogg)", ""},
     Signature{0, "\x89PNG\r\n"sv, FileKind::Image, "a picture (PNG)", ""},
     Signature{0, "\xFF\xD8\xFF"sv, FileKind::Image, "a picture (JPEG)", ""},
     Signature{0, "II*\0"sv, FileKind::Image, "a picture (TIFF)", ""},
@@ -89,10 +86,10 @@ constexpr std::array kExtensions = {
     Extension{".bag", FileKind::Ros1Bag, "a ROS 1 bag, by its name", ""},
     Extension{".tar", FileKind::Archive, "an archive, by its name", kUnpack},
     Extension{".zip", FileKind::Archive, "an archive, by its name", kUnpack},
-    Extension{".mp4", FileKind::Video, "a film, by its name", kFilm},
-    Extension{".mov", FileKind::Video, "a film, by its name", kFilm},
-    Extension{".avi", FileKind::Video, "a film, by its name", kFilm},
-    Extension{".mkv", FileKind::Video, "a film, by its name", kFilm},
+    Extension{".mp4", FileKind::Video, "a film, by its name", ""},
+    Extension{".mov", FileKind::Video, "a film, by its name", ""},
+    Extension{".avi", FileKind::Video, "a film, by its name", ""},
+    Extension{".mkv", FileKind::Video, "a film, by its name", ""},
     Extension{".svo", FileKind::Video, "a recording of a ZED camera, by its name",
               "export it with the ZED SDK: images, stamps and IMU readings"},
 };

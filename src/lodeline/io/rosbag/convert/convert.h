@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/rosbag/convert/bag_writer.h"
+#include "lodeline/recording.h"
 
 namespace lodeline {
 
@@ -48,6 +50,16 @@ ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::f
 /// target exists or the bag cannot be read.
 ConvertSummary convertBagToBag(const std::filesystem::path& bag, const std::filesystem::path& target,
                                const ConvertOptions& options, Diagnostics* diagnostics);
+
+/// Converts an open recording, such as a film, to the EuRoC ASL layout. `rig`: its calibration, which may be
+/// empty. Throws InputError where the folder exists and is not empty.
+ConvertSummary convertToFolder(RecordedSource* source, const RigFile& rig,
+                               const std::filesystem::path& folder, Diagnostics* diagnostics);
+
+/// Converts an open recording to a bag, with its calibration beside it. Throws InputError where the bag
+/// exists.
+ConvertSummary convertToBag(RecordedSource* source, const RigFile& rig, const std::filesystem::path& bag,
+                            const ConvertOptions& options, Diagnostics* diagnostics);
 
 /// Throws InputError where a bag or the rig file beside it exists.
 void requireAbsent(const std::filesystem::path& bag);

@@ -54,16 +54,17 @@ EurocOptions optionsFor(const std::filesystem::path& folder,
   return options;
 }
 
-class FolderConversion {
+/// Writes a recording as a bag.
+class RecordingConversion {
  public:
-  FolderConversion(const std::filesystem::path& folder, const std::filesystem::path& bag,
-                   const ConvertOptions& options, Diagnostics* diagnostics)
-      : layout_(findEurocLayout(folder, optionsFor(folder, options.rig_files))),
+  RecordingConversion(RecordedSource* source, const std::filesystem::path& bag, const ConvertOptions& options,
+                      Diagnostics* diagnostics)
+      : source_(*source),
         diagnostics_(diagnostics),
-        source_(folder, optionsFor(folder, options.rig_files), diagnostics),
         writer_(makeBagWriter(bag, options.format, options.compression)) {}
 
-  ConvertSummary run() {
+  /// `truth`: table of true poses; may be missing.
+  ConvertSummary run(const std::filesystem::path& truth) {
     std::vector<Pull> streams;
     for (size_t i = 0; i < source_.rig().cameras.size(); ++i) {
       streams.push_back([this, i] { return image(i); });
@@ -72,7 +73,6 @@ class FolderConversion {
     streams.push_back([this] { return magnetometer(); });
     streams.push_back([this] { return depth(); });
     streams.push_back([this] { return sonar(); });
-    const std::filesystem::path truth = layout_.csv("state_groundtruth_estimate0");
     std::optional<CsvReader> truth_reader;
     if (std::filesystem::exists(truth)) {
       truth_reader.emplace(truth, CsvContent::TruePose, diagnostics_);
@@ -83,7 +83,6 @@ class FolderConversion {
     return std::move(summary_);
   }
 
-  const EurocLayout& layout() const { return layout_; }
   const std::map<std::string, std::string>& topics() const { return topics_; }
 
  private:
@@ -162,8 +161,8 @@ class FolderConversion {
   void writeImage(size_t camera, const PendingImage& pending) {
     const std::string sensor = fmt::format("cam{}", camera);
     StoredImage stored = pending.stored();
-    const bool is_raw = raw_.try_emplace(sensor, isPng(stored.file)).first->second;
-    if (stored.problem.empty() && is_raw) {
+    const bool is_raw = raw_.try_emplace(sensor, stored.file.empty() || isPng(stored.file)).first->second;
+    if (stored.problem.empty() && is_raw && !stored.file.empty()) {
       stored.pixels = cv::imdecode(stored.file, cv::IMREAD_UNCHANGED);
       if (stored.pixels.empty()) stored.problem = pending.name + ": image damaged or of unknown kind";
     }
@@ -197,9 +196,8 @@ class FolderConversion {
                     }};
   }
 
-  EurocLayout layout_;
+  RecordedSource& source_;
   Diagnostics* diagnostics_;
-  EurocSource source_;
   std::unique_ptr<BagWriter> writer_;
   ConvertSummary summary_;
   std::map<std::string, Time> received_;
@@ -221,10 +219,30 @@ ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std
                                   const ConvertOptions& options, Diagnostics* diagnostics) {
   requireAbsent(bag);
   const std::filesystem::path rig_file = rigFileBeside(bag);
-  FolderConversion conversion(folder, bag, options, diagnostics);
-  ConvertSummary summary = conversion.run();
-  writeRigFile(conversion.layout(), conversion.topics(), rig_file);
+  const EurocOptions folder_options = optionsFor(folder, options.rig_files);
+  const EurocLayout layout = findEurocLayout(folder, folder_options);
+  EurocSource source(folder, folder_options, diagnostics);
+  RecordingConversion conversion(&source, bag, options, diagnostics);
+  ConvertSummary summary = conversion.run(layout.csv("state_groundtruth_estimate0"));
+  writeRigFile(layout, conversion.topics(), rig_file);
   summary.rig_file = rig_file;
+  return summary;
+}
+
+ConvertSummary convertToBag(RecordedSource* source, const RigFile& rig, const std::filesystem::path& bag,
+                            const ConvertOptions& options, Diagnostics* diagnostics) {
+  requireAbsent(bag);
+  RecordingConversion conversion(source, bag, options, diagnostics);
+  ConvertSummary summary = conversion.run({});
+  if (rig.sections.empty()) {
+    diagnostics->report(Severity::Warning, "calibration_missing",
+                        fmt::format("{}: written without calibration, which `lodeline run` needs; describe "
+                                    "the rig with --rig FILE",
+                                    bag.string()));
+    return summary;
+  }
+  summary.rig_file = rigFileBeside(bag);
+  writeRigFile(rig, conversion.topics(), summary.rig_file);
   return summary;
 }
 

@@ -30,9 +30,9 @@ void writeBytes(const std::vector<uint8_t>& bytes, const std::filesystem::path& 
   if (!stream) throw InputError(path.string() + ": could not be written in full; is the disk full?");
 }
 
-class BagConversion {
+class FolderWriter {
  public:
-  BagConversion(BagSource* source, const std::filesystem::path& folder, Diagnostics* diagnostics)
+  FolderWriter(RecordedSource* source, const std::filesystem::path& folder, Diagnostics* diagnostics)
       : source_(source), folder_(folder), diagnostics_(diagnostics) {}
 
   ConvertSummary run() {
@@ -56,9 +56,10 @@ class BagConversion {
     writeReadings(
         "sonar0", kSonarColumns, [&] { return source_->nextSonar(); },
         [](const SonarSample& s) { return fmt::format("{},{}", s.range_m, s.angle_rad); });
-    writeTruth();
     return std::move(summary_);
   }
+
+  void writeTruth(BagFile* bag);
 
  private:
   std::filesystem::path sensor(const std::string& name) const { return folder_ / "mav0" / name; }
@@ -111,65 +112,83 @@ class BagConversion {
     return name;
   }
 
-  void writeTruth() {
-    BagFile& bag = source_->bag();
-    for (const BagTopic& topic : bag.topics()) {
-      if (topic.connection.topic != kTruthTopic || topic.connection.type != messages::kPoseStamped.name)
-        continue;
-      size_t next = 0;
-      const auto nextPose = [&]() -> std::optional<messages::StampedPosition> {
-        while (next < topic.entries.size()) {
-          const std::optional<wire::Bytes> message = bag.read(topic, topic.entries[next++]);
-          std::string problem;
-          if (!message) continue;
-          const auto pose = messages::checkedReading(*message, messages::parsePoseStamped, &problem);
-          if (pose) return pose;
-          diagnostics_->report(
-              Severity::Warning, "bag_message",
-              fmt::format("{} {}: {}; passed over", bag.file().string(), kTruthTopic, problem));
-        }
-        return std::nullopt;
-      };
-      writeReadings("state_groundtruth_estimate0",
-                    "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
-                    "q_RS_z []\n",
-                    nextPose, [](const messages::StampedPosition& pose) {
-                      const Vec3& p = pose.world_from_body.translation;
-                      const Quat& q = pose.world_from_body.rotation;
-                      return fmt::format("{},{},{},{},{},{},{}", p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
-                                         q.z());
-                    });
-    }
-  }
-
-  BagSource* source_;
+  RecordedSource* source_;
   std::filesystem::path folder_;
   Diagnostics* diagnostics_;
   ConvertSummary summary_;
 };
 
-}  // namespace
+void FolderWriter::writeTruth(BagFile* bag) {
+  for (const BagTopic& topic : bag->topics()) {
+    if (topic.connection.topic != kTruthTopic || topic.connection.type != messages::kPoseStamped.name)
+      continue;
+    size_t next = 0;
+    const auto nextPose = [&]() -> std::optional<messages::StampedPosition> {
+      while (next < topic.entries.size()) {
+        const std::optional<wire::Bytes> message = bag->read(topic, topic.entries[next++]);
+        std::string problem;
+        if (!message) continue;
+        const auto pose = messages::checkedReading(*message, messages::parsePoseStamped, &problem);
+        if (pose) return pose;
+        diagnostics_->report(
+            Severity::Warning, "bag_message",
+            fmt::format("{} {}: {}; passed over", bag->file().string(), kTruthTopic, problem));
+      }
+      return std::nullopt;
+    };
+    writeReadings("state_groundtruth_estimate0",
+                  "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
+                  "q_RS_z []\n",
+                  nextPose, [](const messages::StampedPosition& pose) {
+                    const Vec3& p = pose.world_from_body.translation;
+                    const Quat& q = pose.world_from_body.rotation;
+                    return fmt::format("{},{},{},{},{},{},{}", p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
+                                       q.z());
+                  });
+  }
+}
 
-ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::filesystem::path& folder,
-                                  const ConvertOptions& options, Diagnostics* diagnostics) {
+void requireEmpty(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_empty(folder, ignored)) {
     throw InputError(folder.string() + ": is there already and not empty; choose another folder");
   }
-  BagOptions bag_options;
-  bag_options.rig_files = options.rig_files;
-  bag_options.topics = options.topics;
-  bag_options.needs_calibration = false;
-  BagSource source(bag, bag_options, diagnostics);
-  ConvertSummary summary = BagConversion(&source, folder, diagnostics).run();
-  if (source.rigFile().sections.empty()) {
+}
+
+void writeCalibration(const RigFile& rig_file, const std::filesystem::path& folder,
+                      Diagnostics* diagnostics) {
+  if (rig_file.sections.empty()) {
     diagnostics->report(
         Severity::Warning, "calibration_missing",
         fmt::format("{}: written without calibration, which `lodeline run` needs; describe the rig "
                     "with --rig FILE",
                     folder.string()));
   }
-  writeFolderCalibration(source.rigFile(), folder);
+  writeFolderCalibration(rig_file, folder);
+}
+
+}  // namespace
+
+ConvertSummary convertToFolder(RecordedSource* source, const RigFile& rig_file,
+                               const std::filesystem::path& folder, Diagnostics* diagnostics) {
+  requireEmpty(folder);
+  ConvertSummary summary = FolderWriter(source, folder, diagnostics).run();
+  writeCalibration(rig_file, folder, diagnostics);
+  return summary;
+}
+
+ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::filesystem::path& folder,
+                                  const ConvertOptions& options, Diagnostics* diagnostics) {
+  requireEmpty(folder);
+  BagOptions bag_options;
+  bag_options.rig_files = options.rig_files;
+  bag_options.topics = options.topics;
+  bag_options.needs_calibration = false;
+  BagSource source(bag, bag_options, diagnostics);
+  FolderWriter writer(&source, folder, diagnostics);
+  writer.writeTruth(&source.bag());
+  ConvertSummary summary = writer.run();
+  writeCalibration(source.rigFile(), folder, diagnostics);
   return summary;
 }
 

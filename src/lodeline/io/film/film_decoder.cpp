@@ -1,0 +1,173 @@
+#include "lodeline/io/film/film_decoder.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "lodeline/diagnostics.h"
+#include "lodeline/io/film/av_handles.h"
+#include "lodeline/io/film/grey_frame.h"
+
+namespace lodeline {
+namespace {
+
+constexpr unsigned kMostThreads = 4;
+/// Ahead of the decoder by more than this, a seek to a key frame costs less than decoding all images between.
+constexpr double kFarAhead_s = 10.0;
+constexpr size_t kMostKept = 8;
+
+}  // namespace
+
+struct FilmDecoder::State {
+  /// A decoded image that waits for its load().
+  struct Kept {
+    Duration time;
+    av::Frame frame;
+  };
+
+  std::mutex mutex;
+  std::string name;
+  cv::Size size;
+  av::Input input;
+  int track = 0;
+  AVRational unit{};
+  av::Codec codec;
+  av::Packet packet{av_packet_alloc()};
+  std::optional<Duration> position;  ///< time of the last decoded image
+  bool ended = false;                ///< all packets were given to the codec
+  std::set<int64_t> announced_ns;
+  std::deque<Kept> kept;
+
+  void open(const std::filesystem::path& file);
+  void seek(Duration time);
+  av::Frame next();
+  av::Frame decodeUpTo(Duration time);
+  av::Frame takeKept(Duration time);
+  Duration timeOf(const AVFrame& frame) const { return av::duration(frame.best_effort_timestamp, unit); }
+};
+
+void FilmDecoder::State::open(const std::filesystem::path& file) {
+  name = file.string();
+  input = av::openInput(file);
+  av::readOnly(input.get(), track);
+  const AVStream& stream = *input->streams[track];
+  unit = stream.time_base;
+  const AVCodec* known = avcodec_find_decoder(stream.codecpar->codec_id);
+  if (known == nullptr) {
+    throw InputError(fmt::format("{}: no decoder for its codec '{}' is installed", name,
+                                 avcodec_get_name(stream.codecpar->codec_id)));
+  }
+  codec.reset(avcodec_alloc_context3(known));
+  avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  codec->pkt_timebase = unit;
+  codec->thread_count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads));
+  if (const int result = avcodec_open2(codec.get(), known, nullptr); result < 0) {
+    throw InputError(fmt::format("{}: codec '{}': {}", name, known->name, av::errorText(result)));
+  }
+}
+
+void FilmDecoder::State::seek(Duration time) {
+  const int64_t ticks = av_rescale_q(time.nanoseconds(), av::kNanoseconds, unit);
+  if (avformat_seek_file(input.get(), track, INT64_MIN, ticks, ticks, 0) < 0) {
+    av_seek_frame(input.get(), track, INT64_MIN, AVSEEK_FLAG_BACKWARD);
+  }
+  avcodec_flush_buffers(codec.get());
+  position.reset();
+  ended = false;
+}
+
+av::Frame FilmDecoder::State::next() {
+  av::Frame frame(av_frame_alloc());
+  while (true) {
+    const int received = avcodec_receive_frame(codec.get(), frame.get());
+    if (received == 0) {
+      if (frame->best_effort_timestamp == AV_NOPTS_VALUE) continue;
+      return frame;
+    }
+    if (received != AVERROR(EAGAIN)) {
+      if (received == AVERROR_EOF || ended) return nullptr;
+      continue;  // one damaged image
+    }
+    av_packet_unref(packet.get());
+    if (av_read_frame(input.get(), packet.get()) < 0) {
+      ended = true;
+      avcodec_send_packet(codec.get(), nullptr);
+    } else if (packet->stream_index == track) {
+      avcodec_send_packet(codec.get(), packet.get());
+    }
+  }
+}
+
+av::Frame FilmDecoder::State::takeKept(Duration time) {
+  const auto found = std::find_if(kept.begin(), kept.end(), [&](const Kept& k) { return k.time == time; });
+  if (found == kept.end()) return nullptr;
+  av::Frame frame = std::move(found->frame);
+  kept.erase(found);
+  return frame;
+}
+
+av::Frame FilmDecoder::State::decodeUpTo(Duration time) {
+  while (av::Frame frame = next()) {
+    const Duration reached = timeOf(*frame);
+    position = reached;
+    if (reached == time) return frame;
+    if (announced_ns.contains(reached.nanoseconds())) {
+      if (kept.size() == kMostKept) kept.pop_front();
+      kept.push_back({reached, std::move(frame)});
+    }
+    if (reached > time) return nullptr;
+  }
+  return nullptr;
+}
+
+FilmDecoder::FilmDecoder(const std::filesystem::path& file, int track, cv::Size size)
+    : state_(std::make_unique<State>()) {
+  state_->track = track;
+  state_->size = size;
+  state_->open(file);
+}
+
+FilmDecoder::~FilmDecoder() = default;
+
+void FilmDecoder::announce(Duration time) {
+  const std::lock_guard lock(state_->mutex);
+  state_->announced_ns.insert(time.nanoseconds());
+}
+
+LoadedImage FilmDecoder::load(Duration time) {
+  av::Frame frame;
+  {
+    const std::lock_guard lock(state_->mutex);
+    // What is announced before this image by more than the look-ahead will not be loaded any more.
+    const int64_t long_past_ns = (time - Duration::fromSeconds(kFarAhead_s)).nanoseconds();
+    state_->announced_ns.erase(state_->announced_ns.begin(), state_->announced_ns.lower_bound(long_past_ns));
+    frame = state_->takeKept(time);
+    if (!frame) {
+      const bool is_behind = state_->position && *state_->position >= time;
+      const Duration reached = state_->position.value_or(Duration());
+      if (is_behind || state_->ended || (time - reached).seconds() > kFarAhead_s) state_->seek(time);
+      frame = state_->decodeUpTo(time);
+      if (!frame && state_->position && *state_->position > time) {
+        // The index led behind the image: once more from the start of the film.
+        state_->seek(Duration::fromSeconds(-1e6));
+        frame = state_->decodeUpTo(time);
+      }
+    }
+    state_->announced_ns.erase(time.nanoseconds());
+  }
+  const std::string where = fmt::format("{} at {:.3f} s", state_->name, time.seconds());
+  if (!frame) return {cv::Mat(), where + ": the image cannot be decoded"};
+  if (frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
+    return {cv::Mat(), where + ": the image is damaged"};
+  }
+  cv::Mat grey = av::greyFrame(*frame, state_->size);
+  if (grey.empty()) return {cv::Mat(), where + ": its pixel format cannot be converted to grey"};
+  return {grey, ""};
+}
+
+}  // namespace lodeline
