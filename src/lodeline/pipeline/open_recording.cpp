@@ -111,7 +111,15 @@ std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data,
   if (!is_bag) refuseBagOptions(data, bag_arguments);
   if (!is_bag && !is_video) {
     const bool wants_images = options.with_cameras && options.needs_cameras;
-    if (!wants_images && isSensorLog(data)) return std::make_unique<LogSource>(data, diagnostics);
+    if (!wants_images && isSensorLog(data)) {
+      if (!bag_arguments.rig_files.empty()) {
+        throw UsageError(
+            fmt::format("--rig is for ROS bags and folders with mav0; {} is a sensor log, whose "
+                        "readings are taken in the axes of the log",
+                        data.string()));
+      }
+      return std::make_unique<LogSource>(data, diagnostics);
+    }
     EurocOptions folder_options = options;
     folder_options.rig_files.assign(bag_arguments.rig_files.begin(), bag_arguments.rig_files.end());
     return std::make_unique<EurocSource>(data, folder_options, diagnostics);

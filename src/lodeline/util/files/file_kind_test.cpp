@@ -41,6 +41,8 @@ TEST_F(FileKindTest, ContentCountsMoreThanTheName) {
   EXPECT_EQ(recognize("i", "RIFF\0\0\0\0AVI LIST"s).kind, FileKind::Video);
   EXPECT_EQ(recognize("j", "\x89PNG\r\n\x1A\n").kind, FileKind::Image);
   EXPECT_EQ(recognize("k.txt", "\x93NUMPY\1"s).kind, FileKind::Document);
+  EXPECT_EQ(recognize("k.csv", "ULog\1\x12\x35\1"s).kind, FileKind::SensorLog);
+  EXPECT_EQ(recognize("k.txt", "\xA3\x95\x80\x80"s).kind, FileKind::SensorLog);
   EXPECT_EQ(recognize("l.txt", "\1\2\3\4").kind, FileKind::Binary);
 }
 
