@@ -108,6 +108,14 @@ void addRunOptions(RunRequest* arguments, CLI::App* command) {
       ->add_option("--live-address", arguments->live_address,
                    "network address for --live; 0.0.0.0 lets other machines see it")
       ->capture_default_str();
+  command
+      ->add_flag("--live-wait", arguments->live_wait, "with --live: begin when a browser has opened the page")
+      ->needs("--live");
+  command
+      ->add_option("--rate", arguments->rate,
+                   "read the recording at most so many times as fast as it was made; 1 plays it")
+      ->type_name("FACTOR")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--no-report", arguments->no_report, "leave out report.html and its pictures");
   addBagOptions(&arguments->bag, command);
   command->add_flag("--overwrite", arguments->overwrite,
@@ -136,7 +144,7 @@ void addRunCommand(CLI::App& program) {
       "  lodeline run dive1 -o left_only --set source.cameras=[0]\n"
       "  lodeline run dive1 -o north --mag-calibration mag.yaml --site 29.83,-82.60,20 --date 2026-11-21\n"
       "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
-      "  lodeline run dive1 -o dive1_result --live\n"
+      "  lodeline run dive1 -o dive1_result --live --live-wait --rate 1\n"
       "  lodeline run dive1.bag -o dive1_result --rig camchain-imucam.yaml --rig imu.yaml\n"
       "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json,\n"
       "report.html (all of it to look at); pictures of tracks in frames.");

@@ -76,7 +76,7 @@ std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words)
     const std::string word = words[i++];
     const size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
-    if (name != "--site" && name != "--entrance") {
+    if (name != "--site" && name != "--entrance" && name != "--background-at") {
       joined.push_back(word);
     } else if (equals != std::string::npos) {
       joined.push_back(name + "=" + placeFrom(word.substr(equals + 1), words, &i));

@@ -24,6 +24,7 @@ TEST(Arguments, PlacesTakeBlanksAndCommas) {
   EXPECT_THAT(joined({"run", "DATA", "--site=20.32 -87.39 5", "-q"}), expected);
   EXPECT_THAT(joined({"--entrance", "-20", "-87", "5", "7"}), ElementsAre("--entrance=-20,-87,5", "7"));
   EXPECT_THAT(joined({"--entrance", "Florida", "5"}), ElementsAre("--entrance", "Florida", "5"));
+  EXPECT_THAT(joined({"--background-at", "-20.3", "57.1"}), ElementsAre("--background-at=-20.3,57.1"));
   EXPECT_THAT(joined({"--set", "a=1", "2"}), ElementsAre("--set", "a=1", "2"));
 }
 

@@ -11,6 +11,7 @@
 #include "lodeline/io/synchronizer/thinned_source.h"
 #include "lodeline/output/live/live_view.h"
 #include "lodeline/pipeline/output_choice.h"
+#include "lodeline/pipeline/run_pace.h"
 #include "lodeline/pipeline/run_progress.h"
 #include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
@@ -27,9 +28,16 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
     live.emplace(request.live_address, *request.live_port, name, request.data, rig);
     if (!request.quiet) fmt::print(stderr, "live at {}\n", live->url());
   }
-  RunProgress progress(request.quiet);
   const StopRequest stop;
+  const auto is_stopped = [&stop] { return stop.made(); };
+  if (live && request.live_wait) {
+    if (!request.quiet) fmt::print(stderr, "waiting for a browser\n");
+    waitUntil([&live] { return live->isWatched(); }, is_stopped);
+  }
+  RunPace pace(request.rate, is_stopped);
+  RunProgress progress(request.quiet);
   while (session->fetch() && !stop.made()) {
+    pace.await(session->packet().time);
     session->process();
     if (live) {
       live->show(session->packet(), session->estimate(), session->summary(), session->odometry().frontEnd(),

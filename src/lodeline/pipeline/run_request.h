@@ -24,6 +24,8 @@ struct RunRequest {
   bool sample_pictures = false;          ///< write pictures for report.html
   std::optional<int> live_port;          ///< show the run in the browser; 0 for any port
   std::string live_address = "127.0.0.1";  ///< address to which the live view is bound
+  bool live_wait = false;                  ///< begin when a browser shows the live view
+  std::optional<double> rate;              ///< at most so many times real time; empty for no bound
   bool quiet = false;                      ///< no progress
   bool verbose = false;                    ///< a summary with all values
   bool overwrite = false;                  ///< replace the results of another run in the folder

@@ -37,6 +37,7 @@ class LiveView {
   ~LiveView();
 
   std::string url() const { return server_.url(); }
+  bool isWatched() const { return server_.isWatched(); }
 
   /// To be called after each frame, with the landmarks that left the window, and the pose of the odometry's
   /// world in the map if there is one; does nothing for most frames.
