@@ -1,4 +1,4 @@
-#include "lodeline_ros/node_status.h"
+#include "lodeline/node/node_status.h"
 
 #include <fmt/format.h>
 
@@ -7,18 +7,9 @@
 namespace lodeline {
 namespace {
 
-using message::DiagnosticStatus;
-
 constexpr double kStale_s = 2.0;
 /// Weight of a new frame in the mean, which covers about 50 frames.
 constexpr double kNewest = 0.02;
-
-void addValue(const char* key, std::string value, DiagnosticStatus* status) {
-  message::KeyValue pair;
-  pair.key = key;
-  pair.value = std::move(value);
-  status->values.push_back(std::move(pair));
-}
 
 bool isRejected(MagnetometerStatus status) {
   return status == MagnetometerStatus::Norm || status == MagnetometerStatus::Dip ||
@@ -42,18 +33,16 @@ void NodeStatus::setFindings(std::vector<Finding> findings) {
   findings_ = std::move(findings);
 }
 
-message::DiagnosticArray NodeStatus::message(ros::Time now, const std::vector<std::string>& unheard) const {
+std::vector<DiagnosticStatus> NodeStatus::statuses(const std::vector<std::string>& unheard,
+                                                   const std::vector<SensorTraffic>& traffic) {
   const std::lock_guard lock(mutex_);
-  message::DiagnosticArray array;
-  array.header.stamp = now;
-  array.status = {estimatorStatus(unheard), magnetometerStatus()};
-  return array;
+  return {estimatorStatus(unheard), magnetometerStatus(), sensorsStatus(traffic)};
 }
 
 DiagnosticStatus NodeStatus::estimatorStatus(const std::vector<std::string>& unheard) const {
   DiagnosticStatus status;
   status.name = "lodeline: estimator";
-  status.level = DiagnosticStatus::WARN;
+  status.level = DiagnosticStatus::kWarn;
   if (!last_) {
     status.message = unheard.empty() ? "waiting for a frame"
                                      : fmt::format("waiting for messages of {}", fmt::join(unheard, ", "));
@@ -62,23 +51,22 @@ DiagnosticStatus NodeStatus::estimatorStatus(const std::vector<std::string>& unh
   const double silence_s = std::chrono::duration<double>(Clock::now() - last_time_).count();
   status.message = last_->status == Status::Waiting ? "waiting for " + last_->waiting_for
                                                     : std::string(toString(last_->status));
-  if (last_->status == Status::Tracking) status.level = DiagnosticStatus::OK;
+  if (last_->status == Status::Tracking) status.level = DiagnosticStatus::kOk;
   if (silence_s > kStale_s) {
-    status.level = DiagnosticStatus::ERROR;
+    status.level = DiagnosticStatus::kError;
     status.message = fmt::format("no frame for {:.0f} s; do images and inertial readings come?", silence_s);
   }
-  addValue("status", toString(last_->status), &status);
-  addValue("frames", std::to_string(frames_), &status);
-  addValue("tracks", std::to_string(last_->tracks), &status);
-  addValue("landmarks", std::to_string(last_->landmarks), &status);
-  addValue("reprojection rms [sigma]", fmt::format("{:.2f}", last_->reprojection_rms_sigmas), &status);
-  addValue("ratio to real time", busy_share_ > 0.0 ? fmt::format("{:.1f}", 1.0 / busy_share_) : "", &status);
-  addValue("images waiting", std::to_string(backlog_), &status);
-  addValue("depth", toString(last_->sensors.of<DepthEstimate>().status), &status);
+  status.add("status", toString(last_->status));
+  status.add("frames", std::to_string(frames_));
+  status.add("tracks", std::to_string(last_->tracks));
+  status.add("landmarks", std::to_string(last_->landmarks));
+  status.add("reprojection rms [sigma]", fmt::format("{:.2f}", last_->reprojection_rms_sigmas));
+  status.add("ratio to real time", busy_share_ > 0.0 ? fmt::format("{:.1f}", 1.0 / busy_share_) : "");
+  status.add("images waiting", std::to_string(backlog_));
+  status.add("depth", toString(last_->sensors.of<DepthEstimate>().status));
   for (const Finding& finding : findings_) {
     if (finding.severity == Severity::Notice) continue;
-    addValue(finding.kind.c_str(), fmt::format("{} x, first: {}", finding.count, finding.first_message),
-             &status);
+    status.add(finding.kind, fmt::format("{} x, first: {}", finding.count, finding.first_message));
   }
   return status;
 }
@@ -86,19 +74,46 @@ DiagnosticStatus NodeStatus::estimatorStatus(const std::vector<std::string>& unh
 DiagnosticStatus NodeStatus::magnetometerStatus() const {
   DiagnosticStatus status;
   status.name = "lodeline: magnetometer";
-  status.level = DiagnosticStatus::OK;
+  status.level = DiagnosticStatus::kOk;
   if (!last_) return status;
   const MagnetometerEstimate& magnetometer = last_->sensors.of<MagnetometerEstimate>();
   status.message = toString(magnetometer.status);
-  if (isRejected(magnetometer.status)) status.level = DiagnosticStatus::WARN;
-  addValue("gate", toString(magnetometer.status), &status);
-  addValue("heading reference", toString(magnetometer.heading_reference), &status);
+  if (isRejected(magnetometer.status)) status.level = DiagnosticStatus::kWarn;
+  status.add("gate", toString(magnetometer.status));
+  status.add("heading reference", toString(magnetometer.heading_reference));
   if (magnetometer.north_from_world_rad) {
-    addValue("north from world [deg]",
-             fmt::format("{:.2f}", *magnetometer.north_from_world_rad * 180.0 / std::numbers::pi), &status);
+    status.add("north from world [deg]",
+               fmt::format("{:.2f}", *magnetometer.north_from_world_rad * 180.0 / std::numbers::pi));
   }
-  addValue("heading sigma [deg]",
-           fmt::format("{:.2f}", magnetometer.heading_sigma_rad * 180.0 / std::numbers::pi), &status);
+  status.add("heading sigma [deg]",
+             fmt::format("{:.2f}", magnetometer.heading_sigma_rad * 180.0 / std::numbers::pi));
+  return status;
+}
+
+DiagnosticStatus NodeStatus::sensorsStatus(const std::vector<SensorTraffic>& traffic) {
+  DiagnosticStatus status;
+  status.name = "lodeline: sensors";
+  status.message = "messages arrive";
+  uint64_t losses = 0;
+  std::string problem, silence;
+  for (const SensorTraffic& sensor : traffic) {
+    losses += sensor.lost + sensor.unusable;
+    if (sensor.received == 0) silence = sensor.topic + ": no message yet";
+    if (!sensor.problem.empty()) problem = fmt::format("{}: a message {}", sensor.topic, sensor.problem);
+    const std::string why = sensor.problem.empty() ? "" : ": " + sensor.problem;
+    status.add(fmt::format("{} {}", sensor.sensor, sensor.topic),
+               fmt::format("{} received, {} lost, {} of no use{}", sensor.received, sensor.lost,
+                           sensor.unusable, why));
+  }
+  if (losses > told_losses_) {
+    status.level = DiagnosticStatus::kWarn;
+    status.message = fmt::format("{} messages lost or of no use", losses - told_losses_);
+    if (!problem.empty()) status.message += "; " + problem;
+  } else if (!problem.empty() || !silence.empty()) {
+    // A sensor that has never been heard may be silent for a good reason; a fault in the past is told.
+    status.message = problem.empty() ? silence : problem;
+  }
+  told_losses_ = losses;
   return status;
 }
 
