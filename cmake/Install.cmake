@@ -4,6 +4,10 @@ include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lodeline)
 install(DIRECTORY include/lodeline DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+if(node IN_LIST LODELINE_COMPONENTS)  # for the node of ROS 2, which is built elsewhere
+  install(FILES src/lodeline/node/node_option.h src/lodeline/node/ros_session.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lodeline/node)
+endif()
 foreach(component IN LISTS LODELINE_ALL_COMPONENTS)
   if(NOT component IN_LIST LODELINE_COMPONENTS)
     continue()

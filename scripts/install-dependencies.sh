@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04: install-dependencies.sh [build|test|ros|web|docs|fleet ...]
+# Installs what Lodeline needs on Debian 12 or Ubuntu 24.04:
+# install-dependencies.sh [build|test|ros|dds|web|docs|fleet ...]
 #   build  compiler, libraries and the page's bundler: all that `make build` needs (default)
 #   test   what the tests need: those, their framework, Clang, the formatter, survey and GIS programs, a browser
 #   ros    the ROS 1 node, and bags written by `lodeline convert`
+#   dds    lodeline_dds, for networks of ROS 2
 #   web    the browser that the page is tested in
 #   docs   the tools of `make docs`
 #   fleet  the schedulers of `make fleet-test`
@@ -29,6 +31,9 @@ ros=(
   librosbag-storage-dev libsensor-msgs-dev  # writing bags
   libroscpp-dev libnav-msgs-dev libgeometry-msgs-dev libtf2-msgs-dev libdiagnostic-msgs-dev  # the ROS 1 node
 )
+# Ubuntu has newer versions under other names.
+dds=()
+grep -q '^ID=debian' /etc/os-release && dds=(libfastrtps-dev libfastcdr-dev)
 test=(
   "${build[@]}"
   libgtest-dev libgmock-dev libbenchmark-dev python3
@@ -37,6 +42,7 @@ test=(
   clang-tidy-14 gcovr  # `make tidy`, `make coverage`
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"
+  "${dds[@]}"
   python3-roslaunch  # roscore, for the node's test
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs  # bags by another program
 )
@@ -51,8 +57,8 @@ docs=(mkdocs-material doxygen libjs-katex python3)
 packages=()
 for group in "${@:-build}"; do
   case $group in
-    build | test | ros | web | docs | fleet) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
-    *) echo "unknown group '$group'; groups are build, test, ros, web, docs and fleet" >&2 && exit 2 ;;
+    build | test | ros | dds | web | docs | fleet) declare -n chosen=$group && packages+=("${chosen[@]}") ;;
+    *) echo "unknown group '$group'; groups are build, test, ros, dds, web, docs and fleet" >&2 && exit 2 ;;
   esac
 done
 

@@ -126,6 +126,7 @@ class LiveSource : public RecordedSource {
   void push(const ImuSample& sample);
   void push(const MagnetometerSample& sample);
   void push(const DepthSample& sample);
+  void push(const SonarSample& sample);
   /// `camera`: index in the rig.
   void push(size_t camera, PendingImage image);
   /// Ends the streams: queued readings are still returned, then nothing.
@@ -145,6 +146,7 @@ class LiveSource : public RecordedSource {
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
+  std::optional<SonarSample> nextSonar() override;
 
  private:
   /// Count of readings that could not be used.
@@ -185,6 +187,7 @@ class LiveSource : public RecordedSource {
   std::vector<Inbox<PendingImage>> cameras_;
   Inbox<MagnetometerSample> magnetometer_;
   Inbox<DepthSample> depth_;
+  Inbox<SonarSample> sonar_;
   std::optional<Time> newest_imu_;
   std::optional<Time> newest_image_;  ///< latest image of the first camera that was returned, IMU clock
   bool image_follows_ = false;        ///< whether the next image is requested only to look ahead

@@ -2,6 +2,7 @@
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
@@ -39,6 +40,7 @@ using PointCloud2 = sensor_msgs::PointCloud2_<Allocator>;
 using PointField = sensor_msgs::PointField_<Allocator>;
 using Pose = geometry_msgs::Pose_<Allocator>;
 using PoseStamped = geometry_msgs::PoseStamped_<Allocator>;
+using PoseWithCovarianceStamped = geometry_msgs::PoseWithCovarianceStamped_<Allocator>;
 using Quaternion = geometry_msgs::Quaternion_<Allocator>;
 using TFMessage = tf2_msgs::TFMessage_<Allocator>;
 using TransformStamped = geometry_msgs::TransformStamped_<Allocator>;

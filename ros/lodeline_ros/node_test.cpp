@@ -17,9 +17,9 @@
 #include "lodeline/io/rosbag/topic_choice.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/files/test_data.h"
+#include "lodeline/util/files/test_process.h"
 #include "lodeline_ros/message_types.h"
 #include "lodeline_ros/raw_message.h"
-#include "lodeline_ros/test_process.h"
 
 // Runs the node with a roscore and the messages of a bag.
 

@@ -24,6 +24,7 @@ LiveSource::LiveSource(const Rig& rig, const LiveSourceOptions& options, Diagnos
   prepare(&imu_, "imu", "IMU", options_.max_readings);
   prepare(&magnetometer_, "magnetometer", "magnetometer", options_.max_readings);
   prepare(&depth_, "depth", "pressure sensor", options_.max_readings);
+  prepare(&sonar_, "sonar", "sonar", options_.max_readings);
   if (rig.magnetometer) {
     magnetometer_.offset_to_imu_clock = Duration::fromSeconds(rig.magnetometer->time_offset_to_imu_s);
   }
@@ -63,6 +64,7 @@ void LiveSource::push(const ImuSample& sample) {
 }
 void LiveSource::push(const MagnetometerSample& sample) { put(&magnetometer_, sample); }
 void LiveSource::push(const DepthSample& sample) { put(&depth_, sample); }
+void LiveSource::push(const SonarSample& sample) { put(&sonar_, sample); }
 void LiveSource::push(size_t camera, PendingImage image) { put(&cameras_[camera], std::move(image)); }
 
 void LiveSource::close() {
@@ -113,6 +115,7 @@ bool LiveSource::settleRates() {
     settleRate(magnetometer_, MagnetometerCalibration().rate_hz, &rig_.magnetometer->rate_hz);
   }
   if (rig_.pressure) settleRate(depth_, PressureCalibration().rate_hz, &rig_.pressure->rate_hz);
+  if (rig_.sonar) settleRate(sonar_, SonarCalibration().rate_hz, &rig_.sonar->rate_hz);
   return isHeard();
 }
 
@@ -170,6 +173,11 @@ std::optional<MagnetometerSample> LiveSource::nextMagnetometer() {
 std::optional<DepthSample> LiveSource::nextDepth() {
   if (!rig_.pressure) return std::nullopt;
   return take(&depth_, false);
+}
+
+std::optional<SonarSample> LiveSource::nextSonar() {
+  if (!rig_.sonar) return std::nullopt;
+  return take(&sonar_, false);
 }
 
 }  // namespace lodeline

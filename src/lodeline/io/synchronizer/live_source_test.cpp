@@ -144,6 +144,22 @@ TEST_F(LiveSourceTest, DropsAndReportsWhatComesTooLate) {
   EXPECT_EQ(diagnostics_.count("image_late"), 1);
 }
 
+TEST_F(LiveSourceTest, PassesTheEchoesOfASonar) {
+  Rig rig = rigOf(1, false);
+  rig.sonar.emplace();
+  source_.emplace(rig, LiveSourceOptions(), &diagnostics_);
+  SynchronizerOptions options;
+  options.prefetch = false;
+  synchronizer_.emplace(&*source_, options, &diagnostics_);
+  for (const double time_s : {0.5, 0.55}) pushImage(0, time_s);
+  for (const double time_s : {0.44, 0.46, 0.52}) source_->push(SonarSample{at(time_s), 3.0, 0.1});
+  pushImu(0.0, 0.7);
+  EXPECT_EQ(timesOf(next().readings.of<SonarSample>()), (std::vector<Time>{at(0.44), at(0.46)}));
+  source_->push(SonarSample{at(0.47), 3.0, 0.1});  // belongs to a returned packet
+  EXPECT_EQ(timesOf(next().readings.of<SonarSample>()), std::vector<Time>{at(0.52)});
+  EXPECT_EQ(diagnostics_.count("sonar_late"), 1);
+}
+
 TEST_F(LiveSourceTest, DropsTheOldestImagesOfAnEstimatorThatDoesNotKeepUp) {
   LiveSourceOptions options;
   options.max_images = 20;

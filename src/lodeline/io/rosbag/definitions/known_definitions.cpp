@@ -57,6 +57,15 @@ constexpr std::array kKnown = {
           "geometry_msgs/TwistWithCovariance twist\n",
           {},
           "cd5e73d190d741a2f92e81eda573aca7"},
+    Known{"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
+    Known{"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
+    Known{"diagnostic_msgs/DiagnosticStatus",
+          "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values\n"},
+    Known{"diagnostic_msgs/DiagnosticArray", "std_msgs/Header header\nDiagnosticStatus[] status\n"},
+    Known{"sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
+    Known{"sensor_msgs/PointCloud2",
+          "std_msgs/Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\n"
+          "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
     Known{"sensor_msgs/Imu",
           "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
           "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"

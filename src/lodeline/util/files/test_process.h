@@ -43,6 +43,8 @@ class ChildProcess {
   static constexpr int kRunning = -1;
   static constexpr int kKilled = -2;
 
+  pid_t id() const { return pid_; }
+
   /// Sends SIGINT, as Ctrl-C does.
   void interrupt() const { kill(pid_, SIGINT); }
 

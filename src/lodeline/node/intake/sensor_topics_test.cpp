@@ -1,4 +1,4 @@
-#include "lodeline_ros/sensor_intake.h"
+#include "lodeline/node/intake/sensor_topics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,10 +52,22 @@ TEST(LiveTopics, SaysWhichTopicIsMissingOrTooMany) {
       [&] {
         chooseLiveTopics(file, {{"cam2", "/third"}}, &rig);
       },
-      ThrowsMessage<UsageError>(HasSubstr("~topics/cam2")));
+      ThrowsMessage<UsageError>(HasSubstr("topic /third of cam2")));
   file.topics.erase("cam1");
   EXPECT_THAT([&] { chooseLiveTopics(file, {}, &rig); },
               ThrowsMessage<InputError>(HasSubstr("no topic is known for cam1")));
+}
+
+TEST(LiveTopics, AnImuMayHaveTwoTopics) {
+  const std::vector<SensorTopic> topics = subscriptionsOf({{"cam0", "/left"}, {"imu0", "/gyro,/accel"}});
+  ASSERT_EQ(topics.size(), 3U);
+  EXPECT_TRUE(topics[0].isCamera());
+  EXPECT_FALSE(topics[0].is_half);
+  EXPECT_EQ(topics[1].topic, "/gyro");
+  EXPECT_EQ(topics[2].topic, "/accel");
+  EXPECT_TRUE(topics[1].is_half && topics[2].is_half);
+  EXPECT_THROW(subscriptionsOf({{"cam0", "/a,/b"}}), UsageError);
+  EXPECT_THROW(subscriptionsOf({{"cam0", "/a"}, {"cam1", "/a"}}), UsageError);
 }
 
 }  // namespace
