@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/io/calibration/rig_beside.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/images/grey_range.h"
 #include "lodeline/io/rosbag/container/bag_file.h"

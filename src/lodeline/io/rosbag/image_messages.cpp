@@ -18,7 +18,8 @@ constexpr int kAsItIs = -1;
 constexpr uint32_t kGreatestSide_px = 1 << 15;
 
 /// Pixel layout of an encoding, and OpenCV's conversion to the pixels returned. OpenCV names a Bayer mosaic
-/// by the second and third pixel of its second row, ROS by its first two pixels.
+/// by the second and third pixel of its second row, ROS by its first two pixels. The luminance of nv12 and
+/// its like comes first, as a whole image; the colours after it are not used.
 struct Encoding {
   std::string_view name;
   int type;
@@ -46,6 +47,11 @@ constexpr std::array kEncodings = {
     Encoding{"bayer_grbg16", CV_16UC1, cv::COLOR_BayerGB2GRAY},
     Encoding{"yuv422", CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
     Encoding{"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2GRAY_YUY2},
+    Encoding{"uyvy", CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
+    Encoding{"yuyv", CV_8UC2, cv::COLOR_YUV2GRAY_YUY2},
+    Encoding{"nv12", CV_8UC1},
+    Encoding{"nv21", CV_8UC1},
+    Encoding{"nv24", CV_8UC1},
 };
 
 /// The fields of an Image; `data` points into the message.

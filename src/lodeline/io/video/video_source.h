@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/io/calibration/rig_beside.h"
+#include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/film/film_decoder.h"
 #include "lodeline/io/video/film_chapter.h"
 #include "lodeline/io/video/frame_stamps.h"

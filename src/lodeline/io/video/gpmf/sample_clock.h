@@ -33,9 +33,9 @@ struct PayloadSamples {
   double time_s = 0.0;    ///< start of the payload on the clock of the images
   double length_s = 0.0;  ///< of the payload; 0 where it is not known
   size_t samples = 0;
-  std::optional<uint64_t> total_samples;  ///< TSMP
-  std::optional<double> stamp_s;          ///< STMP of the first sample, camera's clock
-  bool starts_file = false;               ///< the first of a chapter, whose count may start anew
+  std::optional<uint64_t> total_samples = {};  ///< TSMP
+  std::optional<double> stamp_s = {};          ///< STMP of the first sample, camera's clock
+  bool starts_file = false;                    ///< the first of a chapter, whose count may start anew
 };
 
 /// Times of a sensor's samples on the clock of the images.
