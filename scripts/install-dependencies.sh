@@ -40,7 +40,8 @@ test=(
   clang-format-14  # other versions lay code out differently
   clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
   clang-tidy-14 gcovr  # `make tidy`, `make coverage`
-  survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
+  libgdal-dev  # GeoPackage and DXF by `export`; `make build` leaves them out without it
+  survex therion gdal-bin proj-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"
   "${dds[@]}"
   python3-roslaunch  # roscore, for the node's test

@@ -10,13 +10,11 @@ namespace lodeline {
 namespace {
 
 void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
-  command
-      ->add_option(
-          "--entrance", arguments->entrance,
-          "LAT,LON,HEIGHT (WGS 84 degrees, m) of the water's surface above the first pose; without it, "
-          "the run's own --site, else a map in metres")
-      ->delimiter(',')
-      ->expected(1, 3);
+  command->add_option(
+      "--entrance", arguments->entrance,
+      "of the water's surface above the first pose: LAT,LON,HEIGHT in degrees (WGS 84, any notation) and "
+      "m; \"16Q 450000 2246000 5\" (UTM) or \"EPSG:6372 3912345 912345 5\"; without it, the run's own "
+      "--site, else a map in metres");
   command
       ->add_option("--entrance-sigma", arguments->entrance_sigma,
                    "HORIZONTAL,VERTICAL (m): how well that is known")
@@ -27,13 +25,17 @@ void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
       "--start-depth", arguments->map.start_depth_m,
       "m of the first pose under that surface; without it, the depth profile's, else that of the "
       "run's pressure sensor, else 0");
-  command
-      ->add_option("--geoid-height", arguments->map.geoid_height_m,
-                   "m of the level that HEIGHT counts from above the WGS 84 ellipsoid; for GeoJSON")
-      ->capture_default_str();
+  command->add_option(
+      "--geoid-height", arguments->map.geoid_height_m,
+      "m of the level that HEIGHT counts from above the WGS 84 ellipsoid, for GeoJSON; without "
+      "it, PROJ's for --vertical-datum, else 0");
+  command->add_option("--vertical-datum", arguments->map.vertical_datum,
+                      "the level that HEIGHT counts from: EPSG:5703 (NAVD88), EPSG:5773 (EGM96), ellipsoid");
   command
       ->add_option("--crs", arguments->map.crs,
-                   "grid: a UTM zone (UTM17N) or a national grid (EPSG:6372); auto: the entrance's UTM zone")
+                   "grid: a UTM zone (UTM17N), a national or polar grid (EPSG:6372); auto: the entrance's "
+                   "UTM zone, or "
+                   "UPS near a pole")
       ->capture_default_str();
   command->add_option("--date", arguments->map.date, "YYYY-MM-DD; without it, the run's or its stamps'");
   command->add_option(
@@ -69,8 +71,9 @@ void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
 
 void addMapFileOptions(CLI::App* command, ExportArguments* arguments) {
   command
-      ->add_option("-f,--format", arguments->formats,
-                   "survex, therion, geojson, kml, gpx, ply, csv, tum, colmap; several with commas")
+      ->add_option(
+          "-f,--format", arguments->formats,
+          "survex, therion, geojson, kml, gpx, gpkg, dxf, ply, csv, tum, colmap; several with commas")
       ->delimiter(',');
   command->add_flag("--overwrite", arguments->overwrite,
                     "replace files of another dive that have the same names");

@@ -46,9 +46,10 @@ RecordingParts readRecording(const ExportArguments& arguments, const std::vector
   return parts;
 }
 
-DiveMapOptions mapOptions(const ExportArguments& arguments) {
+DiveMapOptions mapOptions(const ExportArguments& arguments, Diagnostics* diagnostics) {
   DiveMapOptions options = arguments.map;
-  if (!arguments.entrance.empty()) options.entrance = placeFromWords(arguments.entrance, "--entrance");
+  if (!arguments.entrance.empty())
+    options.entrance = placeFromText(arguments.entrance, "--entrance", diagnostics);
   options.entrance_sigma_m = arguments.entrance_sigma[0];
   options.entrance_height_sigma_m = arguments.entrance_sigma[1];
   options.start_depth_source = "by --start-depth";
@@ -92,7 +93,7 @@ ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFor
 /// grids.
 std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
                                     std::vector<RunFolder> runs, Diagnostics* diagnostics) {
-  DiveMapOptions options = mapOptions(arguments);
+  DiveMapOptions options = mapOptions(arguments, diagnostics);
   std::vector<ExportedDive> dives;
   if (runs.size() == 1) {
     dives.push_back(makeDive(arguments, formats, std::move(runs.front()), options, diagnostics));

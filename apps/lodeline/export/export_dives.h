@@ -18,7 +18,7 @@ struct ExportArguments {
   bool overwrite = false;
   std::string recording;
   BagArguments bag;
-  std::vector<std::string> entrance;
+  std::string entrance;
   std::vector<double> entrance_sigma = {3.0, 5.0};
   bool no_splays = false;
   DepthProfileArguments depth;

@@ -16,7 +16,7 @@ namespace {
 
 struct ControlArguments {
   std::string map, file;
-  std::vector<std::string> site;
+  std::string site;
   std::vector<double> grid_origin;
 };
 
@@ -64,12 +64,12 @@ void nameDives(const std::vector<VisitedDive>& dives, std::vector<ControlVisit>*
 
 void addControlFile(const ControlArguments& arguments) {
   MapFile map = MapFile::open(arguments.map, MapFile::Access::Change);
+  Diagnostics diagnostics;
   ControlReadOptions options;
   options.site = map.description().site;
-  if (!arguments.site.empty()) options.site = placeFromWords(arguments.site, "--site");
+  if (!arguments.site.empty()) options.site = placeFromText(arguments.site, "--site", &diagnostics);
   if (!arguments.grid_origin.empty())
     options.grid_origin = Vec3(arguments.grid_origin[0], arguments.grid_origin[1], arguments.grid_origin[2]);
-  Diagnostics diagnostics;
   ControlSet control = readControl(arguments.file, options, &diagnostics);
   const std::vector<VisitedDive> dives = visitedDives(map);
   nameDives(dives, &control.visits);
@@ -96,11 +96,9 @@ void addMapControlCommand(CLI::App* map) {
       "control", "Add control points: fixes, surveyed stations and marks, from a CSV or Survex file");
   command->add_option("MAP", arguments->map, "file of the map")->required();
   command->add_option("FILE", arguments->file, "table (.csv), or Survex' .3d or .pos")->required();
-  command
-      ->add_option("--site", arguments->site,
-                   "LAT,LON,HEIGHT (degrees, m) of the map's origin, for positions in degrees")
-      ->delimiter(',')
-      ->expected(1, 3);
+  command->add_option(
+      "--site", arguments->site,
+      "LAT,LON,HEIGHT of the map's origin, as --entrance of `export`, for positions in degrees");
   command
       ->add_option("--grid-origin", arguments->grid_origin,
                    "EASTING,NORTHING,ALTITUDE (m) of the map's origin, for positions on a grid")

@@ -1,15 +1,14 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/diagnostics.h"
+#include "lodeline/output/survey/grid/place_text.h"
 
 namespace lodeline {
 
-/// Position from words of the command line: latitude and longitude in degrees, height in m, separated by
-/// commas, semicolons or blanks ("29.83,-82.6,10", "29.83 -82.6 10"). `option` is for messages. Throws
-/// UsageError for anything else.
-GeodeticPosition placeFromWords(const std::vector<std::string>& words, const std::string& option);
+/// Position from the command line or a project, in the notations of parsePlace(). Reports a missing height,
+/// which is then 0. `option` is for messages. Throws UsageError for anything else.
+GeodeticPosition placeFromText(const std::string& text, const std::string& option, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -155,5 +155,62 @@ TEST(Gis, IsWellFormedXml) {
   }
 }
 
+// GDAL's own programs read both files; coordinates are those of the grid in its unit.
+TEST(GeoPackage, LiesOnTheGridInItsOwnUnit) {
+  if (!hasGdal()) GTEST_SKIP() << "built without GDAL: apt-get install libgdal-dev";
+  LODELINE_NEEDS_PROGRAM("ogrinfo", "gdal-bin");
+  DiveMapOptions options;
+  options.entrance = test::kDevilsEye;
+  options.crs = "EPSG:6438";  // US feet
+  options.vertical_datum = "EPSG:5703";
+  Diagnostics diagnostics;
+  const DiveMap map = makeDiveMap(test::windingDive(), options, {}, &diagnostics);
+  const test::TemporaryFolder folder;
+  writeMap(map, std::nullopt, MapFormat::GeoPackage, folder.path());
+  writeMap(map, std::nullopt, MapFormat::Dxf, folder.path());
+  const auto at = [&](size_t i) {
+    const Vec3 grid = map.place->grid(map.survey.stations[i].position_ENU);
+    const double unit_m = map.place->gridDescription().metres_per_unit;
+    return Vec3(grid.x() / unit_m, grid.y() / unit_m, grid.z());
+  };
+  const std::string stations =
+      test::runIn(folder.path(), "ogrinfo -al " + map.name + ".gpkg stations").output;
+  EXPECT_THAT(stations, HasSubstr("Feature Count: " + std::to_string(map.survey.stations.size())));
+  EXPECT_THAT(stations, HasSubstr("NAD83(2011) / Florida East (ftUS)"));
+  double x = 0.0, y = 0.0, z = 0.0;
+  ASSERT_EQ(std::sscanf(stations.c_str() + stations.find("POINT Z ("), "POINT Z (%lf %lf %lf)", &x, &y, &z),
+            3);
+  EXPECT_LT((Vec3(x, y, z) - at(0)).norm(), 1e-6);
+  const std::string line = test::runIn(folder.path(), "ogrinfo -al " + map.name + ".gpkg line").output;
+  EXPECT_THAT(line, HasSubstr("vertical_datum (String) = NAVD88 height (EPSG:5703)"));
+  const std::string dxf = test::runIn(folder.path(), "ogrinfo -al " + map.name + ".dxf").output;
+  for (const char* layer : {"LINE", "STATIONS", "NAMES", "PASSAGE"})
+    EXPECT_THAT(dxf, HasSubstr(std::string("Layer (String) = ") + layer)) << layer;
+  const size_t begin = dxf.find("LINESTRING Z (");
+  ASSERT_NE(begin, std::string::npos);
+  ASSERT_EQ(std::sscanf(dxf.c_str() + begin, "LINESTRING Z (%lf %lf %lf", &x, &y, &z), 3);
+  EXPECT_LT((Vec3(x, y, z) - at(0)).norm(), 1e-3);
+}
+
+TEST(VerticalDatum, IsStatedOrRefused) {
+  const GeodeticPosition place = test::kDevilsEye;
+  EXPECT_EQ(verticalDatum("", place).name, "");
+  EXPECT_EQ(verticalDatum("ellipsoid", place).geoid_height_m, 0.0);
+  EXPECT_EQ(verticalDatum("EPSG:5703", place).name, "NAVD88 height (EPSG:5703)");
+  EXPECT_EQ(verticalDatum("NAVD88 height", place).name, "NAVD88 height (EPSG:5703)");
+  EXPECT_THROW(verticalDatum("EPSG:32617", place), UsageError);
+  EXPECT_THROW(verticalDatum("the sea", place), UsageError);
+  DiveMapOptions options;
+  options.entrance = place;
+  options.vertical_datum = "EPSG:5703";
+  options.geoid_height_m = -27.5;
+  Diagnostics diagnostics;
+  const DiveMap map = makeDiveMap(test::windingDive(), options, {}, &diagnostics);
+  EXPECT_EQ(diagnostics.count("geoid_height_unknown"), 0);
+  EXPECT_THAT(map.notes,
+              ::testing::Contains("heights: in metres above NAVD88 height (EPSG:5703); it lies -27.50 m "
+                                  "above the WGS 84 ellipsoid"));
+}
+
 }  // namespace
 }  // namespace lodeline

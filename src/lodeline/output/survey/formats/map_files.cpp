@@ -45,6 +45,10 @@ std::vector<std::string> contents(const DiveMap& map, const std::optional<MapIma
       return {tumText(map)};
     case MapFormat::Colmap:
       return colmapTexts(map, images);
+    case MapFormat::GeoPackage:
+      return {geopackageBytes(map)};
+    case MapFormat::Dxf:
+      return {dxfText(map)};
   }
   return {};
 }
@@ -64,8 +68,8 @@ std::vector<std::filesystem::path> writeFiles(const std::filesystem::path& folde
 }  // namespace
 
 const std::vector<std::string>& mapFormatNames() {
-  static const std::vector<std::string> names = {"survex", "therion", "geojson", "kml",   "gpx",
-                                                 "ply",    "csv",     "tum",     "colmap"};
+  static const std::vector<std::string> names = {"survex", "therion", "geojson", "kml",  "gpx", "ply",
+                                                 "csv",    "tum",     "colmap",  "gpkg", "dxf"};
   return names;
 }
 
@@ -93,6 +97,10 @@ std::vector<std::string> mapFileNames(const std::string& name, MapFormat format)
       return {name + ".tum"};
     case MapFormat::Colmap:
       return {"colmap/cameras.txt", "colmap/images.txt", "colmap/points3D.txt"};
+    case MapFormat::GeoPackage:
+      return {name + ".gpkg"};
+    case MapFormat::Dxf:
+      return {name + ".dxf"};
   }
   return {};
 }

@@ -37,6 +37,19 @@ std::vector<std::pair<std::string, std::string>> equalStarts(const std::vector<D
 /// passage from its widths.
 std::string geojsonText(const DiveMap& map);
 
+/// Outline of the passage from its widths, one ring of four corners (ENU) between each two stations that have
+/// them.
+std::vector<std::vector<Vec3>> passagePlan(const Survey& survey);
+
+/// Whether the library was built with GDAL, which writes the next two.
+bool hasGdal();
+/// OGC GeoPackage on the grid of the map, in its own unit, heights in metres: tables `line`, `stations`,
+/// `passage`. Throws UsageError without GDAL.
+std::string geopackageBytes(const DiveMap& map);
+/// DXF on the grid of the map, in its own unit: layers LINE, STATIONS, NAMES and PASSAGE. Throws UsageError
+/// without GDAL.
+std::string dxfText(const DiveMap& map);
+
 /// KML 2.2: the line once on the ground above and once at its height, stations with depth and size.
 std::string kmlText(const DiveMap& map);
 

@@ -32,6 +32,7 @@ Json lineFeature(const DiveMap& map) {
     line.push_back(coordinates(map, station.position_ENU));
   Json properties = {{"kind", "line"}, {"name", map.title}, {"date", map.date}, {"team", map.team}};
   properties["length_m"] = std::round(map.survey.length_m() * 1e3) / 1e3;
+  properties["vertical_datum"] = map.heights.name;
   properties["notes"] = map.notes;
   return feature("line", {{"type", "LineString"}, {"coordinates", line}}, properties);
 }
@@ -53,30 +54,9 @@ Json stationFeature(const DiveMap& map, size_t i) {
                  {{"type", "Point"}, {"coordinates", coordinates(map, station.position_ENU)}}, properties);
 }
 
-double cross(const Vec3& a, const Vec3& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-/// Floor plan between two stations as a ring, counter-clockwise as RFC 7946 requires; empty where the widths
-/// are unknown or the corners do not form a convex outline (sharp bends).
-std::vector<Vec3> planBetween(const SurveyStation& a, const SurveyStation& b) {
-  if (!a.passage.left || !a.passage.right || !b.passage.left || !b.passage.right) return {};
-  const Vec3 along = b.position_ENU - a.position_ENU;
-  const Vec3 across = Vec3::UnitZ().cross(along);
-  if (across.norm() < 1e-3) return {};
-  const Vec3 left = across.normalized();
-  const std::vector<Vec3> ring = {
-      a.position_ENU - *a.passage.right * left, b.position_ENU - *b.passage.right * left,
-      b.position_ENU + *b.passage.left * left, a.position_ENU + *a.passage.left * left};
-  for (size_t i = 0; i < 4; ++i) {
-    if (cross(ring[(i + 1) % 4] - ring[i], ring[(i + 2) % 4] - ring[(i + 1) % 4]) <= 0.0) return {};
-  }
-  return ring;
-}
-
 std::optional<Json> planFeature(const DiveMap& map) {
   Json polygons = Json::array();
-  for (size_t i = 1; i < map.survey.stations.size(); ++i) {
-    const std::vector<Vec3> ring = planBetween(map.survey.stations[i - 1], map.survey.stations[i]);
-    if (ring.empty()) continue;
+  for (const std::vector<Vec3>& ring : passagePlan(map.survey)) {
     Json corners = Json::array();
     for (const Vec3& corner : ring) corners.push_back(coordinates(map, corner));
     corners.push_back(corners.front());

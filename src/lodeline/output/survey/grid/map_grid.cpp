@@ -1,7 +1,6 @@
 #include "lodeline/output/survey/grid/map_grid.h"
 
 #include <fmt/format.h>
-#include <proj.h>
 #include <proj_experimental.h>
 
 #include <GeographicLib/UTMUPS.hpp>
@@ -11,6 +10,7 @@
 #include <cmath>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/output/survey/grid/proj_objects.h"
 
 namespace lodeline {
 namespace {
@@ -26,12 +26,15 @@ std::string codeOf(const std::string& crs, const GeodeticPosition& place) {
     int zone = 0;
     bool north = place.latitude_deg >= 0.0;
     if (code == "AUTO") {
+      if (!(std::abs(place.latitude_deg) <= 90.0)) return code;
       zone = UTMUPS::StandardZone(place.latitude_deg, place.longitude_deg);
     } else {
       UTMUPS::DecodeZone(code.starts_with("UTM") ? code.substr(3) : code, zone, north);
     }
     if (zone >= UTMUPS::MINUTMZONE && zone <= UTMUPS::MAXUTMZONE)
       return fmt::format("EPSG:{}", UTMUPS::EncodeEPSG(zone, north));
+    // Universal Polar Stereographic with the easting first.
+    if (code == "AUTO" && zone == UTMUPS::UPS) return north ? "EPSG:5041" : "EPSG:5042";
   } catch (const GeographicLib::GeographicErr&) {  // named below
   }
   return code;
@@ -45,8 +48,6 @@ std::string nameOf(const std::string& code) {
   const bool is_utm = zone >= UTMUPS::MINUTMZONE && zone <= UTMUPS::MAXUTMZONE;
   return is_utm ? fmt::format("UTM{}{}", zone, north ? "N" : "S") : code;
 }
-
-std::string textOf(const char* text) { return text == nullptr ? "" : text; }
 
 /// The name of a transformation without its steps that only exchange axes.
 std::string withoutAxisOrder(std::string name) {
@@ -75,29 +76,8 @@ std::string therionSpelling(std::string name) {
 }  // namespace
 
 /// PROJ's objects of one grid, with their own context.
-struct MapGrid::Proj {
-  struct Destroy {
-    void operator()(PJ* object) const { proj_destroy(object); }
-    void operator()(PJ_OBJ_LIST* list) const { proj_list_destroy(list); }
-    void operator()(PJ_OPERATION_FACTORY_CONTEXT* factory) const {
-      proj_operation_factory_context_destroy(factory);
-    }
-    void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-  };
-  using Object = std::unique_ptr<PJ, Destroy>;
-  using ObjectList = std::unique_ptr<PJ_OBJ_LIST, Destroy>;
-
-  std::unique_ptr<PJ_CONTEXT, Destroy> context{proj_context_create()};
+struct MapGrid::Proj : ProjObjects {
   Object crs, grid_from_wgs84;
-
-  Proj() {
-    proj_context_set_enable_network(context.get(), 0);
-    proj_log_level(context.get(), PJ_LOG_NONE);
-  }
-
-  Object create(const std::string& definition) const {
-    return Object(proj_create(context.get(), definition.c_str()));
-  }
 
   /// The transformation from WGS 84 to a grid that PROJ suggests at a position: among all known ones, or
   /// among those whose grid files are installed. Empty where there is none.
@@ -136,7 +116,10 @@ struct MapGrid::Proj {
       directions += textOf(direction) + " ";
       grid->unit = textOf(unit);
     }
-    if (directions == "east north " || directions == "north east ") return;
+    // About a pole, both axes point to the north or to the south, along two meridians.
+    for (const char* usual : {"east north ", "north east ", "north north ", "south south "}) {
+      if (directions == usual) return;
+    }
     throw UsageError(fmt::format(
         "--crs {}: the axes of {} point {}and not to the east and north, which survey programs take them for",
         crs_name, grid->title, directions));
@@ -204,8 +187,7 @@ MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(
   if (code.starts_with("EPSG:") || code.starts_with("ESRI:")) proj_->crs = proj_->create(code);
   if (code == "AUTO") {
     refuse(fmt::format(
-        "latitude {:g}, longitude {:g} lies in no UTM zone (80 S to 84 N): are latitude and longitude "
-        "swapped? Else name a grid",
+        "latitude {:g}, longitude {:g} is no place: are latitude and longitude swapped? Else name a grid",
         place.latitude_deg, place.longitude_deg));
   }
   if (proj_->crs == nullptr) refuse("a projected grid is wanted, as UTM17N, EPSG:32617 or EPSG:6372");
@@ -228,6 +210,13 @@ MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(
 Vec2 MapGrid::project(double latitude_deg, double longitude_deg) const {
   return description_.metres_per_unit *
          transformed(proj_->grid_from_wgs84.get(), latitude_deg, longitude_deg);
+}
+
+GeodeticPosition MapGrid::locate(const Vec2& coordinates) const {
+  const PJ_COORD result = proj_trans(proj_->grid_from_wgs84.get(), PJ_INV,
+                                     proj_coord(coordinates.x(), coordinates.y(), 0.0, HUGE_VAL));
+  proj_errno_reset(proj_->grid_from_wgs84.get());
+  return {result.lp.phi, result.lp.lam, 0.0};
 }
 
 }  // namespace lodeline

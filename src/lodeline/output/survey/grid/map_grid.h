@@ -30,15 +30,16 @@ struct MapGridDescription {
   std::optional<std::string> therion_name;
 };
 
-/// A projected grid: a UTM zone or a national grid, computed by PROJ.
+/// A projected grid: a UTM zone, a polar or a national grid, computed by PROJ.
 ///
 /// PROJ chooses the best transformation from WGS 84 at the position among those whose grid files are
 /// installed; nothing is downloaded. All coordinates are in metres.
 class MapGrid {
  public:
-  /// `crs`: "auto" for the UTM zone of the position, "UTM17N", "17N", "EPSG:6372" or "ESRI:102008", in any
+  /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or "ESRI:102008", in any
   /// case.
-  /// Throws UsageError where it is not the name of a projected grid with axes to the east and north.
+  /// Throws UsageError where it is not the name of a projected grid with axes to the east and north, or along
+  /// two meridians about a pole.
   MapGrid(const std::string& crs, const GeodeticPosition& place);
 
   const MapGridDescription& description() const { return description_; }
@@ -46,6 +47,8 @@ class MapGrid {
   /// Easting and northing in metres, also if the unit of the grid is feet; infinite where the position has no
   /// coordinates.
   Vec2 project(double latitude_deg, double longitude_deg) const;
+  /// WGS 84 position of easting and northing in the grid's own unit; infinite where there is none.
+  GeodeticPosition locate(const Vec2& coordinates) const;
 
  private:
   struct Proj;

@@ -45,7 +45,7 @@ void expectFinite(double value, const char* option) {
 
 void checkNumbers(const DiveMapOptions& options) {
   expectFinite(options.start_depth_m.value_or(0.0), "--start-depth");
-  expectFinite(options.geoid_height_m, "--geoid-height");
+  expectFinite(options.geoid_height_m.value_or(0.0), "--geoid-height");
   expectFinite(options.turn_deg.value_or(0.0), "--turn");
   expectFinite(options.stations.spacing_m, "--spacing");
   expectFinite(options.relative_sigma.value_or(0.0), "--relative-sigma");
@@ -140,6 +140,19 @@ void reportGrid(const MapGridDescription& grid, Diagnostics* diagnostics) {
   }
 }
 
+/// Sets the level that heights count from, and its height above the ellipsoid.
+void setHeights(const DiveMapOptions& options, Diagnostics* diagnostics, DiveMap* map) {
+  map->heights = verticalDatum(options.vertical_datum, map->place->origin());
+  if (options.geoid_height_m) map->heights.geoid_height_m = options.geoid_height_m;
+  map->geoid_height_m = map->heights.geoid_height_m.value_or(0.0);
+  if (map->heights.name.empty() || map->heights.geoid_height_m) return;
+  diagnostics->report(
+      Severity::Notice, "geoid_height_unknown",
+      fmt::format("PROJ lacks the file of the geoid of {}: heights in GeoJSON count from it and not "
+                  "from the ellipsoid; --geoid-height M states the difference",
+                  map->heights.name));
+}
+
 /// Sigmas of the last pose whose variances are all positive. A run without a covariance writes zeros or
 /// negative numbers, which do not mean certainty.
 std::optional<Vec3> lastSigma(const std::vector<PositionUncertainty>& uncertainties,
@@ -221,7 +234,7 @@ DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
   map.place_sigma = Vec3(options.entrance_sigma_m, options.entrance_sigma_m, options.entrance_height_sigma_m)
                         .cwiseMax(1e-3);
   map.run_folder = std::filesystem::absolute(run.folder).lexically_normal();
-  map.geoid_height_m = options.geoid_height_m;
+  if (map.place) setHeights(options, diagnostics, &map);
   turn(run, &map);
   std::vector<Vec3> extra_walls_ENU;
   for (const Vec3& wall : extra_walls_W) extra_walls_ENU.push_back(turnedClockwise(wall, map.north.turn_rad));

@@ -8,6 +8,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/grid/georeference.h"
 #include "lodeline/output/survey/grid/north.h"
+#include "lodeline/output/survey/grid/vertical_datum.h"
 #include "lodeline/output/survey/map/passage.h"
 #include "lodeline/output/survey/map/survey.h"
 #include "lodeline/survey.h"
@@ -26,7 +27,8 @@ struct DiveMap {
   Vec3 place_sigma = Vec3::Zero();  ///< m, east, north, up
   double start_depth_m = 0.0;
   std::string start_depth_source;  ///< in words
-  double geoid_height_m = 0.0;
+  VerticalDatum heights;           ///< the level that heights count from
+  double geoid_height_m = 0.0;     ///< of that level above the ellipsoid, 0 where it is unknown
 
   Trajectory trajectory;                           ///< body in ENU
   std::vector<PositionUncertainty> uncertainties;  ///< axes of ENU

@@ -33,6 +33,18 @@ std::string gridNote(const Georeference& place) {
       grid.name, grid.title, grid.code, grid.unit, place.convergence_rad() / kDegree, place.scale());
 }
 
+std::string heightNote(const DiveMap& map) {
+  const VerticalDatum& heights = map.heights;
+  const std::string level =
+      heights.name.empty()
+          ? "the level that the height of the entrance counts from (--vertical-datum states it)"
+          : heights.name;
+  return fmt::format("heights: in metres above {}; {}", level,
+                     heights.geoid_height_m
+                         ? fmt::format("it lies {:.2f} m above the WGS 84 ellipsoid", *heights.geoid_height_m)
+                         : "its height above the WGS 84 ellipsoid is unknown");
+}
+
 /// Notes on the transformation from WGS 84 to the datum of the grid, and its name in files for survey
 /// programs.
 void addDatumNotes(const MapGridDescription& grid, std::vector<std::string>* notes) {
@@ -116,6 +128,7 @@ std::vector<std::string> describe(const DiveMap& map, const RunFolder& run) {
   if (map.place) {
     notes.push_back(gridNote(*map.place));
     addDatumNotes(map.place->gridDescription(), &notes);
+    notes.push_back(heightNote(map));
   }
   notes.push_back(
       fmt::format("line: {} stations, {:.2f} m", map.survey.stations.size(), map.survey.length_m()));

@@ -1,0 +1,16 @@
+#include "lodeline/diagnostics.h"
+#include "lodeline/output/survey/formats/write_formats.h"
+
+// In place of formats/write_gdal.cpp in a library without GDAL.
+
+namespace lodeline {
+
+bool hasGdal() { return false; }
+
+std::string geopackageBytes(const DiveMap&) {
+  throw UsageError("--format gpkg: this program was built without GDAL; --format geojson holds the same");
+}
+
+std::string dxfText(const DiveMap&) { throw UsageError("--format dxf: this program was built without GDAL"); }
+
+}  // namespace lodeline

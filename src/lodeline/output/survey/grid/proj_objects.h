@@ -1,0 +1,39 @@
+#pragma once
+
+#include <proj.h>
+
+#include <memory>
+#include <string>
+
+namespace lodeline {
+
+/// Text of PROJ, which may be a null pointer.
+inline std::string textOf(const char* text) { return text == nullptr ? "" : text; }
+
+/// A context of PROJ that neither downloads nor prints, and owners of PROJ's objects.
+struct ProjObjects {
+  struct Destroy {
+    void operator()(PJ* object) const { proj_destroy(object); }
+    void operator()(PJ_OBJ_LIST* list) const { proj_list_destroy(list); }
+    void operator()(PJ_OPERATION_FACTORY_CONTEXT* factory) const {
+      proj_operation_factory_context_destroy(factory);
+    }
+    void operator()(PJ_CONTEXT* used) const { proj_context_destroy(used); }
+  };
+  using Object = std::unique_ptr<PJ, Destroy>;
+  using ObjectList = std::unique_ptr<PJ_OBJ_LIST, Destroy>;
+
+  std::unique_ptr<PJ_CONTEXT, Destroy> context{proj_context_create()};
+
+  ProjObjects() {
+    proj_context_set_enable_network(context.get(), 0);
+    proj_log_level(context.get(), PJ_LOG_NONE);
+  }
+
+  /// Null where PROJ does not know the definition.
+  Object create(const std::string& definition) const {
+    return Object(proj_create(context.get(), definition.c_str()));
+  }
+};
+
+}  // namespace lodeline
