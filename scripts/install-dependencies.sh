@@ -19,6 +19,7 @@ build=(
   libbz2-dev liblz4-dev libzstd-dev  # ROS bags
   gnuplot-nox
   libcpp-httplib-dev
+  pybind11-dev python3-dev python3-numpy  # the Python module
 )
 # The report page. A node from elsewhere clashes with Debian's. npm as a package brings 360 others along; without one, CMake
 # fetches npm as one file.
@@ -35,6 +36,7 @@ test=(
   clang-tidy-14 gcovr  # `make tidy`, `make coverage`
   survex therion gdal-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"
+  python3-matplotlib  # examples of the Python module
   python3-roslaunch  # roscore, for the node's test
   python3-rosbag python3-sensor-msgs python3-geometry-msgs  # bags by another program
 )

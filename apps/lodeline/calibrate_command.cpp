@@ -17,7 +17,6 @@
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
-#include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 
@@ -90,18 +89,6 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
   }
 }
 
-MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
-  refuseBagOptions(arguments.data, arguments.bag);
-  refuseRigOfFolder(arguments.data, arguments.bag);
-  const bool is_packed = recognizeFile(arguments.data).kind == FileKind::Compressed;
-  if (is_packed || isTableOfReadings(arguments.data) || !isBag(arguments.data)) {
-    return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
-  }
-  const std::unique_ptr<BagSource> bag = openBagReadings(arguments.data, arguments.bag, diagnostics);
-  return readMagnetometerRecord(*bag, arguments.data, bag->rigFile().sections.contains("mag0"),
-                                recordOptions(arguments), diagnostics);
-}
-
 bool isCalibrationFile(const std::filesystem::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
 }
@@ -122,7 +109,8 @@ void calibrate(const CalibrateArguments& arguments) {
     CalibrationOptions options;
     options.site_field_ENU = site_field_ENU;
     if (!arguments.old.empty()) options.old = readCalibrationFile(arguments.old);
-    const MagnetometerRecord record = readRecord(arguments, &diagnostics);
+    const MagnetometerRecord record =
+        readMagnetometerRecord(arguments.data, arguments.bag, recordOptions(arguments), &diagnostics);
     MagnetometerCalibrationResult result;
     try {
       result = calibrateMagnetometer(record, options, &diagnostics);

@@ -107,4 +107,17 @@ std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data,
   return std::make_unique<BagSource>(data, bag_options, diagnostics);
 }
 
+MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data,
+                                          const BagArguments& bag_arguments, const RecordOptions& options,
+                                          Diagnostics* diagnostics) {
+  refuseBagOptions(data, bag_arguments);
+  refuseRigOfFolder(data, bag_arguments);
+  const bool is_packed = recognizeFile(data).kind == FileKind::Compressed;
+  if (is_packed || isTableOfReadings(data) || !isBag(data))
+    return readMagnetometerRecord(data, options, diagnostics);
+  const std::unique_ptr<BagSource> bag = openBagReadings(data, bag_arguments, diagnostics);
+  return readMagnetometerRecord(*bag, data.string(), bag->rigFile().sections.contains("mag0"), options,
+                                diagnostics);
+}
+
 }  // namespace lodeline

@@ -9,6 +9,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/rosbag/bag_source.h"
+#include "lodeline/magnetometer/calibration/magnetometer_record.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {
@@ -46,5 +47,11 @@ std::unique_ptr<BagSource> openBagReadings(const std::filesystem::path& bag,
 /// UsageError for --topic with a folder. `diagnostics` must outlive the source.
 std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics);
+
+/// Reads the input of a magnetometer calibration from a folder, a bag or a table. Throws as the function of
+/// magnetometer_record.h does, and UsageError for options that do not suit the data.
+MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data,
+                                          const BagArguments& bag_arguments, const RecordOptions& options,
+                                          Diagnostics* diagnostics);
 
 }  // namespace lodeline
