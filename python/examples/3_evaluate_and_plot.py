@@ -21,13 +21,12 @@ def draw_paths(evaluation, landmarks):
     return figure
 
 
-def draw_errors(evaluation, run):
-    """Errors from equal first poses; the sigmas are relative to the first pose too."""
+def draw_errors(evaluation, estimates, truth_from_world):
+    """Errors and sigmas in the axes of the estimate's world; both are relative to the first pose."""
     figure, rows = plt.subplots(3, 1, sharex=True, figsize=(7, 6), layout="constrained")
-    estimates = run.estimates
     seconds = (estimates.times_ns - estimates.times_ns[0]) * 1e-9
     sigmas = np.sqrt(estimates.pose_covariances[:, range(3), range(3)])
-    errors = evaluation.position_errors_m - evaluation.position_errors_m[0]
+    errors = evaluation.position_errors_m @ truth_from_world[:3, :3]
     pairs = (evaluation.times_ns - estimates.times_ns[0]) * 1e-9
     for axis, axes in enumerate(rows):
         axes.fill_between(seconds, -3 * sigmas[:, axis], 3 * sigmas[:, axis], color="C0", alpha=0.25, label="3 sigma")
@@ -44,16 +43,17 @@ def main(data, plots, seconds=None):
     settings = {} if seconds is None else {"source.duration_s": float(seconds)}
     run = lodeline.run(data, settings=settings)
     truth = Path(data) / "mav0/state_groundtruth_estimate0"
-    evaluation = lodeline.evaluate(run.estimates.trajectory, truth, align="none")
-    aligned = lodeline.evaluate(run.estimates.trajectory, truth, align="yaw")
-    print(aligned)
+    estimates = run.estimates
+    print(lodeline.evaluate(estimates.trajectory, truth, align="yaw"))
 
-    # Landmarks into the world of the truth, as the poses.
-    first = aligned.aligned_poses[0] @ np.linalg.inv(run.estimates.poses[0])
-    landmarks = run.estimates.landmarks @ first[:3, :3].T + first[:3, 3]
+    # From equal first poses.
+    evaluation = lodeline.evaluate(estimates.trajectory, truth, align="yaw", align_pairs=1)
+    first = np.searchsorted(estimates.times_ns, evaluation.times_ns[0])
+    truth_from_world = evaluation.aligned_poses[0] @ np.linalg.inv(estimates.poses[first])
+    landmarks = estimates.landmarks @ truth_from_world[:3, :3].T + truth_from_world[:3, 3]
     Path(plots).mkdir(exist_ok=True)
-    draw_paths(aligned, landmarks).savefig(Path(plots) / "path.png", dpi=110)
-    draw_errors(evaluation, run).savefig(Path(plots) / "errors.png", dpi=110)
+    draw_paths(evaluation, landmarks).savefig(Path(plots) / "path.png", dpi=110)
+    draw_errors(evaluation, estimates, truth_from_world).savefig(Path(plots) / "errors.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -126,12 +126,15 @@ class ErrorTest(FolderTest):
         with self.assertRaisesRegex(lodeline.UsageError, "source.duraton_s"):
             lodeline.run(SAMPLE, settings={"source.duraton_s": 3})
 
-    def test_no_pose(self):
-        printed = self.program("run", SAMPLE, "-o", "out", "-q", "--no-report", "--set", "source.duration_s=0.3", exit_code=3)
+    def test_a_result_that_is_not_to_be_trusted(self):
+        out, three_seconds = self.folder / "out", {"source.duration_s": 3}
+        printed = self.program("run", SAMPLE, "-o", out, "-q", "--no-report", "--set", "source.duration_s=3", exit_code=3)
         with self.assertRaises(lodeline.EstimationError) as caught:
-            lodeline.run(SAMPLE, self.folder / "ours", settings={"source.duration_s": 0.3})
+            lodeline.run(SAMPLE, out, settings=three_seconds, overwrite=True)
         self.assertEqual(printed, f"estimation failed: {caught.exception}\n")
-        self.assertEqual(len(lodeline.run(SAMPLE, settings={"source.duration_s": 0.3}, check=False).estimates), 0)
+        with self.assertRaisesRegex(lodeline.EstimationError, "the result is not to be trusted"):
+            lodeline.run(SAMPLE, settings=three_seconds)
+        self.assertGreater(len(lodeline.run(SAMPLE, settings=three_seconds, check=False).estimates), 0)
 
     def test_another_run_is_kept(self):
         lodeline.run(SAMPLE, self.folder / "run", settings=SECONDS)
