@@ -8,7 +8,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends ca-certificates
  && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
 COPY . .
-RUN make build && make package && mv build/release/*.deb /lodeline.deb
+RUN make build && make package && mv build/release/lodeline_*.deb /lodeline.deb
 
 FROM debian:12
 ENV DEBIAN_FRONTEND=noninteractive

@@ -1,7 +1,7 @@
 # The front door. Every target installs what it lacks and builds first.
 .PHONY: build everything coverage tidy fuzz faults effects dependencies test-dependencies demo experiments loops fleet-test test test-sanitized test-sanitized-all bench install package format check-format clean
 PREFIX ?= /usr/local
-CODE = include src apps studies examples ros ros2 fuzz
+CODE = include src apps studies examples ros ros2 python fuzz
 
 # The program and the library. `everything` has the tests, benchmarks and studies as well, in the same folder.
 build: dependencies

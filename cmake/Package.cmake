@@ -1,4 +1,5 @@
-# `make package`: a Debian package with the program, the libraries, the headers and the CMake package.
+# `make package`: a Debian package with the program, the libraries, the headers and the CMake package, and one with the
+# Python module.
 set(CPACK_GENERATOR DEB)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # `lodeline_product` is enough
 set(CPACK_PACKAGE_NAME lodeline)
@@ -17,4 +18,18 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
 libyaml-cpp-dev, libfmt-dev, zlib1g-dev, libdeflate-dev, libtbb-dev, libgeographiclib-dev, libproj-dev, libxml2-dev, \
 libembree-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, libcpp-httplib-dev, gnuplot-nox")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "survex, therion, qgis")
+# Two packages: what has no component is the package `lodeline`.
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL Unspecified)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME lodeline)
+if(LODELINE_BUILD_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python module of Lodeline")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lodeline)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS lodeline)
+endif()
 include(CPack)

@@ -28,7 +28,7 @@ def main():
     listed = set(re.findall(r"`(…?[a-z0-9_.]+)`", page))
     endings = tuple(kind[1:] for kind in listed if kind.startswith("…"))
     missing, found = {}, 0
-    for folder in ("src", "apps", "ros"):
+    for folder in ("src", "apps", "ros", "python"):
         for file in sorted((root / folder).rglob("*.cpp")) + sorted((root / folder).rglob("*.h")):
             if "test" in file.name or "tests" in file.parts or file.name in OTHER_NAMES:
                 continue

@@ -2,7 +2,7 @@
 """Checks the structure of the source tree; ends with exit code 1, naming each breach.
 
   - A folder has at most 30 files, a source file at most 400 lines.
-  - Includes go downwards only. Layers are ordered by src/CMakeLists.txt, then apps, studies and ros; the folders inside
+  - Includes go downwards only. Layers are ordered by src/CMakeLists.txt, then apps, studies, ros and python; the folders inside
     a layer by the FOLDERS of its CMakeLists.txt ("." for the layer's own folder, otherwise that comes last).
   - A public header (include/lodeline) counts as part of the lowest folder that uses it. It includes only public headers,
     the standard library, Eigen and OpenCV's core; so do the examples.
@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MOST_FILES, MOST_LINES = 30, 400
-TOPS = ("include", "src", "apps", "studies", "ros", "examples", "fuzz")
+TOPS = ("include", "src", "apps", "studies", "ros", "python", "examples", "fuzz")
 PUBLIC = "include/lodeline"
 MOST_PUBLIC_HEADERS = 12
 # The folder as part of which each public header counts.

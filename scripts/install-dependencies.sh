@@ -23,6 +23,7 @@ build=(
   libavformat-dev libavcodec-dev libswscale-dev libavutil-dev  # films
   gnuplot-nox
   libcpp-httplib-dev
+  pybind11-dev python3-dev python3-numpy  # the Python module
 )
 # The report page. A node from elsewhere clashes with Debian's. npm as a package brings 360 others along; without one, CMake
 # fetches npm as one file.
@@ -44,6 +45,7 @@ test=(
   survex therion gdal-bin proj-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"
   "${dds[@]}"
+  python3-matplotlib  # examples of the Python module
   python3-roslaunch  # roscore, for the node's test
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs  # bags by another program
 )

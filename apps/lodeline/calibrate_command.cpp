@@ -89,17 +89,6 @@ void requireComparable(const MagnetometerFit& first, const MagnetometerFit& seco
   }
 }
 
-MagnetometerRecord readRecord(const CalibrateArguments& arguments, Diagnostics* diagnostics) {
-  refuseBagOptions(arguments.data, arguments.bag);
-  refuseRigOfFolder(arguments.data, arguments.bag);
-  if (!isBag(arguments.data) && !isVideo(arguments.data)) {
-    return readMagnetometerRecord(arguments.data, recordOptions(arguments), diagnostics);
-  }
-  const OpenedReadings opened = openReadings(arguments.data, arguments.bag, diagnostics);
-  return readMagnetometerRecord(*opened.source, arguments.data, opened.sections.contains("mag0"),
-                                recordOptions(arguments), diagnostics);
-}
-
 bool isCalibrationFile(const std::filesystem::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
 }
@@ -120,7 +109,8 @@ void calibrate(const CalibrateArguments& arguments) {
     CalibrationOptions options;
     options.site_field_ENU = site_field_ENU;
     if (!arguments.old.empty()) options.old = readCalibrationFile(arguments.old);
-    const MagnetometerRecord record = readRecord(arguments, &diagnostics);
+    const MagnetometerRecord record =
+        readMagnetometerRecord(arguments.data, arguments.bag, recordOptions(arguments), &diagnostics);
     MagnetometerCalibrationResult result;
     try {
       result = calibrateMagnetometer(record, options, &diagnostics);

@@ -70,19 +70,6 @@ void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& 
     throw InputError(fmt::format("{}: cannot be written; check the folder and its rights", path.string()));
 }
 
-/// Consistency of a run's reported sigmas. A run of another version, or with damaged files beside its
-/// trajectory, is evaluated without it.
-ConsistencyCheck claimsOf(const std::filesystem::path& run, const Trajectory& reference,
-                          const AssociationOptions& association, Diagnostics* diagnostics) {
-  try {
-    return checkConsistency(readReportedUncertainty(run, diagnostics), reference, association);
-  } catch (const InputError& error) {
-    diagnostics->report(Severity::Warning, "claims_unknown",
-                        fmt::format("errors are not compared with claimed sigmas: {}", error.what()));
-    return {};
-  }
-}
-
 void evaluateCommand(const Arguments& arguments) {
   Diagnostics diagnostics;
   EvaluationOptions options = arguments.options;
@@ -100,7 +87,7 @@ void evaluateCommand(const Arguments& arguments) {
   const Trajectory reference = readTrajectory(arguments.reference, reference_options, diagnostics);
 
   Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
-  evaluation.claims = claimsOf(arguments.estimate, reference, options.association, &diagnostics);
+  evaluation.claims = checkReported(arguments.estimate, reference, options.association, &diagnostics);
   if (!arguments.plots.empty()) writePlots(evaluation, arguments.plots, diagnostics);
   if (!arguments.json.empty()) writeJson(arguments.json, evaluationJson(evaluation, diagnostics));
   fmt::print("{}", evaluationTable(evaluation, diagnostics));

@@ -11,8 +11,8 @@
 #include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/inspection/start_check.h"
 #include "lodeline/output/report/page/page_template.h"
+#include "lodeline/pipeline/run_outcome.h"
 #include "lodeline/pipeline/run_recording.h"
 #include "lodeline/pipeline/run_report.h"
 
@@ -25,34 +25,6 @@ constexpr size_t kTerminalWidth = 96;  ///< width of the values in the summary
 bool isPort(const std::string& text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
-}
-
-/// Throws the error that explains a run without a result.
-void requireResult(const RunRequest& request, const RunSummary& summary, const Diagnostics& diagnostics) {
-  if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
-  if (const std::string reason = summary.distrust(); !reason.empty()) {
-    throw EstimationError(
-        fmt::format("{}: {}; the result in {} is not to be trusted. `lodeline inspect {}` looks for units, "
-                    "axes, time stamps and calibrations that do not belong together",
-                    request.data, reason, request.output, request.data));
-  }
-  if (summary.posed() > 0) {
-    if (diagnostics.count(kSensorsContradict) == 0) return;
-    throw EstimationError(
-        fmt::format("{}: the sensors contradict each other; the result in {} is not to be trusted. "
-                    "`lodeline inspect {}` says what is wrong",
-                    request.data, request.output, request.data));
-  }
-  if (summary.images == 0) {
-    const std::vector<Finding> findings = diagnostics.ranked();
-    throw InputError(fmt::format("{}: no image of the recording could be used{}", request.data,
-                                 findings.empty() ? "" : ": " + findings.front().first_message));
-  }
-  const std::vector<Finding> findings = diagnostics.ranked();
-  const bool is_explained = !findings.empty() && findings.front().severity == Severity::Serious;
-  throw EstimationError(fmt::format("{}: no pose after {} frames; still waiting for {}{}", request.data,
-                                    summary.frames(), summary.last().waiting_for,
-                                    is_explained ? ". " + findings.front().first_message : ""));
 }
 
 }  // namespace
@@ -69,6 +41,7 @@ void executeRun(RunRequest request) {
     const std::string remark = writeRunReport(request);
     if (!request.quiet && !remark.empty()) fmt::print("  {:<20} {}\n", "report", remark);
   }
+  if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
   requireResult(request, summary, diagnostics);
 }
 

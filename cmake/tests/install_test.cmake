@@ -1,5 +1,5 @@
 # Installs the build to a folder of its own; builds and runs programs there that use the library.
-#   cmake -DBUILD=FOLDER -DSOURCE=FOLDER -DWORK=FOLDER -DPART=core|all -P install_test.cmake
+#   cmake -DBUILD=FOLDER -DSOURCE=FOLDER -DWORK=FOLDER -DPART=core|all [-DPYTHON=PROGRAM] -P install_test.cmake
 function(run result)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
@@ -60,4 +60,11 @@ else()
       -DCMAKE_PREFIX_PATH=${WORK}/prefix)
   run(output ${CMAKE_COMMAND} --build ${WORK}/node)
   run(output ${WORK}/node/node_consumer)
+  if(PYTHON)
+    file(GLOB package ${WORK}/prefix/lib/python3*/dist-packages)
+    run(output ${CMAKE_COMMAND} -E env PYTHONPATH=${package} ${PYTHON} -c "import lodeline; print(lodeline.__file__)")
+    if(NOT output MATCHES "^${WORK}/prefix/")
+      message(FATAL_ERROR "the installed Python module was not found: ${output}")
+    endif()
+  endif()
 endif()

@@ -9,6 +9,7 @@
 
 #include "apps/lodeline/shared/place_argument.h"
 #include "lodeline/diagnostics.h"
+#include "lodeline/output/colmap/colmap_database.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/survey/formats/map_files.h"
 #include "lodeline/output/survey/formats/recording_images.h"
@@ -19,6 +20,8 @@
 
 namespace lodeline {
 namespace {
+
+constexpr const char* kColmapDatabase = "colmap/database.db";
 
 /// Additional data from the recording.
 struct RecordingParts {
@@ -125,14 +128,19 @@ void expectOwnFolder(const ExportArguments& arguments, const ExportedDive& dive,
   if (arguments.foxglove.is_wanted) names.push_back(foxgloveFileName(dive.map.name));
   for (MapFormat format : formats) {
     for (const std::string& name : mapFileNames(dive.map.name, format)) names.push_back(name);
+    if (format == MapFormat::Colmap) names.push_back(kColmapDatabase);
   }
   expectOwnFiles(folder, dive.map, names);
 }
 
 void writeDive(const ExportedDive& dive, const std::vector<MapFormat>& formats,
-               const std::filesystem::path& folder, std::vector<std::filesystem::path>* files) {
+               const std::filesystem::path& folder, std::vector<std::filesystem::path>* files,
+               Diagnostics* diagnostics) {
   for (MapFormat format : formats) {
     for (const auto& file : writeMap(dive.map, dive.recording.images, format, folder)) files->push_back(file);
+    if (format != MapFormat::Colmap) continue;
+    files->push_back(folder / kColmapDatabase);
+    writeColmapDatabase(dive.map, dive.recording.images, files->back(), diagnostics);
   }
   createOutputFolder(folder);
   if (!dive.depth_comparison.empty()) {
@@ -185,7 +193,7 @@ void exportDives(const ExportArguments& arguments, std::vector<RunFolder> runs, 
   }
   std::vector<std::filesystem::path> files;
   for (const ExportedDive& dive : dives) {
-    writeDive(dive, formats, folder, &files);
+    writeDive(dive, formats, folder, &files, diagnostics);
     if (!arguments.foxglove.is_wanted) continue;
     files.push_back(folder / foxgloveFileName(dive.map.name));
     writeFoxglove(arguments.foxglove, dive.map.run_folder, files.back(), diagnostics);

@@ -140,4 +140,15 @@ std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data,
   return std::make_unique<BagSource>(data, bag_options, diagnostics);
 }
 
+MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data,
+                                          const BagArguments& bag_arguments, const RecordOptions& options,
+                                          Diagnostics* diagnostics) {
+  refuseBagOptions(data, bag_arguments);
+  refuseRigOfFolder(data, bag_arguments);
+  if (!isBag(data) && !isVideo(data)) return readMagnetometerRecord(data, options, diagnostics);
+  const OpenedReadings opened = openReadings(data, bag_arguments, diagnostics);
+  return readMagnetometerRecord(*opened.source, data.string(), opened.sections.contains("mag0"), options,
+                                diagnostics);
+}
+
 }  // namespace lodeline

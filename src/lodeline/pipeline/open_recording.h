@@ -10,6 +10,7 @@
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/io/video/video_source.h"
+#include "lodeline/magnetometer/calibration/magnetometer_record.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {
@@ -58,5 +59,11 @@ std::unique_ptr<VideoSource> openVideo(const std::filesystem::path& film, const 
 /// bag. `diagnostics` must outlive the source.
 std::unique_ptr<RecordedSource> openRecording(const std::filesystem::path& data, const EurocOptions& options,
                                               const BagArguments& bag_arguments, Diagnostics* diagnostics);
+
+/// Reads the input of a magnetometer calibration from a folder, a bag or a table. Throws as the function of
+/// magnetometer_record.h does, and UsageError for options that do not suit the data.
+MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data,
+                                          const BagArguments& bag_arguments, const RecordOptions& options,
+                                          Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -13,9 +13,7 @@
 #include "lodeline/pipeline/output_choice.h"
 #include "lodeline/pipeline/run_pace.h"
 #include "lodeline/pipeline/run_progress.h"
-#include "lodeline/pipeline/run_session.h"
 #include "lodeline/pipeline/stop_request.h"
-#include "lodeline/util/settings/settings.h"
 
 namespace lodeline {
 namespace {
@@ -91,7 +89,7 @@ void applyRequest(const RunRequest& request, Settings* settings, RunSettings* op
   options->odometry.estimator.magnetometer.site_field_W = siteField_W(*options);
 }
 
-RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
+RecordingRun::RecordingRun(const RunRequest& request, Diagnostics* diagnostics) {
   // One thread for image operations, so that all machines give the same bytes and processor times per frame
   // are comparable.
   cv::setNumThreads(1);
@@ -100,16 +98,17 @@ RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
     refuseRecordingAsOutput(request.data, request.output);
     if (!request.overwrite) refuseToReplaceRun(request.output);
   }
-  RunSettings options;
-  Settings settings;
-  applyRequest(request, &settings, &options);
+  applyRequest(request, &settings_, &options_);
+  source_ = everyNthImage(openRecording(request.data, options_.source, request.bag, diagnostics),
+                          options_.image_step);
+  checkRequested(request, &options_, diagnostics);
+  session_.emplace(request, settings_, options_, source_.get(), diagnostics);
+}
 
-  const std::unique_ptr<RecordedSource> source = everyNthImage(
-      openRecording(request.data, options.source, request.bag, diagnostics), options.image_step);
-  checkRequested(request, &options, diagnostics);
-  RunSession session(request, settings, options, source.get(), diagnostics);
-  process(&session, source->rig(), request);
-  return session.finish();
+RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
+  RecordingRun run(request, diagnostics);
+  process(&run.session(), run.rig(), request);
+  return run.session().finish();
 }
 
 }  // namespace lodeline

@@ -42,6 +42,8 @@ class RunSession {
   /// Packet processed last.
   const FramePacket& packet() const { return loop_.packet(); }
   const FrameEstimate& estimate() const { return summary_.last(); }
+  /// Whether its stamp is later than all before; only then the files have it.
+  bool hasNewStamp() const { return loop_.hasNewStamp(); }
   /// Landmarks that left the window with it.
   const std::vector<MapPoint>& landmarks() const { return landmarks_; }
   const RunSummary& summary() const { return summary_; }

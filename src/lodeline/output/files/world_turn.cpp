@@ -62,12 +62,10 @@ constexpr std::array kPositionSigma = {"sigma_p_x [m]", "sigma_p_y [m]", "sigma_
 constexpr std::array kRotationSigma = {"sigma_theta_x [rad]", "sigma_theta_y [rad]", "sigma_theta_z [rad]"};
 constexpr std::array kVelocitySigma = {"sigma_v_x [m/s]", "sigma_v_y [m/s]", "sigma_v_z [m/s]"};
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 Vec3 sigmas(const Vec3& variances) { return variances.cwiseMax(0.0).cwiseSqrt(); }
 
-Matrix6 poseCovariance(const StateRow& row) {
-  Matrix6 covariance;
+Mat6 poseCovariance(const StateRow& row) {
+  Mat6 covariance;
   for (int i = 0; i < 6; ++i) {
     for (int j = i; j < 6; ++j)
       covariance(i, j) = covariance(j, i) = row.get(fmt::format("cov_pose_{}{}", i, j));
@@ -75,7 +73,7 @@ Matrix6 poseCovariance(const StateRow& row) {
   return covariance;
 }
 
-void setPoseCovariance(const Matrix6& covariance, StateRow* row) {
+void setPoseCovariance(const Mat6& covariance, StateRow* row) {
   for (int i = 0; i < 6; ++i) {
     for (int j = i; j < 6; ++j) row->set(fmt::format("cov_pose_{}{}", i, j), covariance(i, j));
   }
@@ -83,17 +81,11 @@ void setPoseCovariance(const Matrix6& covariance, StateRow* row) {
   row->setVector(kRotationSigma, sigmas(covariance.diagonal().tail<3>()));
 }
 
-/// `north_variance_rad2`: variance of the rotation, if the row's covariance does not contain it.
-void turnCovariances(const WorldTurn& turn, double north_variance_rad2, const Vec3& position_W,
-                     const Vec3& velocity_W, StateRow* row) {
+void turnCovariances(const WorldTurn& turn, Time time, const Vec3& position_W, const Vec3& velocity_W,
+                     StateRow* row) {
+  const double north_variance_rad2 = turn.missingVariance_rad2(time);
+  setPoseCovariance(turn.applyToCovariance(poseCovariance(*row), time, position_W), row);
   const Mat3 rotation = rotationOf(turn).toRotationMatrix();
-  Matrix6 both = Matrix6::Zero();
-  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = rotation;
-  Eigen::Matrix<double, 6, 1> by_turn;
-  by_turn << Vec3::UnitZ().cross(position_W), Vec3::UnitZ();
-  setPoseCovariance(
-      both * poseCovariance(*row) * both.transpose() + north_variance_rad2 * by_turn * by_turn.transpose(),
-      row);
   Mat3 of_velocity = row->vector(kVelocitySigma).cwiseAbs2().asDiagonal();
   of_velocity(0, 1) = of_velocity(1, 0) = row->get("cov_v_01");
   const Vec3 velocity_by_turn = Vec3::UnitZ().cross(velocity_W);
@@ -118,8 +110,7 @@ void turnState(const WorldTurn& turn, StateRow* row) {
   row->setVector({"q_x", "q_y", "q_z"}, q.vec());
   const double north_rad = row->get("north_from_world [rad]");
   row->set("north_from_world [rad]", std::remainder(north_rad - turn.angle_rad, 2.0 * M_PI));
-  const bool is_before_north = turn.north_found && row->stamp_ns() < turn.north_found->nanoseconds();
-  turnCovariances(turn, is_before_north ? turn.sigma_rad * turn.sigma_rad : 0.0, position_W, velocity_W, row);
+  turnCovariances(turn, Time::fromNanoseconds(row->stamp_ns()), position_W, velocity_W, row);
 }
 
 /// Replaces a text file by its lines after `change`.
@@ -157,6 +148,22 @@ std::optional<WorldTurn> WorldTurn::of(const MagnetometerEstimate& last) {
 }
 
 Vec3 WorldTurn::apply(const Vec3& vector_W) const { return rotationOf(*this) * vector_W; }
+
+Rigid3 WorldTurn::apply(const Rigid3& world_from_body) const {
+  return Rigid3(rotationOf(*this), Vec3::Zero()) * world_from_body;
+}
+
+double WorldTurn::missingVariance_rad2(Time time) const {
+  return north_found && time < *north_found ? sigma_rad * sigma_rad : 0.0;
+}
+
+Mat6 WorldTurn::applyToCovariance(const Mat6& covariance, Time time, const Vec3& position_W) const {
+  Mat6 both = Mat6::Zero();
+  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = rotationOf(*this).toRotationMatrix();
+  Eigen::Matrix<double, 6, 1> by_turn;
+  by_turn << Vec3::UnitZ().cross(position_W), Vec3::UnitZ();
+  return both * covariance * both.transpose() + missingVariance_rad2(time) * by_turn * by_turn.transpose();
+}
 
 void turnTrajectoryFile(const fs::path& file, const WorldTurn& turn, std::optional<size_t> most) {
   size_t poses = 0;

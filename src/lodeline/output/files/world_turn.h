@@ -21,6 +21,11 @@ struct WorldTurn {
   static std::optional<WorldTurn> of(const MagnetometerEstimate& last);
 
   Vec3 apply(const Vec3& vector_W) const;
+  Rigid3 apply(const Rigid3& world_from_body) const;
+  /// Variance of the rotation, rad^2, that the covariance of an estimate at this time does not contain.
+  double missingVariance_rad2(Time time) const;
+  /// Covariance of a pose, [dp, dtheta] in world axes (m, rad). `position_W`: after the rotation.
+  Mat6 applyToCovariance(const Mat6& covariance, Time time, const Vec3& position_W) const;
 };
 
 /// Rotates the first `most` poses of a file in TUM format, or all. Replaces the file atomically by renaming.

@@ -81,4 +81,15 @@ ReportedUncertainty readReportedUncertainty(const fs::path& run_folder, Diagnost
   return claims;
 }
 
+ConsistencyCheck checkReported(const fs::path& run_folder, const Trajectory& reference,
+                               const AssociationOptions& association, Diagnostics* diagnostics) {
+  try {
+    return checkConsistency(readReportedUncertainty(run_folder, diagnostics), reference, association);
+  } catch (const InputError& error) {
+    diagnostics->report(Severity::Warning, "claims_unknown",
+                        fmt::format("errors are not compared with claimed sigmas: {}", error.what()));
+    return {};
+  }
+}
+
 }  // namespace lodeline

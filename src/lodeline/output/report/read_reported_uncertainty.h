@@ -12,4 +12,9 @@ namespace lodeline {
 ReportedUncertainty readReportedUncertainty(const std::filesystem::path& run_folder,
                                             Diagnostics* diagnostics);
 
+/// Consistency of a run's reported sigmas with a reference. Where the files beside its trajectory are of
+/// another version or damaged, there are no poses, and the finding `claims_unknown` says why.
+ConsistencyCheck checkReported(const std::filesystem::path& run_folder, const Trajectory& reference,
+                               const AssociationOptions& association, Diagnostics* diagnostics);
+
 }  // namespace lodeline

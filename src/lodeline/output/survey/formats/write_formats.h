@@ -75,6 +75,20 @@ struct ColmapImage {
   std::string name;
 };
 
+/// A camera as COLMAP describes it. Its pixel centres are at half-integers.
+struct ColmapCamera {
+  std::string model;  ///< such as OPENCV
+  int width_px = 0, height_px = 0;
+  std::vector<double> parameters;
+  /// Why the camera is a fitted fisheye camera, and how much it deviates; empty where COLMAP has the model.
+  std::string remark;
+};
+ColmapCamera colmapCamera(const CameraCalibration& camera);
+
+/// The pose camera_from_map of an image.
+Rigid3 colmapPose(const DiveMap& map, const std::vector<CameraCalibration>& cameras,
+                  const ColmapImage& image);
+
 /// A COLMAP text model: three files.
 struct ColmapModel {
   std::string cameras, images, points3D;

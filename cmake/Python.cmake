@@ -1,0 +1,25 @@
+# Whether the Python module is built: where pybind11, the Python headers and NumPy are installed.
+set(found OFF)
+if(LODELINE_BUILD_PROGRAM)
+  # Debian's Python goes before others in the path: its packages are used, and the module is installed for it.
+  if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(Python3_EXECUTABLE /usr/bin/python3)
+  endif()
+  find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
+  find_package(pybind11 2.10 CONFIG QUIET)
+  if(Python3_FOUND AND pybind11_FOUND)
+    execute_process(COMMAND ${Python3_EXECUTABLE} -c "import numpy" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
+    if(result EQUAL 0)
+      set(found ON)
+    endif()
+  endif()
+endif()
+set(default ${found})
+if(LODELINE_SANITIZERS)
+  set(default OFF)  # a module with sanitizers needs a Python with them
+endif()
+option(LODELINE_BUILD_PYTHON "Build the Python module (needs pybind11-dev and python3-numpy)" ${default})
+if(LODELINE_BUILD_PYTHON AND NOT found)
+  message(FATAL_ERROR "the Python module needs the program, pybind11 2.10 and NumPy: scripts/install-dependencies.sh build "
+                      "installs them; -DLODELINE_BUILD_PYTHON=OFF builds without it")
+endif()

@@ -1,0 +1,18 @@
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._lodeline import Estimates, Odometry
+
+_Times = NDArray[np.int64]
+_Floats = NDArray[np.float64]
+
+def feed(
+    odometry: Odometry,
+    *,
+    imu: tuple[_Times, _Floats, _Floats],
+    images: Sequence[Iterable[tuple[int, NDArray[np.uint8] | None]]],
+    magnetometer: tuple[_Times, _Floats] | None = None,
+    depth: tuple[_Times, _Floats] | None = None,
+) -> Estimates: ...
