@@ -27,10 +27,12 @@ target_include_directories(lodeline_options INTERFACE $<BUILD_INTERFACE:${CMAKE_
                                                       $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                                       $<INSTALL_INTERFACE:include>)
 if(LODELINE_BUILD_PYTHON)
-  # The Python module contains the static libraries. With the second flag, calls within a file are as fast as without
-  # the first: nothing replaces a function of the module. Both flags are here and not in the property
-  # POSITION_INDEPENDENT_CODE, because that means other flags in programs, and precompiled headers need equal ones.
-  target_compile_options(lodeline_options INTERFACE $<BUILD_INTERFACE:-fPIC -fno-semantic-interposition>)
+  # The Python module contains the static libraries, so these are compiled for it, with the headers parsed for them.
+  # With the second flag, calls within a file are as fast as without the first: nothing replaces a function of the
+  # module. The property POSITION_INDEPENDENT_CODE would mean other flags in programs.
+  set(is_in_module $<OR:$<STREQUAL:$<TARGET_PROPERTY:TYPE>,STATIC_LIBRARY>,$<BOOL:$<TARGET_PROPERTY:LODELINE_IN_MODULE>>>)
+  target_compile_options(lodeline_options
+                         INTERFACE $<BUILD_INTERFACE:$<${is_in_module}:-fPIC$<SEMICOLON>-fno-semantic-interposition>>)
 endif()
 if(LODELINE_SANITIZERS)
   # Checks of every reference for null and alignment take nearly half of the time to compile. The address sanitizer stops

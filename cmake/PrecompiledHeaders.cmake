@@ -6,15 +6,18 @@ set(precompiled_headers
     <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <sstream>
     <string> <vector> <Eigen/Cholesky> <Eigen/Geometry> <fmt/format.h> <opencv2/core.hpp>)
 
-# lodeline_precompile(NAME HEADER... LINKS library...): target lodeline_precompiled_NAME, which holds the parsed headers
-# and those named here.
+# lodeline_precompile(NAME HEADER... LINKS library... [FOR_PROGRAMS]): target lodeline_precompiled_NAME, which holds the
+# parsed headers and those named here. FOR_PROGRAMS: for programs and not for libraries, whose flags may differ.
 function(lodeline_precompile name)
-  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "FOR_PROGRAMS" "" "LINKS" ${ARGN})
   set(source ${CMAKE_CURRENT_BINARY_DIR}/precompiled_${name}.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "")
   add_library(lodeline_precompiled_${name} OBJECT ${source})
   target_link_libraries(lodeline_precompiled_${name} PRIVATE lodeline_options fmt::fmt Eigen3::Eigen opencv_core
                                                              ${ARG_LINKS})
+  if(NOT ARG_FOR_PROGRAMS)
+    set_target_properties(lodeline_precompiled_${name} PROPERTIES LODELINE_IN_MODULE ON)
+  endif()
   target_precompile_headers(lodeline_precompiled_${name} PRIVATE ${precompiled_headers} ${ARG_UNPARSED_ARGUMENTS})
 endfunction()
 
@@ -24,7 +27,7 @@ if(LODELINE_PRECOMPILED_HEADERS)
     lodeline_precompile(commands <CLI/CLI.hpp> LINKS CLI11::CLI11)
   endif()
   if(LODELINE_BUILD_TESTS)
-    lodeline_precompile(tests <gmock/gmock.h> <gtest/gtest.h> LINKS GTest::gtest)
+    lodeline_precompile(tests <gmock/gmock.h> <gtest/gtest.h> LINKS GTest::gtest FOR_PROGRAMS)
   endif()
 endif()
 
