@@ -25,8 +25,9 @@ namespace {
 
 const char* const kCalibrateFooter =
     R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
-ROS bag (--rig may be missing; the noise of a usual IMU is assumed then), a log of PX4 or ArduPilot, a folder or zip of
-CSV files of a telephone, a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz without one.
+ROS bag (--rig may be missing; the noise of a usual IMU is assumed then), a log of PX4 or ArduPilot,
+a folder or zip of a telephone's CSV files, a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`,
+or rows of t, mx, my, mz or mx, my, mz without one.
 How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
 while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure.
 Examples:

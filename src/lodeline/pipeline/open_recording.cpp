@@ -71,8 +71,10 @@ void refuseBagOptions(const std::filesystem::path& data, const BagArguments& bag
   }
   if (!bag_arguments.rig_files.empty() && std::filesystem::is_regular_file(data)) {
     const RecognizedFile recognized = recognizeFile(data);
-    const bool is_table = recognized.kind == FileKind::Table || recognized.kind == FileKind::Text;
-    if (!is_table) return;  // already rejected by its kind
+    constexpr std::array kLogs = {FileKind::Table, FileKind::Text, FileKind::SensorLog, FileKind::Archive,
+                                  FileKind::Compressed};
+    const bool is_log = std::find(kLogs.begin(), kLogs.end(), recognized.kind) != kLogs.end();
+    if (!is_log) return;  // rejected by its kind
     throw UsageError(
         fmt::format("--rig is for ROS bags, films and folders; {} is {}", data.string(), recognized.what));
   }

@@ -13,8 +13,9 @@ namespace lodeline {
 /// Throws InputError, with its kind, for any other file.
 bool isSensorLog(const std::filesystem::path& path);
 
-/// Opens a sensor log by its content. Reports which part of the log each sensor comes from, and its unit, as
-/// the finding `log_content`. `options` apply to tables. Throws InputError where the file is damaged, has no
+/// Opens a sensor log by its content. For a log of several parts, it reports from which part each sensor
+/// comes, and its unit, as the finding `log_content`; for a table, the columns and units that its header does
+/// not state. `options` apply to tables. Throws InputError where the file is damaged, has no
 /// readings, or has readings in an unknown unit. `diagnostics` must outlive the log.
 std::unique_ptr<SensorLog> openSensorLog(const std::filesystem::path& path, const PlainCsvOptions& options,
                                          Diagnostics* diagnostics);
