@@ -2,7 +2,7 @@
 # Runs short simulated dives by Snakemake, kills workers in between, and checks that each run has one result and none was
 # made twice. A long experiment (make fleet-test):
 #   LODELINE=build/release/bin/lodeline test_snakemake.sh [ITEMS [DIVES [KILLS]]]
-# It needs Debian's snakemake. WORK names its folder.
+# It needs Debian's snakemake. WORK names its folder, CORES the number of workers.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/test_common.sh"
@@ -11,7 +11,7 @@ dives=${2:-$items}
 kills=${3:-20}
 prepare_fleet snakemake "$items" "$dives"
 cd "$work"
-snakemake -s "$here/Snakefile" --cores "$(nproc)" --restart-times "$kills" --quiet --nocolor \
+snakemake -s "$here/Snakefile" --cores "${CORES:-$(nproc)}" --restart-times "$kills" --quiet --nocolor \
   --config list="$work/list.yaml" out="$work/out" shards=8 lodeline="$lodeline" > "$work/snakemake.log" 2>&1 &
 snakemake=$!
 trap 'kill "$snakemake" 2>/dev/null || true' EXIT

@@ -128,6 +128,7 @@ TEST_F(BatchRuns, AWrongListIsNamedWithItsLine) {
   expectRefused(one + "variants:\n  - name: a\n    set: {front_end.seeds: 1}\n", "5", "front_end.seed");
   expectRefused(one + "seeds: [1, two]\n", "3", "whole number");
   expectRefused(one + "align: sideways\n", "3", "sim3");
+  expectRefused(one + "tolerance_s: 2\n", "3", "at most 1");
   expectRefused(one + "jobs: 3\n", "3", "unknown key 'jobs'");
 }
 

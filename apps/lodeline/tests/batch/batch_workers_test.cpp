@@ -44,6 +44,15 @@ TEST_F(BatchWorkers, TwoAtOnceMakeEachItemOnce) {
   EXPECT_EQ(made(log("first.log")) + made(log("second.log")), kBatchRecordings);
   EXPECT_GT(made(log("first.log")), 0);
   EXPECT_GT(made(log("second.log")), 0);
+  std::string records;
+  for (const std::string& worker : names("workers")) records += readText(output_ / "workers" / worker);
+  for (int i = 0; i < kBatchRecordings; ++i) {
+    for (const char* event : {"started", "done"}) {
+      const std::string record = fmt::format(",dive{}.default,{}\n", i, event);
+      EXPECT_NE(records.find(record), std::string::npos) << records;
+      EXPECT_EQ(records.find(record), records.rfind(record)) << records;
+    }
+  }
   EXPECT_THAT(names("results"), SizeIs(kBatchRecordings));
   expectNothingLeftOver();
 }
