@@ -13,7 +13,7 @@
 #include "lodeline/output/report/page/map_page.h"
 #include "lodeline/output/report/page/solutions.h"
 #include "lodeline/output/report/page/table_json.h"
-#include "lodeline/output/report/page/wall_file.h"
+#include "lodeline/output/report/points/wall_file.h"
 #include "lodeline/util/csv_fields.h"
 
 namespace lodeline {

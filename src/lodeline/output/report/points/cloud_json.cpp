@@ -1,4 +1,4 @@
-#include "lodeline/output/report/page/cloud_json.h"
+#include "lodeline/output/report/points/cloud_json.h"
 
 #include <algorithm>
 #include <bit>
