@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/data/base64.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/types.h"
 #include "lodeline/util/angles.h"
