@@ -12,8 +12,8 @@
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
-#include "lodeline/pipeline/background.h"
-#include "lodeline/pipeline/run_stations.h"
+#include "lodeline/pipeline/page/background.h"
+#include "lodeline/pipeline/page/run_stations.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

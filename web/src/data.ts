@@ -176,7 +176,10 @@ export function decodeFloats(base64: string): Float32Array {
 }
 
 export function decodeBytes(base64: string): Uint8Array {
-  return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
 }
 
 export function column(table: Table, name: string): (number | null)[] | null {

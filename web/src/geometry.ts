@@ -60,6 +60,10 @@ export class WorldMap {
     return [this.scale * r[0] + this.t[0], this.scale * r[1] + this.t[1], this.scale * r[2] + this.t[2]];
   }
 
+  get isIdentity(): boolean {
+    return this.scale === 1 && this.q[0] === 1 && this.t.every((v) => v === 0);
+  }
+
   direction(v: Vec3): Vec3 {
     return rotate(this.q, v);
   }

@@ -10,6 +10,8 @@ import { poseAt, type Track } from "./track";
 import type { View } from "./view";
 import { worldNames } from "./world";
 
+const kNearest_px = 7; // stations nearer to each other would be a black line
+
 type Context = CanvasRenderingContext2D;
 
 export interface PlacedStation {
@@ -58,10 +60,13 @@ export function wallsBeside(track: Track, isPlan: boolean): { end: Vec3; pose: n
 
 export function drawStations(c: Context, track: Track, place: Placing, isPlan: boolean): void {
   const stations = stationsOf(track);
-  let last: [number, number] | null = null;
+  let drawn: [number, number] | null = null; // the last one
+  let last: [number, number] | null = null; // with its name
   for (const station of stations) {
     const ends = wallEnds(station, isPlan).map((p) => p && place(track, p, station.pose));
     const [x, y] = place(track, station.position, station.pose);
+    if (drawn && Math.hypot(x - drawn[0], y - drawn[1]) < kNearest_px) continue;
+    drawn = [x, y];
     c.strokeStyle = themed("ink");
     c.lineWidth = 1;
     c.globalAlpha = 0.75;

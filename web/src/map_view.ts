@@ -127,7 +127,7 @@ export class MapView {
     }
     drawWays(c, view, this.projection.tracks, place);
     for (const track of this.projection.tracks) {
-      if (shown.value.stations) drawStations(c, track, place, isPlan);
+      if (shown.value.stations && track === view.active.value) drawStations(c, track, place, isPlan);
       if (shown.value.loops) drawLoops(c, track, place);
       if (shown.value.loops) drawControl(c, track, place);
     }

@@ -1,6 +1,6 @@
 // Clouds of points, and which colour a point gets.
 
-import { css, sequential, themed } from "./colours";
+import { sequential, themed } from "./colours";
 import { decodeBytes, type Cloud } from "./data";
 import { number } from "./format";
 import type { Vec3, WorldMap } from "./geometry";
@@ -14,10 +14,8 @@ export interface Points {
 export function makePoints(cloud: Cloud, map: WorldMap): Points {
   const steps = new Uint16Array(decodeBytes(cloud.xyz).buffer);
   const xyz = new Float32Array(steps.length);
-  for (let i = 0; i + 2 < steps.length; i += 3) {
-    const p = [0, 1, 2].map((k) => cloud.low_m[k] + cloud.step_m[k] * steps[i + k]) as Vec3;
-    xyz.set(map.point(p), i);
-  }
+  for (let k = 0; k < 3; ++k) for (let i = k; i < steps.length; i += 3) xyz[i] = cloud.low_m[k] + cloud.step_m[k] * steps[i];
+  if (!map.isIdentity) for (let i = 0; i + 2 < xyz.length; i += 3) xyz.set(map.point([xyz[i], xyz[i + 1], xyz[i + 2]]), i);
   return { xyz, rgb: cloud.rgb ? decodeBytes(cloud.rgb) : null };
 }
 
@@ -120,5 +118,3 @@ export function plainColour(): [number, number, number] {
   const hex = parseInt(themed("landmark").slice(1), 16);
   return [hex >> 16, (hex >> 8) & 255, hex & 255];
 }
-
-export const plainCss = () => css(plainColour());

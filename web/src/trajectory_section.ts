@@ -51,7 +51,7 @@ function toggles(view: View): HTMLElement {
   if (view.tracks.some((t) => t.run.stations?.length)) add("Stations", "stations");
   const has = (what: (map: RunMap) => boolean) => view.tracks.some(({ run }) => run.map && what(run.map));
   if (view.kinds().length > 1 || has((map) => map.path !== null)) {
-    add("Other solutions", "others", has((map) => map.path !== null) ? kMapColour : undefined);
+    add(view.kinds().length > 1 ? "Other solutions" : "In the map", "others", has((map) => map.path !== null) ? kMapColour : undefined);
   }
   if (has((map) => map.loops.length > 0 || map.control.length > 0)) add("Loops and control points", "loops", kLoopColour);
   if (view.background) add("Background", "background");

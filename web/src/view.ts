@@ -17,6 +17,12 @@ export interface Shown {
   background: boolean;
 }
 
+/// Dives that were mapped together lie in one world there alone.
+function areOneCave(solutions: Track[][]): boolean {
+  return solutions.length > 1 && solutions.every((list) => list.some((t) => t.kind === "map")) &&
+    solutions.some(([{ run }]) => run.map?.loops.some((loop) => loop.old_t_s === null));
+}
+
 export class View {
   tracks: Track[]; // one a run
   readonly active: Signal<Track>;
@@ -30,7 +36,7 @@ export class View {
 
   /// `solutions`: of each run, that first which is shown first.
   constructor(readonly solutions: Track[][], readonly background: Background | null = null) {
-    this.tracks = solutions.map((list) => list[0]);
+    this.tracks = solutions.map((list) => (areOneCave(solutions) ? list.find((t) => t.kind === "map") : null) ?? list[0]);
     this.active = new Signal(this.tracks[0]);
     this.time = new Signal(this.tracks[0].t_s[0] ?? 0);
   }

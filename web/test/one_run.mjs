@@ -39,7 +39,7 @@ await run(async ({ page }) => {
   const plan = await page.$("canvas.map");
   const whole = await plan.evaluate((canvas) => canvas.toDataURL());
   const pictures = [];
-  for (const name of ["In the map", "Loops"]) {
+  for (const name of ["Other solutions", "Loops and control points"]) {
     await page.$$eval(".toggle", (labels, name) => labels.find((l) => l.textContent === name).querySelector("input").click(), name);
     await page.waitForFunction((old) => document.querySelector("canvas.map").toDataURL() !== old, {}, pictures[0] ?? whole);
     pictures.unshift(await plan.evaluate((canvas) => canvas.toDataURL()));

@@ -13,7 +13,7 @@ await run(async ({ page }) => {
     assert.ok((await canvas.evaluate(inked)) > 0.003, `${id} is blank`);
   }
   await page.emulateMediaType("print");
-  for (const selector of [".tools", ".toolbar", ".pose input[type=range]"]) {
+  for (const selector of [".tools", ".toolbar .group", ".pose input[type=range]"]) {
     assert.equal(await page.$eval(selector, (node) => getComputedStyle(node).display), "none", `${selector} is printed`);
   }
   await page.emulateMediaType("screen");

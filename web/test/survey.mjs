@@ -22,6 +22,7 @@ const selectPose = (page, index) => page.$eval(".pose input", (slider, value) =>
 }, String(index));
 
 async function looksRight(page, name) {
+  await press(page, "Points", "image"); // a phone's screen loads the page again
   for (const selector of [".map-plan canvas", ".map-side canvas", ".sections-card canvas"]) {
     await show(page, selector);
     await page.waitForFunction((s) => document.querySelector(s).width > 200, {}, selector);
@@ -29,17 +30,16 @@ async function looksRight(page, name) {
   }
   const [content, window] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert.ok(content <= window, `the page is ${content} px wide on a screen of ${window}: ${name}`);
-  const red = await page.$eval(".map-plan canvas", (canvas) => {
+  await page.waitForFunction(() => {
+    const canvas = document.querySelector(".map-plan canvas");
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) count += data[i] > 150 && data[i + 1] < 90 && data[i + 2] < 90 ? 1 : 0;
-    return count;
-  });
-  assert.ok(red > 200, `walls have the colours of the file: ${name}`);
+    let red = 0;
+    for (let i = 0; i < data.length; i += 4) red += Math.abs(data[i] - 200) < 9 && Math.abs(data[i + 1] - 32) < 9 && Math.abs(data[i + 2] - 32) < 9 ? 1 : 0;
+    return red > 60;
+  }, { timeout: 20_000 }).catch(() => assert.fail(`the walls have not the colours of their file: ${name}`));
 }
 
 await run(async ({ page }) => {
-  await press(page, "Points", "image");
   for (const viewport of kSizes) {
     for (const value of ["light", "dark"]) {
       await page.setViewport(viewport);
@@ -48,6 +48,7 @@ await run(async ({ page }) => {
     }
   }
   await page.setViewport(kSizes[0]);
+  await press(page, "Points", "image");
   await show(page, ".map-plan canvas");
 
   // The test's map is half a metre east of the odometry.
@@ -82,10 +83,10 @@ await run(async ({ page }) => {
   assert.ok(measured.includes(`${((Math.atan2(expected[0], expected[1]) * 180) / Math.PI + 360).toFixed(1)}°`), measured);
   assert.ok(measured.includes(`Slope−${((Math.atan2(0.25, flat) * 180) / Math.PI).toFixed(1)}°`), measured);
 
-  // Ten times as fast as the dive, for a moment.
-  await page.select(".playback select", "10");
+  // Slowly, so that a busy machine does not come to the end.
+  await page.select(".playback select", "0.5");
   await page.click(".playback button");
-  await page.waitForFunction(() => Number(document.querySelector(".pose input").value) > 90);
+  await page.waitForFunction(() => Number(document.querySelector(".pose input").value) > 76);
   await page.click(".playback button");
   const stopped = await text(page, ".pose .time");
   await new Promise((resolve) => setTimeout(resolve, 300));

@@ -111,11 +111,11 @@ std::string readFile(const fs::path& file) {
 }
 
 std::string lastLine(const std::string& text) {
-  const size_t end = text.find_last_not_of('\n');
-  if (end == std::string::npos) return "it says nothing";
-  const size_t start = text.find_last_of('\n', end);
-  return text.substr(start == std::string::npos ? 0 : start + 1,
-                     end - (start == std::string::npos ? 0 : start));
+  const size_t last = text.find_last_not_of('\n');
+  if (last == std::string::npos) return "it says nothing";
+  const size_t before = text.find_last_of('\n', last);
+  const size_t first = before == std::string::npos ? 0 : before + 1;
+  return text.substr(first, last + 1 - first);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
+#include "lodeline/pipeline/page/run_stations.h"
 #include "lodeline/pipeline/run_recording.h"
-#include "lodeline/pipeline/run_stations.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/data/base64.h"
 
 namespace lodeline::foxglove {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lodeline/output/files/sample_pictures.h"
-#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/data/base64.h"
 #include "lodeline/output/report/page/report_page.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/util/json_text.h"

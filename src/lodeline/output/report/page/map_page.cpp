@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/data/row_choice.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/csv_fields.h"

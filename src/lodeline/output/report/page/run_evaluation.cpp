@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lodeline/evaluation/figures/evaluation_report.h"
-#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/data/row_choice.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/trajectory.h"
 

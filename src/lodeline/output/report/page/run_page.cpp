@@ -9,11 +9,11 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/files/landmark_file.h"
-#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/data/base64.h"
+#include "lodeline/output/report/data/wall_file.h"
 #include "lodeline/output/report/page/map_page.h"
 #include "lodeline/output/report/page/solutions.h"
 #include "lodeline/output/report/page/table_json.h"
-#include "lodeline/output/report/page/wall_file.h"
 #include "lodeline/util/csv_fields.h"
 
 namespace lodeline {

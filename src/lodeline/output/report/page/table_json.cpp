@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/data/row_choice.h"
 
 namespace lodeline {
 namespace {

@@ -12,7 +12,7 @@ namespace lodeline {
 /// Maximum number of rows of a table on a page.
 inline constexpr size_t kMostRows = 8000;
 /// The same for all runs together, where a page has several.
-inline constexpr size_t kMostRowsOfAllRuns = 12000;
+inline constexpr size_t kMostRowsOfAllRuns = 10000;
 
 /// A number with six significant digits, enough for a figure; null for values that are not finite.
 nlohmann::json shortNumber(double value);

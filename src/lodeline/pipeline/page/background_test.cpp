@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/background.h"
+#include "lodeline/pipeline/page/background.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/data/base64.h"
 
 #include <gtest/gtest.h>
 

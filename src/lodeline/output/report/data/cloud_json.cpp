@@ -1,4 +1,4 @@
-#include "lodeline/output/report/page/cloud_json.h"
+#include "lodeline/output/report/data/cloud_json.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
-#include "lodeline/output/report/page/base64.h"
-#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/data/base64.h"
+#include "lodeline/output/report/data/row_choice.h"
 
 namespace lodeline {
 namespace {

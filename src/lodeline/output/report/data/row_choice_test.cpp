@@ -1,4 +1,4 @@
-#include "lodeline/output/report/page/row_choice.h"
+#include "lodeline/output/report/data/row_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lodeline/output/report/page/wall_file.h"
+#include "lodeline/output/report/data/wall_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "lodeline/output/report/page/cloud_json.h"
+#include "lodeline/output/report/data/cloud_json.h"
 
 namespace lodeline {
 

@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/background.h"
+#include "lodeline/pipeline/page/background.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/output/report/page/base64.h"
+#include "lodeline/output/report/data/base64.h"
 #include "lodeline/output/report/page/table_json.h"
 #include "lodeline/types.h"
 #include "lodeline/util/angles.h"

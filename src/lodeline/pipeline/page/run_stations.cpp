@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/run_stations.h"
+#include "lodeline/pipeline/page/run_stations.h"
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/page/table_json.h"
