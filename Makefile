@@ -88,6 +88,14 @@ fleet-test: build
 bench: everything
 	./scripts/benchmark.sh
 
+# How long after its image a pose comes over DDS, at the pace of a recording: RECORDING=/path/to/folder-with-mav0.
+.PHONY: bench-dds
+bench-dds: RECORDING ?= ../shared/data/euroc_mh01_stereo_14s
+bench-dds: everything
+	rm -f build/dds_latency.mcap build/dds_latency.rig.yaml
+	build/release/bin/lodeline convert $(RECORDING) build/dds_latency.mcap
+	build/release/bin/dds_latency build/dds_latency.mcap build/dds_latency.rig.yaml
+
 # To PREFIX (default /usr/local); DESTDIR is put before it.
 install: build
 	cmake --install build/release --prefix $(PREFIX)

@@ -120,7 +120,8 @@ TEST(Ros1Messages, MapAndOdometryGiveThePoseInTheMap) {
   EXPECT_EQ(body.child_frame_id, "base_link");
   EXPECT_EQ(map.header.stamp, body.header.stamp);
   const auto rigid = [](const auto& transform) {
-    const auto &q = transform.rotation, &p = transform.translation;
+    const auto& q = transform.rotation;
+    const auto& p = transform.translation;
     return Rigid3(Quat(q.w, q.x, q.y, q.z), Vec3(p.x, p.y, p.z));
   };
   const Rigid3 chained = rigid(map.transform) * rigid(body.transform);

@@ -22,6 +22,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kOdometry = "/lodeline/odometry";
 
+/// The run begins when rates are measured, a second of images later, and then catches up.
+constexpr double kStart_s = 4.0;
+
 double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
@@ -67,6 +70,7 @@ int measure(const std::string& bag, const std::string& rig, double duration_s) {
     const auto after = published.upper_bound(stampOfCdr(pose.cdr) + Duration::fromSeconds(0.02));
     if (after == published.begin()) continue;
     const auto image = std::prev(after);
+    if ((image->first - published.begin()->first).seconds() < kStart_s) continue;
     delays_ms.push_back(std::chrono::duration<double, std::milli>(pose.arrival - image->second).count());
     const auto second = after == published.end() ? after : std::next(after);
     in_time += second == published.end() || pose.arrival < second->second ? 1 : 0;
@@ -75,8 +79,9 @@ int measure(const std::string& bag, const std::string& rig, double duration_s) {
     fmt::print(stderr, "no pose came; dds_latency.log says why\n");
     return 1;
   }
-  fmt::print("{} images, {} poses; {:.1f} % before the second image after their own\n", published.size(),
-             delays_ms.size(), 100.0 * static_cast<double>(in_time) / static_cast<double>(delays_ms.size()));
+  fmt::print("{} images, {} poses after the start; {:.1f} % before the second image after their own\n",
+             published.size(), delays_ms.size(),
+             100.0 * static_cast<double>(in_time) / static_cast<double>(delays_ms.size()));
   fmt::print("delay after the image: median {:.1f} ms, 95 % {:.1f} ms, greatest {:.1f} ms\n",
              percentile(delays_ms, 0.5), percentile(delays_ms, 0.95), percentile(delays_ms, 1.0));
   return 0;
