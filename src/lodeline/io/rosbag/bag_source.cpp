@@ -82,8 +82,8 @@ void refuseOtherClock(const std::string& name, const std::vector<Time>& stamps,
 }
 
 messages::ImageForm formOf(const BagTopic& topic) {
-  return topic.connection.type == messages::kCompressedImage.name ? messages::ImageForm::Compressed
-                                                                  : messages::ImageForm::Raw;
+  return topic.connection.type == messages::kImage.name ? messages::ImageForm::Raw
+                                                        : messages::ImageForm::Compressed;
 }
 
 }  // namespace
@@ -187,6 +187,13 @@ std::optional<wire::Bytes> BagSource::nextMessage(Cursor* cursor) {
   constexpr size_t kHeaderBytes = 16;
   while (cursor->topic != nullptr && cursor->next < cursor->topic->entries.size()) {
     std::optional<wire::Bytes> message = bag_->read(*cursor->topic, cursor->topic->entries[cursor->next++]);
+    if (message && cursor->topic->connection.type == messages::kCompressedVideo.name) {
+      try {
+        message = compressedImageOfVideo(*message);
+      } catch (const wire::Reader::CutOff&) {
+        continue;
+      }
+    }
     if (message && message->size() >= kHeaderBytes) return message;
   }
   return std::nullopt;
@@ -235,11 +242,21 @@ std::optional<PendingImage> BagSource::nextImage(size_t camera) {
   }
   if (!bytes) return std::nullopt;
   grey_ranges_.resize(cameras_.size());
+  films_.resize(cameras_.size());
+  const std::string where = fmt::format("{} {}", bag_->file().string(), cursor.topic->connection.topic);
+  if (formOf(*cursor.topic) == messages::ImageForm::Compressed) {
+    try {
+      if (std::optional<PendingImage> image = films_[camera].next(*bytes, where)) {
+        restamp(cursor, &*image);
+        return image;
+      }
+    } catch (const wire::Reader::CutOff&) {
+      // Told when the image is loaded.
+    }
+  }
   std::optional<GreyRange>& range = grey_ranges_[camera];
   if (!range) range = measureGreyRange(camera);
-  PendingImage image = messages::pendingImage(
-      formOf(*cursor.topic), std::move(*bytes),
-      fmt::format("{} {}", bag_->file().string(), cursor.topic->connection.topic), *range);
+  PendingImage image = messages::pendingImage(formOf(*cursor.topic), std::move(*bytes), where, *range);
   restamp(cursor, &image);
   return image;
 }

@@ -11,6 +11,7 @@
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/images/grey_range.h"
 #include "lodeline/io/rosbag/container/bag_file.h"
+#include "lodeline/io/rosbag/film_topic.h"
 #include "lodeline/io/rosbag/imu_content.h"
 #include "lodeline/io/rosbag/messages.h"
 #include "lodeline/io/rosbag/topic_choice.h"
@@ -71,6 +72,7 @@ class BagSource : public RecordedSource {
   bool use_received_times_;
   TopicChoice choice_;
   std::vector<Cursor> cameras_;
+  std::vector<FilmTopic> films_;                       ///< per camera, for images that depend on each other
   std::vector<std::optional<GreyRange>> grey_ranges_;  ///< per camera, measured at its first image
   Cursor imu_, accelerometer_;
   std::map<std::string, Cursor> sensors_;  ///< by SensorKind::section

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "lodeline/io/images/image_loader.h"
+#include "lodeline/io/rosbag/film_topic.h"
 #include "lodeline/io/rosbag/messages.h"
 
 namespace lodeline::messages {
@@ -119,16 +120,6 @@ std::string whyUnusable(const Parsed& image, const Encoding* encoding) {
                      image.width, image.height, image.encoding, image.step);
 }
 
-/// Whether the format of a CompressedImage is that of a film, whose images depend on those before.
-bool isFilm(std::string_view format) {
-  constexpr std::array kFilms = {"h264", "h.264", "h265", "h.265", "hevc", "av1", "vp9"};
-  std::string lower(format);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::any_of(kFilms.begin(), kFilms.end(),
-                     [&](const char* film) { return lower.find(film) != std::string::npos; });
-}
-
 StoredImage storedImage(ImageForm form, std::span<const uint8_t> message, const std::string& name) {
   return form == ImageForm::Compressed ? compressedImageFile(message, name) : imagePixels(message, name);
 }
@@ -187,9 +178,8 @@ StoredImage compressedImageFile(std::span<const uint8_t> message, const std::str
     const std::span<const uint8_t> file = reader.takeSized();
     result.file.assign(file.begin(), file.end());
     if (file.empty()) result.problem = name + ": holds no image";
-    if (isFilm(format)) {
-      result.problem =
-          fmt::format("{}: encoding '{}' is not supported; record JPEG, PNG or raw images", name, format);
+    if (!filmCodec(format).empty()) {
+      result.problem = fmt::format("{}: encoding '{}' depends on the images before", name, format);
     }
   } catch (const wire::Reader::CutOff& error) {
     result.problem = fmt::format("{}: {}", name, error.what());

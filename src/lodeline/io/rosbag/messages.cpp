@@ -66,7 +66,7 @@ std::vector<Type> typesOf(const std::string& sensor) {
   if (sensor == "mag0") return {messages::kMagneticField};
   if (sensor == "pressure0") return {messages::kFluidPressure};
   if (sensor == "sonar0") return {messages::kLaserScan, messages::kRange};
-  return {messages::kImage, messages::kCompressedImage};
+  return {messages::kImage, messages::kCompressedImage, messages::kCompressedVideo};
 }
 
 std::vector<Type> namedTypesOf(const std::string& sensor) {

@@ -28,6 +28,9 @@ inline constexpr Type kRange = {"sensor_msgs/Range", "c005c34273dc426c67a020a87b
 inline constexpr Type kLaserScan = {"sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369"};
 inline constexpr Type kImage = {"sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743"};
 inline constexpr Type kCompressedImage = {"sensor_msgs/CompressedImage", "8f7a12909da2c9d3332d540a0977563f"};
+/// Like CompressedImage, for a film; the order of its fields is another one.
+inline constexpr Type kCompressedVideo = {"foxglove_msgs/CompressedVideo",
+                                          "c5ea945275bc0729ed72f42e057a67bd"};
 inline constexpr Type kPoseStamped = {"geometry_msgs/PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5"};
 
 inline constexpr Type kOdometry = {"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"};

@@ -195,9 +195,10 @@ std::optional<GpmfSensors::Reading> GpmfSensors::next(const std::string& key) {
     const double number = sensor.clock.firstSample(sensor.payload - 1) + static_cast<double>(sensor.sample);
     const Vec3 stored(sensor.stream.values.data() + 3 * sensor.sample);
     ++sensor.sample;
-    if (!stored.allFinite()) continue;
-    return Reading{Time::fromSeconds(sensor.clock.time_s(number) - sensor.delay_s),
-                   sensor.to_si * (sensor.axes.body_from_stored * stored)};
+    const double time_s = sensor.clock.time_s(number) - sensor.delay_s;
+    // Bags hold no times before zero, and no image needs these readings.
+    if (!stored.allFinite() || time_s < 0.0) continue;
+    return Reading{Time::fromSeconds(time_s), sensor.to_si * (sensor.axes.body_from_stored * stored)};
   }
 }
 
