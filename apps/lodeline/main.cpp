@@ -29,6 +29,7 @@
 #include "apps/lodeline/shared/build_info.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
+#include "apps/lodeline/survey/survey_command.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/util/printable_text.h"
 #include "lodeline/version.h"
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   lodeline::addBenchmarkCommand(program);
   lodeline::addExportCommand(program);
   lodeline::addMapCommand(program);
+  lodeline::addSurveyCommand(program);
   lodeline::addReportCommand(program);
   lodeline::addSimulateCommand(program);
   lodeline::addAllanCommand(program);

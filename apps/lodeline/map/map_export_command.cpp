@@ -2,11 +2,10 @@
 #include <memory>
 
 #include "apps/lodeline/export/export_command.h"
+#include "apps/lodeline/map/map_dives.h"
 #include "apps/lodeline/map/map_subcommands.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/mapping/session/map_points.h"
 #include "lodeline/mapping/store/map_file.h"
-#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {
@@ -16,48 +15,10 @@ struct MapExportArguments {
   ExportArguments files;
 };
 
-/// A dive of the map as a run whose world is the map: poses and covariances of the common solution.
-RunFolder runOfDive(const MapFile& map, const MapDive& dive, std::optional<double> depth_at_origin_m) {
-  RunFolder run;
-  run.folder = dive.name;
-  run.trajectory_file = map.path().filename().string();
-  run.program = std::string("lodeline ") + LODELINE_VERSION;
-  run.recording = dive.recording;
-  run.heading_reference = dive.heading_reference;
-  run.depth_at_origin_m = depth_at_origin_m;
-  map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
-    if (!row.solved) return;
-    run.trajectory.poses.push_back({row.keyframe.time, row.solved->map_from_body});
-    run.uncertainties.push_back({row.keyframe.time, row.solved->covariance.topLeftCorner<3, 3>()});
-  });
-  run.landmarks = mapPointsOf(map, dive.id);
-  return run;
-}
-
-/// Depth of the origin of the map by the first keyframe that knows its depth.
-std::optional<double> depthAtOrigin(const MapFile& map) {
-  std::optional<double> depth_m;
-  for (const MapDive& dive : map.dives()) {
-    map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
-      if (!depth_m && row.solved && row.keyframe.depth_m)
-        depth_m = row.keyframe.depth_m->value + row.solved->map_from_body.translation.z();
-    });
-  }
-  return depth_m;
-}
-
 void exportMap(MapExportArguments arguments) {
   const MapFile map = MapFile::open(arguments.map, MapFile::Access::Read);
-  std::vector<RunFolder> runs;
-  const std::optional<double> depth_m = depthAtOrigin(map);
-  for (const MapDive& dive : map.dives()) {
-    runs.push_back(runOfDive(map, dive, depth_m));
-    if (runs.back().trajectory.poses.size() < 2)
-      throw InputError(arguments.map + ": dive '" + dive.name +
-                       "' has no solved poses; run `lodeline map solve`");
-    arguments.files.runs.push_back(dive.name);
-  }
-  if (runs.empty()) throw InputError(arguments.map + ": the map has no dive");
+  std::vector<RunFolder> runs = runsOfMap(map);
+  for (const RunFolder& run : runs) arguments.files.runs.push_back(run.folder.string());
   arguments.files.map.min_observations = 1;  // a keyframe's point has been seen in many images
   Diagnostics diagnostics;
   exportDives(arguments.files, std::move(runs), &diagnostics);

@@ -1,41 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
-#include <sstream>
 
 #include "lodeline/output/survey/formats/survey_text.h"
+#include "lodeline/output/survey/formats/therion_text.h"
 #include "lodeline/output/survey/formats/write_formats.h"
 
 namespace lodeline {
 namespace {
 
 using namespace survey_text;
-
-/// Georeference of the map on a grid that Therion supports: the map's own grid, else the UTM zone of the
-/// entrance.
-std::optional<Georeference> therionPlace(const DiveMap& map) {
-  if (!map.place || map.place->gridDescription().therion_name) return map.place;
-  return Georeference(map.place->origin(), MapGrid("auto", map.place->origin()));
-}
-
-/// Positions for Therion, as offsets from the first station. Therion rotates them by the convergence at the
-/// fixed station, so grid differences are rotated in the opposite direction.
-class Offsets {
- public:
-  explicit Offsets(const DiveMap& map)
-      : place_(therionPlace(map)), first_ENU_(map.survey.stations.front().position_ENU) {}
-
-  Vec3 operator()(const Vec3& point_ENU) const {
-    if (!place_) return point_ENU - first_ENU_;
-    return turnedClockwise(place_->grid(point_ENU) - rounded(place_->grid(first_ENU_)),
-                           place_->convergence_rad());
-  }
-
- private:
-  std::optional<Georeference> place_;
-  Vec3 first_ENU_;
-};
+using namespace therion_text;
 
 /// The line that fixes the position of a dive's first station.
 std::string fixLine(const DiveMap& map, const std::optional<Georeference>& place) {
@@ -43,33 +18,6 @@ std::string fixLine(const DiveMap& map, const std::optional<Georeference>& place
   const Vec3 first = rounded(place->grid(map.survey.stations.front().position_ENU));
   return fmt::format("  fix 0@{} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n", map.name, first.x(), first.y(),
                      first.z(), map.place_sigma.x(), map.place_sigma.y(), map.place_sigma.z());
-}
-
-/// "cs UTM17", or empty for a map without a georeference.
-std::string csLine(const std::optional<Georeference>& place, const char* indent) {
-  return place ? fmt::format("{}cs {}\n", indent, place->gridDescription().therion_name.value()) : "";
-}
-
-/// Date of the survey. Therion 6.1 warns of dates after 2024, where its declination model ends, even if it
-/// needs no declination.
-std::string dateText(const DiveMap& map) {
-  if (map.date.empty()) return "";
-  if (map.date < "2025") return fmt::format("    date {}\n", dotted(map.date));
-  return fmt::format("    # date {}  (Therion 6.1 warns of dates after 2024)\n", dotted(map.date));
-}
-
-/// A person's name for Therion: one or two words, or more with a slash before the surname.
-std::string therionPerson(std::string name) {
-  std::replace(name.begin(), name.end(), '/', ' ');
-  std::istringstream stream(name);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  std::string person;
-  for (size_t i = 0; i < words.size(); ++i) {
-    const bool is_surname = words.size() > 2 && i + 1 == words.size();
-    person += (i == 0 ? "" : is_surname ? "/" : " ") + words[i];
-  }
-  return person;
 }
 
 std::string therionSplays(const DiveMap& map, const Offsets& fromFirst) {
@@ -104,12 +52,12 @@ std::string dimensionsText(const Survey& survey) {
 
 std::string therionText(const DiveMap& map) {
   const Survey& survey = map.survey;
-  const Offsets fromFirst(map);
+  const Offsets fromFirst(map, map.survey.stations.front().position_ENU);
   std::vector<Vec3> positions;
   for (const SurveyStation& station : survey.stations) positions.push_back(fromFirst(station.position_ENU));
   std::string text = fmt::format("encoding utf-8\n# {}\n", map.title) + comments(map, "#");
   text += fmt::format("\nsurvey {} -title {}\n  centreline\n", map.name, quoted(map.title)) + dateText(map);
-  for (const std::string& name : map.team) text += fmt::format("    team {}\n", quoted(therionPerson(name)));
+  for (const std::string& name : map.team) text += fmt::format("    team {}\n", quoted(person(name)));
   text += "    station 0 \"entrance\" entrance\n";
   const Vec3& sigma = survey.leg_sigma_ENU;
   text += fmt::format(
@@ -125,7 +73,7 @@ std::string therionText(const DiveMap& map) {
 }
 
 std::string therionFix(const DiveMap& map) {
-  const std::optional<Georeference> place = therionPlace(map);
+  const std::optional<Georeference> place = placeOf(map);
   return fmt::format(
       "encoding utf-8\n# Where the first station of {0} lies. A project of several dives that begin at one "
       "place\n"
@@ -154,7 +102,7 @@ std::string therionConfig(const DiveMap& map, const std::string& name,
                           const std::vector<std::string>& sources) {
   std::string text = "encoding utf-8\n";
   for (const std::string& source : sources) text += fmt::format("source {}\n", source);
-  const std::optional<Georeference> place = therionPlace(map);
+  const std::optional<Georeference> place = placeOf(map);
   text += csLine(place, "");
   if (place) text += fmt::format("export model -fmt kml -o {}_therion.kml\n", name);
   return text + fmt::format("export model -o {0}.lox\nexport survey-list -o {0}_surveys.html\n", name);
