@@ -30,6 +30,14 @@ py::list findingsOf(const Diagnostics& diagnostics);
 /// functions whose result has no findings.
 void warn(const Diagnostics& diagnostics);
 
+/// Whether a callback's answer ends the work: False in any form, also NumPy's; not None.
+inline bool endsWork(const py::object& answer) {
+  if (answer.is_none()) return false;
+  const int truth = PyObject_IsTrue(answer.ptr());
+  if (truth < 0) throw py::error_already_set();
+  return truth == 0;
+}
+
 /// The result of `work`, during which other threads of Python go on.
 template <typename Work>
 auto withoutGil(const Work& work) {

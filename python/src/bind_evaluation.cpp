@@ -40,7 +40,7 @@ EvaluationResult evaluateBoth(const TrajectoryOrPath& estimate, const Trajectory
   return result;
 }
 
-void bindResult(py::module_& module) {
+void bindEvaluationResult(py::module_& module) {
   using Type = const EvaluationResult&;
   py::class_<EvaluationResult>(module, "Evaluation", "Errors of an estimate at N pairs of poses.")
       .def_property_readonly(
@@ -110,7 +110,7 @@ void bindResult(py::module_& module) {
 }  // namespace
 
 void bindEvaluation(py::module_& module) {
-  bindResult(module);
+  bindEvaluationResult(module);
   module.def(
       "evaluate",
       [](const TrajectoryOrPath& estimate, const TrajectoryOrPath& reference, const std::string& align,

@@ -29,8 +29,7 @@ bool goesOn(const FrameEstimate& estimate, const py::object& progress, std::exce
   const py::gil_scoped_acquire acquired;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (progress.is_none()) return true;
-    return !progress(estimate).is(py::bool_(false));
+    return progress.is_none() || !endsWork(progress(estimate));
   } catch (...) {
     *raised = std::current_exception();
     return false;
@@ -90,7 +89,7 @@ std::unique_ptr<RunResult> run(const fs::path& data, const std::optional<fs::pat
   return result;
 }
 
-void bindResult(py::module_& module) {
+void bindRunResult(py::module_& module) {
   using Type = const RunResult&;
   py::class_<RunResult>(module, "Run", "A finished run.")
       .def_property_readonly(
@@ -114,7 +113,7 @@ void bindResult(py::module_& module) {
 }  // namespace
 
 void bindRun(py::module_& module) {
-  bindResult(module);
+  bindRunResult(module);
   module.def(
       "run", &run, py::arg("data"), py::arg("output") = py::none(), py::kw_only(),
       py::arg("settings") = py::dict(), py::arg("config") = py::none(),

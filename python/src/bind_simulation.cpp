@@ -43,8 +43,7 @@ RecordingSummary simulate(const Scenario& scenario, const fs::path& folder, int 
         const std::lock_guard lock(mutex);
         return newest;
       }();
-      if (!progress.is_none() && shown.total > 0)
-        is_stopped = progress(shown.done, shown.total).is(py::bool_(false));
+      if (!progress.is_none() && shown.total > 0) is_stopped = endsWork(progress(shown.done, shown.total));
     } catch (...) {
       raised = std::current_exception();
       is_stopped = true;

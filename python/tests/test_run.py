@@ -67,7 +67,7 @@ class RunTest(FolderTest):
         def progress(_):
             nonlocal count
             count += 1
-            return count < 15
+            return np.bool_(count < 15)
 
         result = lodeline.run(SAMPLE, self.folder / "run", progress=progress)
         self.assertEqual(count, 15)
