@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
     "libeigen3-dev, libceres-dev, libapriltag-dev, libopencv-core-dev, libopencv-imgcodecs-dev, libopencv-calib3d-dev, libopencv-video-dev, \
 libyaml-cpp-dev, libfmt-dev, zlib1g-dev, libdeflate-dev, libtbb-dev, libgeographiclib-dev, libproj-dev, libxml2-dev, \
-libembree-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, libcpp-httplib-dev, gnuplot-nox")
+libembree-dev, libavformat-dev, libavcodec-dev, libswscale-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, libcpp-httplib-dev, gnuplot-nox")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "survex, therion, qgis")
 # Two packages: what has no component is the package `lodeline`.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
