@@ -105,6 +105,7 @@ TEST_F(SurveyProjectTest, MakesOneCaveOfThreeDives) {
   LODELINE_NEEDS_PROGRAM("cavern", "survex");
   LODELINE_NEEDS_PROGRAM("therion", "therion");
   const test::CaveMap cave(mapFile(), 1);
+  ASSERT_THAT(cave.unconnected, ::testing::IsEmpty());
   folder_.write("control.csv",
                 fmt::format("name,kind,east,north,up,horizontal sigma [m],vertical sigma [m],time,dive\n"
                             "B,gps,{},{},{},1,2,3,sink\nT 4,tie,,,,,,120,upstream\n",
@@ -129,6 +130,7 @@ TEST_F(SurveyProjectTest, MakesOneCaveOfThreeDives) {
     const Vec3 error = row.position_ENU - cave.truth.at(row.stamp_ns);
     const Vec3 sigmas = error.array().abs() / row.sigma_ENU.array().max(0.01);
     worst_sigmas = std::max(worst_sigmas, sigmas.maxCoeff());
+    EXPECT_LT(row.sigma_ENU.maxCoeff(), 1.0);  // a dive that floats would be within any number of sigmas
   }
   EXPECT_LE(worst_misfit_m, kCentimetre_m);
   EXPECT_LE(worst_table_m, kCentimetre_m);

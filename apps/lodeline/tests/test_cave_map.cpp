@@ -67,17 +67,18 @@ class Diver {
     Rigid3 odom = trueAt(line, 0);
     odom.translation.setZero();
     std::vector<Written> own;
+    Mat6 covariance = 1e-10 * Mat6::Identity();
     for (size_t i = 0; i < line.size(); ++i) {
       const Rigid3 truth = trueAt(line, i);
-      if (i > 0) odom = odom * withDrift(own.back().truth.inverse() * truth);
+      if (i > 0) {
+        const Rigid3 before = odom;
+        odom = odom * withDrift(own.back().truth.inverse() * truth);
+        covariance = propagated(covariance, before, odom);
+      }
       keyframe.id = -1;
       keyframe.time = dive.start + Duration::fromSeconds(3.0 * static_cast<double>(i));
       keyframe.odom_from_body = odom;
-      const double i_m = static_cast<double>(i);
-      Vec6 variances;
-      variances << 4e-4 * i_m, 4e-4 * i_m, 1e-4 * i_m, 1e-6, 1e-6, 4e-6 * i_m;
-      keyframe.covariance = variances.asDiagonal();
-      keyframe.covariance.diagonal().array() += 1e-10;
+      keyframe.covariance = covariance;
       keyframe.heading_sigma_rad = 0.01;
       keyframe.depth_m = ScalarPrior{2.0 - truth.translation.z() + 0.03 * normal(), 0.03};
       const KeyframeId made = change_->addKeyframe(keyframe);
@@ -106,6 +107,15 @@ class Diver {
     step.translation += Vec3(0.02 * normal(), 0.02 * normal(), 0.01 * normal());
     step.rotation = step.rotation * so3::exp(0.002 * normal() * Vec3::UnitZ());
     return step;
+  }
+
+  /// Covariance of [dp, dtheta] in world axes after a step with the errors of withDrift().
+  static Mat6 propagated(const Mat6& covariance, const Rigid3& before, const Rigid3& after) {
+    Mat6 transition = Mat6::Identity();
+    transition.topRightCorner<3, 3>() = -so3::skew(after.translation - before.translation);
+    Mat6 added = Mat6::Zero();
+    added.diagonal() << 4e-4, 4e-4, 1e-4, 1e-8, 1e-8, 4e-6;
+    return transition * covariance * transition.transpose() + added;
   }
 
   /// A loop with the nearest earlier keyframe within 1.5 m.
@@ -157,7 +167,7 @@ CaveMap::CaveMap(const std::filesystem::path& file, unsigned seed) {
   const Line to_the_side = part(main, 80, main.size() - 1);
   diver.swim("sink", 1795428000, joined({sink, reversed(to_the_side), to_the_side, reversed(sink)}));
   change.commit();
-  solveMap(&map, {});
+  unconnected = solveMap(&map, {}).unconnected;
 }
 
 }  // namespace lodeline::test

@@ -19,7 +19,8 @@ struct CaveMap {
 
   /// True position by stamp, east, north, up of the first pose of the first dive, m.
   std::map<int64_t, Vec3> truth;
-  double passages_m = 0.0;  ///< length of all passages
+  double passages_m = 0.0;               ///< length of all passages
+  std::vector<std::string> unconnected;  ///< dives that the solution does not join
   Vec3 entrance_B = Vec3::Zero();
 };
 
