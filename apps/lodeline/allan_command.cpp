@@ -10,7 +10,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/noise_report.h"
-#include "lodeline/pipeline/analyse_noise.h"
+#include "lodeline/pipeline/calibration/analyse_noise.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 
@@ -71,10 +71,11 @@ void addAllanCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
-      ->add_option("DATA", arguments->request.data,
-                   "folder with mav0 (EuRoC ASL layout), ROS bag or film with telemetry, cameras and "
-                   "calibration may be missing; or a sensor log: a CSV file, a folder or zip of them, a log of "
-                   "PX4 or ArduPilot")
+      ->add_option(
+          "DATA", arguments->request.data,
+          "folder with mav0 (EuRoC ASL layout), ROS bag or film with telemetry, cameras and "
+          "calibration may be missing; or a sensor log: a CSV file, a folder or zip of them, a log of "
+          "PX4 or ArduPilot")
       ->required();
   addBagOptions(&arguments->request.bag, command);
   command->add_option("-o,--output", arguments->output,

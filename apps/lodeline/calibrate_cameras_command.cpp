@@ -11,7 +11,7 @@
 #include "apps/lodeline/shared/bag_options.h"
 #include "lodeline/cameras/camera_model.h"
 #include "lodeline/output/report/findings.h"
-#include "lodeline/pipeline/calibrate_cameras.h"
+#include "lodeline/pipeline/calibration/calibrate_cameras.h"
 #include "lodeline/pipeline/open_recording.h"
 
 namespace lodeline {

@@ -86,7 +86,8 @@ struct DiveMapOptions {
   std::optional<double> start_depth_m;  ///< of the first pose; empty for that of the run's pressure sensor
   std::string start_depth_source;       ///< its source, in words
   std::string vertical_datum;           ///< see verticalDatum(); empty where it is not stated
-  std::optional<double> geoid_height_m;  ///< height of the vertical datum above the ellipsoid; empty for PROJ's
+  std::optional<double>
+      geoid_height_m;  ///< height of the vertical datum above the ellipsoid; empty for PROJ's
 
   std::optional<double>
       relative_sigma;  ///< of the end position, relative to the length of the line; empty for that of the run
@@ -97,7 +98,8 @@ struct DiveMapOptions {
   std::vector<std::string> notes;  ///< further lines for the headers
 };
 
-/// Files of survey, GIS and 3-D programs. GeoPackage and Dxf need a library built with GDAL. Colmap needs the recording's images, which only the program reads.
+/// Files of survey, GIS and 3-D programs. GeoPackage and Dxf need a library built with GDAL. Colmap needs the
+/// recording's images, which only the program reads.
 enum class MapFormat { Survex, Therion, GeoJson, Kml, Gpx, Ply, Csv, Tum, Colmap, GeoPackage, Dxf };
 
 /// Writes one dive in these formats and its notes to a folder, which is made, and returns the files. Throws

@@ -6,7 +6,7 @@
 #include "lodeline/magnetometer/calibration/calibration_report.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/report/noise_report.h"
-#include "lodeline/pipeline/analyse_noise.h"
+#include "lodeline/pipeline/calibration/analyse_noise.h"
 #include "lodeline/util/json_text.h"
 #include "python/src/arrays.h"
 #include "python/src/bag_arguments.h"

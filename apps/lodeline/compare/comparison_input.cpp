@@ -10,7 +10,7 @@
 #include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/magnetometer/calibration/calibrate_magnetometer.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
-#include "lodeline/pipeline/available_images.h"
+#include "lodeline/pipeline/calibration/available_images.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"

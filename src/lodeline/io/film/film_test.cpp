@@ -128,7 +128,8 @@ TEST_F(FilmTest, DecodesInAnyOrder) {
   const std::filesystem::path file = write(film);
   FilmDecoder decoder(file, 0, {});
   for (const int number : {5, 3, 31, 30, 0, 39, 12}) {
-    EXPECT_EQ(numberOf(decoder.load(Duration::fromNanoseconds(number * 1'000'000'000LL / 30 + 2'000'000))), -1)
+    EXPECT_EQ(numberOf(decoder.load(Duration::fromNanoseconds(number * 1'000'000'000LL / 30 + 2'000'000))),
+              -1)
         << "a time that no image has";
   }
   std::vector<Duration> times;

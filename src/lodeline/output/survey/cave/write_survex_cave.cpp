@@ -87,8 +87,8 @@ std::string fixes(const CaveSurvey& cave, const cave_text::Positions& positions)
   const Vec3 first = rounded(positions.front());
   std::string text;
   if (map.place) text += fmt::format("*cs {0}\n*cs out {0}\n", map.place->gridDescription().survex_name);
-  text += fmt::format("*fix {} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n", survexName(cave, 0), first.x(), first.y(),
-                      first.z(), map.place_sigma.x(), map.place_sigma.y(), map.place_sigma.z());
+  text += fmt::format("*fix {} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n", survexName(cave, 0), first.x(),
+                      first.y(), first.z(), map.place_sigma.x(), map.place_sigma.y(), map.place_sigma.z());
   for (const CaveSurvey::Control& control : cave.control) {
     if (!control.point.stated_ENU) continue;
     const Vec3 at = rounded(onGrid(cave, control.point.position_ENU));

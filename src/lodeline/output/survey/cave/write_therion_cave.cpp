@@ -105,12 +105,13 @@ std::string therionCave(const CaveSurvey& cave) {
   for (size_t dive = 0; dive < cave.dives.size(); ++dive) text += writer.text(dive);
   text += "\n  centreline\n" + csLine(fromFirst.place(), "    ");
   const Vec3 first = fromFirst.fixed();
-  text += fmt::format("    fix {} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n  endcentreline\n", therionName(cave, 0),
-                      first.x(), first.y(), first.z(), map.place_sigma.x(), map.place_sigma.y(),
-                      map.place_sigma.z());
+  text += fmt::format("    fix {} {:.4f} {:.4f} {:.4f} {:g} {:g} {:g}\n  endcentreline\n",
+                      therionName(cave, 0), first.x(), first.y(), first.z(), map.place_sigma.x(),
+                      map.place_sigma.y(), map.place_sigma.z());
   if (!cave.equates.empty()) text += "  centreline\n";
   for (const CaveEquate& equate : cave.equates)
-    text += fmt::format("    equate {} {}\n", therionName(cave, equate.first), therionName(cave, equate.second));
+    text +=
+        fmt::format("    equate {} {}\n", therionName(cave, equate.first), therionName(cave, equate.second));
   if (!cave.equates.empty()) text += "  endcentreline\n";
   return text + "endsurvey\n";
 }

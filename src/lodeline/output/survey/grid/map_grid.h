@@ -36,10 +36,9 @@ struct MapGridDescription {
 /// installed; nothing is downloaded. All coordinates are in metres.
 class MapGrid {
  public:
-  /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or "ESRI:102008", in any
-  /// case.
-  /// Throws UsageError where it is not the name of a projected grid with axes to the east and north, or along
-  /// two meridians about a pole.
+  /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or
+  /// "ESRI:102008", in any case. Throws UsageError where it is not the name of a projected grid with axes to
+  /// the east and north, or along two meridians about a pole.
   MapGrid(const std::string& crs, const GeodeticPosition& place);
 
   const MapGridDescription& description() const { return description_; }

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "lodeline/output/survey/formats/gis/xml_text.h"
 #include "lodeline/output/survey/formats/write_formats.h"
-#include "lodeline/output/survey/formats/xml_text.h"
 #include "lodeline/output/survey/map/map_times.h"
 
 namespace lodeline {

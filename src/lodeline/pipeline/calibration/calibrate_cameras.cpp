@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/calibrate_cameras.h"
+#include "lodeline/pipeline/calibration/calibrate_cameras.h"
 
 #include <fmt/core.h>
 

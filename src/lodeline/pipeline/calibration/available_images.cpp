@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/available_images.h"
+#include "lodeline/pipeline/calibration/available_images.h"
 
 #include <fmt/core.h>
 

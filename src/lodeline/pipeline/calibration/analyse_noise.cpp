@@ -1,4 +1,4 @@
-#include "lodeline/pipeline/analyse_noise.h"
+#include "lodeline/pipeline/calibration/analyse_noise.h"
 
 #include <filesystem>
 #include <memory>
