@@ -6,7 +6,7 @@
 #include <regex>
 #include <sstream>
 
-#include "apps/lodeline/tests/test_cave_map.h"
+#include "apps/lodeline/tests/survey/test_cave_map.h"
 #include "apps/lodeline/tests/test_program.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/survey/formats/test_outside_program.h"

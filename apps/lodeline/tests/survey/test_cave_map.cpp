@@ -1,4 +1,4 @@
-#include "apps/lodeline/tests/test_cave_map.h"
+#include "apps/lodeline/tests/survey/test_cave_map.h"
 
 #include <cmath>
 #include <random>
