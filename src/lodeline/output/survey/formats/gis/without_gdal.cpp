@@ -1,7 +1,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/survey/formats/write_formats.h"
 
-// In place of formats/write_gdal.cpp in a library without GDAL.
+// In place of formats/gdal/write_gdal.cpp in a library without GDAL.
 
 namespace lodeline {
 
