@@ -14,7 +14,8 @@ cd "$work"
 snakemake -s "$here/Snakefile" --cores "${CORES:-$(nproc)}" --restart-times "$kills" --quiet --nocolor \
   --config list="$work/list.yaml" out="$work/out" shards=8 lodeline="$lodeline" > "$work/snakemake.log" 2>&1 &
 snakemake=$!
-trap 'kill "$snakemake" 2>/dev/null || true' EXIT
+# On SIGTERM Snakemake waits for its workers, which would go on.
+trap 'kill "$snakemake" $(workers) 2>/dev/null || true' EXIT
 for kill in $(seq "$kills"); do
   while [ "$(results)" -lt $((items * kill / (kills + 1))) ] || [ -z "$(workers)" ]; do
     kill -0 "$snakemake" 2>/dev/null || break
