@@ -7,9 +7,9 @@
 #include <limits>
 #include <mutex>
 
-#include "lodeline/io/csv/plain_csv.h"
+#include "lodeline/io/dives/depth_profile.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 #include "lodeline/output/files/run_table.h"
-#include "lodeline/output/survey/profile/depth_profile.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/survey.h"
 #include "python/src/arrays.h"
@@ -142,25 +142,27 @@ Images imagesOf(Recording& recording, size_t camera) {
   return Images(&recording, camera);
 }
 
-/// Readings of a table with one row for all sensors; None for sensors that it does not have.
+/// Readings of a sensor log; NaN at times without a reading, None for sensors that it does not have.
 py::dict readReadings(const fs::path& file) {
   Diagnostics diagnostics;
-  std::vector<PlainReading> readings;
-  PlainCsv table(file, &diagnostics);
+  std::vector<LogReading> readings;
+  LogSensors sensors;
   withoutGil([&] {
-    for (PlainReading reading; table.next(&reading);) readings.push_back(reading);
+    const std::unique_ptr<SensorLog> log = openSensorLog(file, {}, &diagnostics);
+    for (LogReading reading; log->next(&reading);) readings.push_back(reading);
+    sensors = log->sensors();
   });
   warn(diagnostics);
-  const auto values = [&](bool has, std::optional<Vec3> PlainReading::*value) -> py::object {
+  const auto values = [&](bool has, std::optional<Vec3> LogReading::*value) -> py::object {
     if (!has) return py::none();
     const Vec3 missing = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-    return stack(readings, [&](const PlainReading& r) { return (r.*value).value_or(missing); });
+    return stack(readings, [&](const LogReading& r) { return (r.*value).value_or(missing); });
   };
   py::dict result;
-  result["times_ns"] = timeColumn(readings, [](const PlainReading& r) { return r.time; });
-  result["angular_velocity"] = values(table.hasGyroscope(), &PlainReading::angular_velocity);
-  result["specific_force"] = values(table.hasAccelerometer(), &PlainReading::specific_force);
-  result["field_T"] = values(table.hasMagnetometer(), &PlainReading::field);
+  result["times_ns"] = timeColumn(readings, [](const LogReading& r) { return r.time; });
+  result["angular_velocity"] = values(sensors.has_gyroscope, &LogReading::angular_velocity);
+  result["specific_force"] = values(sensors.has_accelerometer, &LogReading::specific_force);
+  result["field_T"] = values(sensors.has_magnetometer, &LogReading::field);
   return result;
 }
 
@@ -260,10 +262,12 @@ void bindRecording(py::module_& module) {
   py::class_<Images>(module, "Images", "Iterator of Recording.images().")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &Images::next);
-  module.def(
-      "read_readings", &readReadings, py::arg("file"),
-      "Reads a table of readings (CSV): a dict with times_ns (N) int64, angular_velocity (N, 3) rad/s,\n"
-      "specific_force (N, 3) m/s^2 and field_T (N, 3) T; None for sensors that it does not have.");
+  module.def("read_readings", &readReadings, py::arg("file"),
+             "Reads a sensor log (CSV, a folder or zip of a telephone, PX4, ArduPilot): a dict with times_ns "
+             "(N) int64,\n"
+             "angular_velocity (N, 3) rad/s, specific_force (N, 3) m/s^2 and field_T (N, 3) T; NaN at times "
+             "without a\n"
+             "reading, None for sensors that it does not have.");
   module.def(
       "read_depth_profiles",
       [](const fs::path& file) {
@@ -283,9 +287,9 @@ void bindRecording(py::module_& module) {
         return dives;
       },
       py::arg("file"),
-      "Reads the log of a dive computer: for each dive a dict with name, dive, times_s (N) s on the log's "
-      "own\n"
-      "clock and depths_m (N) m, positive down.");
+      "Reads the log of a dive computer: for each dive a dict with name, dive, times_s (N) s on the clock "
+      "of\n"
+      "the log, and depths_m (N) m, positive down.");
   bindRunFolder(module);
 }
 

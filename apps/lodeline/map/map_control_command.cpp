@@ -19,9 +19,17 @@ struct ControlArguments {
   std::vector<double> grid_origin;
 };
 
-const ControlSet control = addControlFile(&map, arguments.file, options, &diagnostics);
-fmt::print("{} control points and {} visits added; `lodeline map solve {}` uses them\n{}",
-           control.points.size(), control.visits.size(), arguments.map, findingsText(diagnostics));
+void addControl(const ControlArguments& arguments) {
+  MapFile map = MapFile::open(arguments.map, MapFile::Access::Change);
+  Diagnostics diagnostics;
+  ControlReadOptions options;
+  options.site = map.description().site;
+  if (!arguments.site.empty()) options.site = placeFromText(arguments.site, "--site", &diagnostics);
+  if (!arguments.grid_origin.empty())
+    options.grid_origin = Vec3(arguments.grid_origin[0], arguments.grid_origin[1], arguments.grid_origin[2]);
+  const ControlSet control = addControlFile(&map, arguments.file, options, &diagnostics);
+  fmt::print("{} control points and {} visits added; `lodeline map solve {}` uses them\n{}",
+             control.points.size(), control.visits.size(), arguments.map, findingsText(diagnostics));
 }
 
 }  // namespace

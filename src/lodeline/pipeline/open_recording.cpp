@@ -8,6 +8,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/logs/log_source.h"
+#include "lodeline/io/logs/open_sensor_log.h"
 #include "lodeline/io/video/video_folder.h"
 #include "lodeline/util/files/file_kind.h"
 

@@ -3,7 +3,7 @@
 #include <deque>
 #include <optional>
 
-#include "lodeline/io/rosbag/imu_halves.h"
+#include "lodeline/io/streams/imu_halves.h"
 
 namespace lodeline {
 
