@@ -26,7 +26,7 @@ using ::testing::Not;
 using Stations = std::map<std::string, Vec3>;
 
 /// A row of NAME_stations.csv.
-struct Row {
+struct StationRow {
   std::string name;
   int64_t stamp_ns = 0;
   Vec3 position_ENU, sigma_ENU, grid;
@@ -47,8 +47,8 @@ class SurveyProjectTest : public ::testing::Test {
   std::filesystem::path mapFile() const { return folder_.path() / "cave.db"; }
   std::string text(const std::string& name) const { return test::readText(folder_.path() / "out" / name); }
 
-  std::vector<Row> rows(const std::string& name) const {
-    std::vector<Row> rows;
+  std::vector<StationRow> rows(const std::string& name) const {
+    std::vector<StationRow> rows;
     std::istringstream stream(text(name + "_stations.csv"));
     std::string line;
     std::getline(stream, line);
@@ -116,10 +116,10 @@ TEST_F(SurveyProjectTest, MakesOneCaveOfThreeDives) {
                 "  - {dive: loop, date: 2023-05-01, title: The loop, team: [B. Other, C. Third]}\n");
   const Execution result = survey(test::quoted(folder_.path() / "cave.yaml"));
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  const std::vector<Row> stations = rows("cave");
+  const std::vector<StationRow> stations = rows("cave");
   const Stations by_cavern = cavern("cave"), by_therion = therion("cave");
   double worst_sigmas = 0.0, worst_misfit_m = 0.0, worst_table_m = 0.0;
-  for (const Row& row : stations) {
+  for (const StationRow& row : stations) {
     SCOPED_TRACE(row.name);
     ASSERT_TRUE(by_cavern.contains(row.name));
     ASSERT_TRUE(by_therion.contains(row.name));
