@@ -30,12 +30,14 @@ FrameStamps::FrameStamps(const std::filesystem::path& file, Diagnostics* diagnos
   std::vector<double> numbers;
   bool has_decimals = false;
   while (table.next()) {
-    const std::optional<double> number = table.number(column);
+    // A header of several words may stand above a single column.
+    const size_t used = table.cell(column).empty() ? 0 : column;
+    const std::optional<double> number = table.number(used);
     if (!number || !std::isfinite(*number)) {
       table.passOver("holds no stamp");
       continue;
     }
-    texts.emplace_back(table.cell(column));
+    texts.emplace_back(table.cell(used));
     numbers.push_back(*number);
     has_decimals = has_decimals || texts.back().find('.') != std::string::npos;
   }

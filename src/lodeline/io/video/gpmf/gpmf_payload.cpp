@@ -50,9 +50,13 @@ std::optional<Mat3> matrixOf(const Element& element) {
   return matrix;
 }
 
-/// The first of the units, which are texts of equal length.
+/// The first of the units, which are texts of equal length. Samples of one byte are the letters of one text,
+/// or equal letters, one for each number.
 std::string firstUnit(Element element) {
-  if (element.repeats > 1) element.bytes = element.bytes.first(element.size);
+  const auto is_first = [&](uint8_t letter) { return letter == element.bytes.front(); };
+  const bool is_one_text =
+      element.size == 1 && !std::all_of(element.bytes.begin(), element.bytes.end(), is_first);
+  if (element.repeats > 1 && !is_one_text) element.bytes = element.bytes.first(element.size);
   return textOf(element);
 }
 

@@ -95,6 +95,9 @@ TEST(Gpmf, ScalesEachNumberAndTakesTheFirstUnit) {
   ASSERT_THAT(payload.streams, SizeIs(1));
   EXPECT_THAT(payload.streams[0].values, ElementsAre(1.0, 1.0, 7.0));
   EXPECT_EQ(payload.streams[0].unit, "deg");
+  const Payload letters = stream({test::text("UNIT", "mmm"), test::shorts("GRAV", 3, {1, 2, 3})});
+  ASSERT_THAT(letters.streams, SizeIs(1));
+  EXPECT_EQ(letters.streams[0].unit, "m");
 }
 
 TEST(Gpmf, JoinsRepeatedElementsOfOneStream) {
