@@ -26,7 +26,12 @@ async function looksRight(page, name) {
   for (const selector of [".map-plan canvas", ".map-side canvas", ".sections-card canvas"]) {
     await show(page, selector);
     await page.waitForFunction((s) => document.querySelector(s).width > 200, {}, selector);
-    assert.ok((await page.$eval(selector, inked)) > 0.003, `${selector} is blank: ${name}`);
+    let share = 0; // of the canvas; it is drawn with the next frames
+    for (let tries = 0; tries < 100 && share <= 0.003; ++tries) {
+      share = await page.$eval(selector, inked);
+      if (share <= 0.003) await new Promise((resolve) => setTimeout(resolve, 100));
+    }
+    assert.ok(share > 0.003, `${selector} is blank: ${name}`);
   }
   const [content, window] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert.ok(content <= window, `the page is ${content} px wide on a screen of ${window}: ${name}`);

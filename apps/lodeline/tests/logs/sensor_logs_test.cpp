@@ -134,13 +134,12 @@ TEST_F(SensorLogsTest, CalibrateTheMagnetometer) {
   }
 }
 
-TEST_F(SensorLogsTest, GiveNoiseAttitudeAndInspection) {
-  std::string first_noise;
+TEST_F(SensorLogsTest, GiveAttitudeAndInspectionButNoNoiseWhileTurning) {
   for (const char* log : kLogs) {
+    // The log turns all the time, and the noise of a sensor cannot be told from that.
     const Execution allan = runProgram("allan " + file(log) + " --json " + file("allan.json"));
-    ASSERT_EQ(allan.exit_code, 0) << log << allan.output;
-    EXPECT_THAT(allan.output, AllOf(HasSubstr("gyroscope"), HasSubstr("magnetometer"), HasSubstr("50.00 Hz")))
-        << log;
+    EXPECT_EQ(allan.exit_code, 1) << log << allan.output;
+    EXPECT_THAT(allan.output, HasSubstr("gyroscope: not still: moved in 100 %")) << log;
     const Execution attitude = runProgram("attitude " + file(log) + " -o " + file("attitude"));
     ASSERT_EQ(attitude.exit_code, 0) << log << attitude.output;
     const Execution inspect = runProgram("inspect " + file(log));

@@ -167,13 +167,13 @@ TEST_F(ExportTest, EndsWithTwoOnWrongUsage) {
   };
   expectUsageError("", "--format");
   expectUsageError("-f csv --correct-depth", "--depth-profile");
-  expectUsageError("-f dxf", "survex, therion");
+  expectUsageError("-f dwg", "survex, therion");
   expectUsageError("-f kml", "--entrance");
   expectUsageError("-f kml --entrance 29.83", "--entrance");
   expectUsageError("-f kml --entrance 129.83,-82.6,0", "latitude");
   expectUsageError("-f kml --entrance 29.83,-82.6,0 --crs EPSG:2154", "cannot be given in EPSG:2154");
   expectUsageError("-f kml --entrance 29.83,-82.6,0 --crs EPSG:4326", "projected grid");
-  expectUsageError("-f kml --entrance -82.6,129.83,0", "latitude");
+  expectUsageError("-f kml --entrance 129.83,-82.6,0", "latitude");
   expectUsageError("-f kml --entrance 102.6,29.83,0", "swapped");
   expectUsageError("-f kml --entrance 29.83,-82.6,nan", "LAT,LON,HEIGHT");
   expectUsageError("-f kml --entrance 29.83,-82.6,10 --start-depth nan", "--start-depth");

@@ -114,7 +114,9 @@ nlohmann::ordered_json otherSolutionsJson(const fs::path& run, bool is_refined, 
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   const std::vector<StampedPose> keyframes = keyframesOf(run / "keyframes_map.tum", diagnostics);
   if ((!is_refined && keyframes.empty()) || !fs::exists(run / "states.csv")) return json;
-  const RunTable states = readRunTable(run / "states.csv", diagnostics);
+  Diagnostics reported_with_the_states;
+  const RunTable states =
+      readRunTable(run / "states.csv", is_refined ? diagnostics : &reported_with_the_states);
   if (is_refined)
     json.push_back({{"kind", "run"}, {"states", tableJson(states, origin_ns, most_rows, isOfPose)}});
   const RunTable in_map = statesInMap(keyframes, states);

@@ -151,7 +151,7 @@ TEST(Csv, HasAsManyFieldsAsItsHeader) {
 TEST(MapFormats, AreKnownByTheirNames) {
   EXPECT_EQ(mapFormatFromString("colmap"), MapFormat::Colmap);
   EXPECT_EQ(mapFormatFromString("survex"), MapFormat::Survex);
-  EXPECT_THROW(mapFormatFromString("dxf"), UsageError);
+  EXPECT_THROW(mapFormatFromString("dwg"), UsageError);
 }
 
 }  // namespace
