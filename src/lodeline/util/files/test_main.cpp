@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
     std::perror(folder.c_str());
     return 1;
   }
+  // Some tests give their rights away, and still read what they wrote.
+  std::filesystem::permissions(folder, std::filesystem::perms(0755));
   setenv("TMPDIR", folder.c_str(), 1);
   setenv("TEST_TMPDIR", folder.c_str(), 1);
   const int result = RUN_ALL_TESTS();
