@@ -13,7 +13,7 @@ SECONDS = {"source.duration_s": 5}
 
 
 class FolderTest(unittest.TestCase):
-    """A test with a folder of its own."""
+    """A test with a temporary folder."""
 
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="lodeline_python_"))

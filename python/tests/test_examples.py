@@ -1,4 +1,4 @@
-"""Runs every example in a folder of its own."""
+"""Runs every example in a temporary folder."""
 
 import importlib.util
 import subprocess

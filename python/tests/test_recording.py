@@ -6,8 +6,12 @@ import numpy as np
 from support import SAMPLE, FolderTest
 
 
+COLUMNS = {"imu0": 7, "mag0": 4, "pressure0": 2, "sonar0": 3}
+
+
 def table(sensor):
-    return np.loadtxt(SAMPLE / f"mav0/{sensor}/data.csv", delimiter=",", usecols=range(1, {"imu0": 7, "mag0": 4, "pressure0": 2, "sonar0": 3}[sensor]), ndmin=2)
+    file = SAMPLE / f"mav0/{sensor}/data.csv"
+    return np.loadtxt(file, delimiter=",", usecols=range(1, COLUMNS[sensor]), ndmin=2)
 
 
 class RecordingTest(FolderTest):

@@ -40,7 +40,7 @@ class TestPlayer {
   /// In the order of their recording.
   const std::vector<Message>& messages() const { return messages_; }
   void publish(const Message& message);
-  /// Publishes bytes as they are on a topic of the bag.
+  /// Publishes unchanged bytes on a topic of the bag.
   void publishBytes(const std::string& topic, std::vector<uint8_t> cdr);
 
   /// Starts to keep the messages of a topic.

@@ -136,7 +136,7 @@ TEST_F(SensorLogsTest, CalibrateTheMagnetometer) {
 
 TEST_F(SensorLogsTest, GiveAttitudeAndInspectionButNoNoiseWhileTurning) {
   for (const char* log : kLogs) {
-    // The log turns all the time, and the noise of a sensor cannot be told from that.
+    // The sensor rotates during the whole log, so its noise cannot be measured.
     const Execution allan = runProgram("allan " + file(log) + " --json " + file("allan.json"));
     EXPECT_EQ(allan.exit_code, 1) << log << allan.output;
     EXPECT_THAT(allan.output, HasSubstr("gyroscope: not still: moved in 100 %")) << log;

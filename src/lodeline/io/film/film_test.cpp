@@ -234,7 +234,7 @@ TEST_F(FilmTest, ReadsManyPixelFormats) {
 TEST(MessageDecoder, RefusesAnUnknownCodec) { EXPECT_THROW(MessageDecoder("no such codec"), InputError); }
 
 TEST(MessageDecoder, TellsDamagedMessages) {
-  if (!canReadFilms()) GTEST_SKIP();
+  if (!canReadFilms()) GTEST_SKIP() << "built without FFmpeg";
   MessageDecoder decoder("h264");
   EXPECT_NE(decoder.decode(std::vector<uint8_t>{1, 2, 3}).problem, "");
   EXPECT_NE(decoder.decode({}).problem, "");
