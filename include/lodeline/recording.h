@@ -68,6 +68,9 @@ class MeasurementSource {
   virtual std::optional<MagnetometerSample> nextMagnetometer() { return std::nullopt; }
   virtual std::optional<DepthSample> nextDepth() { return std::nullopt; }
   virtual std::optional<SonarSample> nextSonar() { return std::nullopt; }
+  virtual std::optional<AltimeterSample> nextAltimeter() { return std::nullopt; }
+  virtual std::optional<DvlSample> nextDvl() { return std::nullopt; }
+  virtual std::optional<CurrentSample> nextCurrents() { return std::nullopt; }
 };
 
 /// A source whose rig was read from files and can be replaced in parts.
@@ -127,6 +130,9 @@ class LiveSource : public RecordedSource {
   void push(const MagnetometerSample& sample);
   void push(const DepthSample& sample);
   void push(const SonarSample& sample);
+  void push(const AltimeterSample& sample);
+  void push(const DvlSample& sample);
+  void push(const CurrentSample& sample);
   /// `camera`: index in the rig.
   void push(size_t camera, PendingImage image);
   /// Ends the streams: queued readings are still returned, then nothing.
@@ -147,6 +153,9 @@ class LiveSource : public RecordedSource {
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
   std::optional<SonarSample> nextSonar() override;
+  std::optional<AltimeterSample> nextAltimeter() override;
+  std::optional<DvlSample> nextDvl() override;
+  std::optional<CurrentSample> nextCurrents() override;
 
  private:
   /// Count of readings that could not be used.
@@ -188,6 +197,9 @@ class LiveSource : public RecordedSource {
   Inbox<MagnetometerSample> magnetometer_;
   Inbox<DepthSample> depth_;
   Inbox<SonarSample> sonar_;
+  Inbox<AltimeterSample> altimeter_;
+  Inbox<DvlSample> dvl_;
+  Inbox<CurrentSample> currents_;
   std::optional<Time> newest_imu_;
   std::optional<Time> newest_image_;  ///< latest image of the first camera that was returned, IMU clock
   bool image_follows_ = false;        ///< whether the next image is requested only to look ahead

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -38,6 +39,39 @@ struct SonarSample {
   Time time;
   double range_m = 0.0;
   double angle_rad = 0.0;  ///< angle of the beam about the axis of the sonar head
+};
+
+/// One echo of an altimeter: a sonar with one fixed beam.
+struct AltimeterSample {
+  Time time;
+  double range_m = 0.0;
+};
+
+/// What a Doppler velocity log (DVL) measured its velocity against.
+enum class DvlTrack { Bottom, Water };
+
+/// One beam of a ping of a DVL.
+struct DvlBeam {
+  int index = 0;  ///< in DvlCalibration::beams_D
+  /// Velocity of the instrument along the beam, positive from the instrument outwards; nothing without lock.
+  std::optional<double> velocity_m_per_s = std::nullopt;
+  std::optional<double> range_m = std::nullopt;  ///< along the beam
+};
+
+/// One ping of a DVL, in its frame D: a velocity of the instrument, or its beams, or both. Where it has
+/// beams, the velocity is their combination and not a measurement beside them.
+struct DvlSample {
+  Time time;
+  DvlTrack track = DvlTrack::Bottom;
+  std::optional<Vec3> velocity_D = std::nullopt;                ///< m/s; nothing where it is not valid
+  std::optional<double> velocity_sigma_m_per_s = std::nullopt;  ///< of each axis, as the instrument states it
+  std::vector<DvlBeam> beams;
+};
+
+/// Electric currents at one time, A, in the order of CurrentCalibration::channels.
+struct CurrentSample {
+  Time time;
+  std::vector<double> currents_A;
 };
 
 /// Noise of an IMU as continuous densities in Kalibr's convention: two-sided square root of power per hertz.
@@ -155,6 +189,37 @@ struct SonarCalibration {
   double max_range_m = 0.0;       ///< greater ranges are no echoes; 0: unlimited
 };
 
+/// A Doppler velocity log. Its frame D has z along the axis of the beams, from the instrument outwards.
+struct DvlCalibration {
+  double rate_hz = 5.0;
+  double velocity_noise_std_m_per_s = 0.01;  ///< of each axis, and of each beam along its direction
+  double range_noise_std_m = 0.05;           ///< of each beam
+  Rigid3 body_from_dvl;
+  double time_offset_to_imu_s = 0.0;  ///< added to stamps to obtain the IMU clock
+  /// Unit vectors of the beams, from the instrument outwards; by default four at 22.5 degrees to z.
+  std::vector<Vec3> beams_D = janusBeams_D(22.5 * 3.14159265358979323846 / 180.0);
+  double scale_sigma = 0.01;             ///< one sigma of the speed of sound, relative
+  double misalignment_sigma_rad = 0.03;  ///< one sigma of the rotation of body_from_dvl, each axis
+
+  /// Four beams at an angle to z, at azimuths of 45, 135, 225 and 315 degrees from x towards y.
+  static std::vector<Vec3> janusBeams_D(double angle_to_z_rad) {
+    const double side = std::sin(angle_to_z_rad) / std::sqrt(2.0);
+    const double along = std::cos(angle_to_z_rad);
+    return {{side, side, along}, {-side, side, along}, {-side, -side, along}, {side, -side, along}};
+  }
+};
+
+/// Measured electric currents that disturb the magnetometer: thrusters, lamps, battery. The field of a
+/// current is proportional to it, so the corrected field is A (reading - h - sum_i k_i I_i).
+struct CurrentCalibration {
+  double rate_hz = 10.0;
+  std::vector<std::string> channels;  ///< names
+  /// k_i, T/A in axes of the magnetometer's readings, one for each channel; empty without calibration.
+  std::vector<Vec3> fields_T_per_A;
+  double field_sigma_T_per_A = 0.0;   ///< one sigma of each component of k_i
+  double time_offset_to_imu_s = 0.0;  ///< added to stamps to obtain the IMU clock
+};
+
 /// All rigidly connected sensors with their extrinsics.
 struct Rig {
   ImuCalibration imu;
@@ -162,6 +227,9 @@ struct Rig {
   std::optional<MagnetometerCalibration> magnetometer;
   std::optional<PressureCalibration> pressure;
   std::optional<SonarCalibration> sonar;
+  std::optional<SonarCalibration> altimeter;  ///< its beam points along x
+  std::optional<DvlCalibration> dvl;
+  std::optional<CurrentCalibration> currents;
 };
 
 /// Calibrated scale, misalignment and bias of an IMU, and the correction of its readings. The measurement

@@ -9,7 +9,8 @@
 namespace lodeline {
 
 /// Readings of the kinds of sensors beside cameras and IMU. A new kind adds its type here, and a SensorKind.
-using SensorSamples = std::tuple<MagnetometerSample, DepthSample, SonarSample>;
+using SensorSamples =
+    std::tuple<MagnetometerSample, DepthSample, SonarSample, AltimeterSample, DvlSample, CurrentSample>;
 
 /// Names and calibration of a kind of sensor, by the type of its readings:
 ///   `section`      section of a rig file, and folder of a EuRoC recording
@@ -41,6 +42,30 @@ struct SensorKind<SonarSample> {
   static constexpr const char* finding = "sonar";
   static constexpr const char* name = "sonar";
   static constexpr auto calibration = &Rig::sonar;
+};
+
+template <>
+struct SensorKind<AltimeterSample> {
+  static constexpr const char* section = "altimeter0";
+  static constexpr const char* finding = "altimeter";
+  static constexpr const char* name = "altimeter";
+  static constexpr auto calibration = &Rig::altimeter;
+};
+
+template <>
+struct SensorKind<DvlSample> {
+  static constexpr const char* section = "dvl0";
+  static constexpr const char* finding = "dvl";
+  static constexpr const char* name = "DVL";
+  static constexpr auto calibration = &Rig::dvl;
+};
+
+template <>
+struct SensorKind<CurrentSample> {
+  static constexpr const char* section = "current0";
+  static constexpr const char* finding = "current";
+  static constexpr const char* name = "current sensor";
+  static constexpr auto calibration = &Rig::currents;
 };
 
 namespace sensor_kinds {

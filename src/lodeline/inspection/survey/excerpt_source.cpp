@@ -45,4 +45,16 @@ std::optional<SonarSample> ExcerptSource::nextSonar() {
   return within(begin_, [&] { return source_->nextSonar(); });
 }
 
+std::optional<AltimeterSample> ExcerptSource::nextAltimeter() {
+  return within(begin_, [&] { return source_->nextAltimeter(); });
+}
+
+std::optional<DvlSample> ExcerptSource::nextDvl() {
+  return within(begin_, [&] { return source_->nextDvl(); });
+}
+
+std::optional<CurrentSample> ExcerptSource::nextCurrents() {
+  return within(begin_, [&] { return source_->nextCurrents(); });
+}
+
 }  // namespace lodeline

@@ -20,6 +20,9 @@ class ExcerptSource : public MeasurementSource {
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
   std::optional<SonarSample> nextSonar() override;
+  std::optional<AltimeterSample> nextAltimeter() override;
+  std::optional<DvlSample> nextDvl() override;
+  std::optional<CurrentSample> nextCurrents() override;
 
  private:
   template <typename Next>

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdlib>
 #include <initializer_list>
+#include <span>
+#include <vector>
 
 #include "lodeline/diagnostics.h"
 
@@ -16,10 +18,13 @@ constexpr double kHolePeriods = 1.5;
 /// Minimum step between consecutive readings of one sensor, as a fraction of a period.
 constexpr double kTooClose = 0.6;
 
-uint64_t keyOf(std::initializer_list<double> values) {
+uint64_t keyOf(std::span<const double> values) {
   uint64_t key = 0;
   for (const double value : values) key = (key ^ std::bit_cast<uint64_t>(value)) * 0x9e3779b97f4a7c15u;
   return key;
+}
+uint64_t keyOf(std::initializer_list<double> values) {
+  return keyOf(std::span(values.begin(), values.size()));
 }
 
 }  // namespace
@@ -34,6 +39,17 @@ uint64_t contentKey(const MagnetometerSample& sample) {
 }
 uint64_t contentKey(const DepthSample& sample) { return keyOf({sample.depth_m}); }
 uint64_t contentKey(const SonarSample& sample) { return keyOf({sample.range_m, sample.angle_rad}); }
+uint64_t contentKey(const AltimeterSample& sample) { return keyOf({sample.range_m}); }
+uint64_t contentKey(const DvlSample& sample) {
+  const Vec3 velocity_D = sample.velocity_D.value_or(Vec3::Zero());
+  std::vector<double> values = {velocity_D.x(), velocity_D.y(), velocity_D.z()};
+  for (const DvlBeam& beam : sample.beams) {
+    values.push_back(beam.velocity_m_per_s.value_or(0.0));
+    values.push_back(beam.range_m.value_or(0.0));
+  }
+  return keyOf(values);
+}
+uint64_t contentKey(const CurrentSample& sample) { return keyOf(sample.currents_A); }
 
 Duration StampMonitor::period() const {
   return expectation_.rate_hz > 0.0 ? Duration::fromSeconds(1.0 / expectation_.rate_hz) : last_step_;

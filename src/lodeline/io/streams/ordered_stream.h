@@ -71,6 +71,9 @@ uint64_t contentKey(const ImuSample& sample);
 uint64_t contentKey(const MagnetometerSample& sample);
 uint64_t contentKey(const DepthSample& sample);
 uint64_t contentKey(const SonarSample& sample);
+uint64_t contentKey(const AltimeterSample& sample);
+uint64_t contentKey(const DvlSample& sample);
+uint64_t contentKey(const CurrentSample& sample);
 
 /// One sensor's readings with strictly increasing stamps on the IMU's clock. Late readings within the
 /// look-ahead are sorted in; duplicates and later readings are dropped. Where the clock was set back, the

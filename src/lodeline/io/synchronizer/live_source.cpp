@@ -25,6 +25,13 @@ LiveSource::LiveSource(const Rig& rig, const LiveSourceOptions& options, Diagnos
   prepare(&magnetometer_, "magnetometer", "magnetometer", options_.max_readings);
   prepare(&depth_, "depth", "pressure sensor", options_.max_readings);
   prepare(&sonar_, "sonar", "sonar", options_.max_readings);
+  prepare(&altimeter_, "altimeter", "altimeter", options_.max_readings);
+  prepare(&dvl_, "dvl", "DVL", options_.max_readings);
+  prepare(&currents_, "current", "current sensor", options_.max_readings);
+  if (rig.dvl) dvl_.offset_to_imu_clock = Duration::fromSeconds(rig.dvl->time_offset_to_imu_s);
+  if (rig.currents) {
+    currents_.offset_to_imu_clock = Duration::fromSeconds(rig.currents->time_offset_to_imu_s);
+  }
   if (rig.magnetometer) {
     magnetometer_.offset_to_imu_clock = Duration::fromSeconds(rig.magnetometer->time_offset_to_imu_s);
   }
@@ -65,6 +72,9 @@ void LiveSource::push(const ImuSample& sample) {
 void LiveSource::push(const MagnetometerSample& sample) { put(&magnetometer_, sample); }
 void LiveSource::push(const DepthSample& sample) { put(&depth_, sample); }
 void LiveSource::push(const SonarSample& sample) { put(&sonar_, sample); }
+void LiveSource::push(const AltimeterSample& sample) { put(&altimeter_, sample); }
+void LiveSource::push(const DvlSample& sample) { put(&dvl_, sample); }
+void LiveSource::push(const CurrentSample& sample) { put(&currents_, sample); }
 void LiveSource::push(size_t camera, PendingImage image) { put(&cameras_[camera], std::move(image)); }
 
 void LiveSource::close() {
@@ -116,6 +126,9 @@ bool LiveSource::settleRates() {
   }
   if (rig_.pressure) settleRate(depth_, PressureCalibration().rate_hz, &rig_.pressure->rate_hz);
   if (rig_.sonar) settleRate(sonar_, SonarCalibration().rate_hz, &rig_.sonar->rate_hz);
+  if (rig_.altimeter) settleRate(altimeter_, SonarCalibration().rate_hz, &rig_.altimeter->rate_hz);
+  if (rig_.dvl) settleRate(dvl_, DvlCalibration().rate_hz, &rig_.dvl->rate_hz);
+  if (rig_.currents) settleRate(currents_, CurrentCalibration().rate_hz, &rig_.currents->rate_hz);
   return isHeard();
 }
 
@@ -178,6 +191,21 @@ std::optional<DepthSample> LiveSource::nextDepth() {
 std::optional<SonarSample> LiveSource::nextSonar() {
   if (!rig_.sonar) return std::nullopt;
   return take(&sonar_, false);
+}
+
+std::optional<AltimeterSample> LiveSource::nextAltimeter() {
+  if (!rig_.altimeter) return std::nullopt;
+  return take(&altimeter_, false);
+}
+
+std::optional<DvlSample> LiveSource::nextDvl() {
+  if (!rig_.dvl) return std::nullopt;
+  return take(&dvl_, false);
+}
+
+std::optional<CurrentSample> LiveSource::nextCurrents() {
+  if (!rig_.currents) return std::nullopt;
+  return take(&currents_, false);
 }
 
 }  // namespace lodeline

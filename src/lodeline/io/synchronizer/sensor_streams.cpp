@@ -16,6 +16,12 @@ template <>
 constexpr auto kNext<DepthSample> = &MeasurementSource::nextDepth;
 template <>
 constexpr auto kNext<SonarSample> = &MeasurementSource::nextSonar;
+template <>
+constexpr auto kNext<AltimeterSample> = &MeasurementSource::nextAltimeter;
+template <>
+constexpr auto kNext<DvlSample> = &MeasurementSource::nextDvl;
+template <>
+constexpr auto kNext<CurrentSample> = &MeasurementSource::nextCurrents;
 
 template <typename Sample>
 using CalibrationOf = std::decay_t<decltype(*(Rig().*SensorKind<Sample>::calibration))>;

@@ -20,6 +20,9 @@ class ThinnedSource : public RecordedSource {
   std::optional<MagnetometerSample> nextMagnetometer() override { return source_->nextMagnetometer(); }
   std::optional<DepthSample> nextDepth() override { return source_->nextDepth(); }
   std::optional<SonarSample> nextSonar() override { return source_->nextSonar(); }
+  std::optional<AltimeterSample> nextAltimeter() override { return source_->nextAltimeter(); }
+  std::optional<DvlSample> nextDvl() override { return source_->nextDvl(); }
+  std::optional<CurrentSample> nextCurrents() override { return source_->nextCurrents(); }
 
  private:
   /// Time and number of a camera's last image.
