@@ -22,3 +22,21 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/lodelineConfigVersion.cmake
 install(FILES ${CMAKE_BINARY_DIR}/lodelineConfig.cmake ${CMAKE_BINARY_DIR}/lodelineConfigVersion.cmake
               cmake/FindLibrary.cmake DESTINATION ${package_dir})
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Pages for `man` and completion for shells, from the help texts of the program.
+if(TARGET lodeline AND NOT CMAKE_CROSSCOMPILING)
+  set(manual ${CMAKE_BINARY_DIR}/manual)
+  set(bash_completion ${CMAKE_BINARY_DIR}/completion/lodeline)
+  set(fish_completion ${CMAKE_BINARY_DIR}/completion/lodeline.fish)
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/completion)
+  add_custom_command(
+    OUTPUT ${manual}/lodeline.1 ${bash_completion} ${fish_completion}
+    COMMAND lodeline manual -o ${manual}
+    COMMAND lodeline completion bash > ${bash_completion}
+    COMMAND lodeline completion fish > ${fish_completion}
+    DEPENDS lodeline VERBATIM)
+  add_custom_target(lodeline_manual ALL DEPENDS ${manual}/lodeline.1)
+  install(DIRECTORY ${manual}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
+  install(FILES ${bash_completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${fish_completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+endif()

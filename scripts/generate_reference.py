@@ -4,53 +4,46 @@
 Usage: scripts/generate_reference.py [--program FILE] [--config FILE] [--check]
 
 --program FILE  the program (build/release/bin/lodeline)
---config FILE   a config.yaml with all defaults, in place of one from a run of the program
+--config FILE   a config.yaml with all defaults, in place of that of the program
 --check         write nothing; end with exit code 1 where a page is not up to date
 
-Commands come from `lodeline --help` and `lodeline COMMAND --help`. Settings and their defaults come from the config.yaml
-of a run on a small simulated recording. scripts/reference/settings.txt has the titles of the sections.
+Commands come from `lodeline --help` and `lodeline COMMAND --help`. Settings and their defaults come
+from `lodeline settings --expert`. scripts/reference/settings.txt has the titles of the sections.
 """
 
 import argparse
 import re
 import subprocess
 import sys
-import tempfile
 import textwrap
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ROOT / "docs" / "reference"
 SECTIONS = ROOT / "scripts" / "reference" / "settings.txt"
-WIDTH = 100  # of help texts on the page
 
 
 def help_of(program, *words):
     return subprocess.run([program, *words, "--help"], check=True, capture_output=True, text=True).stdout.rstrip()
 
 
-def subcommands(text):
-    """Name and description of what a help text lists below `Subcommands:`."""
-    if "\nSubcommands:\n" not in text:
-        return []
-    listing = text.split("\nSubcommands:\n")[1].split("\n\n")[0]
-    return [tuple(part.strip() for part in re.split(r"\s{2,}", line.strip(), maxsplit=1))
-            for line in listing.splitlines() if line.strip()]
-
-
-def wrapped(line):
-    """A long line of a help text, continued below where its description begins."""
-    if len(line) <= WIDTH:
-        return [line]
-    option = re.match(r"^(  \S.*?\s{2,}|\s{20,})(\S.*)$", line)
-    indent = len(option.group(1)) if option else len(line) - len(line.lstrip()) + 2
-    return textwrap.wrap(line, WIDTH, subsequent_indent=" " * min(indent, 40), break_long_words=False,
-                         break_on_hyphens=False, drop_whitespace=True)
+def subcommands(text, is_program=False):
+    """Name and description of the commands that a help text lists: below `Commands:`, for the program below all titles."""
+    commands, is_list = [], False
+    for line in text.splitlines():
+        if line.endswith(":") and not line.startswith(" "):
+            is_list = is_program or line == "Commands:"
+        row = re.match(r"^  ([a-z][a-z-]*)\s{2,}(\S.*)$", line)
+        if is_list and row:
+            commands.append((row.group(1), row.group(2)))
+        elif is_list and commands and re.match(r"^ {20,}\S", line):
+            commands[-1] = (commands[-1][0], commands[-1][1] + " " + line.strip())
+    return commands
 
 
 def commands_page(program):
     leaves = []
-    for name, summary in subcommands(help_of(program)):
+    for name, summary in subcommands(help_of(program), is_program=True):
         inner = subcommands(help_of(program, name))
         leaves += [((name, word), text) for word, text in inner] or [((name,), summary)]
     page = ["# Commands", "",
@@ -63,19 +56,13 @@ def commands_page(program):
              "[Exit codes](exit-codes.md) are the same for all commands."]
     for words, _ in leaves:
         text = help_of(program, *words)
-        lines = [part for line in text.splitlines() for part in wrapped(line.rstrip())]
+        lines = [line.rstrip() for line in text.splitlines()]
         page += ["", f"## lodeline {' '.join(words)}", "", "```text", *lines, "```"]
     return "\n".join(page) + "\n"
 
 
 def config_of(program):
-    with tempfile.TemporaryDirectory() as folder:
-        recording, result = Path(folder) / "recording", Path(folder) / "result"
-        subprocess.run([program, "simulate", "demo", "--seconds", "10", "--width", "128", "--camera-rate-hz", "5",
-                        "--quiet", "-o", recording], check=True, capture_output=True)
-        # So small a recording may give no trajectory. The settings are written before that is known.
-        subprocess.run([program, "run", recording, "-o", result, "--no-report", "--quiet"], capture_output=True)
-        return (result / "config.yaml").read_text(encoding="utf-8")
+    return subprocess.run([program, "settings", "--expert"], check=True, capture_output=True, text=True).stdout
 
 
 def settings_of(config):

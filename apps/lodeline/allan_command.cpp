@@ -7,12 +7,14 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/noise_report.h"
 #include "lodeline/pipeline/calibration/analyse_noise.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -21,6 +23,8 @@ struct AllanArguments {
   NoiseRequest request;
   std::string output;
   std::string json;
+  RecordingPart part;
+  Verbosity verbosity;
 };
 
 const SensorNoise* find(const std::vector<SensorNoise>& sensors, const AnalysedSensor& wanted) {
@@ -42,9 +46,14 @@ void drawFigures(const std::vector<SensorNoise>& sensors, const std::filesystem:
                               : "no plots: gnuplot failed: " + result.message);
 }
 
-void allan(const AllanArguments& arguments) {
+void allan(AllanArguments arguments) {
+  arguments.request.skip_s = arguments.part.from_s;
+  arguments.request.duration_s = arguments.part.length_s().value_or(0.0);
   Diagnostics diagnostics;
+  Progress progress("reading", arguments.verbosity.quiet);
+  arguments.request.progress = progress.function();
   const std::vector<SensorNoise> sensors = analyseNoise(arguments.request, &diagnostics);
+  progress.end();
   if (!arguments.output.empty()) {
     const std::filesystem::path folder = arguments.output;
     createOutputFolder(folder);
@@ -61,7 +70,8 @@ void allan(const AllanArguments& arguments) {
     json["findings"] = findingsJson(diagnostics);
     writeOutput(arguments.json, jsonText(json) + "\n");
   }
-  fmt::print("{}{}", noiseTable(sensors), findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) fmt::print("{}", noiseTable(sensors));
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace
@@ -81,12 +91,8 @@ void addAllanCommand(CLI::App& program) {
   command->add_option("-o,--output", arguments->output,
                       "folder for imu.yaml (Kalibr), magnetometer.yaml and plots; made where it is missing");
   command->add_option("--json", arguments->json, "write all figures and curves to this file");
-  command
-      ->add_option("--skip", arguments->request.skip_s,
-                   "leave out the first so many seconds, while sensors warm up")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--duration", arguments->request.duration_s, "use so many seconds; 0 for all")
-      ->check(CLI::NonNegativeNumber);
+  addRecordingPart(&arguments->part, command);
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Record the rig lying still on solid ground, for hours: white noise takes minutes to know to 5 %, "
       "bias\n"
@@ -96,7 +102,7 @@ void addAllanCommand(CLI::App& program) {
       "or no header and a time with 3 (magnetometer), 6 (gyroscope, accelerometer) or 9 numbers.\n"
       "Examples:\n"
       "  lodeline allan bench -o bench_noise --json bench_noise/figures.json\n"
-      "  lodeline allan rest.csv --skip 600");
+      "  lodeline allan rest.csv --from 600");
   command->callback([arguments] { allan(*arguments); });
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/inspection/start_check.h"
 #include "lodeline/io/streams/ordered_stream.h"
@@ -20,6 +21,7 @@
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -29,8 +31,9 @@ struct AttitudeArguments {
   BagArguments bag;
   std::string output;
   std::string magnetometer_calibration;
-  std::vector<double> site;
-  std::string date;
+  SiteArguments site;
+  RecordingPart part;
+  Verbosity verbosity;
   double rate_hz = 20.0;
   double magnetometer_lag_s = 0.0;
   bool no_magnetometer = false;
@@ -38,13 +41,13 @@ struct AttitudeArguments {
 
 /// Opens DATA and applies the options of the command line to its magnetometer.
 template <typename Source>
-std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
-                                            const AttitudeArguments& arguments, Diagnostics* diagnostics) {
+std::unique_ptr<RecordedSource> prepared(std::unique_ptr<Source> source, const AttitudeArguments& arguments,
+                                         Diagnostics* diagnostics) {
   Rig rig = source->rig();
   if (!arguments.magnetometer_calibration.empty()) {
     const MagnetometerFit fit = readCalibrationFile(arguments.magnetometer_calibration);
     applyCalibration(fit, arguments.magnetometer_calibration, &rig);
-    if (fit.dip_rad && arguments.site.empty()) reportNegativeDip(*fit.dip_rad, diagnostics);
+    if (fit.dip_rad && arguments.site.position.empty()) reportNegativeDip(*fit.dip_rad, diagnostics);
   }
   if (rig.magnetometer) {
     rig.magnetometer->time_offset_to_imu_s -= arguments.magnetometer_lag_s;
@@ -53,7 +56,7 @@ std::unique_ptr<MeasurementSource> prepared(std::unique_ptr<Source> source,
   return source;
 }
 
-std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
+std::unique_ptr<RecordedSource> openSource(const AttitudeArguments& arguments, Diagnostics* diagnostics) {
   refuseBagOptions(arguments.data, arguments.bag);
   EurocOptions options;
   options.with_cameras = false;
@@ -62,18 +65,13 @@ std::unique_ptr<MeasurementSource> openSource(const AttitudeArguments& arguments
 
 AttitudeFilterOptions filterOptions(const AttitudeArguments& arguments) {
   AttitudeFilterOptions options;
-  if (arguments.site.empty() != arguments.date.empty()) {
-    throw UsageError("--site and --date belong together: the field changes with both");
-  }
-  if (arguments.site.empty()) return options;
-  const GeodeticPosition site{arguments.site[0], arguments.site[1], arguments.site[2]};
-  options.site_field_W = worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
+  options.site_field_W = arguments.site.field_ENU();
   return options;
 }
 
 std::string northOf(const AttitudeArguments& arguments, bool has_magnetometer) {
   if (!has_magnetometer) return "the first attitude (no magnetometer)";
-  return arguments.site.empty() ? "magnetic north" : "true north";
+  return arguments.site.position.empty() ? "magnetic north" : "true north";
 }
 
 StreamExpectation expectation(const std::string& name, double rate_hz, double offset_s) {
@@ -90,8 +88,9 @@ InertialScreenOptions screenOptions(const AttitudeArguments& arguments, Diagnost
   return options;
 }
 
-void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOptions& screen,
-               AttitudeFilter* filter, AttitudeWriter* writer, Diagnostics* diagnostics) {
+void filterAll(RecordedSource& source, const AttitudeArguments& arguments,
+               const InertialScreenOptions& screen, AttitudeFilter* filter, AttitudeWriter* writer,
+               Diagnostics* diagnostics) {
   const std::optional<MagnetometerCalibration>& magnetometer = source.rig().magnetometer;
   InertialScreen imu = inertialStream(
       {expectation("imu", source.rig().imu.rate_hz, 0.0), [&] { return source.nextImu(); }, diagnostics},
@@ -100,10 +99,15 @@ void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOp
       expectation("magnetometer", magnetometer ? magnetometer->rate_hz : 1.0,
                   magnetometer ? magnetometer->time_offset_to_imu_s : 0.0),
       [&] { return source.nextMagnetometer(); }, diagnostics);
-  std::optional<Time> next_output;
+  Progress progress("reading", arguments.verbosity.quiet);
+  std::optional<Time> first, next_output;
   SpanOfStream imu_span, field_span;
   while (imu.peek() != nullptr) {
     const ImuSample sample = imu.pop();
+    progress.show(source.shareRead());
+    if (!first) first = sample.time;
+    if ((sample.time - *first).seconds() < arguments.part.from_s) continue;
+    if (arguments.part.to_s && (sample.time - *first).seconds() > *arguments.part.to_s) break;
     imu_span.add(sample.time);
     filter->add(sample);
     while (magnetometer && field.peek() != nullptr && field.peek()->time <= sample.time) {
@@ -112,8 +116,9 @@ void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOp
     }
     if (!filter->estimate() || (next_output && sample.time < *next_output)) continue;
     writer->write(*filter->estimate());
-    if (rate_hz > 0.0) next_output = sample.time + Duration::fromSeconds(1.0 / rate_hz);
+    if (arguments.rate_hz > 0.0) next_output = sample.time + Duration::fromSeconds(1.0 / arguments.rate_hz);
   }
+  progress.end();
   while (magnetometer && field.peek() != nullptr) field_span.add(field.pop().time);
   if (!imu_span.get() || !field_span.get()) return;
   const std::optional<std::string> words =
@@ -125,7 +130,7 @@ void filterAll(MeasurementSource& source, double rate_hz, const InertialScreenOp
 void attitude(const AttitudeArguments& arguments) {
   Diagnostics diagnostics;
   const AttitudeFilterOptions options = filterOptions(arguments);
-  const std::unique_ptr<MeasurementSource> source = openSource(arguments, &diagnostics);
+  const std::unique_ptr<RecordedSource> source = openSource(arguments, &diagnostics);
   std::optional<MagnetometerCalibration> magnetometer = source->rig().magnetometer;
   if (arguments.no_magnetometer) magnetometer.reset();
   if (magnetometer && !magnetometer->is_calibrated) {
@@ -138,14 +143,14 @@ void attitude(const AttitudeArguments& arguments) {
   createOutputFolder(folder);
   AttitudeWriter writer(folder);
   AttitudeFilter filter(options, magnetometer, &diagnostics);
-  filterAll(*source, arguments.rate_hz, screenOptions(arguments, &diagnostics), &filter, &writer,
-            &diagnostics);
+  filterAll(*source, arguments, screenOptions(arguments, &diagnostics), &filter, &writer, &diagnostics);
   writer.finish();
   const std::string north = northOf(arguments, magnetometer.has_value());
   nlohmann::ordered_json json = writer.json(north);
   json["findings"] = findingsJson(diagnostics);
   writeOutput(folder / "attitude.json", jsonText(json) + "\n");
-  fmt::print("{}{}", writer.text(north), findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) fmt::print("{}", writer.text(north));
+  printFindings(diagnostics, arguments.verbosity);
   if (writer.count() == 0) throw EstimationError(arguments.data + ": no IMU reading could be used");
 }
 
@@ -167,12 +172,8 @@ void addAttitudeCommand(CLI::App& program) {
       ->required();
   command->add_option("--mag-calibration", arguments->magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote");
-  command
-      ->add_option("--site", arguments->site,
-                   "LATITUDE,LONGITUDE,HEIGHT (deg, deg, m): heading from true north")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--date", arguments->date, "YYYY-MM-DD, with --site");
+  addSite(&arguments->site, "heading from true north", command);
+  addRecordingPart(&arguments->part, command);
   command->add_option("--rate-hz", arguments->rate_hz, "lines a second; 0 for one each IMU reading")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
@@ -181,6 +182,7 @@ void addAttitudeCommand(CLI::App& program) {
       ->check(CLI::Range(-0.4, 0.4));
   command->add_flag("--no-magnetometer", arguments->no_magnetometer,
                     "heading counts from the first attitude");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Orientation is body to world, x east, y north, z up. heading is the azimuth of the body's x axis.\n"
       "status says what held heading: magnetic, or why the field was rejected.\n"

@@ -1,7 +1,6 @@
 #include "apps/lodeline/calibrate_cameras_command.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,10 +8,12 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/cameras/camera_model.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/calibration/calibrate_cameras.h"
 #include "lodeline/pipeline/open_recording.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -41,11 +42,10 @@ struct CamerasArguments {
   std::string port;
   std::vector<std::string> keep;
   bool without_imu = false;
-  bool quiet = false;
+  Verbosity verbosity;
   double rate_hz = 10.0;
   double most_delay_s = 0.15;
-  double from_s = 0.0;
-  std::optional<double> to_s;
+  RecordingPart part;
 };
 
 std::filesystem::path boardFile(const CamerasArguments& arguments) {
@@ -77,8 +77,8 @@ CameraCalibrationRequest requestOf(const CamerasArguments& arguments) {
   CameraCalibrationRequest request;
   request.board = readBoard(boardFile(arguments));
   request.record.most_rate_hz = arguments.rate_hz;
-  request.record.from_s = arguments.from_s;
-  request.record.to_s = arguments.to_s;
+  request.record.from_s = arguments.part.from_s;
+  request.record.to_s = arguments.part.to_s;
   request.without_ports = arguments.port == "none";
   request.options.model = arguments.model;
   request.options.port = startPort(arguments.port);
@@ -89,13 +89,11 @@ CameraCalibrationRequest requestOf(const CamerasArguments& arguments) {
   };
   request.options.keeps_lens = keeps("lens");
   request.options.keeps_port = keeps("port");
-  if (!arguments.quiet && isatty(STDERR_FILENO) != 0)
-    request.record.progress = [](size_t images) { fmt::print(stderr, "\r{} images searched ", images); };
   return request;
 }
 
 void calibrateCameras(const CamerasArguments& arguments) {
-  const CameraCalibrationRequest request = requestOf(arguments);
+  CameraCalibrationRequest request = requestOf(arguments);
   EurocOptions options;
   options.camera_indices = arguments.cameras;
   options.needs_imu = false;
@@ -103,29 +101,29 @@ void calibrateCameras(const CamerasArguments& arguments) {
   Diagnostics diagnostics;
   const std::unique_ptr<RecordedSource> source =
       openRecording(arguments.data, options, arguments.bag, &diagnostics);
-  CameraCalibrationOutcome outcome;
-  const auto endProgress = [&] {
-    if (request.record.progress) fmt::print(stderr, "\n");
+  Progress progress("searching for the board", arguments.verbosity.quiet);
+  request.record.progress = [&](size_t images) {
+    progress.show(source->shareRead(), fmt::format("{} images", images));
   };
+  CameraCalibrationOutcome outcome;
   try {
     outcome = calibrateCameras(source.get(), request, arguments.output, &diagnostics);
-    endProgress();
   } catch (const EstimationError&) {
-    endProgress();
-    fmt::print(stderr, "{}", findingsText(diagnostics));
+    progress.end();
+    printFindings(diagnostics, arguments.verbosity);
     throw;
   }
-  fmt::print("{}{}", outcome.text, findingsText(diagnostics));
+  progress.end();
+  if (!arguments.verbosity.quiet) fmt::print("{}", outcome.text);
+  printFindings(diagnostics, arguments.verbosity);
   if (!outcome.poor_because.empty())
     throw EstimationError(fmt::format("the calibration is poor: {}. The files are in {}",
                                       outcome.poor_because, arguments.output));
 }
 
 void addSelection(CamerasArguments* arguments, CLI::App* command) {
-  command->add_option("--cameras", arguments->cameras, "numbers of the cameras to use (all)")->delimiter(',');
-  command->add_option("--from", arguments->from_s, "use images from this second of the recording on")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--to", arguments->to_s, "use images up to this second")->check(CLI::PositiveNumber);
+  addCameras(&arguments->cameras, command);
+  addRecordingPart(&arguments->part, command);
   command->add_option("--rate-hz", arguments->rate_hz, "most images to use per second and camera (10)")
       ->check(CLI::PositiveNumber);
 }
@@ -157,7 +155,7 @@ void addCalibrateCamerasCommand(CLI::App& calibrate_command) {
       ->add_option("--max-delay", arguments->most_delay_s,
                    "largest delay between images and IMU to search, s (0.15)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(kFooter);
   command->callback([arguments] { calibrateCameras(*arguments); });
 }

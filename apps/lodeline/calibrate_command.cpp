@@ -9,6 +9,7 @@
 
 #include "apps/lodeline/calibrate_cameras_command.h"
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/plots.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
@@ -41,30 +42,19 @@ struct CalibrateArguments {
   BagArguments bag;
   std::string output;
   std::string unit;
-  double from_s = 0.0;
-  std::optional<double> to_s;
-  std::vector<double> site;
-  std::string date;
+  RecordingPart part;
+  SiteArguments site;
+  Verbosity verbosity;
   std::string old;
   std::string compare;
   std::string json;
   std::string plots;
 };
 
-std::optional<Vec3> siteField_ENU(const CalibrateArguments& arguments) {
-  if (arguments.site.empty() && arguments.date.empty()) return std::nullopt;
-  if (arguments.site.empty() || arguments.date.empty()) {
-    throw UsageError(
-        "--site LAT,LON,HEIGHT and --date YYYY-MM-DD belong together: the Earth's field depends on both");
-  }
-  const GeodeticPosition site{arguments.site[0], arguments.site[1], arguments.site[2]};
-  return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
-}
-
 RecordOptions recordOptions(const CalibrateArguments& arguments) {
   RecordOptions options;
-  options.from_s = arguments.from_s;
-  options.to_s = arguments.to_s;
+  options.from_s = arguments.part.from_s;
+  options.to_s = arguments.part.to_s;
   if (arguments.unit.empty()) return options;
   options.unit = fieldUnitFromString(arguments.unit);
   if (!options.unit) {
@@ -95,7 +85,7 @@ bool isCalibrationFile(const std::filesystem::path& path) {
 }
 
 void calibrate(const CalibrateArguments& arguments) {
-  const std::optional<Vec3> site_field_ENU = siteField_ENU(arguments);
+  const std::optional<Vec3> site_field_ENU = arguments.site.field_ENU();
   std::optional<MagnetometerFit> first;
   if (!arguments.compare.empty()) first = readCalibrationFile(arguments.compare);
   nlohmann::ordered_json json;
@@ -116,7 +106,7 @@ void calibrate(const CalibrateArguments& arguments) {
     try {
       result = calibrateMagnetometer(record, options, &diagnostics);
     } catch (const EstimationError&) {
-      fmt::print(stderr, "{}", findingsText(diagnostics));
+      printFindings(diagnostics, arguments.verbosity);
       throw;
     }
     fit = result.fit;
@@ -134,7 +124,8 @@ void calibrate(const CalibrateArguments& arguments) {
   }
   json["findings"] = findingsJson(diagnostics);
   if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(json) + "\n");
-  fmt::print("{}{}", text, findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) fmt::print("{}", text);
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 void addMagnetometerCommand(CLI::App& calibrate_command) {
@@ -152,22 +143,15 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
   command->add_option(
       "--unit", arguments->unit,
       "of a file without header: T, uT, nT, mG, G or raw; told by the field's size where not given");
-  command->add_option("--from", arguments->from_s, "use readings from this second of the recording on")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--to", arguments->to_s, "use readings up to this second")->check(CLI::PositiveNumber);
-  command
-      ->add_option(
-          "--site", arguments->site,
-          "LAT,LON,HEIGHT in degrees and metres: scales to the field of the World Magnetic Model there")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--date", arguments->date, "YYYY-MM-DD, with --site");
+  addRecordingPart(&arguments->part, command);
+  addSite(&arguments->site, "the scale is that of the Earth's field there", command);
   command->add_option("--old", arguments->old,
                       "calibration to fall back on where the readings say too little");
   command->add_option("--compare", arguments->compare,
                       "calibration to compare with, e.g. that from before the dive");
   command->add_option("--json", arguments->json, "write all figures to this file");
   command->add_option("--plots", arguments->plots, "folder for pictures of the readings and of the coverage");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(kCalibrateFooter);
   command->callback([arguments] { calibrate(*arguments); });
 }

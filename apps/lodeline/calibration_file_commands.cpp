@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_text.h"
 #include "lodeline/output/report/findings.h"
@@ -43,15 +44,16 @@ void reportMissing(const RigFile& rig, Diagnostics* diagnostics) {
   if (rig.rig.cameras.empty()) report("no file describes a camera");
 }
 
-void convertCalibration(const std::vector<std::string>& files, const std::string& output) {
+void convertCalibration(const std::vector<std::string>& files, const std::string& output,
+                        const Verbosity& verbosity) {
   Diagnostics diagnostics;
   const RigSections sections = collectRigSections({files.begin(), files.end()}, &diagnostics);
   const RigFile rig = readRig(sections, {.needs_extrinsics = false}, &diagnostics);
   reportMissing(rig, &diagnostics);
   writeText(rigText(rig), output);
   // Standard output may hold the rig file.
-  if (!output.empty()) fmt::print("{}\n", output);
-  fmt::print(stderr, "{}", findingsText(diagnostics));
+  if (!output.empty() && !verbosity.quiet) fmt::print("{}\n", output);
+  printFindings(diagnostics, verbosity, stderr);
 }
 
 }  // namespace
@@ -60,6 +62,7 @@ void addConvertCalibrationCommand(CLI::App& program) {
   struct Arguments {
     std::vector<std::string> files;
     std::string output;
+    Verbosity verbosity;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
@@ -67,6 +70,7 @@ void addConvertCalibrationCommand(CLI::App& program) {
   command->add_option("FILES", arguments->files, "calibrations that together describe a rig")->required();
   command->add_option("-o,--output", arguments->output, "the rig file; without it standard output")
       ->type_name("FILE");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Files are known by their keys: Kalibr, OpenVINS, VINS-Fusion, VINS-Mono, ORB-SLAM3, OKVIS, Basalt, "
       "EuRoC,\n"
@@ -75,7 +79,8 @@ void addConvertCalibrationCommand(CLI::App& program) {
       "  lodeline convert-calibration euroc_stereo_imu_config.yaml -o rig.yaml\n"
       "  lodeline convert-calibration kalibr_imucam_chain.yaml kalibr_imu_chain.yaml -o rig.yaml\n"
       "  lodeline convert-calibration left.yaml right.yaml extrinsics_and_imu.yaml -o rig.yaml");
-  command->callback([arguments] { convertCalibration(arguments->files, arguments->output); });
+  command->callback(
+      [arguments] { convertCalibration(arguments->files, arguments->output, arguments->verbosity); });
 }
 
 void addRigTemplateCommand(CLI::App& program) {

@@ -8,11 +8,13 @@
 #include <optional>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/file_kind.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -23,6 +25,8 @@ struct ConvertArguments {
   BagArguments bag;
   std::string compression;
   std::string format;
+  bool overwrite = false;
+  Verbosity verbosity;
 };
 
 /// Format of the bag to write; nothing for a folder in the EuRoC layout.
@@ -35,8 +39,33 @@ std::optional<BagFormat> targetFormat(const ConvertArguments& arguments) {
   return std::nullopt;
 }
 
+/// Removes the recording that an earlier conversion wrote to `target`: a bag with its rig file, or the files
+/// of a recording in a folder. Other files stay, and the conversion then refuses the folder.
+void removeTarget(const std::filesystem::path& source, const std::filesystem::path& target) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(target)) return;
+  if (fs::exists(source) && fs::equivalent(source, target))
+    throw UsageError(target.string() + ": is the recording to convert; name another DST");
+  if (!fs::is_directory(target)) {
+    if (!isBag(target)) throw UsageError(target.string() + ": is no recording; --overwrite keeps it");
+    fs::remove(rigFileBeside(target));
+    fs::remove(target);
+    return;
+  }
+  fs::remove_all(target / "mav0");
+  for (const fs::directory_entry& entry : fs::directory_iterator(target)) {
+    const std::string extension = entry.path().extension().string();
+    const bool is_of_bag =
+        extension == ".mcap" || extension == ".db3" || entry.path().filename() == "metadata.yaml";
+    if (is_of_bag) fs::remove(entry.path());
+  }
+  if (fs::is_empty(target)) fs::remove(target);
+}
+
 ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* diagnostics) {
+  Progress progress("conversion", arguments.verbosity.quiet);
   ConvertOptions options;
+  options.progress = progress.function();
   options.rig_files.assign(arguments.bag.rig_files.begin(), arguments.bag.rig_files.end());
   options.topics = topicsOf(arguments.bag);
   options.compression = arguments.compression;
@@ -54,7 +83,7 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
     const std::unique_ptr<VideoSource> film =
         openVideo(arguments.source, everything, arguments.bag, diagnostics);
     return format ? convertToBag(film.get(), film->rigFile(), arguments.target, options, diagnostics)
-                  : convertToFolder(film.get(), film->rigFile(), arguments.target, diagnostics);
+                  : convertToFolder(film.get(), film->rigFile(), arguments.target, options, diagnostics);
   }
   if (!from_bag && !format) {
     throw UsageError("a folder becomes a bag: name DST NAME.bag, NAME.mcap or NAME.db3, or give --format");
@@ -68,15 +97,18 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
 
 void convert(const ConvertArguments& arguments) {
   Diagnostics diagnostics;
+  if (arguments.overwrite) removeTarget(arguments.source, arguments.target);
   const ConvertSummary summary = convertEitherWay(arguments, &diagnostics);
   if (summary.readings.empty()) {
     throw InputError(
         fmt::format("{}: nothing in it could be converted\n{}", arguments.source, findingsText(diagnostics)));
   }
-  fmt::print("{}\n", arguments.target);
-  for (const auto& [sensor, count] : summary.readings) fmt::print("  {:<12}{:>9}\n", sensor, count);
-  if (!summary.rig_file.empty()) fmt::print("calibration: {}\n", summary.rig_file.string());
-  fmt::print("{}", findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) {
+    fmt::print("{}\n", arguments.target);
+    for (const auto& [sensor, count] : summary.readings) fmt::print("  {:<12}{:>9}\n", sensor, count);
+    if (!summary.rig_file.empty()) fmt::print("calibration: {}\n", summary.rig_file.string());
+  }
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace
@@ -108,6 +140,8 @@ void addConvertCommand(CLI::App& program) {
           "of the chunks of a bag that is written: none, lz4, bz2 (ROS 1), zstd (MCAP); ROS 1 bags have "
           "none without it, MCAP has zstd")
       ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
+  addOverwrite(&arguments->overwrite, command);
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Readings, stamps and pixels are kept; what the other format cannot hold is told. The calibration of "
       "a\n"

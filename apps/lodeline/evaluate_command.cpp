@@ -3,17 +3,22 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 
+#include "apps/lodeline/evaluation_page.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/evaluation_report.h"
 #include "lodeline/evaluation/figures/plots.h"
+#include "lodeline/evaluation/figures/several_estimates.h"
 #include "lodeline/evaluation/trajectory/image_times.h"
 #include "lodeline/evaluation/trajectory/read_body_from_camera.h"
 #include "lodeline/output/report/read_reported_uncertainty.h"
 #include "lodeline/trajectory.h"
+#include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
 
 namespace lodeline {
@@ -26,6 +31,8 @@ const char* const kEvaluateFooter = R"(Examples:
       visual-inertial odometry: align position and yaw only, draw pictures, keep the figures
   lodeline evaluate OUT model/images.bin --align sim3 --image-times mav0/cam0/data.csv
       against a COLMAP model, which is known up to scale
+  lodeline evaluate ours okvis2.txt openvins.txt truth.tum --plots plots --html comparison.html
+      several estimates in one table, with plots and a page that show all of them
   lodeline evaluate KITTI_00_ORB.txt KITTI_00_gt.txt --stretches-m 100,200,300,400
 
 Layouts (found by themselves, or named with --format): TUM, KITTI, EuRoC ground truth, COLMAP images.txt and
@@ -33,8 +40,7 @@ images.bin, the output folder of `lodeline run`; text files may be compressed wi
 defines every figure.)";
 
 struct Arguments {
-  std::string estimate;
-  std::string reference;
+  std::vector<std::string> trajectories;  ///< estimates, and the reference as the last one
   std::string estimate_format;
   std::string reference_format;
   std::string image_times;
@@ -44,7 +50,12 @@ struct Arguments {
   std::string images;
   std::string json;
   std::string plots;
+  std::string html;
   EvaluationOptions options;
+  Verbosity verbosity;
+
+  const std::string& reference() const { return trajectories.back(); }
+  std::vector<std::string> estimates() const { return {trajectories.begin(), trajectories.end() - 1}; }
 };
 
 TrajectoryReadOptions readOptions(const Arguments& arguments, const std::string& format) {
@@ -70,33 +81,102 @@ void writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& 
     throw InputError(fmt::format("{}: cannot be written; check the folder and its rights", path.string()));
 }
 
-void evaluateCommand(const Arguments& arguments) {
-  Diagnostics diagnostics;
+/// Names of the estimates: the last parts of their paths, as many as tell them apart.
+std::vector<std::string> namesOf(const std::vector<std::string>& estimates) {
+  std::vector<std::string> names;
+  for (const std::string& path : estimates) {
+    const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+    std::filesystem::path rest = whole.has_filename() ? whole : whole.parent_path();
+    std::string name = rest.stem().string();
+    while (std::find(names.begin(), names.end(), name) != names.end() && rest.has_relative_path()) {
+      rest = rest.parent_path();
+      name = rest.filename().string() + "_" + name;
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+EvaluationOptions optionsOf(const Arguments& arguments) {
   EvaluationOptions options = arguments.options;
   options.alignment = alignmentTypeFromString(arguments.align);
   if (arguments.interpolate) options.association.method = AssociationMethod::Interpolate;
   if (!arguments.images.empty()) options.expected_stamps = readImageStamps(arguments.images);
-  const auto estimate_options = readOptions(arguments, arguments.estimate_format);
-  const auto reference_options = readOptions(arguments, arguments.reference_format);
-  const bool for_colmap = !arguments.body_from_camera.empty() || !arguments.image_times.empty();
-  if (for_colmap && !isColmap(arguments.estimate, estimate_options) &&
-      !isColmap(arguments.reference, reference_options)) {
-    throw UsageError("--body-from-camera and --image-times are for COLMAP models; neither trajectory is one");
-  }
-  const Trajectory estimate = readTrajectory(arguments.estimate, estimate_options, diagnostics);
-  const Trajectory reference = readTrajectory(arguments.reference, reference_options, diagnostics);
+  return options;
+}
 
-  Evaluation evaluation = evaluate(estimate, reference, options, diagnostics);
-  evaluation.claims = checkReported(arguments.estimate, reference, options.association, &diagnostics);
-  if (!arguments.plots.empty()) writePlots(evaluation, arguments.plots, diagnostics);
-  if (!arguments.json.empty()) writeJson(arguments.json, evaluationJson(evaluation, diagnostics));
-  fmt::print("{}", evaluationTable(evaluation, diagnostics));
+void refuseColmapOptions(const Arguments& arguments, const TrajectoryReadOptions& estimate_options,
+                         const TrajectoryReadOptions& reference_options) {
+  if (arguments.body_from_camera.empty() && arguments.image_times.empty()) return;
+  bool is_any = isColmap(arguments.reference(), reference_options);
+  for (const std::string& path : arguments.estimates()) is_any = is_any || isColmap(path, estimate_options);
+  if (is_any) return;
+  throw UsageError("--body-from-camera and --image-times are for COLMAP models; no trajectory is one");
+}
+
+void writePage(const Arguments& arguments, const std::vector<NamedEvaluation>& estimates,
+               Diagnostics* diagnostics) {
+  std::vector<PageEstimate> shown;
+  for (size_t i = 0; i < estimates.size(); ++i)
+    shown.push_back({arguments.trajectories[i], estimates[i].name, &estimates[i].evaluation.estimate});
+  const ReportReference reference = {arguments.reference(), alignmentTypeFromString(arguments.align)};
+  writeOutput(arguments.html, evaluationPage(shown, reference, diagnostics));
+}
+
+void writeAllPlots(const std::vector<NamedEvaluation>& estimates, const std::filesystem::path& folder,
+                   Diagnostics* diagnostics) {
+  if (estimates.size() == 1) return writePlots(estimates.front().evaluation, folder, *diagnostics);
+  drawFigures({severalErrorsFigure(estimates), severalPathsFigure(estimates)}, folder, *diagnostics);
+  for (const auto& [name, evaluation] : estimates) writePlots(evaluation, folder / name, *diagnostics);
+}
+
+nlohmann::ordered_json jsonOf(const std::vector<NamedEvaluation>& estimates,
+                              const std::vector<Diagnostics>& findings) {
+  if (estimates.size() == 1) return evaluationJson(estimates.front().evaluation, findings.front());
+  nlohmann::ordered_json json;
+  for (size_t i = 0; i < estimates.size(); ++i)
+    json["estimates"][estimates[i].name] = evaluationJson(estimates[i].evaluation, findings[i]);
+  return json;
+}
+
+void evaluateCommand(const Arguments& arguments) {
+  const EvaluationOptions options = optionsOf(arguments);
+  const TrajectoryReadOptions estimate_options = readOptions(arguments, arguments.estimate_format);
+  const TrajectoryReadOptions reference_options = readOptions(arguments, arguments.reference_format);
+  refuseColmapOptions(arguments, estimate_options, reference_options);
+  const std::vector<std::string> paths = arguments.estimates();
+  const std::vector<std::string> names = namesOf(paths);
+  std::vector<Diagnostics> findings(paths.size());
+  std::vector<NamedEvaluation> estimates;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const Trajectory estimate = readTrajectory(paths[i], estimate_options, findings[i]);
+    const Trajectory reference = readTrajectory(arguments.reference(), reference_options, findings[i]);
+    estimates.push_back({names[i], evaluate(estimate, reference, options, findings[i])});
+    estimates.back().evaluation.claims =
+        checkReported(paths[i], reference, options.association, &findings[i]);
+  }
+  Diagnostics of_output;
+  if (!arguments.plots.empty()) writeAllPlots(estimates, arguments.plots, &of_output);
+  if (!arguments.html.empty()) writePage(arguments, estimates, &of_output);
+  if (!arguments.json.empty()) writeJson(arguments.json, jsonOf(estimates, findings));
+  if (!arguments.verbosity.quiet) {
+    fmt::print("{}", estimates.size() == 1 ? evaluationTable(estimates.front().evaluation)
+                                           : severalTable(estimates));
+  }
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (paths.size() > 1 && !findings[i].ranked().empty()) fmt::print("{}:\n", names[i]);
+    printFindings(findings[i], arguments.verbosity);
+  }
+  printFindings(of_output, arguments.verbosity);
 }
 
 void addReadOptions(CLI::App& command, Arguments& arguments) {
-  command.add_option("ESTIMATE", arguments.estimate, "Trajectory to judge: file or folder")->required();
-  command.add_option("REFERENCE", arguments.reference, "Trajectory taken as true: file or folder")
-      ->required();
+  constexpr int kMostTrajectories = 1000;
+  command
+      .add_option("TRAJECTORY", arguments.trajectories,
+                  "files or folders: one or more to judge, and at the end the one that is taken as true")
+      ->required()
+      ->expected(2, kMostTrajectories);
   command.add_option("--format", arguments.estimate_format,
                      "Layout of the estimate: tum, kitti, euroc, colmap-text, colmap-binary");
   command.add_option("--reference-format", arguments.reference_format, "Layout of the reference");
@@ -145,6 +225,9 @@ void addEvaluateCommand(CLI::App& program) {
   command->add_option("--json", arguments->json, "Write all figures to this file");
   command->add_option("--plots", arguments->plots,
                       "Write plots as SVG and PNG to this folder (needs gnuplot)");
+  command->add_option("--html", arguments->html, "Write a page for the browser, with paths coloured by error")
+      ->type_name("FILE");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(kEvaluateFooter);
   command->callback([arguments] { evaluateCommand(*arguments); });
 }

@@ -11,8 +11,10 @@
 #include <optional>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/inspection/inspection_report.h"
+#include "lodeline/inspection/survey/excerpt_source.h"
 #include "lodeline/io/rosbag/bag_kinds.h"
 #include "lodeline/io/rosbag/bag_listing.h"
 #include "lodeline/io/video/video_text.h"
@@ -21,6 +23,7 @@
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -30,18 +33,11 @@ struct InspectArguments {
   BagArguments bag;
   std::string json;
   std::optional<size_t> list_elements;
-  std::vector<double> site;
-  std::string date;
+  SiteArguments site;
+  RecordingPart part;
+  std::vector<int> cameras;
+  Verbosity verbosity;
 };
-
-std::optional<Vec3> siteField(const InspectArguments& arguments) {
-  if (arguments.site.empty() != arguments.date.empty()) {
-    throw UsageError("--site and --date belong together: the field changes with both");
-  }
-  if (arguments.site.empty()) return std::nullopt;
-  const GeodeticPosition site{arguments.site[0], arguments.site[1], arguments.site[2]};
-  return worldMagneticField(site, decimalYear(arguments.date)).field_ENU;
-}
 
 /// Prints every message of a bag.
 void listBag(const InspectArguments& arguments) {
@@ -52,7 +48,7 @@ void listBag(const InspectArguments& arguments) {
   std::fflush(stdout);
   listMessages(bag.get(), *arguments.list_elements, &std::cout);
   std::cout.flush();
-  fmt::print("{}", findingsText(diagnostics));
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 /// Opens a recording, even if no estimate is possible from it.
@@ -60,16 +56,25 @@ std::unique_ptr<MeasurementSource> openWhatThereIs(const InspectArguments& argum
                                                    Diagnostics* diagnostics) {
   EurocOptions options;
   options.needs_cameras = options.needs_imu = options.needs_calibration = false;
-  return openRecording(arguments.data, options, arguments.bag, diagnostics);
+  options.camera_indices = arguments.cameras;
+  std::unique_ptr<MeasurementSource> source =
+      openRecording(arguments.data, options, arguments.bag, diagnostics);
+  if (arguments.part.isAll()) return source;
+  constexpr double kToTheEnd_s = 1e7;
+  return std::make_unique<ExcerptSource>(std::move(source), arguments.part.from_s,
+                                         arguments.part.length_s().value_or(kToTheEnd_s));
 }
 
 void inspectRecording(const InspectArguments& arguments) {
   if (arguments.list_elements) return listBag(arguments);
   cv::setNumThreads(1);
   InspectionOptions options;
-  options.site_field_W = siteField(arguments);
+  options.site_field_W = arguments.site.field_ENU();
+  Progress progress("inspection", arguments.verbosity.quiet);
+  options.progress = progress.function();
   const Inspection inspection =
       inspect([&](Diagnostics* diagnostics) { return openWhatThereIs(arguments, diagnostics); }, options);
+  progress.end();
   if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(inspectionJson(inspection)) + "\n");
   fmt::print("{}", inspectionText(inspection));
   if (isVideo(arguments.data)) {
@@ -104,12 +109,10 @@ void addInspectCommand(CLI::App& program) {
       ->expected(0, 1)
       ->default_str("16");
   command->add_option("--json", arguments->json, "write all figures to this file");
-  command
-      ->add_option("--site", arguments->site,
-                   "LATITUDE,LONGITUDE,HEIGHT (deg, deg, m): compare the field with that of the place")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--date", arguments->date, "YYYY-MM-DD, with --site");
+  addSite(&arguments->site, "its field to compare with", command);
+  addRecordingPart(&arguments->part, command);
+  addCameras(&arguments->cameras, command);
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Units, rates, gaps, order, axes, extrinsics, focal lengths, time offsets, image quality. "
       "docs/reference/findings.md tells\n"

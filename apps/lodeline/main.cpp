@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@
 #include "apps/lodeline/export/export_command.h"
 #include "apps/lodeline/inspect_command.h"
 #include "apps/lodeline/map/map_command.h"
+#include "apps/lodeline/program/help_formatter.h"
+#include "apps/lodeline/program/help_groups.h"
+#include "apps/lodeline/program/manual_command.h"
+#include "apps/lodeline/program/settings_command.h"
+#include "apps/lodeline/program/shell_completion.h"
 #include "apps/lodeline/refine_command.h"
 #include "apps/lodeline/report_command.h"
 #include "apps/lodeline/run_command.h"
@@ -61,6 +67,7 @@ int main(int argc, char** argv) {
   const lodeline::BuildInfo build = lodeline::buildInfo();
   program.set_version_flag(
       "--version", fmt::format("lodeline {} (commit {}, {})", LODELINE_VERSION, build.commit, build.type));
+  program.formatter(std::make_shared<lodeline::HelpFormatter>());
   program.require_subcommand(1);
   program.footer("`lodeline help COMMAND` explains a command, with examples.");
   lodeline::addRunCommand(program);
@@ -81,6 +88,10 @@ int main(int argc, char** argv) {
   lodeline::addConvertCalibrationCommand(program);
   lodeline::addRigTemplateCommand(program);
   lodeline::addInspectCommand(program);
+  lodeline::addSettingsCommand(program);
+  lodeline::addCompletionCommand(program);
+  lodeline::addManualCommand(program);
+  lodeline::makeHelpGroups(program);
   try {
     std::vector<std::string> arguments = lodeline::withJoinedPlaces(
         lodeline::completeLiveOption(lodeline::withHelpAsOption({argv + 1, argv + argc})));

@@ -8,13 +8,14 @@
 namespace lodeline {
 
 void addRefineCommand(CLI::App& program) {
-  auto arguments = std::make_shared<RunRequest>();
-  arguments->refine_interval_s = EstimatorLog::kStateInterval_s;
+  const auto arguments = std::make_shared<RunArguments>();
+  RunRequest& request = arguments->request;
+  request.refine_interval_s = EstimatorLog::kStateInterval_s;
   CLI::App* command = program.add_subcommand(
       "refine", "Run, then solve for the whole trajectory and map at once: the best there is for a survey");
   addRunOptions(arguments.get(), command);
   command
-      ->add_option("--state-interval", *arguments->refine_interval_s,
+      ->add_option("--state-interval", *request.refine_interval_s,
                    "longest time between two states of the solution; 0 makes every image one")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 5.0))
@@ -26,7 +27,7 @@ void addRefineCommand(CLI::App& program) {
       "  lodeline export dive1_result --format survex\n"
       "Results: those of `lodeline run`, and trajectory_refined.tum, states_refined.csv and\n"
       "landmarks_refined.ply, which `lodeline export` takes in place of the others.");
-  command->callback([arguments] { executeRun(*arguments); });
+  command->callback([arguments] { executeRun(requestOf(*arguments)); });
 }
 
 }  // namespace lodeline

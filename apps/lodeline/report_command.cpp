@@ -30,6 +30,7 @@ struct Arguments {
   std::string output = "report.html";
   std::string pdf;
   bool is_page_named = false;
+  Verbosity verbosity;
 };
 
 nlohmann::ordered_json backgroundOf(const Arguments& arguments) {
@@ -45,7 +46,8 @@ nlohmann::ordered_json backgroundOf(const Arguments& arguments) {
   return readBackground(arguments.background, arguments.background_at);
 }
 
-void printDone(const std::string& file, size_t bytes, size_t runs) {
+void printDone(const std::string& file, size_t bytes, size_t runs, const Verbosity& verbosity) {
+  if (verbosity.quiet) return;
   fmt::print("{}: {:.1f} MB, {} run{}\n", file, 1e-6 * static_cast<double>(bytes), runs, runs > 1 ? "s" : "");
 }
 
@@ -60,14 +62,14 @@ void reportCommand(const Arguments& arguments) {
   const std::string page = reportPage(arguments.runs, options, &diagnostics);
   if (arguments.pdf.empty() || arguments.is_page_named) {
     writeOutput(arguments.output, page);
-    printDone(arguments.output, page.size(), arguments.runs.size());
+    printDone(arguments.output, page.size(), arguments.runs.size(), arguments.verbosity);
   }
   if (!arguments.pdf.empty()) {
     const char* path = std::getenv("PATH");
     printPage(page, arguments.pdf, path == nullptr ? "" : path);
-    printDone(arguments.pdf, fs::file_size(arguments.pdf), arguments.runs.size());
+    printDone(arguments.pdf, fs::file_size(arguments.pdf), arguments.runs.size(), arguments.verbosity);
   }
-  fmt::print("{}", findingsText(diagnostics));
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace
@@ -95,6 +97,7 @@ void addReportCommand(CLI::App& program) {
           ->capture_default_str();
   command->add_option("--pdf", arguments->pdf, "print the page to this file (A4; needs Chromium)")
       ->type_name("FILE");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Examples:\n"
       "  lodeline report dive1_result -o dive1.html\n"

@@ -85,6 +85,9 @@ class RecordedSource : public MeasurementSource {
   }
   /// The correction that nextImu() applies.
   const std::optional<ImuCorrection>& imuCorrection() const { return imu_correction_; }
+  /// Share of the inertial readings and images that were read, 0 to 1, as the mean over their streams;
+  /// nothing where their number is unknown.
+  virtual std::optional<double> shareRead() const { return std::nullopt; }
   /// The next reading as stored.
   virtual std::optional<ImuSample> nextRecordedImu() = 0;
   /// Replaces the recording's own magnetometer calibration; call it before creating a synchronizer.

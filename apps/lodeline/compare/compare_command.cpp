@@ -8,6 +8,7 @@
 
 #include "apps/lodeline/compare/compared_run.h"
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
 #include "lodeline/diagnostics.h"
@@ -31,7 +32,7 @@ Results: compare.json, compare.md, plots and one folder a run. Given again, the 
 Examples:
   lodeline compare demo --realism field -o demo_compared
   lodeline compare dive1 dive2 --methods off,absolute --runs 1 --mag-calibration mag.yaml -o compared
-  lodeline compare cave1_short --realism field --cameras 1 -o left_camera)";
+  lodeline compare cave1_short --realism field --cameras 0 -o left_camera)";
 
 /// The ground truth of the recording.
 Trajectory readTruth(const std::filesystem::path& data) {
@@ -100,7 +101,7 @@ void writeResults(const std::vector<ComparedRecording>& recordings, const Compar
   json["findings"] = findingsJson(diagnostics);
   writeOutput(request.output / "compare.json", jsonText(json) + "\n");
   writeOutput(request.output / "compare.md", markdown);
-  fmt::print("{}", findingsText(diagnostics));
+  printFindings(diagnostics, request.arguments.verbosity);
 }
 
 bool hasTrajectory(const ComparedRecording& recording) {
@@ -117,16 +118,12 @@ void checkRequest(const ComparisonRequest& request) {
           fmt::format("--methods {}: no such method; there are off, paper, absolute and azimuth", method));
     }
   }
-  if (request.run.site.empty() != request.run.date.empty()) {
-    throw UsageError("true north takes both place and date: --site LAT,LON,HEIGHT --date YYYY-MM-DD");
-  }
+  static_cast<void>(request.arguments.site.field_ENU());
 }
 
 void compare(ComparisonRequest request) {
   checkRequest(request);
-  if (request.cameras > 0) {
-    request.run.overrides.push_back(request.cameras == 1 ? "source.cameras=[0]" : "source.cameras=[0, 1]");
-  }
+  request.run = requestOf(request.arguments);
   createOutputFolder(request.output);
   std::vector<ComparedRecording> recordings;
   for (const std::string& name : request.inputs) {
@@ -146,18 +143,15 @@ void compare(ComparisonRequest request) {
   }
 }
 
-void addRunOptions(CLI::App* command, ComparisonRequest* request) {
-  RunRequest& run = request->run;
+void addSharedRunOptions(CLI::App* command, RunArguments* arguments) {
+  RunRequest& run = arguments->request;
   command->add_option("-c,--config", run.config, "YAML configuration of all runs");
   command->add_option("-s,--set", run.overrides, "one setting of all runs, KEY=VALUE");
   command->add_option("--mag-calibration", run.magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote; scenarios calibrate their own rig");
-  command->add_option("--site", run.site,
-                      "LAT,LON,HEIGHT (degrees, m), for true north; scenarios know theirs");
-  command->add_option("--date", run.date, "YYYY-MM-DD of the recording, for true north");
-  command->add_option("--cameras", request->cameras, "use the first so many; default all")
-      ->check(CLI::Range(1, 2));
-  command->add_flag("-q,--quiet", run.quiet, "no progress");
+  addSite(&arguments->site, "true north; scenarios know theirs", command);
+  addCameras(&arguments->cameras, command);
+  addVerbosity(&arguments->verbosity, command);
 }
 
 }  // namespace
@@ -180,8 +174,9 @@ void addCompareCommand(CLI::App& program) {
   command->add_option("--runs", request->runs, "runs of each method")
       ->check(CLI::Range(1, 99))
       ->capture_default_str();
-  addRunOptions(command, request.get());
-  addBagOptions(&request->run.bag, command);
+  addSharedRunOptions(command, &request->arguments);
+  addBagOptions(&request->arguments.request.bag, command);
+  addRecordingPart(&request->arguments.part, command);
   command->add_option("--recordings", request->recordings,
                       "folder of simulated recordings, NAME_REALISM each; default OUT/recordings");
   command->add_flag(

@@ -150,7 +150,7 @@ fs::path convertedRecording(const fs::path& bag, const ComparisonRequest& reques
     convertBagToFolder(bag, unfinished, options, &diagnostics);
   } else {
     const std::unique_ptr<VideoSource> film = openVideo(bag, EurocOptions(), request.run.bag, &diagnostics);
-    convertToFolder(film.get(), film->rigFile(), unfinished, &diagnostics);
+    convertToFolder(film.get(), film->rigFile(), unfinished, options, &diagnostics);
   }
   fs::remove_all(folder);
   fs::rename(unfinished, folder);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/lodeline/run_command.h"
 #include "lodeline/pipeline/run_recording.h"
 #include "lodeline/simulation.h"
 #include "lodeline/types.h"
@@ -20,9 +21,9 @@ struct ComparisonRequest {
   std::filesystem::path recordings;
   bool render = true;  ///< false: use only the existing images
   ScenarioChanges changes;
-  int threads = 0;  ///< for rendering; 0 for all cores
-  int cameras = 0;  ///< number of first cameras to use; 0 for all
-  RunRequest run;   ///< settings, calibration, site and date of every run
+  int threads = 0;         ///< for rendering; 0 for all cores
+  RunArguments arguments;  ///< of every run, from the command line
+  RunRequest run;          ///< the same as one request
 };
 
 /// One run to be made: its recording, and its difference to the others.

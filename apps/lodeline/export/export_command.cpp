@@ -75,8 +75,8 @@ void addMapFileOptions(CLI::App* command, ExportArguments* arguments) {
           "-f,--format", arguments->formats,
           "survex, therion, geojson, kml, gpx, gpkg, dxf, ply, csv, tum, colmap; several with commas")
       ->delimiter(',');
-  command->add_flag("--overwrite", arguments->overwrite,
-                    "replace files of another dive that have the same names");
+  addOverwrite(&arguments->overwrite, command);
+  addVerbosity(&arguments->verbosity, command);
   addPlaceOptions(command, arguments);
   addSurveyOptions(command, arguments);
 }

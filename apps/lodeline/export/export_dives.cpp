@@ -199,12 +199,13 @@ void exportDives(const ExportArguments& arguments, std::vector<RunFolder> runs, 
     writeFoxglove(arguments.foxglove, dive.map.run_folder, files.back(), diagnostics);
   }
   if (dives.size() > 1) writeProjects(arguments, formats, dives, folder, &files);
+  printFindings(*diagnostics, arguments.verbosity);
+  if (arguments.verbosity.quiet) return;
   for (const ExportedDive& dive : dives) {
     if (dives.size() > 1) fmt::print("{}:\n", dive.map.name);
     for (const std::string& note : dive.map.notes) fmt::print("{}\n", note);
   }
   for (const std::filesystem::path& file : files) fmt::print("written: {}\n", file.string());
-  fmt::print("{}", findingsText(*diagnostics));
 }
 
 }  // namespace lodeline

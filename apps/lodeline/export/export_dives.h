@@ -5,6 +5,7 @@
 
 #include "apps/lodeline/export/export_depth.h"
 #include "apps/lodeline/export/export_foxglove.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/output/survey/map/dive_map.h"
 #include "lodeline/pipeline/open_recording.h"
 
@@ -16,6 +17,7 @@ struct ExportArguments {
   std::vector<std::string> formats;
   std::string output;
   bool overwrite = false;
+  Verbosity verbosity;
   std::string recording;
   BagArguments bag;
   std::string entrance;

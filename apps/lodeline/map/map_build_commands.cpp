@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "apps/lodeline/map/map_subcommands.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/session/loops/loop_ledger.h"
 #include "lodeline/mapping/session/map_merge.h"
 #include "lodeline/mapping/session/map_solution.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -20,6 +22,8 @@ struct MapArguments {
   std::vector<std::string> runs;
   std::vector<double> start;  ///< east, north, up, m
   std::vector<double> start_sigma = {3.0, 1.0};
+  bool overwrite = false;
+  Verbosity verbosity;
 };
 
 /// The map of one run: the file itself, or that of a run folder.
@@ -89,16 +93,31 @@ void writeLedger(const MapFile& map) {
   });
 }
 
+/// Removes a map with its journals and ledger. A file of another kind is kept, which the caller then refuses.
+void removeMap(const std::string& map) {
+  if (!fs::exists(map)) return;
+  static_cast<void>(MapFile::open(map, MapFile::Access::Read));
+  for (const char* journal : {"", "-wal", "-shm"}) fs::remove(map + journal);
+  fs::remove(ledgerPath(map));
+}
+
 void addRuns(MapFile* map, const MapArguments& arguments) {
   MapMergeOptions options;
   options.start = startOf(arguments);
-  for (const std::string& run : arguments.runs) {
+  Progress progress("joining dives", arguments.verbosity.quiet);
+  for (size_t i = 0; i < arguments.runs.size(); ++i) {
+    const std::string& run = arguments.runs[i];
+    progress.show(static_cast<double>(i) / static_cast<double>(arguments.runs.size()), run);
     const MapFile source = MapFile::open(mapOfRun(run), MapFile::Access::Read);
     const bool is_first = map->dives().empty();
-    printMerged(mergeDive(map, source, options), is_first);
+    const MergedDive merged = mergeDive(map, source, options);
+    progress.end();
+    if (!arguments.verbosity.quiet) printMerged(merged, is_first);
   }
-  printSolution(solveMap(map, {}));
+  const MapSolution solution = solveMap(map, {});
   writeLedger(*map);
+  if (arguments.verbosity.quiet) return;
+  printSolution(solution);
   fmt::print("written: {}\nwritten: {}\n", map->path().string(), ledgerPath(map->path().string()).string());
 }
 
@@ -125,7 +144,10 @@ void addMapBuildCommands(CLI::App* map) {
       ->add_option("RUN", arguments->runs,
                    "folders that `lodeline run` wrote, the first one defines the frame")
       ->required();
+  addOverwrite(&arguments->overwrite, build);
+  addVerbosity(&arguments->verbosity, build);
   build->callback([arguments] {
+    if (arguments->overwrite) removeMap(arguments->map);
     MapFile file = MapFile::create(arguments->map, {});
     addRuns(&file, *arguments);
   });
@@ -134,6 +156,7 @@ void addMapBuildCommands(CLI::App* map) {
   add->add_option("MAP", arguments->map, "file of the map")->required();
   add->add_option("RUN", arguments->runs, "folder that `lodeline run` wrote")->required()->expected(1);
   addStartOptions(add, arguments.get());
+  addVerbosity(&arguments->verbosity, add);
   add->callback([arguments] {
     MapFile file = MapFile::open(arguments->map, MapFile::Access::Change);
     addRuns(&file, *arguments);
@@ -141,9 +164,11 @@ void addMapBuildCommands(CLI::App* map) {
 
   CLI::App* solve = map->add_subcommand("solve", "Solve a map again, after dives or control points changed");
   solve->add_option("MAP", arguments->map, "file of the map")->required();
+  addVerbosity(&arguments->verbosity, solve);
   solve->callback([arguments] {
     MapFile file = MapFile::open(arguments->map, MapFile::Access::Change);
-    printSolution(solveMap(&file, {}));
+    const MapSolution solution = solveMap(&file, {});
+    if (!arguments->verbosity.quiet) printSolution(solution);
   });
 }
 

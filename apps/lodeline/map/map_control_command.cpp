@@ -5,6 +5,7 @@
 
 #include "apps/lodeline/map/map_dives.h"
 #include "apps/lodeline/map/map_subcommands.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "apps/lodeline/shared/place_argument.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/store/map_file.h"
@@ -17,6 +18,7 @@ struct ControlArguments {
   std::string map, file;
   std::string site;
   std::vector<double> grid_origin;
+  Verbosity verbosity;
 };
 
 void addControl(const ControlArguments& arguments) {
@@ -28,8 +30,11 @@ void addControl(const ControlArguments& arguments) {
   if (!arguments.grid_origin.empty())
     options.grid_origin = Vec3(arguments.grid_origin[0], arguments.grid_origin[1], arguments.grid_origin[2]);
   const ControlSet control = addControlFile(&map, arguments.file, options, &diagnostics);
-  fmt::print("{} control points and {} visits added; `lodeline map solve {}` uses them\n{}",
-             control.points.size(), control.visits.size(), arguments.map, findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) {
+    fmt::print("{} control points and {} visits added; `lodeline map solve {}` uses them\n",
+               control.points.size(), control.visits.size(), arguments.map);
+  }
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace
@@ -48,6 +53,7 @@ void addMapControlCommand(CLI::App* map) {
                    "EASTING,NORTHING,ALTITUDE (m) of the map's origin, for positions on a grid")
       ->delimiter(',')
       ->expected(3);
+  addVerbosity(&arguments->verbosity, command);
   command->callback([arguments] { addControl(*arguments); });
 }
 

@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "apps/lodeline/map/map_subcommands.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/mapping/session/relocalizer.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 #include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {
@@ -19,6 +21,7 @@ namespace fs = std::filesystem;
 struct RelocaliseArguments {
   std::string map, run, output;
   double clip_s = 3.0;
+  Verbosity verbosity;
 };
 
 /// Keyframes of a run in clips of equal length.
@@ -63,19 +66,24 @@ void relocalise(const RelocaliseArguments& arguments) {
       "#timestamp [ns],found,x [m],y [m],z [m],q_x,q_y,q_z,q_w,sigma_x [m],sigma_y [m],sigma_z [m],keyframes,"
       "reason\n";
   int found = 0, clips = 0;
-  for (const std::vector<MapKeyframe>& clip : clipsOf(run, arguments.clip_s)) {
+  const std::vector<std::vector<MapKeyframe>> all = clipsOf(run, arguments.clip_s);
+  Progress progress("searching the map", arguments.verbosity.quiet);
+  for (const std::vector<MapKeyframe>& clip : all) {
+    progress.show(static_cast<double>(clips) / static_cast<double>(all.size()));
     std::string reason;
     const std::optional<PlaceInMap> place = relocalizer.find(clip, &reason);
     ++clips;
     found += place ? 1 : 0;
     text += rowOf(clip.back(), place, reason);
   }
-  fmt::print("{} of {} clips of {:g} s found in {}\n", found, clips, arguments.clip_s, arguments.map);
+  progress.end();
+  if (!arguments.verbosity.quiet)
+    fmt::print("{} of {} clips of {:g} s found in {}\n", found, clips, arguments.clip_s, arguments.map);
   if (arguments.output.empty()) {
     fmt::print("{}", text);
   } else {
     writeOutput(arguments.output, text);
-    fmt::print("written: {}\n", arguments.output);
+    if (!arguments.verbosity.quiet) fmt::print("written: {}\n", arguments.output);
   }
 }
 
@@ -92,6 +100,7 @@ void addMapRelocaliseCommand(CLI::App* map) {
       ->check(CLI::Range(0.1, 30.0))
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "CSV file for the poses; without one, the screen");
+  addVerbosity(&arguments->verbosity, command);
   command->callback([arguments] { relocalise(*arguments); });
 }
 

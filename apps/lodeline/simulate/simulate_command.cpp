@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/lodeline/shared/common_options.h"
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_recording.h"
 #include "lodeline/cameras/camera_model.h"
@@ -19,7 +20,7 @@ struct SimulateArguments {
   std::string output;
   ScenarioChanges changes;
   int threads = 0;
-  bool quiet = false;
+  Verbosity verbosity;
   bool list_effects = false;
 };
 
@@ -50,12 +51,13 @@ void simulate(const SimulateArguments& arguments) {
   if (arguments.scenario.empty()) throw UsageError("name a scenario; `lodeline simulate --help` lists them");
   if (arguments.output.empty()) throw UsageError("name the folder to write to with -o");
   const Scenario scenario = makeScenario(arguments.scenario, arguments.changes);
-  const RecordingSummary summary =
-      simulateRecording(scenario, arguments.output, {.threads = arguments.threads, .quiet = arguments.quiet});
+  const RecordingSummary summary = simulateRecording(
+      scenario, arguments.output, {.threads = arguments.threads, .quiet = arguments.verbosity.quiet});
   if (!summary.complete) {
     throw Interruption(fmt::format("{} of {} images are in {}; the same command goes on from there",
                                    summary.images.done, summary.images.total, arguments.output));
   }
+  if (arguments.verbosity.quiet) return;
   fmt::print("{}: {:.1f} s, {:.1f} m, {} images in {}\n", scenario.name, summary.duration_s,
              summary.path_length_m, summary.images.total, arguments.output);
 }
@@ -104,7 +106,7 @@ void addSimulateCommand(CLI::App& program) {
                     "the sonar scans a sector of the view, not the plane across it");
   command->add_flag("--no-images", c.no_images, "write everything but the images");
   command->add_option("--threads", arguments->threads, "for rendering (all cores)");
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  addVerbosity(&arguments->verbosity, command);
   command->add_flag("--list-effects", arguments->list_effects, "print all effects and end");
   command->footer(footer());
   command->callback([arguments] { simulate(*arguments); });

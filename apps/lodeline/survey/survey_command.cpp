@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct SurveyArguments {
   std::string project, output;
   bool overwrite = false;
+  Verbosity verbosity;
   std::string name, title, entrance, crs, vertical_datum, date;
   std::vector<std::string> team;
   std::optional<double> merge_m, spacing_m;
@@ -138,10 +139,12 @@ void makeSurvey(const SurveyArguments& arguments) {
   if (!arguments.overwrite) expectOwnFiles(folder, owner, names);
   for (const auto& [name, text] : files) writeOutput(folder / name, text);
   writeOutput(folder / notesFileName(cave.name), notesText(owner));
-  for (const std::string& note : cave.notes) fmt::print("{}\n", note);
-  for (const std::string& name : names) fmt::print("written: {}\n", (folder / name).string());
-  fmt::print("written: {}\n", (folder / notesFileName(cave.name)).string());
-  fmt::print("{}", findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) {
+    for (const std::string& note : cave.notes) fmt::print("{}\n", note);
+    for (const std::string& name : names) fmt::print("written: {}\n", (folder / name).string());
+    fmt::print("written: {}\n", (folder / notesFileName(cave.name)).string());
+  }
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace
@@ -152,7 +155,7 @@ void addSurveyCommand(CLI::App& program) {
   command->add_option("PROJECT", arguments->project, "project in YAML, or file of a map (cave.db)")
       ->required();
   command->add_option("-o,--output", arguments->output, "folder for the files")->required();
-  command->add_flag("--overwrite", arguments->overwrite, "replace files of another survey of the same name");
+  addOverwrite(&arguments->overwrite, command);
   command->add_option("--name", arguments->name, "of survey and files; without it, the project's file name");
   command->add_option("--title", arguments->title, "of the survey");
   command->add_option("--team", arguments->team, "a person; once for each");
@@ -165,6 +168,7 @@ void addSurveyCommand(CLI::App& program) {
   command->add_option("--merge", arguments->merge_m,
                       "m between ways through one passage, which become one line (2.5); 0 keeps every way");
   command->add_option("--spacing", arguments->spacing_m, "m between stations on a straight way (5)");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Options replace the values of the project.\n"
       "Examples:\n"

@@ -63,7 +63,7 @@ TEST_F(AllanTest, EndsWithOneWhereThereIsNothingToAnalyse) {
   const Execution one = runProgram("allan " + file("one.csv"));
   EXPECT_EQ(one.exit_code, 1);
   EXPECT_THAT(one.output, HasSubstr("1 usable readings"));
-  EXPECT_EQ(runProgram("allan " + file("one.csv") + " --skip -1").exit_code, 2);
+  EXPECT_EQ(runProgram("allan " + file("one.csv") + " --from -1").exit_code, 2);
   EXPECT_EQ(runProgram("allan").exit_code, 2);
 }
 

@@ -132,6 +132,8 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
   summary.states = static_cast<int>(problem.states());
   summary.loop_links = problem.links();
   for (size_t i = 0; i < loosenings.size(); ++i) {
+    // The covariances take about as long as a round.
+    if (wanted.progress) wanted.progress(static_cast<double>(i) / static_cast<double>(loosenings.size() + 1));
     if (i > 0) {
       // Statistics of a solution, because the pose errors of the run are correlated over time as well.
       const TimeCorrelatedErrors lasting = problem.timeCorrelatedErrors();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct RefinementOptions {
   double max_outlier_share = 0.2;
   /// Covariances are not computed where the linear system needs more memory than this.
   double max_covariance_MB = 4000.0;
+  std::function<void(double share)> progress = {};  ///< takes the share of the rounds that are done
 };
 
 /// Solves for all states of a finished record at once (Levenberg-Marquardt on BatchProblem), starting from

@@ -102,10 +102,13 @@ void lookAtImages(const SourceFactory& open, const std::vector<StreamSummary>& i
                                                                0.5 * options.images.pair_interval_s});
   const std::vector<SurveySpan> spans =
       liveliestSpans(inspection->imu.samples, images.front(), options.span_s, total_s);
+  const double cameras = static_cast<double>(images.size());
   for (size_t i = 0; i < images.size(); ++i) {
+    options.progress(0.2 + 0.5 * static_cast<double>(i) / cameras);
     inspection->cameras.push_back(
         {surveyCamera(source.get(), i, images[i], spans, options.images), {}, {}, {}});
   }
+  options.progress(0.7);
   if (images.size() > 1 && isCalibrated(inspection->rig.cameras[0]) &&
       isCalibrated(inspection->rig.cameras[1])) {
     Diagnostics also_reported_before;
@@ -143,6 +146,7 @@ Inspection inspect(const SourceFactory& open, const InspectionOptions& options) 
   const std::unique_ptr<MeasurementSource> source = open(&diagnostics);
   const std::vector<StreamSummary> images = readStreams(source.get(), &inspection);
   lookAtImages(open, images, options, &inspection);
+  options.progress(0.9);
   findings::judgeImu(&inspection);
   if (inspection.rig.magnetometer) {
     std::vector<ImuSample> samples = inspection.imu.samples;

@@ -64,6 +64,7 @@ struct InspectionOptions {
   CameraSurveyOptions images;
   double span_s = 4.0;  ///< of the spans that are analysed in detail
   std::optional<Vec3> site_field_W;
+  std::function<void(double share)> progress = [](double) {};  ///< takes the share of the work that is done
 };
 
 /// Opens the recording again; called more than once, because a source can be read only once.

@@ -2,6 +2,7 @@
 
 #include "lodeline/output/files/landmark_writer.h"
 #include "lodeline/output/files/state_writer.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -13,8 +14,12 @@ constexpr const char* kLandmarks = "landmarks_refined.ply";
 
 RefinementSummary refineRun(const Estimator& estimator, const EstimatorLog& record, const LoopClosures& loops,
                             const std::filesystem::path& folder, const std::map<Time, Time>& result_stamps,
-                            Diagnostics* diagnostics) {
-  const Refinement refinement = refine(estimator.rig(), estimator.options(), record, loops);
+                            bool quiet, Diagnostics* diagnostics) {
+  Progress progress("refinement", quiet);
+  RefinementOptions options;
+  options.progress = progress.function();
+  const Refinement refinement = refine(estimator.rig(), estimator.options(), record, loops, options);
+  progress.end();
   const RefinementSummary& summary = refinement.summary;
   if (!summary.usable()) {
     diagnostics->report(Severity::Serious, "refinement_refused",

@@ -1,37 +1,24 @@
 #include "lodeline/pipeline/run_progress.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <string>
 
 namespace lodeline {
-namespace {
 
-constexpr std::chrono::milliseconds kTerminalPause(200);
-constexpr std::chrono::milliseconds kLogPause(5000);
-
-}  // namespace
-
-RunProgress::RunProgress(bool quiet)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO)), last_(std::chrono::steady_clock::now()) {}
-
-void RunProgress::show(const RunSummary& summary) {
-  const auto now = std::chrono::steady_clock::now();
-  if (quiet_ || now - last_ < (terminal_ ? kTerminalPause : kLogPause)) return;
-  last_ = now;
+void RunProgress::show(const RunSummary& summary, std::optional<double> share_read) {
   const FrameEstimate& frame = summary.last();
+  if (!first_) first_ = frame.time;
+  if (!progress_.isDue()) return;
+  std::optional<double> share = share_read;
+  if (length_s_ > 0.0) share = std::max((frame.time - *first_).seconds() / length_s_, share.value_or(0.0));
   const std::string state =
       frame.status == Status::Waiting
           ? "waiting for " + frame.waiting_for
           : fmt::format("{}, {} tracks, {} landmarks", toString(frame.status), frame.tracks, frame.landmarks);
-  fmt::print(stderr, "{}frame {:6}  {:5.1f} x real time  {:.1f} m  {}{}", terminal_ ? "\r\033[K" : "",
-             summary.frames(), summary.realTimeFactor(), summary.pathLength_m(), state,
-             terminal_ ? "" : "\n");
-}
-
-void RunProgress::end() const {
-  if (!quiet_ && terminal_) fmt::print(stderr, "\r\033[K");
+  progress_.show(share, fmt::format("frame {}  {:.1f} x real time  {:.1f} m  {}", summary.frames(),
+                                    summary.realTimeFactor(), summary.pathLength_m(), state));
 }
 
 }  // namespace lodeline

@@ -19,11 +19,12 @@ namespace lodeline {
 namespace {
 
 /// Processes all packets with the estimator until the recording or the user ends the run.
-void process(RunSession* session, const Rig& rig, const RunRequest& request) {
+void process(RecordingRun* run, const RunRequest& request) {
+  RunSession* const session = &run->session();
   std::optional<LiveView> live;
   if (request.live_port) {
     const std::string name = std::filesystem::absolute(request.output).filename().string();
-    live.emplace(request.live_address, *request.live_port, name, request.data, rig);
+    live.emplace(request.live_address, *request.live_port, name, request.data, run->rig());
     if (!request.quiet) fmt::print(stderr, "live at {}\n", live->url());
   }
   const StopRequest stop;
@@ -33,7 +34,7 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
     waitUntil([&live] { return live->isWatched(); }, is_stopped);
   }
   RunPace pace(request.rate, is_stopped);
-  RunProgress progress(request.quiet);
+  RunProgress progress(request.quiet, run->length_s());
   while (session->fetch() && !stop.made()) {
     pace.await(session->packet().time);
     session->process();
@@ -41,7 +42,7 @@ void process(RunSession* session, const Rig& rig, const RunRequest& request) {
       live->show(session->packet(), session->estimate(), session->summary(), session->odometry().frontEnd(),
                  session->landmarks(), session->mapFromOdom());
     }
-    progress.show(session->summary());
+    progress.show(session->summary(), run->shareRead());
   }
   progress.end();
 }
@@ -107,7 +108,7 @@ RecordingRun::RecordingRun(const RunRequest& request, Diagnostics* diagnostics) 
 
 RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
   RecordingRun run(request, diagnostics);
-  process(&run.session(), run.rig(), request);
+  process(&run, request);
   return run.session().finish();
 }
 

@@ -33,6 +33,10 @@ class RecordingRun {
 
   RunSession& session() { return *session_; }
   const Rig& rig() const { return source_->rig(); }
+  /// Share of the recording that was read, see RecordedSource.
+  std::optional<double> shareRead() const { return source_->shareRead(); }
+  /// Length of the part that the run reads; 0 for all.
+  double length_s() const { return options_.synchronizer.duration_s; }
 
  private:
   RunSettings options_;

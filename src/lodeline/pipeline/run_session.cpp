@@ -79,6 +79,7 @@ void writeSettings(const std::filesystem::path& folder, const Settings& settings
 RunSession::RunSession(const RunRequest& request, const Settings& settings, const RunSettings& options,
                        RecordedSource* source, Diagnostics* diagnostics)
     : folder_(request.output),
+      quiet_(request.quiet),
       diagnostics_(diagnostics),
       loop_(options, source, diagnostics),
       attitude_(source->rig(), attitudeOptions(options), &unheard_),
@@ -133,7 +134,7 @@ RunSummary RunSession::finish() {
   if (loop_.log()) {
     summary_.refinement =
         refineRun(odometry.estimator(), *loop_.log(), mapping_ ? mapping_->closures() : LoopClosures{},
-                  folder_, loop_.resultStamps(), diagnostics_);
+                  folder_, loop_.resultStamps(), quiet_, diagnostics_);
     usage = ProcessUsage::now();
   }
   summary_.peak_memory_MB = usage.peak_memory_MB;

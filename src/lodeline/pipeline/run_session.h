@@ -57,6 +57,7 @@ class RunSession {
   using Clock = std::chrono::steady_clock;
 
   std::string folder_;  ///< empty for none
+  bool quiet_;          ///< shows no progress
   std::optional<FolderLock> lock_;
   Diagnostics* diagnostics_;
   EstimationLoop loop_;

@@ -8,8 +8,8 @@
 
 namespace lodeline {
 
-/// The results as a table for people, lengths in metres, angles in degrees; ends with the remarks.
-std::string evaluationTable(const Evaluation& evaluation, const Diagnostics& diagnostics);
+/// The results as a table for people, lengths in metres, angles in degrees.
+std::string evaluationTable(const Evaluation& evaluation);
 
 /// All results in JSON; every key contains its unit.
 nlohmann::ordered_json evaluationJson(const Evaluation& evaluation, const Diagnostics& diagnostics);

@@ -112,18 +112,11 @@ std::string claimsTable(const ConsistencyCheck& claims) {
 
 }  // namespace
 
-std::string evaluationTable(const Evaluation& e, const Diagnostics& diagnostics) {
+std::string evaluationTable(const Evaluation& e) {
   std::string text = overview(e);
   for (const std::string& part :
        {absoluteTable(e), consecutiveTable(e), relativeTable(e), endPointLines(e), claimsTable(e.claims)}) {
     if (!part.empty()) text += "\n" + part;
-  }
-  const auto findings = diagnostics.ranked();
-  if (!findings.empty()) text += "\n";
-  for (const Finding& finding : findings) {
-    text += fmt::format("{}: {}", toString(finding.severity), finding.first_message);
-    if (finding.count > 1) text += fmt::format(" ({} times)", finding.count);
-    text += "\n";
   }
   return text;
 }

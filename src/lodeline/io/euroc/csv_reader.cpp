@@ -252,4 +252,12 @@ bool CsvReader::next(CsvRow* row) {
   return false;
 }
 
+std::optional<double> CsvReader::shareRead() const {
+  std::error_code failure;
+  const auto bytes = static_cast<double>(std::filesystem::file_size(file_, failure));
+  const auto bytes_read = static_cast<double>(table_.bytesRead());
+  if (failure || bytes_read > bytes) return std::nullopt;
+  return bytes > 0.0 ? bytes_read / bytes : 1.0;
+}
+
 }  // namespace lodeline

@@ -56,6 +56,8 @@ class CsvReader {
 
   const std::filesystem::path& file() const { return file_; }
   int line() const { return table_.line(); }
+  /// Share of the file that was read, 0 to 1; nothing for a packed file.
+  std::optional<double> shareRead() const;
   /// Text of the stamp in the row read last, as written in the file; valid until the next row is read.
   std::string_view stampText() const { return table_.cell(time_column_); }
 

@@ -45,6 +45,19 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
   if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics, kMagnetometerRate);
 }
 
+std::optional<double> EurocSource::shareRead() const {
+  double sum = 0.0;
+  int streams = 0;
+  const auto add = [&](std::optional<double> share) {
+    sum += share.value_or(0.0);
+    streams += share ? 1 : 0;
+  };
+  if (imu_) add(imu_->shareRead());
+  for (const ImageList& camera : cameras_) add(camera.shareRead());
+  if (streams == 0) return std::nullopt;
+  return sum / streams;
+}
+
 std::unique_ptr<RecordedSource> openEuroc(const std::filesystem::path& data, const EurocOptions& options,
                                           Diagnostics* diagnostics) {
   return std::make_unique<EurocSource>(data, options, diagnostics);

@@ -32,6 +32,7 @@ class EurocSource : public RecordedSource {
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
   std::optional<SonarSample> nextSonar() override;
+  std::optional<double> shareRead() const override;
 
  private:
   EurocSource(EurocLayout layout, Diagnostics* diagnostics);

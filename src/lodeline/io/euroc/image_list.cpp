@@ -160,4 +160,9 @@ std::optional<ListedImage> ImageList::next() {
   return ListedImage{row_.time, folder_ / name};
 }
 
+std::optional<double> ImageList::shareRead() const {
+  if (csv_) return csv_->shareRead();
+  return made_.empty() ? 1.0 : static_cast<double>(next_) / static_cast<double>(made_.size());
+}
+
 }  // namespace lodeline

@@ -27,6 +27,9 @@ class ImageList {
   /// The next image; nothing at the end.
   std::optional<ListedImage> next();
 
+  /// Share of the list that was returned, 0 to 1.
+  std::optional<double> shareRead() const;
+
   /// Whether data.csv exists, or image files from which a list may be made.
   static bool hasImages(const std::filesystem::path& camera);
   /// The file with the stamps, or the folder whose file names are the stamps.

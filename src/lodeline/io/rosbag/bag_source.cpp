@@ -308,6 +308,20 @@ std::optional<SonarSample> BagSource::nextSonar() {
   return echo;
 }
 
+std::optional<double> BagSource::shareRead() const {
+  double sum = 0.0;
+  int streams = 0;
+  const auto add = [&](const Cursor& cursor) {
+    if (cursor.topic == nullptr || cursor.topic->entries.empty()) return;
+    sum += static_cast<double>(cursor.next) / static_cast<double>(cursor.topic->entries.size());
+    ++streams;
+  };
+  add(imu_);
+  for (const Cursor& camera : cameras_) add(camera);
+  if (streams == 0) return std::nullopt;
+  return sum / streams;
+}
+
 std::unique_ptr<RecordedSource> openBag(const std::filesystem::path& bag, const BagOptions& options,
                                         Diagnostics* diagnostics) {
   return std::make_unique<BagSource>(bag, options, diagnostics);

@@ -35,6 +35,7 @@ class BagSource : public RecordedSource {
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
   std::optional<SonarSample> nextSonar() override;
+  std::optional<double> shareRead() const override;
 
   BagFile& bag() { return *bag_; }
   const RigFile& rigFile() const { return rig_file_; }

@@ -23,6 +23,7 @@ class ThinnedSource : public RecordedSource {
   std::optional<AltimeterSample> nextAltimeter() override { return source_->nextAltimeter(); }
   std::optional<DvlSample> nextDvl() override { return source_->nextDvl(); }
   std::optional<CurrentSample> nextCurrents() override { return source_->nextCurrents(); }
+  std::optional<double> shareRead() const override { return source_->shareRead(); }
 
  private:
   /// Time and number of a camera's last image.

@@ -86,6 +86,7 @@ class TableReader {
   }
 
   int line() const { return line_number_; }
+  std::size_t bytesRead() const { return lines_.bytesRead(); }
   std::string where() const;                     ///< "file:line"
   bool isCutOff() const { return is_cut_off_; }  ///< the file ends within this row
 

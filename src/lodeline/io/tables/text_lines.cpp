@@ -33,6 +33,7 @@ TextLines::TextLines(std::unique_ptr<ByteSource> bytes, const std::string& name)
 bool TextLines::fill() {
   begin_ = 0;
   end_ = bytes_->read(buffer_.data(), buffer_.size());
+  bytes_filled_ += end_;
   return end_ > 0;
 }
 

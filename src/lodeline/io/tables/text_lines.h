@@ -23,6 +23,7 @@ class TextLines {
   bool next(std::string_view* line);
 
   int number() const { return number_; }  ///< number of the line, counted from 1
+  std::size_t bytesRead() const { return bytes_filled_ - (end_ - begin_); }  ///< as UTF-8
   bool wasTooLong() const { return was_too_long_; }
   bool hadNoEnd() const { return had_no_end_; }  ///< the text ends within this line, so it may be truncated
 
@@ -34,6 +35,7 @@ class TextLines {
   std::string buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< range of buffer_ that was not returned yet
   std::string line_;
+  std::size_t bytes_filled_ = 0;  ///< into buffer_ since the start
   int number_ = 0;
   bool was_too_long_ = false;
   bool had_no_end_ = false;

@@ -172,6 +172,16 @@ std::optional<Duration> VideoSource::nextInChapter() {
   return std::nullopt;
 }
 
+std::optional<double> VideoSource::shareRead() const {
+  int64_t read = times_ ? times_->packets() : 0, all = 0;
+  for (size_t i = 0; i < chapters_.size(); ++i) {
+    all += chapters_[i].images.stated_count;
+    if (i < chapter_) read += chapters_[i].images.stated_count;
+  }
+  if (all == 0) return std::nullopt;
+  return static_cast<double>(read) / static_cast<double>(all);
+}
+
 std::optional<Time> VideoSource::stampOf(Duration time) {
   if (!stamps_) return Time() + chapters_[chapter_].start + time;
   std::optional<Time> stamp = stamps_->next();

@@ -38,6 +38,7 @@ class VideoSource : public RecordedSource {
   std::optional<ImuSample> nextRecordedImu() override;
   std::optional<PendingImage> nextImage(size_t camera) override;
   std::optional<MagnetometerSample> nextMagnetometer() override;
+  std::optional<double> shareRead() const override;
 
   const RigFile& rigFile() const { return rig_file_; }
   const std::vector<FilmChapter>& chapters() const { return chapters_; }

@@ -56,6 +56,7 @@ void readFolder(const NoiseRequest& request, Diagnostics* diagnostics, Analyses*
     analyses->has_gyroscope = analyses->has_accelerometer = true;
     CsvReader imu(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
     for (Part part(request); imu.next(&row);) {
+      request.progress(imu.shareRead().value_or(0.0));
       if (!part.holds(row.time)) continue;
       analyses->gyroscope.add(row.time, Vec3(row.numbers.data()));
       analyses->accelerometer.add(row.time, Vec3(row.numbers.data() + 3));
@@ -74,6 +75,7 @@ void readRecording(const NoiseRequest& request, Diagnostics* diagnostics, Analys
   Part imu_part(request);
   while (const std::optional<ImuSample> sample = source->nextImu()) {
     analyses->has_gyroscope = analyses->has_accelerometer = true;
+    request.progress(source->shareRead().value_or(0.0));
     if (!imu_part.holds(sample->time)) continue;
     analyses->gyroscope.add(sample->time, sample->angular_velocity_B);
     analyses->accelerometer.add(sample->time, sample->specific_force_B);

@@ -6,6 +6,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/sensor_noise.h"
 #include "lodeline/pipeline/open_recording.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
@@ -15,6 +16,7 @@ struct NoiseRequest {
   BagArguments bag;
   double skip_s = 0.0;      ///< from the first reading on
   double duration_s = 0.0;  ///< after that; 0 for all
+  ShareDone progress = [](double) {};
 };
 
 /// The noise of the sensors of a record, in the order gyroscope, accelerometer, magnetometer. Sensors that it

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct ConvertOptions {
   BagFormat format = BagFormat::Ros1;
   /// Compression of the new bag; see makeBagWriter().
   std::string compression;
+  /// Takes the share of the recording that is converted.
+  std::function<void(double share)> progress = [](double) {};
 };
 
 struct ConvertSummary {
@@ -54,7 +57,8 @@ ConvertSummary convertBagToBag(const std::filesystem::path& bag, const std::file
 /// Converts an open recording, such as a film, to the EuRoC ASL layout. `rig`: its calibration, which may be
 /// empty. Throws InputError where the folder exists and is not empty.
 ConvertSummary convertToFolder(RecordedSource* source, const RigFile& rig,
-                               const std::filesystem::path& folder, Diagnostics* diagnostics);
+                               const std::filesystem::path& folder, const ConvertOptions& options,
+                               Diagnostics* diagnostics);
 
 /// Converts an open recording to a bag, with its calibration beside it. Throws InputError where the bag
 /// exists.

@@ -42,7 +42,10 @@ std::vector<Copied> topicsToCopy(const BagFile& bag, const BagWriter& writer, Di
 }
 
 /// Copies all messages in the order of the times at which they were recorded.
-void copyMessages(BagFile* bag, std::vector<Copied> topics, BagWriter* writer, ConvertSummary* summary) {
+void copyMessages(BagFile* bag, std::vector<Copied> topics, const ConvertOptions& options, BagWriter* writer,
+                  ConvertSummary* summary) {
+  size_t all = 0, done = 0;
+  for (const Copied& topic : topics) all += topic.topic->entries.size();
   while (true) {
     Copied* first = nullptr;
     for (Copied& topic : topics) {
@@ -54,6 +57,7 @@ void copyMessages(BagFile* bag, std::vector<Copied> topics, BagWriter* writer, C
       first = &topic;
     }
     if (first == nullptr) return;
+    options.progress(static_cast<double>(done++) / static_cast<double>(all));
     const BagConnection& connection = first->topic->connection;
     const BagEntry& entry = first->topic->entries[first->next++];
     std::optional<wire::Bytes> message =
@@ -88,7 +92,7 @@ ConvertSummary convertBagToBag(const std::filesystem::path& bag, const std::file
   const std::unique_ptr<BagFile> source = openBagFile(bag, diagnostics);
   const std::unique_ptr<BagWriter> writer = makeBagWriter(target, options.format, options.compression);
   ConvertSummary summary;
-  copyMessages(source.get(), topicsToCopy(*source, *writer, diagnostics), writer.get(), &summary);
+  copyMessages(source.get(), topicsToCopy(*source, *writer, diagnostics), options, writer.get(), &summary);
   writer->close();
   if (rig) {
     summary.rig_file = rigFileBeside(target);

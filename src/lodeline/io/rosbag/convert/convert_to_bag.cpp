@@ -27,7 +27,7 @@ struct Outgoing {
 using Pull = std::function<std::optional<Outgoing>()>;
 
 /// Writes the readings of several streams in the order of their stamps; each stream keeps its own order.
-void merge(const std::vector<Pull>& streams) {
+void merge(const std::vector<Pull>& streams, const std::function<void()>& written) {
   std::vector<std::optional<Outgoing>> heads;
   for (const Pull& pull : streams) heads.push_back(pull());
   while (true) {
@@ -37,6 +37,7 @@ void merge(const std::vector<Pull>& streams) {
     }
     if (!first) return;
     heads[*first]->write();
+    written();
     heads[*first] = streams[*first]();
   }
 }
@@ -61,6 +62,7 @@ class RecordingConversion {
                       Diagnostics* diagnostics)
       : source_(*source),
         diagnostics_(diagnostics),
+        progress_(options.progress),
         writer_(makeBagWriter(bag, options.format, options.compression)) {}
 
   /// `truth`: table of true poses; may be missing.
@@ -78,7 +80,7 @@ class RecordingConversion {
       truth_reader.emplace(truth, CsvContent::TruePose, diagnostics_);
       streams.push_back([&] { return truePose(&*truth_reader); });
     }
-    merge(streams);
+    merge(streams, [this] { progress_(source_.shareRead().value_or(0.0)); });
     writer_->close();
     return std::move(summary_);
   }
@@ -198,6 +200,7 @@ class RecordingConversion {
 
   RecordedSource& source_;
   Diagnostics* diagnostics_;
+  std::function<void(double)> progress_;
   std::unique_ptr<BagWriter> writer_;
   ConvertSummary summary_;
   std::map<std::string, Time> received_;

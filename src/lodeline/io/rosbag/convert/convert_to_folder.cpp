@@ -32,8 +32,9 @@ void writeBytes(const std::vector<uint8_t>& bytes, const std::filesystem::path& 
 
 class FolderWriter {
  public:
-  FolderWriter(RecordedSource* source, const std::filesystem::path& folder, Diagnostics* diagnostics)
-      : source_(source), folder_(folder), diagnostics_(diagnostics) {}
+  FolderWriter(RecordedSource* source, const std::filesystem::path& folder, const ConvertOptions& options,
+               Diagnostics* diagnostics)
+      : source_(source), folder_(folder), options_(options), diagnostics_(diagnostics) {}
 
   ConvertSummary run() {
     const Rig& rig = source_->rig();
@@ -85,6 +86,7 @@ class FolderWriter {
     std::filesystem::create_directories(sensor(name) / "data", error);
     std::unordered_map<int64_t, int> images_of_stamp;
     while (const std::optional<PendingImage> pending = source_->nextImage(camera)) {
+      options_.progress(source_->shareRead().value_or(0.0));
       const int64_t stamp_ns = pending->time.nanoseconds();
       const int earlier = images_of_stamp[stamp_ns]++;
       const std::string stem =
@@ -114,6 +116,7 @@ class FolderWriter {
 
   RecordedSource* source_;
   std::filesystem::path folder_;
+  const ConvertOptions& options_;
   Diagnostics* diagnostics_;
   ConvertSummary summary_;
 };
@@ -170,9 +173,10 @@ void writeCalibration(const RigFile& rig_file, const std::filesystem::path& fold
 }  // namespace
 
 ConvertSummary convertToFolder(RecordedSource* source, const RigFile& rig_file,
-                               const std::filesystem::path& folder, Diagnostics* diagnostics) {
+                               const std::filesystem::path& folder, const ConvertOptions& options,
+                               Diagnostics* diagnostics) {
   requireEmpty(folder);
-  ConvertSummary summary = FolderWriter(source, folder, diagnostics).run();
+  ConvertSummary summary = FolderWriter(source, folder, options, diagnostics).run();
   writeCalibration(rig_file, folder, diagnostics);
   return summary;
 }
@@ -185,7 +189,7 @@ ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::f
   bag_options.topics = options.topics;
   bag_options.needs_calibration = false;
   BagSource source(bag, bag_options, diagnostics);
-  FolderWriter writer(&source, folder, diagnostics);
+  FolderWriter writer(&source, folder, options, diagnostics);
   writer.writeTruth(&source.bag());
   ConvertSummary summary = writer.run();
   writeCalibration(source.rigFile(), folder, diagnostics);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace lodeline {
+
+/// Takes the share of a task that is done, from 0 to 1.
+using ShareDone = std::function<void(double share)>;
+
+/// Shows on the standard error stream how much of a long task is done: per cent, remaining time and words. On
+/// a terminal it draws one line anew, no longer than the terminal is wide; elsewhere it writes a line every
+/// five seconds. A task of less than two seconds shows nothing.
+class Progress {
+ public:
+  /// `quiet`: show nothing.
+  Progress(std::string task, bool quiet);
+  ~Progress() { end(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// `share`: of the task, 0 to 1; nothing where the length of the task is unknown.
+  void show(std::optional<double> share, const std::string& words = "");
+  /// Whether the next show() draws; saves the making of words.
+  bool isDue() const;
+  /// Removes the line from a terminal.
+  void end();
+  /// A function that shows each share it gets; this object must outlive it.
+  ShareDone function() {
+    return [this](double share) { show(share); };
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string task_;
+  bool quiet_, is_terminal_;
+  bool is_drawn_ = false;
+  Clock::time_point start_, next_;
+};
+
+/// "TASK  41 %  2:05 left  WORDS". `elapsed_s`: since the start of the task.
+std::string progressLine(const std::string& task, std::optional<double> share, double elapsed_s,
+                         const std::string& words);
+
+}  // namespace lodeline
