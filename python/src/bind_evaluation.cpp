@@ -5,6 +5,7 @@
 
 #include "lodeline/evaluation/figures/evaluation_report.h"
 #include "lodeline/evaluation/trajectory/image_times.h"
+#include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/read_reported_uncertainty.h"
 #include "lodeline/trajectory.h"
 #include "lodeline/util/json_text.h"
@@ -104,7 +105,7 @@ void bindEvaluationResult(py::module_& module) {
           },
           "relative pose errors: for each length a dict with length_m, translation_m (K), rotation_deg (K)")
       .def_property_readonly("findings", [](Type r) { return findingsOf(r.diagnostics); })
-      .def("__str__", [](Type r) { return printable(evaluationTable(r.evaluation, r.diagnostics)); });
+      .def("__str__", [](Type r) { return printable(evaluationTable(r.evaluation) + findingsText(r.diagnostics)); });
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/figures/evaluation_report.h"
 #include "lodeline/evaluation/figures/gnuplot.h"
+#include "lodeline/evaluation/figures/several_estimates.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 
 namespace lodeline {
@@ -80,12 +81,23 @@ TEST(Gnuplot, ThinsLongCurvesButKeepsTheirEndAndTheirBreaks) {
 }
 
 TEST(Report, TableNamesTheFiguresWithTheirUnits) {
-  Diagnostics diagnostics;
-  diagnostics.report(Severity::Warning, "kind", "mind the gap");
-  const std::string table = evaluationTable(evaluation(), diagnostics);
+  const std::string table = evaluationTable(evaluation());
   for (const char* part : {"position (m)", "rotation (deg)", "yaw (deg)", "25.00 % too large", "end point",
-                           "completion  100.00 %", "warning: mind the gap"}) {
+                           "completion  100.00 %"}) {
     EXPECT_THAT(table, testing::HasSubstr(part));
+  }
+}
+
+TEST(Report, SeveralEstimatesHaveOneRowEach) {
+  Evaluation other = evaluation();
+  other.end_point_m = 7.25;
+  const std::vector<NamedEvaluation> both = {{"first", evaluation()}, {"it's second", other}};
+  const std::string table = severalTable(both);
+  EXPECT_THAT(table, testing::HasSubstr("\nfirst "));
+  EXPECT_THAT(table, testing::ContainsRegex("it's second .* 7.2500\n"));
+  for (const gnuplot::Figure& figure : {severalErrorsFigure(both), severalPathsFigure(both)}) {
+    EXPECT_THAT(figure.commands, testing::HasSubstr("$estimate1 << EOD"));
+    EXPECT_THAT(figure.commands, testing::HasSubstr("title 'it''s second'"));
   }
 }
 
