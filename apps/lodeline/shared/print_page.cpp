@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/lodeline/shared/scratch_folder.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/util/files/output_file.h"
 
@@ -39,26 +40,6 @@ std::optional<fs::path> findBrowser(const std::string& environment_path) {
   }
   return std::nullopt;
 }
-
-/// A folder that the destructor removes.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "lodeline_print_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw InputError(pattern + ": the folder cannot be made");
-    path_ = pattern;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 std::vector<std::string> commandLine(const fs::path& browser, const fs::path& folder) {
   std::vector<std::string> words = {

@@ -66,15 +66,11 @@ void addLoops(const MapFile& map, MapGraph* result) {
   map.forEachLoop([&](const StoredLoop& row) {
     if (row.loop.status == LoopStatus::Accepted) result->loops.push_back(row);
   });
-  for (const StoredLoop& row : result->loops) {
-    result->graph.add(edgeOf(row.loop));
-    result->groups.join(result->dive_of.at(row.loop.old_keyframe), result->dive_of.at(row.loop.new_keyframe));
-  }
+  for (const StoredLoop& row : result->loops) result->graph.add(edgeOf(row.loop));
 }
 
 void addControl(const MapFile& map, MapGraph* result) {
   std::map<int64_t, ControlPoint> points;
-  std::map<int64_t, int> first_dive;
   for (const ControlPoint& point : map.controlPoints()) {
     points[point.id] = point;
     result->points[point.name] = point;
@@ -85,20 +81,28 @@ void addControl(const MapFile& map, MapGraph* result) {
     }
     result->graph.add(landmark);
   }
-  // All points of known position are in one frame, which joins their dives as well.
-  constexpr int kFrame = -1;
   for (const ControlObservation& seen : map.controlObservations()) {
     const ControlPoint& point = points.at(seen.point);
-    const int dive = result->dive_of.at(seen.keyframe);
     Sighting sighting;
     sighting.landmark = point.name;
     sighting.node = seen.keyframe;
     sighting.point_B = seen.in_body.position;
     sighting.covariance = seen.in_body.covariance;
     result->graph.add(sighting);
-    const int joined = point.position ? kFrame : first_dive.try_emplace(seen.point, dive).first->second;
-    result->groups.join(dive, joined);
   }
+}
+
+/// Joins the dives that a factor in use connects; one that the solution refused connects nothing.
+/// `first_dive`: by the name of a point of unknown position, the dive that saw it first.
+void joinDives(const FactorReport& factor, MapGraph* graph, std::map<std::string, int>* first_dive) {
+  // All points of known position are in one frame, which joins their dives as well.
+  constexpr int kFrame = -1;
+  if (!factor.accepted) return;
+  const int dive = graph->dive_of.at(factor.from);
+  if (factor.kind == FactorReport::Kind::Loop) return graph->groups.join(dive, graph->dive_of.at(factor.to));
+  const auto point = graph->points.find(factor.name);
+  const bool is_known = point == graph->points.end() || point->second.position.has_value();
+  graph->groups.join(dive, is_known ? kFrame : first_dive->try_emplace(factor.name, dive).first->second);
 }
 
 std::vector<std::string> unconnectedDives(MapGraph* graph) {
@@ -125,7 +129,9 @@ MapSolution solveMap(MapFile* map, const MapSolutionOptions& options) {
   for (const KeyframeId id : graph.keyframes)
     change.setSolution(id, {graph.graph.pose(id), covariance.of(id)});
   size_t next_loop = 0;
+  std::map<std::string, int> first_dive;
   for (const FactorReport& factor : summary.factors) {
+    joinDives(factor, &graph, &first_dive);
     if (factor.kind == FactorReport::Kind::Loop) {
       StoredLoop& row = graph.loops[next_loop++];
       if (factor.accepted) continue;
