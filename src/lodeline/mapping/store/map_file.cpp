@@ -12,10 +12,15 @@
 namespace lodeline {
 namespace {
 
+/// Bounds the pages that SQLite keeps in memory, by default 2 MB. A map is written once and read from its
+/// beginning to its end, for which a few pages suffice.
+void boundCache(Database* database) { database->run("PRAGMA cache_size = -256"); }  // KiB
+
 /// The file for reading or changing, its version checked.
 std::unique_ptr<Database> openedMap(const std::filesystem::path& file, MapFile::Access access) {
   auto database = std::make_unique<Database>(
       file, access == MapFile::Access::Read ? Database::Mode::Read : Database::Mode::Change);
+  boundCache(database.get());
   checkMapVersion(database.get());
   if (access == MapFile::Access::Change)
     database->run("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
@@ -33,6 +38,7 @@ MapFile::~MapFile() = default;
 MapFile MapFile::create(const std::filesystem::path& file, const MapDescription& description) {
   if (!isUnfinishedMap(file)) throw InputError(fmt::format("{}: exists already", file.string()));
   auto database = std::make_unique<Database>(file, Database::Mode::Create);
+  boundCache(database.get());
   database->run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
   MapFile map(file, std::move(database));
   MapChange change = map.change();
