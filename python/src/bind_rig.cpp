@@ -149,8 +149,12 @@ void bindRig(py::module_& module) {
              for (size_t i = 0; i < cameras.size(); ++i) {
                if (cameras[i].name.empty()) cameras[i].name = "cam" + std::to_string(i);
              }
-             return DescribedRig{{imu, std::move(cameras), magnetometer, pressure, std::nullopt},
-                                 std::nullopt};
+             DescribedRig described;
+             described.rig.imu = imu;
+             described.rig.cameras = std::move(cameras);
+             described.rig.magnetometer = magnetometer;
+             described.rig.pressure = pressure;
+             return described;
            }),
            py::kw_only(), py::arg("cameras"), py::arg_v("imu", ImuCalibration{0.0, {}}, "Imu()"),
            py::arg("magnetometer") = py::none(), py::arg("pressure") = py::none())

@@ -39,13 +39,13 @@ TEST(PhysicalEffects, LevelsNestAndPhysicalHasOnePort) {
 TEST(PhysicalEffects, PortsAreOffByWhatTheySay) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const DiveErrors tilted = diveWith({"port_tilt=on"}, seed).errors;
-    const FlatPort plate = std::get<FlatPort>(*tilted.port);
+    const FlatPort plate = std::get<FlatPort>(tilted.port.value());
     const double tilt = std::acos(plate.normal_C.normalized().z());
     EXPECT_GE(tilt, 0.4 * kDegree);
     EXPECT_LE(tilt, 1.0 * kDegree);
     EXPECT_LT(tilted.port_fit_rms_px, 1.0);
     const DiveErrors domed = diveWith({"dome_port=on"}, seed).errors;
-    const DomePort dome = std::get<DomePort>(*domed.port);
+    const DomePort dome = std::get<DomePort>(domed.port.value());
     EXPECT_GE(dome.centre_C.norm(), 0.001);
     EXPECT_LE(dome.centre_C.norm(), 0.003);
     // The camera in the files lacks the port, and hardly any of its pixels is wrong by half a pixel.

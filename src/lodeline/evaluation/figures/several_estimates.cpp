@@ -18,9 +18,10 @@ constexpr std::array kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e
 const char* colourOf(size_t estimate) { return kColours[estimate % kColours.size()]; }
 
 /// Text between single quotes of gnuplot.
-std::string quoted(std::string text) {
-  for (size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 2) text.insert(at, "'");
-  return "'" + text + "'";
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
+  return result + "'";
 }
 
 /// Whether the pairs before and at `i` are so far apart that no line joins them.
