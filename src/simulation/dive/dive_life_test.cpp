@@ -38,20 +38,20 @@ TEST(PhysicalEffects, LevelsNestAndPhysicalHasOnePort) {
 
 TEST(PhysicalEffects, PortsAreOffByWhatTheySay) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
-    const DiveErrors tilted = diveWith({"port_tilt=on"}, seed).errors;
+    const DiveErrors& tilted = diveWith({"port_tilt=on"}, seed).errors;
     const FlatPort plate = std::get<FlatPort>(tilted.port.value());
     const double tilt = std::acos(plate.normal_C.normalized().z());
     EXPECT_GE(tilt, 0.4 * kDegree);
     EXPECT_LE(tilt, 1.0 * kDegree);
     EXPECT_LT(tilted.port_fit_rms_px, 1.0);
-    const DiveErrors domed = diveWith({"dome_port=on"}, seed).errors;
+    const DiveErrors& domed = diveWith({"dome_port=on"}, seed).errors;
     const DomePort dome = std::get<DomePort>(domed.port.value());
     EXPECT_GE(dome.centre_C.norm(), 0.001);
     EXPECT_LE(dome.centre_C.norm(), 0.003);
     // The camera in the files lacks the port, and hardly any of its pixels is wrong by half a pixel.
     EXPECT_FALSE(domed.given.cameras[0].port);
     EXPECT_LT(domed.port_fit_rms_px, 0.5);
-    const DiveErrors told = diveWith({"dome_port=on", "port_in_files=on"}, seed).errors;
+    const DiveErrors& told = diveWith({"dome_port=on", "port_in_files=on"}, seed).errors;
     ASSERT_TRUE(told.given.cameras[0].port);
     EXPECT_EQ(told.given.cameras[0].port->type, Port::Type::Dome);
     EXPECT_EQ(told.given.cameras[0].port->centre_C, dome.centre_C);
