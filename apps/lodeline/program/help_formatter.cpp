@@ -129,9 +129,9 @@ std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
 }
 
 std::string optionUsage(const CLI::Option& option, bool is_positional) {
-  std::string text = option.get_name(is_positional, !is_positional);
-  std::replace(text.begin(), text.end(), ',', ' ');
-  if (const size_t space = text.find(' '); space != std::string::npos) text.insert(space, ",");
+  std::string text;
+  for (const char c : option.get_name(is_positional, !is_positional))
+    text += c == ',' ? ", " : std::string(1, c);
   if (is_positional || option.get_items_expected_max() == 0) return text;
   const std::string type = option.get_type_name();
   text += " " + type.substr(0, type.find(':'));  // without its range

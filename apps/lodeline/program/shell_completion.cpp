@@ -65,12 +65,14 @@ std::string bashScript(const CLI::App& program) {
   return fmt::format(kBash, fmt::join(with_inner, "|"), cases, fmt::join(with_inner, "|"));
 }
 
-/// Text within single quotes of fish.
-std::string fishQuoted(std::string text) {
-  for (size_t at = 0; (at = text.find_first_of("'\\", at)) != std::string::npos; at += 2)
-    text.insert(at, "\\");
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return "'" + text + "'";
+/// Text within single quotes of fish, on one line.
+std::string fishQuoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') result += '\\';
+    result += c == '\n' ? ' ' : c;
+  }
+  return result + "'";
 }
 
 std::string fishCondition(const std::vector<std::string>& words) {
