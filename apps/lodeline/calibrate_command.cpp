@@ -144,7 +144,7 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
       "--unit", arguments->unit,
       "of a file without header: T, uT, nT, mG, G or raw; told by the field's size where not given");
   addRecordingPart(&arguments->part, command);
-  addSite(&arguments->site, "the scale is that of the Earth's field there", command);
+  addSite(&arguments->site, "the scale by the Earth's field", command);
   command->add_option("--old", arguments->old,
                       "calibration to fall back on where the readings say too little");
   command->add_option("--compare", arguments->compare,

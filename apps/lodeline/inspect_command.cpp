@@ -109,7 +109,7 @@ void addInspectCommand(CLI::App& program) {
       ->expected(0, 1)
       ->default_str("16");
   command->add_option("--json", arguments->json, "write all figures to this file");
-  addSite(&arguments->site, "its field to compare with", command);
+  addSite(&arguments->site, "comparison with its field", command);
   addRecordingPart(&arguments->part, command);
   addCameras(&arguments->cameras, command);
   addVerbosity(&arguments->verbosity, command);

@@ -149,7 +149,7 @@ void addSharedRunOptions(CLI::App* command, RunArguments* arguments) {
   command->add_option("-s,--set", run.overrides, "one setting of all runs, KEY=VALUE");
   command->add_option("--mag-calibration", run.magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote; scenarios calibrate their own rig");
-  addSite(&arguments->site, "true north; scenarios know theirs", command);
+  addSite(&arguments->site, "true north (scenarios know theirs)", command);
   addCameras(&arguments->cameras, command);
   addVerbosity(&arguments->verbosity, command);
 }

@@ -28,6 +28,12 @@ std::vector<std::string> orderedGroups(const CLI::App& command) {
   return groups;
 }
 
+/// What stands for the value of an option, without its range.
+std::string typeOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, type.find(':'));
+}
+
 }  // namespace
 
 HelpFormatter::HelpFormatter()
@@ -94,7 +100,7 @@ std::string HelpFormatter::make_usage(const CLI::App* command, std::string name)
       const std::string more = option->get_items_expected_max() > 1 ? " ..." : "";
       text += option->get_required() ? " " + positional + more : fmt::format(" [{}{}]", positional, more);
     } else if (option->get_required()) {
-      text += " " + optionUsage(*option, false);
+      text += " " + option->get_name(false, false) + " " + typeOf(*option);
     }
   }
   if (!command->get_subcommands({}).empty()) text += " COMMAND";
@@ -133,8 +139,7 @@ std::string optionUsage(const CLI::Option& option, bool is_positional) {
   for (const char c : option.get_name(is_positional, !is_positional))
     text += c == ',' ? ", " : std::string(1, c);
   if (is_positional || option.get_items_expected_max() == 0) return text;
-  const std::string type = option.get_type_name();
-  text += " " + type.substr(0, type.find(':'));  // without its range
+  text += " " + typeOf(option);
   return option.get_items_expected_min() == 0 ? text + " (optional)" : text;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/lodeline/program/help_groups.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,15 @@ const Groups& optionGroups() {
   return groups;
 }
 
+/// What stands for the value of options that take a text.
+const std::map<std::string, const char*>& valueNames() {
+  static const std::map<std::string, const char*> names = {
+      {"output", "PATH"},   {"json", "FILE"}, {"plots", "FOLDER"},         {"config", "FILE"},
+      {"set", "KEY=VALUE"}, {"map", "FILE"},  {"mag-calibration", "FILE"}, {"recording", "PATH"},
+      {"board", "FILE"},    {"old", "FILE"},  {"compare", "FILE"}};
+  return names;
+}
+
 /// Title of the group that contains `name`; null where none does.
 const char* groupOf(const std::string& name, const Groups& groups) {
   for (const auto& [title, names] : groups) {
@@ -40,9 +50,13 @@ const char* groupOf(const std::string& name, const Groups& groups) {
 }
 
 void groupOptions(CLI::App* command) {
+  command->get_help_ptr()->description("print this help");
   for (CLI::Option* option : command->get_options()) {
     if (option->get_positional() || option->get_lnames().empty()) continue;
-    if (const char* title = groupOf(option->get_lnames().front(), optionGroups())) option->group(title);
+    const std::string& name = option->get_lnames().front();
+    if (const char* title = groupOf(name, optionGroups())) option->group(title);
+    const auto value = valueNames().find(name);
+    if (value != valueNames().end() && option->get_type_name() == "TEXT") option->type_name(value->second);
   }
   for (CLI::App* inner : command->get_subcommands([](CLI::App*) { return true; })) groupOptions(inner);
 }
@@ -50,6 +64,7 @@ void groupOptions(CLI::App* command) {
 }  // namespace
 
 void makeHelpGroups(CLI::App& program) {
+  program.get_help_ptr()->description("print this help");
   for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) {
     if (const char* title = groupOf(command->get_name(), commandGroups())) command->group(title);
     groupOptions(command);

@@ -29,7 +29,7 @@ TEST(ProgramCommands, BashCompletesCommandsAndOptions) {
       "[[ \"$(complete_words lodeline calibrate mag)\" == magnetometer ]] && "
       "[[ \"$(complete_words lodeline run --mag)\" == *--mag-calibration* ]] && "
       "[[ \"$(complete_words lodeline map build --over)\" == --overwrite ]]";
-  EXPECT_EQ(shell("bash -c " + quoted(script)), 0);
+  EXPECT_EQ(shell("bash -c " + quoted(std::filesystem::path(script))), 0);
 }
 
 TEST(ProgramCommands, SettingsAreAConfiguration) {
