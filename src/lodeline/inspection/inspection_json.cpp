@@ -128,8 +128,15 @@ nlohmann::ordered_json inspectionJson(const Inspection& inspection) {
   if (inspection.magnetometer) json["sensors"].push_back(magnetometerJson(inspection));
   for (const PlainSurvey& other : inspection.others) {
     Json entry = streamJson(inspection, other.sensor, other.stream);
-    entry["least_m"] = other.least;
-    entry["greatest_m"] = other.greatest;
+    entry["values"] = Json::array();
+    for (const ValueRange& value : other.values) {
+      entry["values"].push_back(
+          {{"name", value.name}, {"unit", value.unit}, {"least", value.least}, {"greatest", value.greatest}});
+    }
+    if (other.lock) {
+      entry["pings_without_lock"] = other.lock->without_lock;
+      entry["pings_without_some_beams"] = other.lock->partial;
+    }
     json["sensors"].push_back(entry);
   }
   return json;

@@ -132,6 +132,12 @@ std::string magnetometerText(const Inspection& inspection) {
   return text + "\n";
 }
 
+std::string lockText(const DvlLock& lock) {
+  if (lock.pings == 0) return {};
+  return fmt::format("          no lock in {:.1f} % of the pings, some beams missing in {:.1f} %\n",
+                     100.0 * lock.without_lock / lock.pings, 100.0 * lock.partial / lock.pings);
+}
+
 }  // namespace
 
 std::string inspectionText(const Inspection& inspection) {
@@ -140,7 +146,11 @@ std::string inspectionText(const Inspection& inspection) {
   if (inspection.magnetometer) text += magnetometerText(inspection);
   for (const PlainSurvey& other : inspection.others) {
     text += streamLine(inspection, other.sensor, other.stream);
-    text += fmt::format("          {:.2f} to {:.2f} m\n", other.least, other.greatest);
+    for (const ValueRange& value : other.values) {
+      text += fmt::format("          {} {:.2f} to {:.2f} {}\n", value.name, value.least, value.greatest,
+                          value.unit);
+    }
+    if (other.lock) text += lockText(*other.lock);
   }
   return text;
 }

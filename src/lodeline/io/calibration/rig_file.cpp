@@ -10,6 +10,7 @@
 #include "lodeline/io/calibration/calibration_translation.h"
 #include "lodeline/io/calibration/euroc_calibration.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
+#include "lodeline/io/robots/robot_calibration.h"
 
 namespace lodeline {
 namespace {
@@ -45,6 +46,15 @@ class RigReader {
       rig.sonar = readEurocSonar(map);
       moveToBody(&rig.sonar->body_from_sonar);
     });
+    visit("altimeter0", [&](CalibrationMap* map, SectionKeys) {
+      rig.altimeter = readEurocSonar(map);
+      moveToBody(&rig.altimeter->body_from_sonar);
+    });
+    visit("dvl0", [&](CalibrationMap* map, SectionKeys) {
+      rig.dvl = readDvlSection(map);
+      moveToBody(&rig.dvl->body_from_dvl);
+    });
+    visit("current0", [&](CalibrationMap* map, SectionKeys) { rig.currents = readCurrentSection(map); });
   }
 
  private:

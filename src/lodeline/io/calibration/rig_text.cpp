@@ -8,6 +8,7 @@
 
 #include "lodeline/cameras/camera_file_keys.h"
 #include "lodeline/io/calibration/camera_keys.h"
+#include "lodeline/io/robots/robot_calibration.h"
 
 namespace lodeline {
 namespace {
@@ -67,6 +68,14 @@ std::string correctionText(const ImuCorrection& correction) {
   return text;
 }
 
+std::string sonarText(const SonarCalibration& sonar) {
+  std::string text = transformText(sonar.body_from_sonar) +
+                     fmt::format("  range_noise_std: {}  # m\n  beam_width: {}  # rad\n",
+                                 sonar.range_noise_std_m, sonar.beam_width_rad);
+  if (sonar.max_range_m > 0.0) text += fmt::format("  max_range: {}  # m\n", sonar.max_range_m);
+  return text + rateText(sonar.rate_hz);
+}
+
 std::string imuText(const ImuCalibration& imu, const std::optional<ImuCorrection>& correction) {
   const ImuNoise& noise = imu.noise;
   std::string text = fmt::format(
@@ -119,12 +128,21 @@ std::string rigText(const RigFile& file) {
   }
   if (rig.sonar) {
     begin("sonar0");
-    text += transformText(rig.sonar->body_from_sonar) +
-            fmt::format("  range_noise_std: {}  # m\n  beam_width: {}  # rad\n", rig.sonar->range_noise_std_m,
-                        rig.sonar->beam_width_rad) +
-            (rig.sonar->max_range_m > 0.0 ? fmt::format("  max_range: {}  # m\n", rig.sonar->max_range_m)
-                                          : std::string()) +
-            rateText(rig.sonar->rate_hz);
+    text += sonarText(*rig.sonar);
+  }
+  if (rig.altimeter) {
+    begin("altimeter0");
+    text += sonarText(*rig.altimeter);
+  }
+  if (rig.dvl) {
+    begin("dvl0");
+    text += transformText(rig.dvl->body_from_dvl) + dvlSectionText(*rig.dvl) + rateText(rig.dvl->rate_hz);
+  }
+  if (rig.currents) {
+    begin("current0");
+    // A section without a key is no map.
+    const std::string keys = currentSectionText(*rig.currents) + rateText(rig.currents->rate_hz);
+    text += keys.empty() ? "  field_sigma_T_per_A: 0\n" : keys;
   }
   return text;
 }
@@ -190,6 +208,30 @@ imu0:                               # continuous noise densities: a datasheet's,
 #   T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]
 #   range_noise_std: 0.05                   # m
 #   beam_width: 0.035                       # rad, full width
+
+# altimeter0:                               # its beam points along x; keys as sonar0
+#   topic: /altimeter
+#   T_BS: [0,0,1,0, 0,1,0,0, -1,0,0,0, 0,0,0,1]
+#   range_noise_std: 0.05                   # m
+#   max_range: 50                           # m; greater ranges are no echoes
+
+# dvl0:                                     # z points along the axis of the beams, from the instrument outwards
+#   topic: /dvl/data
+#   T_BS: [1,0,0,0, 0,-1,0,0, 0,0,-1,0, 0,0,0,1]
+#   velocity_noise_std: 0.01                # m/s
+#   range_noise_std: 0.05                   # m
+#   beams: {angle_deg: 22.5, azimuths_deg: [45, 135, 225, 315]}  # to z; from x towards y; or vectors [x, y, z]
+#   scale_sigma: 0.01                       # of the speed of sound, relative
+#   misalignment_sigma: 0.03                # rad
+#   timeshift: 0.0                          # s; stamp + this = IMU clock
+
+# current0:                                 # currents that disturb mag0; names as in the recording
+#   topic: /currents
+#   channels:                               # or names alone: [thruster_1, lamp]
+#     thruster_1: {field_T_per_A: [1.2e-07, -3.0e-08, 4.0e-08]}  # axes of the magnetometer
+#     lamp: {field_T_per_A: [0, 0, 2.0e-08]}
+#   field_sigma_T_per_A: 5.0e-09
+#   timeshift: 0.0                          # s
 )";
 }
 

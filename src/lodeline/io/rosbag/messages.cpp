@@ -6,10 +6,26 @@
 #include <cmath>
 #include <limits>
 
+#include "lodeline/io/rosbag/message_fields.h"
+#include "lodeline/io/rosbag/robots/dvl_messages.h"
+#include "lodeline/io/rosbag/robots/robot_messages.h"
+
 namespace lodeline::messages {
 namespace {
 
 constexpr size_t kCovarianceBytes = 9 * sizeof(double);
+
+/// Writes an all-zero covariance, which means unknown; `first` -1 means that the quantity is missing.
+void putCovariance(double first, wire::Writer* writer) {
+  writer->put(first);
+  for (int i = 1; i < 9; ++i) writer->put(0.0);
+}
+
+bool isWithin(float range, float least, float greatest) {
+  return std::isfinite(range) && range >= least && range <= greatest;
+}
+
+}  // namespace
 
 Time takeHeader(wire::Reader* reader) {
   reader->take<uint32_t>();  // sequence number
@@ -40,13 +56,6 @@ void putVector(const Vec3& vector, wire::Writer* writer) {
   for (const double value : {vector.x(), vector.y(), vector.z()}) writer->put(value);
 }
 
-/// Writes an all-zero covariance, which means unknown; `first` -1 means that the quantity is missing.
-void putCovariance(double first, wire::Writer* writer) {
-  writer->put(first);
-  for (int i = 1; i < 9; ++i) writer->put(0.0);
-}
-
-/// The shortest decimal number that identifies a float: 3.1 where 32 bits store 3.0999999.
 double decimal(float value) {
   if (!std::isfinite(value)) return value;
   const std::string text = fmt::format("{}", value);
@@ -55,17 +64,14 @@ double decimal(float value) {
   return number;
 }
 
-bool isWithin(float range, float least, float greatest) {
-  return std::isfinite(range) && range >= least && range <= greatest;
-}
-
-}  // namespace
-
 std::vector<Type> typesOf(const std::string& sensor) {
   if (sensor == "imu0") return {messages::kImu};
   if (sensor == "mag0") return {messages::kMagneticField};
   if (sensor == "pressure0") return {messages::kFluidPressure};
   if (sensor == "sonar0") return {messages::kLaserScan, messages::kRange};
+  if (sensor == "altimeter0") return {messages::kRange};
+  if (sensor == "dvl0") return {kMarineDvl, kA50Dvl, kA50Dvl2, kSimulatedDvl, kColaDvl};
+  if (sensor == "current0") return {kBatteryState};
   return {messages::kImage, messages::kCompressedImage, messages::kCompressedVideo};
 }
 
@@ -73,6 +79,8 @@ std::vector<Type> namedTypesOf(const std::string& sensor) {
   std::vector<Type> types = typesOf(sensor);
   if (sensor == "mag0") types.push_back(kVector3Stamped);
   if (sensor == "pressure0") types.push_back(kOdometry);
+  if (sensor == "dvl0") types.insert(types.end(), {kTwist, kTwistWithCovariance});
+  if (sensor == "current0") types.push_back(kJointState);
   return types;
 }
 

@@ -36,10 +36,11 @@ inline constexpr Type kPoseStamped = {"geometry_msgs/PoseStamped", "d3812c3cbc69
 inline constexpr Type kOdometry = {"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"};
 inline constexpr Type kVector3Stamped = {"geometry_msgs/Vector3Stamped", "7b324c7325e683bf02a9b14b01090ec7"};
 
-/// Types that a sensor may publish: imu0, mag0, pressure0, sonar0; any other name is a camera.
+/// Types that a sensor may publish: imu0, mag0, pressure0, …; any other name is a camera.
 std::vector<Type> typesOf(const std::string& sensor);
 /// Types that a sensor may publish on a topic that the user names. They include types of several meanings:
-/// Vector3Stamped as a field in tesla, and Odometry as a depth.
+/// Vector3Stamped as a field in tesla, Odometry as a depth, Twist as the velocity of a DVL, and JointState as
+/// currents.
 std::vector<Type> namedTypesOf(const std::string& sensor);
 
 /// The stamp in the header with which each of these messages begins.
