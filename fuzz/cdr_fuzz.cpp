@@ -6,8 +6,8 @@
 #include "lodeline/io/rosbag/definitions/definition_parser.h"
 #include "lodeline/io/rosbag/definitions/message_conversion.h"
 #include "lodeline/io/rosbag/definitions/message_text.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 #include "lodeline/io/rosbag/robots/dvl_messages.h"
-#include "lodeline/io/rosbag/robots/robot_messages.h"
 
 // A definition of a message, a zero byte, and a message. The message is printed as the definition says, and
 // converted as a scan of a sonar, as pings of DVLs and as currents.

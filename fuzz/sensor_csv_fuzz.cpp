@@ -1,7 +1,7 @@
 #include "fuzzed_file.h"
 #include "lodeline/io/euroc/csv_reader.h"
-#include "lodeline/io/robots/current_table.h"
-#include "lodeline/io/robots/dvl_table.h"
+#include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 
 // Rows of a sensor in the EuRoC ASL layout: readings (imu0, dvl0, current0) and lists of images (cam0).
 

@@ -10,7 +10,6 @@
 #include "lodeline/io/calibration/calibration_translation.h"
 #include "lodeline/io/calibration/euroc_calibration.h"
 #include "lodeline/io/calibration/kalibr_calibration.h"
-#include "lodeline/io/robots/robot_calibration.h"
 
 namespace lodeline {
 namespace {
@@ -51,10 +50,10 @@ class RigReader {
       moveToBody(&rig.altimeter->body_from_sonar);
     });
     visit("dvl0", [&](CalibrationMap* map, SectionKeys) {
-      rig.dvl = readDvlSection(map);
+      rig.dvl = readDvl(map);
       moveToBody(&rig.dvl->body_from_dvl);
     });
-    visit("current0", [&](CalibrationMap* map, SectionKeys) { rig.currents = readCurrentSection(map); });
+    visit("current0", [&](CalibrationMap* map, SectionKeys) { rig.currents = readCurrents(map); });
   }
 
  private:

@@ -51,7 +51,7 @@ struct RigRequirements {
 ///     imu0: {topic: /imu, gyroscope_noise_density: …, …}
 ///     mag0: {T_BS: …, magnetometer_noise_density: …}
 ///     pressure0: {T_BS: …, depth_noise_std: …, water_density_kg_per_m3: 1025, surface_pressure_Pa: 101325}
-///     sonar0, altimeter0: {T_BS: …, range_noise_std: …}, dvl0, current0: see robots/robot_calibration.h
+///     sonar0, altimeter0: {T_BS: …, range_noise_std: …}, dvl0, current0: see readDvl(), readCurrents()
 ///
 /// The keys are those of EuRoC's sensor.yaml or of Kalibr and OpenVINS; files of other programs are also
 /// accepted (see collectRigSections). `topic` may be missing. Throws InputError for unknown keys, naming the

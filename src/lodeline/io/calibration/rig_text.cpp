@@ -8,7 +8,6 @@
 
 #include "lodeline/cameras/camera_file_keys.h"
 #include "lodeline/io/calibration/camera_keys.h"
-#include "lodeline/io/robots/robot_calibration.h"
 
 namespace lodeline {
 namespace {
@@ -76,6 +75,37 @@ std::string sonarText(const SonarCalibration& sonar) {
   return text + rateText(sonar.rate_hz);
 }
 
+std::string dvlText(const DvlCalibration& dvl) {
+  std::string text = fmt::format("  velocity_noise_std: {}  # m/s\n  range_noise_std: {}  # m\n  beams:\n",
+                                 dvl.velocity_noise_std_m_per_s, dvl.range_noise_std_m);
+  for (const Vec3& beam : dvl.beams_D)
+    text += fmt::format("    - [{}, {}, {}]\n", beam.x(), beam.y(), beam.z());
+  text += fmt::format("  scale_sigma: {}\n  misalignment_sigma: {}  # rad\n", dvl.scale_sigma,
+                      dvl.misalignment_sigma_rad);
+  if (dvl.time_offset_to_imu_s != 0.0)
+    text += fmt::format("  timeshift: {}  # s\n", dvl.time_offset_to_imu_s);
+  return text;
+}
+
+std::string currentText(const CurrentCalibration& currents) {
+  std::string text;
+  if (!currents.channels.empty()) text += "  channels:\n";
+  for (size_t i = 0; i < currents.channels.size(); ++i) {
+    const YAML::Node name(currents.channels[i]);  // quoted where YAML needs it
+    if (currents.fields_T_per_A.empty()) {
+      text += fmt::format("    - {}\n", YAML::Dump(name));
+      continue;
+    }
+    const Vec3& k = currents.fields_T_per_A[i];
+    text += fmt::format("    {}: {{field_T_per_A: [{}, {}, {}]}}\n", YAML::Dump(name), k.x(), k.y(), k.z());
+  }
+  if (currents.field_sigma_T_per_A > 0.0)
+    text += fmt::format("  field_sigma_T_per_A: {}\n", currents.field_sigma_T_per_A);
+  if (currents.time_offset_to_imu_s != 0.0)
+    text += fmt::format("  timeshift: {}  # s\n", currents.time_offset_to_imu_s);
+  return text;
+}
+
 std::string imuText(const ImuCalibration& imu, const std::optional<ImuCorrection>& correction) {
   const ImuNoise& noise = imu.noise;
   std::string text = fmt::format(
@@ -136,12 +166,12 @@ std::string rigText(const RigFile& file) {
   }
   if (rig.dvl) {
     begin("dvl0");
-    text += transformText(rig.dvl->body_from_dvl) + dvlSectionText(*rig.dvl) + rateText(rig.dvl->rate_hz);
+    text += transformText(rig.dvl->body_from_dvl) + dvlText(*rig.dvl) + rateText(rig.dvl->rate_hz);
   }
   if (rig.currents) {
     begin("current0");
     // A section without a key is no map.
-    const std::string keys = currentSectionText(*rig.currents) + rateText(rig.currents->rate_hz);
+    const std::string keys = currentText(*rig.currents) + rateText(rig.currents->rate_hz);
     text += keys.empty() ? "  field_sigma_T_per_A: 0\n" : keys;
   }
   return text;

@@ -7,10 +7,10 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/csv_reader.h"
+#include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/euroc/image_list.h"
-#include "lodeline/io/robots/current_table.h"
-#include "lodeline/io/robots/dvl_table.h"
 #include "lodeline/io/streams/stream_rate.h"
 
 namespace lodeline {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "lodeline/io/euroc/csv_reader.h"
+#include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/image_list.h"
 #include "lodeline/io/images/grey_range.h"
-#include "lodeline/io/robots/current_table.h"
-#include "lodeline/io/robots/dvl_table.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {

@@ -39,7 +39,7 @@ std::string DvlText::velocityCells(const DvlSample& ping) const {
 
 std::string DvlText::lastCells(const DvlSample& ping) const {
   std::string text;
-  if (has_sigma_) text += "," + cell(ping.velocity_sigma_m_per_s);
+  if (has_sigma_) text += fmt::format(",{}", cell(ping.velocity_sigma_m_per_s));
   if (has_track_) text += ping.track == DvlTrack::Water ? ",water" : ",bottom";
   return text;
 }

@@ -1,14 +1,10 @@
 #include "lodeline/io/rosbag/messages.h"
 
-#include <fmt/format.h>
-
-#include <charconv>
 #include <cmath>
 #include <limits>
 
-#include "lodeline/io/rosbag/message_fields.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 #include "lodeline/io/rosbag/robots/dvl_messages.h"
-#include "lodeline/io/rosbag/robots/robot_messages.h"
 
 namespace lodeline::messages {
 namespace {
@@ -26,43 +22,6 @@ bool isWithin(float range, float least, float greatest) {
 }
 
 }  // namespace
-
-Time takeHeader(wire::Reader* reader) {
-  reader->take<uint32_t>();  // sequence number
-  const Time stamp = reader->takeTime();
-  reader->takeText();  // frame
-  return stamp;
-}
-
-void putHeader(Time stamp, uint32_t sequence, std::string_view frame, wire::Writer* writer) {
-  writer->put(sequence);
-  writer->putTime(stamp);
-  writer->putText(frame);
-}
-
-Vec3 takeVector(wire::Reader* reader) {
-  const double x = reader->take<double>();
-  const double y = reader->take<double>();
-  return {x, y, reader->take<double>()};
-}
-
-Rigid3 takePose(wire::Reader* reader) {
-  const Vec3 translation = takeVector(reader);
-  const Vec3 imaginary = takeVector(reader);
-  return {Quat(reader->take<double>(), imaginary.x(), imaginary.y(), imaginary.z()), translation};
-}
-
-void putVector(const Vec3& vector, wire::Writer* writer) {
-  for (const double value : {vector.x(), vector.y(), vector.z()}) writer->put(value);
-}
-
-double decimal(float value) {
-  if (!std::isfinite(value)) return value;
-  const std::string text = fmt::format("{}", value);
-  double number = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return number;
-}
 
 std::vector<Type> typesOf(const std::string& sensor) {
   if (sensor == "imu0") return {messages::kImu};
@@ -129,6 +88,14 @@ std::vector<SonarSample> parseRange(std::span<const uint8_t> message) {
   const auto range = reader.take<float>();
   if (!isWithin(range, least, greatest)) return {};
   return {{time, decimal(range), 0.0}};
+}
+
+std::vector<AltimeterSample> parseAltimeter(std::span<const uint8_t> message) {
+  std::vector<AltimeterSample> echoes;
+  for (const SonarSample& echo : parseRange(message)) {
+    if (echo.range_m > 0.0) echoes.push_back({echo.time, echo.range_m});
+  }
+  return echoes;
 }
 
 std::vector<SonarSample> parseLaserScan(std::span<const uint8_t> message) {
@@ -204,6 +171,18 @@ wire::Bytes laserScan(const SonarSample& sample, uint32_t sequence) {
   writer.put(uint32_t{1});
   writer.put(static_cast<float>(sample.range_m));
   writer.put(uint32_t{0});  // no intensities
+  return writer.take();
+}
+
+wire::Bytes altimeterRange(const AltimeterSample& sample, uint32_t sequence) {
+  constexpr uint8_t kUltrasound = 0;
+  wire::Writer writer;
+  putHeader(sample.time, sequence, "altimeter0", &writer);
+  writer.put(kUltrasound);
+  for (const float value :
+       {0.0F, 0.0F, std::numeric_limits<float>::max(), static_cast<float>(sample.range_m)}) {
+    writer.put(value);
+  }
   return writer.take();
 }
 

@@ -6,8 +6,8 @@
 
 #include "lodeline/io/rosbag/checked_reading.h"
 #include "lodeline/io/rosbag/image_messages.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 #include "lodeline/io/rosbag/robots/dvl_messages.h"
-#include "lodeline/io/rosbag/robots/robot_messages.h"
 
 namespace lodeline {
 namespace {

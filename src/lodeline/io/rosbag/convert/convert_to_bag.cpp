@@ -13,11 +13,11 @@
 #include "lodeline/io/rosbag/convert/bag_writer.h"
 #include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/io/rosbag/convert/rig_conversion.h"
+#include "lodeline/io/rosbag/definitions/message_fields.h"
 #include "lodeline/io/rosbag/image_messages.h"
-#include "lodeline/io/rosbag/message_fields.h"
 #include "lodeline/io/rosbag/messages.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 #include "lodeline/io/rosbag/robots/dvl_messages.h"
-#include "lodeline/io/rosbag/robots/robot_messages.h"
 
 namespace lodeline {
 namespace {

@@ -6,8 +6,8 @@
 #include <unordered_map>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/euroc/current_table.h"
 #include "lodeline/io/images/image_loader.h"
-#include "lodeline/io/robots/current_table.h"
 #include "lodeline/io/robots/dvl_text.h"
 #include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/io/rosbag/checked_reading.h"

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "lodeline/io/rosbag/message_fields.h"
-
 namespace lodeline::messages {
 namespace {
 

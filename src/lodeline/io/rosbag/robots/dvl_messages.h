@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lodeline/io/robots/dvl_screen.h"
-#include "lodeline/io/rosbag/messages.h"
+#include "lodeline/io/rosbag/definitions/message_fields.h"
 
 /// Messages of the drivers of DVLs, in ROS 1's serialization and the forms of known_definitions.cpp.
 namespace lodeline::messages {

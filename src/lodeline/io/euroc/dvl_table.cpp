@@ -1,4 +1,4 @@
-#include "lodeline/io/robots/dvl_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 
 #include <fmt/core.h>
 

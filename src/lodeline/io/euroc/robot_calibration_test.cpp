@@ -1,5 +1,3 @@
-#include "lodeline/io/robots/robot_calibration.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 #include "lodeline/io/euroc/euroc_source.h"
 #include "lodeline/io/euroc/test_recording.h"
-#include "lodeline/io/robots/current_table.h"
-#include "lodeline/io/robots/dvl_table.h"
 #include "lodeline/io/robots/dvl_text.h"
 
 namespace lodeline {

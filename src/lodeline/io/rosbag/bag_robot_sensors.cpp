@@ -2,8 +2,8 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag/bag_source.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 #include "lodeline/io/rosbag/robots/dvl_messages.h"
-#include "lodeline/io/rosbag/robots/robot_messages.h"
 #include "lodeline/util/angles.h"
 
 // The parts of BagSource that read altimeter, DVL and current sensors.

@@ -1,11 +1,10 @@
-#include "lodeline/io/rosbag/robots/robot_messages.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "lodeline/diagnostics.h"
 #include "lodeline/io/robots/channel_order.h"
-#include "lodeline/io/rosbag/message_fields.h"
 
 namespace lodeline::messages {
 namespace {
@@ -42,26 +41,6 @@ NamedCurrents parseBattery(wire::Reader* reader) {
 }
 
 }  // namespace
-
-std::vector<AltimeterSample> parseAltimeter(std::span<const uint8_t> message) {
-  std::vector<AltimeterSample> echoes;
-  for (const SonarSample& echo : parseRange(message)) {
-    if (echo.range_m > 0.0) echoes.push_back({echo.time, echo.range_m});
-  }
-  return echoes;
-}
-
-wire::Bytes altimeterRange(const AltimeterSample& sample, uint32_t sequence) {
-  constexpr uint8_t kUltrasound = 0;
-  wire::Writer writer;
-  putHeader(sample.time, sequence, "altimeter0", &writer);
-  writer.put(kUltrasound);
-  for (const float value :
-       {0.0F, 0.0F, std::numeric_limits<float>::max(), static_cast<float>(sample.range_m)}) {
-    writer.put(value);
-  }
-  return writer.take();
-}
 
 bool isFinite(const NamedCurrents& currents) {
   return std::all_of(currents.currents_A.begin(), currents.currents_A.end(),

@@ -12,9 +12,9 @@
 #include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/io/rosbag/convert/bag_writer.h"
 #include "lodeline/io/rosbag/convert/convert.h"
-#include "lodeline/io/rosbag/message_fields.h"
+#include "lodeline/io/rosbag/definitions/message_fields.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
 #include "lodeline/io/rosbag/robots/dvl_messages.h"
-#include "lodeline/io/rosbag/robots/robot_messages.h"
 
 // Altimeter, DVL and currents in bags: conversions in all directions, and messages of the drivers.
 

@@ -1,4 +1,4 @@
-#include "lodeline/io/robots/current_table.h"
+#include "lodeline/io/euroc/current_table.h"
 
 #include <fmt/core.h>
 

@@ -4,19 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/io/rosbag/messages.h"
+#include "lodeline/io/rosbag/definitions/message_fields.h"
+#include "lodeline/rig.h"
 
-/// Messages of altimeters and current sensors, in ROS 1's serialization.
+/// Messages with electric currents, in ROS 1's serialization.
 namespace lodeline::messages {
 
 inline constexpr Type kBatteryState = {"sensor_msgs/BatteryState", "4ddae7f048e32fda22cac764685e3974"};
 inline constexpr Type kJointState = {"sensor_msgs/JointState", "3066dcd76a6cfaef579bd0f34173e9fd"};
-
-/// The echo of a Range; none where it is not a number within the sensor's limits.
-std::vector<AltimeterSample> parseAltimeter(std::span<const uint8_t> message);
-inline bool isFinite(const std::vector<AltimeterSample>&) { return true; }
-/// A Range, which has 32 bits.
-wire::Bytes altimeterRange(const AltimeterSample& sample, uint32_t sequence);
 
 /// Currents with the names of their channels.
 struct NamedCurrents {

@@ -8,6 +8,12 @@
 /// Parts that several messages share, in ROS 1's serialization.
 namespace lodeline::messages {
 
+/// Name of a message type and the checksum of its definition, which changes when the definition does.
+struct Type {
+  const char* name;
+  const char* md5sum;
+};
+
 /// The stamp of a header, which is passed over.
 Time takeHeader(wire::Reader* reader);
 void putHeader(Time stamp, uint32_t sequence, std::string_view frame, wire::Writer* writer);
