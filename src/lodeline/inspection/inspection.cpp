@@ -124,11 +124,13 @@ Inspection inspect(const SourceFactory& open, const InspectionOptions& options) 
     for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection.rate_to_SI;
     inspection.magnetometer = surveyMagnetometer(source.get(), samples);
   }
+  if (!inspection.imu.samples.empty()) compareRobotSensors(open, &inspection);
   findings::judgeStreams(&inspection);
   findings::judgeImages(&inspection);
   findings::judgeExtrinsics(&inspection);
   findings::judgeTurning(&inspection);
   findings::judgeMagnetometer(&inspection);
+  findings::judgeRobotSensors(&inspection);
   takeReaderFindings(diagnostics, &inspection);
   std::stable_sort(inspection.findings.begin(), inspection.findings.end(),
                    [](const InspectionFinding& a, const InspectionFinding& b) {

@@ -8,6 +8,8 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
+#include "lodeline/inspection/robots/current_comparison.h"
+#include "lodeline/inspection/robots/dvl_comparison.h"
 #include "lodeline/inspection/survey/camera_survey.h"
 #include "lodeline/inspection/survey/imu_survey.h"
 #include "lodeline/inspection/survey/magnetometer_survey.h"
@@ -62,6 +64,8 @@ struct Inspection {
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
   std::vector<PlainSurvey> others;
+  std::optional<DvlComparison> dvl;           ///< with the IMU
+  std::optional<CurrentComparison> currents;  ///< with the magnetometer
   std::optional<Vec3> site_field_W;  ///< east, north, up, T: at the site and date of the recording, if known
   std::vector<InspectionFinding> findings;  ///< most harmful first
 

@@ -137,6 +137,16 @@ nlohmann::ordered_json inspectionJson(const Inspection& inspection) {
       entry["pings_without_lock"] = other.lock->without_lock;
       entry["pings_without_some_beams"] = other.lock->partial;
     }
+    if (other.sensor == "dvl0" && inspection.dvl) {
+      entry["imu_motion_m_per_s"] = inspection.dvl->motion_m_per_s;
+      entry["imu_remainder_m_per_s"] = inspection.dvl->remainder_m_per_s;
+      entry["imu_time_offset_s"] = inspection.dvl->time_offset_s;
+    }
+    if (other.sensor == "current0" && inspection.currents) {
+      entry["field_scatter_T"] = inspection.currents->scatter_T;
+      entry["field_scatter_with_currents_T"] = inspection.currents->explained_scatter_T;
+      entry["field_time_offset_s"] = inspection.currents->time_offset_s;
+    }
     json["sensors"].push_back(entry);
   }
   return json;

@@ -138,6 +138,29 @@ std::string lockText(const DvlLock& lock) {
                      100.0 * lock.without_lock / lock.pings, 100.0 * lock.partial / lock.pings);
 }
 
+std::string dvlText(const DvlComparison& dvl) {
+  return fmt::format(
+      "          with the IMU over {} pings: velocity changes by {:.3f} m/s, {:.3f} m/s do not fit, least "
+      "with stamps "
+      "{:+.2f} s\n",
+      dvl.pings, dvl.motion_m_per_s, dvl.remainder_m_per_s, dvl.time_offset_s);
+}
+
+std::string currentsText(const CurrentComparison& currents) {
+  std::string text = fmt::format(
+      "          with the magnetometer over {} readings: scatter {:.2f} uT, {:.2f} uT with currents, least "
+      "with stamps "
+      "{:+.2f} s\n",
+      currents.readings, 1e6 * currents.scatter_T, 1e6 * currents.explained_scatter_T,
+      currents.time_offset_s);
+  for (const ChannelField& channel : currents.channels) {
+    const Vec3 field_uT = 1e6 * channel.field_T_per_A;
+    text += fmt::format("          {} {:.3f} {:.3f} {:.3f} (+-{:.3f}) uT/A\n", channel.name, field_uT.x(),
+                        field_uT.y(), field_uT.z(), 1e6 * channel.sigma_T_per_A);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string inspectionText(const Inspection& inspection) {
@@ -151,6 +174,8 @@ std::string inspectionText(const Inspection& inspection) {
                           value.unit);
     }
     if (other.lock) text += lockText(*other.lock);
+    if (other.sensor == "dvl0" && inspection.dvl) text += dvlText(*inspection.dvl);
+    if (other.sensor == "current0" && inspection.currents) text += currentsText(*inspection.currents);
   }
   return text;
 }

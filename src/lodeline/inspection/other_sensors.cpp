@@ -97,4 +97,31 @@ std::vector<PlainSurvey> surveyOtherSensors(MeasurementSource* source) {
   return surveys;
 }
 
+void compareRobotSensors(const SourceFactory& open, Inspection* inspection) {
+  const Rig& rig = inspection->rig;
+  const bool has_currents =
+      rig.currents && inspection->magnetometer && inspection->magnetometer->field_T > 0.0;
+  if (!rig.dvl && !has_currents) return;
+  std::vector<ImuSample> imu = inspection->imu.samples;
+  for (ImuSample& sample : imu) sample.angular_velocity_B *= inspection->rate_to_SI;
+  const InertialPath path(imu, medianRate_B(imu));
+  Diagnostics reported_before;
+  const std::unique_ptr<MeasurementSource> source = open(&reported_before);
+  if (rig.dvl) {
+    std::vector<DvlSample> pings;
+    while (std::optional<DvlSample> ping = source->nextDvl()) pings.push_back(std::move(*ping));
+    inspection->dvl = compareDvl(pings, *rig.dvl, path);
+  }
+  if (!has_currents) return;
+  std::vector<MagnetometerSample> field;
+  while (const std::optional<MagnetometerSample> sample = source->nextMagnetometer())
+    field.push_back(*sample);
+  std::stable_sort(field.begin(), field.end(),
+                   [](const MagnetometerSample& a, const MagnetometerSample& b) { return a.time < b.time; });
+  std::vector<CurrentSample> currents;
+  while (std::optional<CurrentSample> sample = source->nextCurrents()) currents.push_back(std::move(*sample));
+  inspection->currents =
+      compareCurrents(field, currents, rig, teslaPer(inspection->magnetometer->unit), path);
+}
+
 }  // namespace lodeline
