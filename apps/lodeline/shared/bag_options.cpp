@@ -14,9 +14,10 @@ void addBagOptions(BagArguments* arguments, CLI::App* command) {
                    "without it NAME.rig.yaml beside the bag, or what lies in the folder")
       ->type_name("FILE");
   command
-      ->add_option("--topic", arguments->topics,
-                   "for a bag: the topic of a sensor (cam0, imu0, mag0, dvl0, …); found by type where it "
-                   "is not named; imu0=/gyro,/accel unites two halves")
+      ->add_option(
+          "--topic", arguments->topics,
+          "for a bag: the topic of a sensor (cam0, imu0, mag0, dvl0 and so on); found by type where it "
+          "is not named; imu0=/gyro,/accel unites two halves")
       ->type_name("SENSOR=TOPIC");
   command->add_flag(
       "--received-times", arguments->use_received_times,
