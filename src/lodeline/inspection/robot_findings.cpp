@@ -8,8 +8,8 @@
 namespace lodeline::findings {
 namespace {
 
-void add(Inspection* inspection, Severity severity, double harm, const std::string& sensor,
-         const std::string& kind, const std::string& message) {
+void addRobotFinding(Inspection* inspection, Severity severity, double harm, const std::string& sensor,
+                     const std::string& kind, const std::string& message) {
   inspection->findings.push_back({severity, harm, sensor, kind, message});
 }
 
@@ -21,7 +21,8 @@ void judgeDvl(const DvlComparison& dvl, Inspection* inspection) {
   const double best = dvl.best_remainder_m_per_s / dvl.motion_m_per_s;
   const double moved = dvl.remainder_at_offset_m_per_s / dvl.motion_m_per_s;
   if (remainder > kContradicts && best < kFits && best < kMuchBetter * remainder) {
-    add(inspection, Severity::Serious, 74.0, "dvl0", "dvl_axes",
+    addRobotFinding(
+        inspection, Severity::Serious, 74.0, "dvl0", "dvl_axes",
         fmt::format("the axes of the DVL do not fit the IMU's: swapped, wrong signs or wrong T_BS (in body "
                     "axes as if "
                     "{}); {:.0f} % of the change of velocity is left, {:.0f} % then",
@@ -31,7 +32,8 @@ void judgeDvl(const DvlComparison& dvl, Inspection* inspection) {
   constexpr double kHarmfulOffset_s = 0.1, kClearlyBetter = 0.8;
   if (std::abs(dvl.time_offset_s) < kHarmfulOffset_s || moved > kClearlyBetter * remainder || moved > kFits)
     return;
-  add(inspection, Severity::Warning, 58.0, "dvl0", "dvl_time_offset",
+  addRobotFinding(
+      inspection, Severity::Warning, 58.0, "dvl0", "dvl_time_offset",
       fmt::format(
           "the stamps of the DVL fit the IMU better with {:+.2f} s: write this as `timeshift` of dvl0",
           dvl.time_offset_s + inspection->rig.dvl->time_offset_to_imu_s));
@@ -54,17 +56,19 @@ void judgeChannel(const ChannelField& shown, const Vec3& calibrated, Inspection*
   const std::string figures = fmt::format("{}: the readings show {:.3g} uT/A, the rig states {:.3g} uT/A",
                                           shown.name, 1e6 * size, 1e6 * calibrated.norm());
   if ((shown.field_T_per_A + calibrated).norm() < kSame * size) {
-    add(inspection, Severity::Serious, 71.0, "current0", "current_sign",
-        figures + " with the opposite sign; check the sign of the current");
+    addRobotFinding(inspection, Severity::Serious, 71.0, "current0", "current_sign",
+                    figures + " with the opposite sign; check the sign of the current");
     return;
   }
   const CurrentCalibration& currents = *inspection->rig.currents;
   if (const std::optional<size_t> other = channelWith(shown.field_T_per_A, currents)) {
-    add(inspection, Severity::Serious, 71.5, "current0", "current_channels",
+    addRobotFinding(
+        inspection, Severity::Serious, 71.5, "current0", "current_channels",
         fmt::format("{}; it is the field of {}: channels are exchanged", figures, currents.channels[*other]));
     return;
   }
-  add(inspection, Severity::Warning, 57.0, "current0", "current_field",
+  addRobotFinding(
+      inspection, Severity::Warning, 57.0, "current0", "current_field",
       figures + " in another direction or size; calibrate the currents again, because cables moved");
 }
 
@@ -79,7 +83,8 @@ void judgeCurrents(const CurrentComparison& comparison, Inspection* inspection) 
   if (std::abs(comparison.time_offset_s) < kHarmfulOffset_s ||
       comparison.scatter_at_offset_T > kClearlyBetter * comparison.explained_scatter_T)
     return;
-  add(inspection, Severity::Warning, 56.0, "current0", "current_time_offset",
+  addRobotFinding(
+      inspection, Severity::Warning, 56.0, "current0", "current_time_offset",
       fmt::format("the stamps of the currents fit the magnetometer better with {:+.2f} s: write this as "
                   "`timeshift` of "
                   "current0",

@@ -7,28 +7,28 @@
 namespace lodeline {
 namespace {
 
-constexpr double kWindow_s = 8.0;
-constexpr size_t kRowsPerWindow = 60, kFewestInWindow = 15, kMostWindows = 40;
+constexpr double kFieldWindow_s = 8.0;
+constexpr size_t kFieldsPerWindow = 60, kFewestFieldsInWindow = 15, kMostFieldWindows = 40;
 constexpr int kFewestReadings = 100;
 /// Current that must change for a channel to be compared, A.
 constexpr double kLeastChange_A = 0.1;
 
-using Window = std::vector<MagnetometerSample>;
+using FieldWindow = std::vector<MagnetometerSample>;
 
-std::vector<Window> windowsOf(const std::vector<MagnetometerSample>& field) {
-  std::vector<Window> windows;
-  const Duration length = Duration::fromSeconds(kWindow_s);
+std::vector<FieldWindow> fieldWindowsOf(const std::vector<MagnetometerSample>& field) {
+  std::vector<FieldWindow> windows;
+  const Duration length = Duration::fromSeconds(kFieldWindow_s);
   for (size_t begin = 0; begin < field.size();) {
     size_t end = begin;
     while (end < field.size() && field[end].time < field[begin].time + length) ++end;
-    const size_t every = std::max<size_t>(1, (end - begin) / kRowsPerWindow);
-    Window window;
+    const size_t every = std::max<size_t>(1, (end - begin) / kFieldsPerWindow);
+    FieldWindow window;
     for (size_t i = begin; i < end; i += every) window.push_back(field[i]);
-    if (window.size() >= kFewestInWindow) windows.push_back(std::move(window));
+    if (window.size() >= kFewestFieldsInWindow) windows.push_back(std::move(window));
     begin = std::max(end, begin + 1);
   }
-  const size_t keep = std::max<size_t>(1, windows.size() / kMostWindows);
-  std::vector<Window> chosen;
+  const size_t keep = std::max<size_t>(1, windows.size() / kMostFieldWindows);
+  std::vector<FieldWindow> chosen;
   for (size_t i = 0; i < windows.size(); i += keep) chosen.push_back(std::move(windows[i]));
   return chosen;
 }
@@ -85,13 +85,13 @@ struct Equations {
   }
 };
 
-Equations equationsOf(const std::vector<Window>& windows, const CurrentCourse& course, size_t channels,
+Equations equationsOf(const std::vector<FieldWindow>& windows, const CurrentCourse& course, size_t channels,
                       const Rig& rig, double tesla_per_unit, const InertialPath& path) {
   const auto unknowns = static_cast<Eigen::Index>(3 + 3 * channels);
   Equations sum(unknowns);
   const Mat3 body_from_magnetometer = rig.magnetometer->body_from_magnetometer.rotation.toRotationMatrix();
   const Duration offset = Duration::fromSeconds(rig.magnetometer->time_offset_to_imu_s);
-  for (const Window& window : windows) {
+  for (const FieldWindow& window : windows) {
     std::vector<Eigen::MatrixXd> jacobians;
     std::vector<Vec3> fields;
     Eigen::MatrixXd mean_jacobian = Eigen::MatrixXd::Zero(3, unknowns);
@@ -111,7 +111,7 @@ Equations equationsOf(const std::vector<Window>& windows, const CurrentCourse& c
       mean_jacobian += jacobian;
       jacobians.push_back(std::move(jacobian));
     }
-    if (fields.size() < kFewestInWindow) continue;
+    if (fields.size() < kFewestFieldsInWindow) continue;
     const auto count = static_cast<double>(fields.size());
     for (size_t i = 0; i < fields.size(); ++i) {
       const Eigen::MatrixXd jacobian = jacobians[i] - mean_jacobian / count;
@@ -147,7 +147,7 @@ std::optional<CurrentComparison> compareCurrents(const std::vector<MagnetometerS
   const std::vector<double> changes = changesOf(currents, channels);
   if (std::none_of(changes.begin(), changes.end(), [](double change) { return change > kLeastChange_A; }))
     return std::nullopt;
-  const std::vector<Window> windows = windowsOf(field);
+  const std::vector<FieldWindow> windows = fieldWindowsOf(field);
   const double stated_s = rig.currents->time_offset_to_imu_s;
   const auto equations = [&](double shift_s) {
     return equationsOf(windows, CurrentCourse(currents, stated_s + shift_s), channels, rig, tesla_per_unit,
@@ -171,9 +171,9 @@ std::optional<CurrentComparison> compareCurrents(const std::vector<MagnetometerS
     result.channels.push_back({i < rig.currents->channels.size() ? rig.currents->channels[i] : "",
                                fields.segment<3>(place), explained * std::sqrt(std::max(0.0, variance))});
   }
-  constexpr int kSteps = 10;
+  constexpr int kShifts = 10;
   constexpr double kStep_s = 0.05;
-  for (int i = -kSteps; i <= kSteps; ++i) {
+  for (int i = -kShifts; i <= kShifts; ++i) {
     const Equations shifted = equations(i * kStep_s);
     if (2 * shifted.readings < recorded.readings) continue;
     const double scatter = shifted.solve(unknowns).second;

@@ -10,22 +10,22 @@ namespace lodeline {
 namespace {
 
 /// Length of a window, in which attitude and integral of the specific force are accurate enough.
-constexpr double kWindow_s = 8.0;
-constexpr size_t kFewestInWindow = 10, kMostWindows = 60;
+constexpr double kDvlWindow_s = 8.0;
+constexpr size_t kFewestPingsInWindow = 10, kMostDvlWindows = 60;
 constexpr int kFewestPings = 40;
 
 struct TimedVelocity {
   Time time;
   Vec3 velocity_D;
 };
-using Window = std::vector<TimedVelocity>;
+using PingWindow = std::vector<TimedVelocity>;
 
-std::vector<Window> windowsOf(const std::vector<DvlSample>& pings, const DvlCalibration& dvl) {
-  std::vector<Window> windows;
-  const Duration length = Duration::fromSeconds(kWindow_s);
-  Window window;
+std::vector<PingWindow> pingWindowsOf(const std::vector<DvlSample>& pings, const DvlCalibration& dvl) {
+  std::vector<PingWindow> windows;
+  const Duration length = Duration::fromSeconds(kDvlWindow_s);
+  PingWindow window;
   const auto close = [&] {
-    if (window.size() >= kFewestInWindow) windows.push_back(window);
+    if (window.size() >= kFewestPingsInWindow) windows.push_back(window);
     window.clear();
   };
   for (const DvlSample& ping : pings) {
@@ -37,13 +37,13 @@ std::vector<Window> windowsOf(const std::vector<DvlSample>& pings, const DvlCali
     window.push_back({ping.time, *velocity_D});
   }
   close();
-  const size_t every = std::max<size_t>(1, windows.size() / kMostWindows);
-  std::vector<Window> chosen;
+  const size_t every = std::max<size_t>(1, windows.size() / kMostDvlWindows);
+  std::vector<PingWindow> chosen;
   for (size_t i = 0; i < windows.size(); i += every) chosen.push_back(std::move(windows[i]));
   return chosen;
 }
 
-struct Sum {
+struct DvlSum {
   double squares = 0.0;         ///< of the remainder
   double motion_squares = 0.0;  ///< of the change of velocity by the IMU
   int count = 0;
@@ -51,7 +51,7 @@ struct Sum {
   double rms(double squared) const { return count > 0 ? std::sqrt(squared / count) : 0.0; }
 };
 
-/// Sum of squares of vectors after subtraction of the best line over time.
+/// DvlSum of squares of vectors after subtraction of the best line over time.
 double squaresAboutLine(const std::vector<double>& times_s, const std::vector<Vec3>& values) {
   const auto count = static_cast<double>(values.size());
   double mean_time_s = 0.0, spread = 0.0;
@@ -71,11 +71,11 @@ double squaresAboutLine(const std::vector<double>& times_s, const std::vector<Ve
   return squares;
 }
 
-Sum remainderOf(const std::vector<Window>& windows, const DvlCalibration& dvl, const InertialPath& path,
-                const Mat3& axes, Duration offset) {
-  Sum sum;
+DvlSum remainderOf(const std::vector<PingWindow>& windows, const DvlCalibration& dvl,
+                   const InertialPath& path, const Mat3& axes, Duration offset) {
+  DvlSum sum;
   const Mat3 body_from_dvl = dvl.body_from_dvl.rotation.toRotationMatrix();
-  for (const Window& window : windows) {
+  for (const PingWindow& window : windows) {
     std::vector<double> times_s;
     std::vector<Vec3> differences, motions;
     for (const TimedVelocity& reading : window) {
@@ -88,7 +88,7 @@ Sum remainderOf(const std::vector<Window>& windows, const DvlCalibration& dvl, c
       motions.push_back(*path.forceIntegral(time));
       differences.push_back(*attitude * velocity_B - motions.back());
     }
-    if (differences.size() < kFewestInWindow) continue;
+    if (differences.size() < kFewestPingsInWindow) continue;
     sum.squares += squaresAboutLine(times_s, differences);
     sum.motion_squares += squaresAboutLine(times_s, motions);
     sum.count += static_cast<int>(differences.size());
@@ -118,9 +118,9 @@ std::optional<Vec3> velocityOf(const DvlSample& ping, const DvlCalibration& dvl)
 
 std::optional<DvlComparison> compareDvl(const std::vector<DvlSample>& pings, const DvlCalibration& dvl,
                                         const InertialPath& path) {
-  const std::vector<Window> windows = windowsOf(pings, dvl);
+  const std::vector<PingWindow> windows = pingWindowsOf(pings, dvl);
   const Duration offset = Duration::fromSeconds(dvl.time_offset_to_imu_s);
-  const Sum recorded = remainderOf(windows, dvl, path, Mat3::Identity(), offset);
+  const DvlSum recorded = remainderOf(windows, dvl, path, Mat3::Identity(), offset);
   if (recorded.count < kFewestPings) return std::nullopt;
   DvlComparison result;
   result.pings = recorded.count;
@@ -128,7 +128,7 @@ std::optional<DvlComparison> compareDvl(const std::vector<DvlSample>& pings, con
   result.remainder_m_per_s = recorded.rms(recorded.squares);
   result.best_remainder_m_per_s = result.remainder_at_offset_m_per_s = result.remainder_m_per_s;
   for (const Mat3& axes : signedAxes()) {
-    const Sum sum = remainderOf(windows, dvl, path, axes, offset);
+    const DvlSum sum = remainderOf(windows, dvl, path, axes, offset);
     if (sum.rms(sum.squares) >= result.best_remainder_m_per_s) continue;
     result.best_remainder_m_per_s = sum.rms(sum.squares);
     result.best_axes = axes;
@@ -137,7 +137,7 @@ std::optional<DvlComparison> compareDvl(const std::vector<DvlSample>& pings, con
   constexpr double kStep_s = 0.02;
   for (int i = -kSteps; i <= kSteps; ++i) {
     const Duration shift = Duration::fromSeconds(i * kStep_s);
-    const Sum sum = remainderOf(windows, dvl, path, Mat3::Identity(), offset + shift);
+    const DvlSum sum = remainderOf(windows, dvl, path, Mat3::Identity(), offset + shift);
     // Fewer pings lie within the inertial readings where the shift is large.
     if (2 * sum.count < recorded.count || sum.rms(sum.squares) >= result.remainder_at_offset_m_per_s)
       continue;

@@ -25,7 +25,7 @@ bool namesSigma(const ColumnName& column) {
 }
 
 /// The axis of a velocity in instrument axes; nothing for another column.
-std::optional<size_t> axisOf(const ColumnName& column) {
+std::optional<size_t> velocityAxisOf(const ColumnName& column) {
   if (!namesVelocity(column) || namesValidity(column) || namesSigma(column)) return std::nullopt;
   if (column.hasWord({"x", "vx", "velx"})) return 0;
   if (column.hasWord({"y", "vy", "vely"})) return 1;
@@ -95,7 +95,7 @@ void DvlTable::addVelocityColumns(const std::vector<ColumnName>& columns, CsvCol
   std::vector<std::optional<size_t>> axes(3);
   StatedUnit common;  // of the first axis that states one
   for (size_t i = 0; i < columns.size(); ++i) {
-    const std::optional<size_t> axis = axisOf(columns[i]);
+    const std::optional<size_t> axis = velocityAxisOf(columns[i]);
     if (!axis || axes[*axis]) continue;
     axes[*axis] = i;
     if (common.text.empty()) common = statedUnit(columns[i], Quantity::Velocity);
@@ -130,7 +130,7 @@ void DvlTable::addBeamColumns(const std::vector<ColumnName>& columns, CsvColumns
     found->numbers.push_back({*column, to_si, may_be_missing});
   };
   const auto velocity = columnThat(columns, [](const ColumnName& column) {
-    return namesVelocity(column) && !axisOf(column) && !namesValidity(column) && !namesSigma(column);
+    return namesVelocity(column) && !velocityAxisOf(column) && !namesValidity(column) && !namesSigma(column);
   });
   const auto beam = columnThat(columns, [](const ColumnName& column) {
     return column.hasWord({"beam", "transducer"}) && !namesVelocity(column) && !namesValidity(column) &&

@@ -59,8 +59,8 @@ TEST_F(RobotCalibrationTest, ASectionIsTheSameAfterWriting) {
            "    lamp: {field_T_per_A: [0, 0, 2.0e-08]}\n  field_sigma_T_per_A: 5.0e-09\n  timeshift: 0.25\n");
   const RigFile again = read(rigText(file).substr(rigText(file).find("altimeter0:")));
   const DvlCalibration &before = *file.rig.dvl, &after = again.rig.dvl.value();
-  EXPECT_EQ(before.beams_D, after.beams_D);
-  EXPECT_EQ(after.beams_D.size(), 3u);
+  ASSERT_EQ(after.beams_D.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) EXPECT_LT((before.beams_D[i] - after.beams_D[i]).norm(), 1e-15) << i;
   EXPECT_EQ(after.velocity_noise_std_m_per_s, 0.02);
   EXPECT_EQ(after.range_noise_std_m, 0.04);
   EXPECT_EQ(after.scale_sigma, 0.0);
