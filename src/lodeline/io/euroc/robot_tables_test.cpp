@@ -113,6 +113,18 @@ TEST_F(RobotTablesTest, UnitesTheBeamsOfAPing) {
               HasSubstr("0 of 3 pings (0.0 %) have no lock; 1 (33.3 %) lack some beams"));
 }
 
+TEST_F(RobotTablesTest, TakesAVelocityBesideBeamsThatHaveNone) {
+  StatedDvlPing ping;
+  ping.velocity_D = Vec3(0.5, 0.25, -0.125);
+  ping.beams = {{0, 0.0, 2.5}, {1, 0.0, 2.5}, {2, 0.0, 2.5}, {3, 0.0, 2.5}};
+  EXPECT_EQ(withoutSentinels(ping).velocity_D, ping.velocity_D) << "the instrument states ranges alone";
+  EXPECT_EQ(withoutSentinels(ping).beams[2].range_m, 2.5);
+  ping.beams[0].velocity_m_per_s = 0.3;
+  EXPECT_FALSE(withoutSentinels(ping).velocity_D) << "of one beam";
+  for (StatedDvlBeam& beam : ping.beams) beam.is_valid = false;
+  EXPECT_FALSE(withoutSentinels(ping).velocity_D) << "of none";
+}
+
 TEST_F(RobotTablesTest, CountsBeamsFromOneWhereAllDo) {
   std::string from_one = "#timestamp [ns],beam,velocity [m/s],range [m],valid,track\n", mixed = from_one;
   for (int beam = 1; beam <= 4; ++beam) {

@@ -50,8 +50,12 @@ std::optional<Vec3> velocityOf(const StatedDvlPing& ping, const std::vector<DvlB
   if (isBad(v.x()) || isBad(v.y()) || isBad(v.z())) return std::nullopt;
   const bool are_equal = v.x() == v.y() && v.y() == v.z();
   if (!ping.is_velocity_valid && are_equal && isSuspect(v.x())) return std::nullopt;
-  const bool states_beams = beams.size() >= kFewestBeamsOfVector;
-  if (states_beams && lockedBeams(beams) < kFewestBeamsOfVector) return std::nullopt;
+  // Some instruments list beams without velocities; these say nothing of the velocity.
+  const bool states_beams = lockedBeams(beams) > 0 ||
+                            std::any_of(ping.beams.begin(), ping.beams.end(),
+                                        [](const StatedDvlBeam& beam) { return beam.is_valid.has_value(); });
+  const bool is_partial = beams.size() >= kFewestBeamsOfVector && lockedBeams(beams) < kFewestBeamsOfVector;
+  if (states_beams && is_partial) return std::nullopt;
   return v;
 }
 
