@@ -1,5 +1,7 @@
 #include "lodeline/inspection/other_sensors.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -49,7 +51,7 @@ PlainSurvey surveyDvl(MeasurementSource* source) {
         for (int axis = 0; ping.velocity_D && axis < 3; ++axis)
           values->add(kAxes[axis], "m/s", (*ping.velocity_D)[axis]);
         for (const DvlBeam& beam : ping.beams) {
-          const std::string name = "beam " + std::to_string(beam.index);
+          const std::string name = fmt::format("beam {}", beam.index);
           if (beam.velocity_m_per_s) values->add(name + " velocity", "m/s", *beam.velocity_m_per_s);
           if (beam.range_m) values->add(name + " range", "m", *beam.range_m);
         }
@@ -64,7 +66,7 @@ PlainSurvey surveyCurrents(MeasurementSource* source) {
       "current0", [&] { return source->nextCurrents(); },
       [&](const CurrentSample& sample, ValueRanges* values) {
         for (size_t i = 0; i < sample.currents_A.size(); ++i) {
-          const std::string name = i < channels.size() ? channels[i] : "channel " + std::to_string(i);
+          const std::string name = i < channels.size() ? channels[i] : fmt::format("channel {}", i);
           values->add(name, "A", sample.currents_A[i]);
         }
       });

@@ -276,7 +276,7 @@ TEST_F(RobotTablesTest, AFolderHasTheThreeStreams) {
 }
 
 TEST_F(RobotTablesTest, AFolderWithOtherChannelsIsRefused) {
-  place_.write("current0/data.csv", "#timestamp [ns],thruster [A]\n" + testStamp(1.0) + ",1\n");
+  place_.write("current0/data.csv", fmt::format("#timestamp [ns],thruster [A]\n{},1\n", testStamp(1.0)));
   place_.write("current0/sensor.yaml", "channels: [lamp]\n");
   EXPECT_THAT(refusal([&] { EurocSource(place_.folder(), {}, &diagnostics_); }),
               HasSubstr("missing: lamp; unknown: thruster"));

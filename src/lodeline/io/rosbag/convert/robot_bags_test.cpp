@@ -161,8 +161,10 @@ TEST_F(RobotBagsTest, StreamsStayTheSameInAllFormats) {
 
 TEST_F(RobotBagsTest, ReportsWhatAMessageDoesNotHold) {
   writeStreams();
-  place_.write("dvl0/data.csv", "#timestamp [ns],beam,velocity [m/s],range [m],valid\n" + testStamp(1.0) +
-                                    ",0,0.1,2,1\n" + testStamp(1.0) + ",4,0.5,2,1\n");
+  place_.write(
+      "dvl0/data.csv",
+      fmt::format("#timestamp [ns],beam,velocity [m/s],range [m],valid\n{0},0,0.1,2,1\n{0},4,0.5,2,1\n",
+                  testStamp(1.0)));
   place_.write("dvl0/sensor.yaml", std::string(kPose) +
                                        "velocity_noise_std: 0.012\nbeams: {angle_deg: 25, "
                                        "azimuths_deg: [0, 72, 144, 216, 288]}\n");
