@@ -140,9 +140,23 @@ class Chooser {
     for (size_t i = 0; i < missing.size(); ++i) take(missing[i], free[i]);
   }
 
+  /// Whether a topic is chosen for another sensor, or has the first type of one without a topic, but not the
+  /// first type of this one: a Range is an altimeter's, where the rig has one, and otherwise a sonar's.
+  bool isRatherOfOther(const BagTopic& topic, const std::string& sensor) const {
+    const auto hasFirstTypeOf = [&](const std::string& other) {
+      return topic.connection.type == typesOf(other).front().name;
+    };
+    if (isChosen(&topic)) return true;
+    return !hasFirstTypeOf(sensor) &&
+           std::any_of(wish_.sensors.begin(), wish_.sensors.end(), [&](const std::string& other) {
+             return choice_.of(other) == nullptr && hasFirstTypeOf(other);
+           });
+  }
+
   void chooseSensor(const std::string& sensor) {
     if (choice_.of(sensor) != nullptr) return;
     std::vector<const BagTopic*> found = topicsFor(bag_, sensor);
+    std::erase_if(found, [&](const BagTopic* topic) { return isRatherOfOther(*topic, sensor); });
     if (found.empty()) return;
     if (found.size() > 1 && sensor == "imu0") found = wholeOrHalves(found);
     if (found.size() > 1) {
@@ -216,6 +230,7 @@ class Chooser {
     for (const std::string sensor : kSingleSensors) {
       if (sensor == "imu0" || choice_.of(sensor) != nullptr) continue;
       for (const BagTopic* topic : topicsFor(bag_, sensor)) {
+        if (isChosen(topic)) continue;
         diagnostics_->report(
             Severity::Notice, "bag_topic_unused",
             fmt::format("{}: topic {} ({}) is not used: the rig file has no section {}", bag_.file().string(),

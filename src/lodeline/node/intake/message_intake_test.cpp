@@ -8,6 +8,8 @@
 
 #include "lodeline/io/rosbag/convert/ros2_messages.h"
 #include "lodeline/io/rosbag/image_messages.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
+#include "lodeline/io/rosbag/robots/dvl_messages.h"
 
 namespace lodeline {
 namespace {
@@ -132,6 +134,79 @@ TEST(LiveImuHalves, DoNotGrowWhileOneHalfIsSilent) {
     EXPECT_FALSE(halves.next());
   }
   EXPECT_EQ(halves.dropped(), 10U);
+}
+
+/// The sensors of a robot, whose topics are altimeter, currents and DVL in this order.
+class RobotIntakeTest : public testing::Test {
+ protected:
+  enum Topic : size_t { kAltimeter, kCurrents, kDvl };
+
+  static Rig rigOf(const std::vector<std::string>& channels) {
+    Rig rig;
+    rig.cameras.resize(1);
+    rig.cameras[0].name = "cam0";
+    rig.altimeter.emplace();
+    rig.dvl.emplace();
+    rig.currents.emplace().channels = channels;
+    return rig;
+  }
+  void open(const std::vector<std::string>& channels) {
+    source_.emplace(rigOf(channels), LiveSourceOptions(), &diagnostics_);
+    intake_.emplace(
+        subscriptionsOf({{"altimeter0", "/altimeter"}, {"current0", "/currents"}, {"dvl0", "/dvl"}}),
+        WaterColumn(), Serialization::Cdr, &*source_);
+  }
+  void receive(Topic topic, const messages::Type& type, const wire::Bytes& ros1) {
+    intake_->receive(topic, type.name, "", ros2_.toCdr(type.name, ros1));
+  }
+
+  Diagnostics diagnostics_;
+  Ros2Messages ros2_;
+  std::optional<LiveSource> source_;
+  std::optional<MessageIntake> intake_;
+};
+
+TEST_F(RobotIntakeTest, PushesTheReadings) {
+  open({"lamp", "thruster"});
+  receive(kAltimeter, messages::kRange, messages::altimeterRange({at(0.0), 2.5}, 0));
+  receive(kCurrents, messages::kJointState,
+          messages::jointCurrents({at(0.1), {7.0, 0.5}}, {"thruster", "lamp"}, 0));
+  DvlSample ping;
+  ping.time = at(0.2);
+  ping.velocity_D = Vec3(0.5, 0.25, -0.125);
+  ping.beams = {{0, 0.5, 2.0}, {1, std::nullopt, std::nullopt}, {2, 0.25, 2.5}, {3, 0.125, 2.5}};
+  receive(kDvl, messages::kMarineDvl, messages::marineDvl(ping, DvlCalibration().beams_D, 0));
+  source_->close();
+  EXPECT_EQ(source_->nextAltimeter().value().range_m, 2.5);
+  EXPECT_EQ(source_->nextCurrents().value().currents_A, (std::vector<double>{0.5, 7.0}));
+  const DvlSample taken = source_->nextDvl().value();
+  EXPECT_EQ(taken.velocity_D, ping.velocity_D);
+  ASSERT_EQ(taken.beams.size(), 4U);
+  EXPECT_FALSE(taken.beams[1].velocity_m_per_s);
+  EXPECT_EQ(taken.beams[2].range_m, 2.5);
+  for (const SensorTraffic& traffic : intake_->traffic()) EXPECT_EQ(traffic.unusable, 0U) << traffic.problem;
+}
+
+TEST_F(RobotIntakeTest, NeverExchangesChannels) {
+  const wire::Bytes message = messages::jointCurrents({at(0.1), {7.0, 0.5}}, {"thruster", "lamp"}, 0);
+  open({"lamp", "other"});
+  receive(kCurrents, messages::kJointState, message);
+  EXPECT_EQ(intake_->traffic()[kCurrents].unusable, 1U);
+  EXPECT_NE(intake_->traffic()[kCurrents].problem.find("missing: other"), std::string::npos);
+  open({});
+  receive(kCurrents, messages::kJointState, message);
+  EXPECT_NE(intake_->traffic()[kCurrents].problem.find("channels"), std::string::npos);
+}
+
+TEST_F(RobotIntakeTest, CountsMessagesOfAnotherVersion) {
+  open({"lamp"});
+  DvlSample ping;
+  ping.time = at(0.2);
+  wire::Bytes longer =
+      ros2_.toCdr(messages::kMarineDvl.name, messages::marineDvl(ping, DvlCalibration().beams_D, 0));
+  longer.resize(longer.size() + 24);
+  intake_->receive(kDvl, messages::kMarineDvl.name, "", longer);
+  EXPECT_EQ(intake_->traffic()[kDvl].unusable, 1U);
 }
 
 }  // namespace
