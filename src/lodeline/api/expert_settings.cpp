@@ -157,10 +157,22 @@ void bindDepth(Settings* settings, DepthOptions* options) {
 
 void bindSonar(Settings* settings, SonarOptions* options) {
   settings->bind("expert.sonar.noise_inflation", &options->noise_inflation,
-                 "Factor on `range_noise_std` of the calibration of the sonar.", Settings::Sign::Positive);
+                 "Factor on `range_noise_std` of the calibrations of sonar, altimeter and DVL.",
+                 Settings::Sign::Positive);
   settings->bind("expert.sonar.gate.max_sigmas", &options->max_sigmas,
                  "A range is rejected when its innovation is larger, in standard deviations.",
                  Settings::Sign::Positive);
+}
+
+void bindDvl(Settings* settings, DvlOptions* options) {
+  settings->bind("expert.dvl.noise_inflation", &options->noise_inflation,
+                 "Factor on the noise of the velocities that the calibration of the DVL states.",
+                 Settings::Sign::Positive);
+  settings->bind("expert.dvl.gate.max_sigmas", &options->max_sigmas,
+                 "A velocity is rejected when its innovation is larger, in standard deviations.",
+                 Settings::Sign::Positive);
+  settings->bind("expert.dvl.gate.readmission_s", &options->readmission_s,
+                 "Velocities that were rejected for that long are used again.", Settings::Sign::Positive);
 }
 
 }  // namespace
@@ -178,6 +190,7 @@ void bindExpertSettings(Settings* settings, RunSettings* options) {
   bindMagnetometerGate(settings, &estimator->magnetometer.gate);
   bindDepth(settings, &estimator->depth);
   bindSonar(settings, &estimator->sonar);
+  bindDvl(settings, &estimator->dvl);
 }
 
 }  // namespace lodeline

@@ -49,7 +49,9 @@ void bindSensors(Settings* settings, RunSettings* options) {
   settings->bind("pressure.density_ratio", &options->odometry.estimator.depth.density_ratio,
                  "Density of the water over the density that the sensor assumes. It is 0.975 for a sensor "
                  "that is set to salt water, in fresh water.");
-  settings->bind("sonar.use", &options->odometry.estimator.sonar.use, "Use the ranges of the sonar.");
+  settings->bind("sonar.use", &options->odometry.estimator.sonar.use,
+                 "Use the ranges of sonar, altimeter and DVL.");
+  settings->bind("dvl.use", &options->odometry.estimator.dvl.use, "Use the velocities of the DVL.");
 }
 
 void bindHeading(Settings* settings, RunSettings* options) {

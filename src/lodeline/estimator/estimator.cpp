@@ -120,7 +120,9 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   estimate.is_keyframe = window_.newest().is_keyframe;
   createLandmarks(window_, factors_, options_.landmark);
   mode_.addFrame();
-  if (mode_.see(estimate.time, estimate.status != Status::Inertial)) reinitializeAfterVisionLoss();
+  const bool has_velocity = window_.newest().measurements.measureVelocity();
+  if (mode_.see(estimate.time, estimate.status != Status::Inertial, has_velocity))
+    reinitializeAfterVisionLoss();
   // Not at the start: whoever records it needs the prior of the first frame as it was.
   if (carries_on) marginalizeWindow(estimate);
   if (mode_.isSettled() && mode_.isMarginalizing()) linearization_cache_.freeze(window_, factors_);
@@ -246,7 +248,8 @@ void Estimator::addCalibration(Prior* prior) {
 
 bool Estimator::startMonocular(Time time, ObservationList observations, std::span<const ImuSample> imu) {
   std::erase_if(observations, [](const auto& entry) { return entry.second.camera > 0; });
-  if (!mono_initializer_.add(time, observations, imu, next_frame_id_++, {rests_, rest_.gyroscope()}))
+  if (!mono_initializer_.add(time, observations, imu, next_frame_id_++, {rests_, rest_.gyroscope()},
+                             sensors_))
     return false;
   window_ = mono_initializer_.takeWindow();
   Prior prior = mono_initializer_.takePrior();

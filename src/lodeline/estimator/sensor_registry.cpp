@@ -1,5 +1,6 @@
 #include "lodeline/estimator/sensor_registry.h"
 
+#include "lodeline/estimator/dvl/dvl_fusion.h"
 #include "lodeline/estimator/magnetometer/magnetometer_fusion.h"
 #include "lodeline/estimator/pressure/depth_fusion.h"
 #include "lodeline/estimator/sonar/sonar_fusion.h"
@@ -12,6 +13,9 @@ std::vector<std::unique_ptr<SensorFusion>> makeSensorFusions(const Rig& rig, con
   sensors.push_back(std::make_unique<MagnetometerFusion>(rig, options, diagnostics));
   sensors.push_back(std::make_unique<DepthFusion>(rig, options, diagnostics));
   sensors.push_back(std::make_unique<SonarFusion>(rig, options, diagnostics));
+  sensors.push_back(std::make_unique<AltimeterFusion>(rig, options, diagnostics));
+  sensors.push_back(std::make_unique<DvlFusion>(rig, options, diagnostics));
+  sensors.push_back(std::make_unique<DvlRangeFusion>(rig, options, diagnostics));
   return sensors;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lodeline/cameras/camera_model.h"
 #include "lodeline/estimator/initialization/start.h"
@@ -33,7 +34,7 @@ double inertialDisagreement(Window& window, const FactorBuilder& factors) {
 }  // namespace
 
 bool MonoInitializer::add(Time time, const ObservationList& observations, std::span<const ImuSample> imu,
-                          FrameId id, const Rest& rest) {
+                          FrameId id, const Rest& rest, const Sensors& sensors) {
   pending_imu_.insert(pending_imu_.end(), imu.begin() + (pending_imu_.empty() || imu.empty() ? 0 : 1),
                       imu.end());
   pending_rest_ = pending_rest_ || rest.now;
@@ -45,7 +46,7 @@ bool MonoInitializer::add(Time time, const ObservationList& observations, std::s
     waiting_for_ = "inertial readings";
     return false;
   }
-  insert(time, observations, id);
+  insert(time, observations, id, sensors);
   while ((time - window_.frames().front()->time).seconds() > wanted.max_duration_s ||
          (window_.frames().size() > 1 &&
           commonTracks(window_, *window_.frames().front(), window_.newest()).size() <
@@ -60,12 +61,13 @@ bool MonoInitializer::add(Time time, const ObservationList& observations, std::s
   }
   if (refused_ && (time - *refused_).seconds() < wanted.retry_after_s) return false;
   if (!solveVisualStructure() || !alignWithInertial()) return false;
-  if (refine()) return true;
+  if (refine(sensors)) return true;
   refused_ = time;
   return false;
 }
 
-void MonoInitializer::insert(Time time, const ObservationList& observations, FrameId id) {
+void MonoInitializer::insert(Time time, const ObservationList& observations, FrameId id,
+                             const Sensors& sensors) {
   auto frame = std::make_unique<Frame>();
   frame->id = id;
   frame->time = time;
@@ -80,9 +82,13 @@ void MonoInitializer::insert(Time time, const ObservationList& observations, Fra
   pending_rest_ = false;
   window_.add(std::move(frame));
   for (const auto& [track, observation] : observations) window_.addObservation(track, observation);
+  for (const auto& sensor : sensors) {
+    if (auto measurement = sensor->measureBeforeStart(time)) measurements_[id].add(std::move(measurement));
+  }
 }
 
 void MonoInitializer::dropOldestFrame() {
+  measurements_.erase(window_.frames().front()->id);
   window_.remove(window_.frames().front()->id);
   // The interval before the frame that is now the oldest.
   if (!window_.empty()) intervals_.erase(window_.frames().front()->id);
@@ -122,6 +128,17 @@ Vec3 MonoInitializer::gyroscopeBias(const std::vector<Quat>& rotations) {
   return gyroscope_->bias_B;
 }
 
+MeasuredVelocities MonoInitializer::measuredVelocities() const {
+  MeasuredVelocities velocities(window_.frames().size());
+  for (size_t k = 0; k < velocities.size(); ++k) {
+    const auto measured = measurements_.find(window_.frames()[k]->id);
+    if (measured == measurements_.end()) continue;
+    for (const auto& measurement : measured->second)
+      if (auto velocity = measurement->velocity()) velocities[k] = velocity;
+  }
+  return velocities;
+}
+
 bool MonoInitializer::alignWithInertial() {
   const Rigid3& body_from_camera = factors_.bodyFromCamera(0);
   std::vector<Quat> rotations;
@@ -134,7 +151,7 @@ bool MonoInitializer::alignWithInertial() {
   const double gravity = options_.gravity_W.norm();
   const std::optional<VisualInertialAlignment> alignment =
       alignVisualInertial(rotations, camera_positions, body_from_camera.translation, intervals(), gravity,
-                          options_.initial_state.accelerometer_bias_sigma_m_per_s2);
+                          options_.initial_state.accelerometer_bias_sigma_m_per_s2, measuredVelocities());
   const double tolerance = options_.mono_initialization.gravity_tolerance_m_per_s2;
   if (!alignment || std::abs(alignment->free_gravity_magnitude - gravity) > tolerance) {
     waiting_for_ = "enough acceleration to tell the scale";
@@ -162,35 +179,57 @@ bool MonoInitializer::alignWithInertial() {
   return true;
 }
 
-bool MonoInitializer::refine() {
-  InitialStateOptions known = options_.initial_state;
-  if (gyroscope_) known.gyroscope_bias_sigma_rad_per_s = gyroscope_->sigma_rad_per_s;
-  prior_ = startPrior(*window_.frames().front(), known, options_.mono_initialization.start_tilt_sigma_rad);
+void MonoInitializer::giveToFrames() {
   for (const auto& frame : window_.frames()) {
     const auto interval = intervals_.find(frame->id);
     if (interval != intervals_.end()) frame->from_previous = std::move(interval->second);
+    const auto measured = measurements_.find(frame->id);
+    if (measured != measurements_.end()) frame->measurements = std::move(measured->second);
   }
+}
+
+void MonoInitializer::takeFromFrames() {
+  for (const auto& frame : window_.frames()) {
+    if (frame->from_previous) intervals_[frame->id] = std::move(frame->from_previous);
+    if (!frame->measurements.empty()) measurements_[frame->id] = std::exchange(frame->measurements, {});
+  }
+}
+
+bool MonoInitializer::refine(const Sensors& sensors) {
+  InitialStateOptions known = options_.initial_state;
+  if (gyroscope_) known.gyroscope_bias_sigma_rad_per_s = gyroscope_->sigma_rad_per_s;
+  prior_ = startPrior(*window_.frames().front(), known, options_.mono_initialization.start_tilt_sigma_rad);
+  if (!measurements_.empty()) {
+    for (const auto& sensor : sensors) sensor->addStatesBeforeStart(window_, prior_);
+  }
+  giveToFrames();
   const SolveSummary summary =
       solveWithCeres(window_, prior_, factors_, {options_.mono_initialization.max_iterations, 1e-8});
+  if (isGood(summary.usable && summary.converged)) {
+    intervals_.clear();
+    measurements_.clear();
+    return true;
+  }
+  takeFromFrames();
+  return false;
+}
+
+bool MonoInitializer::isGood(bool is_solved) {
   const double disagreement = inertialDisagreement(window_, factors_);
   const double share = scaleUncertainty(window_.newest(), newestCovariance(window_, prior_, factors_));
   const double bias_sigmas =
       window_.newest().accelerometerBias().norm() / options_.initial_state.accelerometer_bias_sigma_m_per_s2;
-  if (!summary.usable || !summary.converged ||
-      disagreement > options_.mono_initialization.max_inertial_disagreement ||
+  if (!is_solved || disagreement > options_.mono_initialization.max_inertial_disagreement ||
       bias_sigmas > options_.mono_initialization.max_bias_sigmas) {
     waiting_for_ = "a start on which images and inertial readings agree";
-  } else if (share > options_.mono_initialization.max_scale_sigma) {
+    return false;
+  }
+  if (share > options_.mono_initialization.max_scale_sigma) {
     waiting_for_ = fmt::format("scale known to {:.0f} % of {:.0f} %", 100.0 * share,
                                100.0 * options_.mono_initialization.max_scale_sigma);
-  } else {
-    intervals_.clear();
-    return true;
+    return false;
   }
-  for (const auto& frame : window_.frames()) {
-    if (frame->from_previous) intervals_[frame->id] = std::move(frame->from_previous);
-  }
-  return false;
+  return true;
 }
 
 }  // namespace lodeline

@@ -18,16 +18,27 @@ constexpr double kVelocitySigma = 0.01;
 Eigen::VectorXd solveLinear(const std::vector<Quat>& visual_from_body,
                             const std::vector<Vec3>& camera_positions_V, const Vec3& camera_position_B,
                             const std::vector<Preintegration*>& intervals, const Vec3& gravity_offset,
-                            const Eigen::MatrixXd& gravity_basis, double bias_sigma) {
+                            const Eigen::MatrixXd& gravity_basis, double bias_sigma,
+                            const MeasuredVelocities& measured) {
   const int frames = static_cast<int>(visual_from_body.size());
   const int gravity = 3 * frames;
   const int gravity_size = static_cast<int>(gravity_basis.cols());
   const int bias = gravity + gravity_size;
   const int scale = bias + 3;
-  const int prior_row = 6 * (frames - 1);
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(prior_row + 3, scale + 1);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(prior_row + 3);
+  const int prior_row = 6 * (frames - 1), measured_row = prior_row + 3;
+  const int rows = measured_row + 3 * static_cast<int>(measured.size());
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, scale + 1);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(rows);
   a.block<3, 3>(prior_row, bias) = Mat3::Identity() / bias_sigma;
+  for (int k = 0; k < static_cast<int>(measured.size()); ++k) {
+    if (!measured[k]) continue;
+    const double weight = 1.0 / measured[k]->sigma_m_per_s, elapsed_s = measured[k]->elapsed_s;
+    auto velocity = a.middleRows<3>(measured_row + 3 * k);
+    velocity.middleCols<3>(3 * k) = weight * Mat3::Identity();
+    velocity.middleCols(gravity, gravity_size) = -weight * elapsed_s * gravity_basis;
+    b.segment<3>(measured_row + 3 * k) =
+        weight * (visual_from_body[k] * measured[k]->velocity_B + elapsed_s * gravity_offset);
+  }
   for (int k = 0; k + 1 < frames; ++k) {
     const double dt = intervals[k]->dt_s();
     const RelativeMotion& motion = intervals[k]->motion();
@@ -80,15 +91,13 @@ Vec3 alignGyroscopeBias(const std::vector<Quat>& rotations, const std::vector<Pr
   return bias;
 }
 
-std::optional<VisualInertialAlignment> alignVisualInertial(const std::vector<Quat>& visual_from_body,
-                                                           const std::vector<Vec3>& camera_positions_V,
-                                                           const Vec3& camera_position_B,
-                                                           const std::vector<Preintegration*>& intervals,
-                                                           double gravity_magnitude,
-                                                           double bias_sigma_m_per_s2) {
+std::optional<VisualInertialAlignment> alignVisualInertial(
+    const std::vector<Quat>& visual_from_body, const std::vector<Vec3>& camera_positions_V,
+    const Vec3& camera_position_B, const std::vector<Preintegration*>& intervals, double gravity_magnitude,
+    double bias_sigma_m_per_s2, const MeasuredVelocities& measured) {
   const auto solve = [&](const Vec3& offset, const Eigen::MatrixXd& basis) {
     return solveLinear(visual_from_body, camera_positions_V, camera_position_B, intervals, offset, basis,
-                       bias_sigma_m_per_s2);
+                       bias_sigma_m_per_s2, measured);
   };
   const int gravity = 3 * static_cast<int>(visual_from_body.size());
   Eigen::VectorXd x = solve(Vec3::Zero(), Mat3::Identity());

@@ -40,9 +40,10 @@ struct Case {
       intervals.push_back(owned.back().get());
     }
   }
-  std::optional<VisualInertialAlignment> align(double bias_sigma_m_per_s2 = 0.2) const {
+  std::optional<VisualInertialAlignment> align(double bias_sigma_m_per_s2 = 0.2,
+                                               const MeasuredVelocities& measured = {}) const {
     return alignVisualInertial(rotations, camera_positions, kCamera_B, intervals, kStandardGravity,
-                               bias_sigma_m_per_s2);
+                               bias_sigma_m_per_s2, measured);
   }
 };
 
@@ -97,9 +98,8 @@ TEST(VisualInertialAlignment, LeavesTheBiasToItsPriorWhereMotionSaysLittleOfIt) 
   EXPECT_LT(alignment->accelerometer_bias_B.norm(), 1e-3);
 }
 
-TEST(VisualInertialAlignment, RefusesConstantVelocity) {
-  const Vec3 velocity(0.5, 0.2, 0.0);
-  const Case c(
+Case glide(const Vec3& velocity) {
+  return Case(
       [](double from_s, double to_s) {
         std::vector<ImuSample> samples;
         for (int i = 0; i <= 30; ++i)
@@ -115,7 +115,24 @@ TEST(VisualInertialAlignment, RefusesConstantVelocity) {
         return state;
       },
       Vec3::Zero());
-  EXPECT_FALSE(c.align().has_value());
+}
+
+TEST(VisualInertialAlignment, RefusesConstantVelocity) {
+  EXPECT_FALSE(glide(Vec3(0.5, 0.2, 0.0)).align().has_value());
+}
+
+TEST(VisualInertialAlignment, FindsTheScaleOfConstantVelocityWhereThatIsMeasured) {
+  const Vec3 velocity(0.5, 0.2, 0.0);
+  const Case c = glide(velocity);
+  MeasuredVelocities measured(c.rotations.size());
+  // Measured a tenth of a second before the frame, and carried there without gravity.
+  measured[4] = CarriedVelocity{velocity - 0.1 * standardGravity_W(), 0.1, 0.01};
+  const auto alignment = c.align(0.2, measured);
+  ASSERT_TRUE(alignment.has_value());
+  EXPECT_NEAR(alignment->scale, kMetresPerUnit, 1e-3 * kMetresPerUnit);
+  EXPECT_LT((alignment->gravity_V - kVisualFromWorld * standardGravity_W()).norm(), 0.01);
+  for (const Vec3& velocity_V : alignment->velocities_V)
+    EXPECT_LT((velocity_V - kVisualFromWorld * velocity).norm(), 1e-3);
 }
 
 }  // namespace

@@ -82,15 +82,17 @@ void ModeMachine::start(bool scale_is_given, int frames) {
   apply(ModeEvent::Started);
 }
 
-bool ModeMachine::see(Time now, bool sees) {
+bool ModeMachine::see(Time now, bool sees, bool has_velocity) {
   if (!sees) {
+    if (!blind_since_ || has_velocity) unaided_since_ = now;
     if (!blind_since_) blind_since_ = now;
     apply(ModeEvent::VisionLost);
     return false;
   }
   const bool was_dark = blind_since_ && (now - *blind_since_).seconds() > kDarkness_s;
+  const bool was_unaided = was_dark && (now - unaided_since_).seconds() > kDarkness_s;
   blind_since_.reset();
-  if (!was_dark || scale_is_given_) {
+  if (!was_unaided || scale_is_given_) {
     apply(ModeEvent::VisionBack);
     return was_dark;
   }

@@ -15,7 +15,7 @@ enum class ModeEvent {
   StartupTooLong,      ///< the window has no room for more frames
   VisionLost,          ///< too few landmarks in the newest frame
   VisionBack,          ///< landmarks again, after at most ModeMachine::kDarkness_s, or with the scale kept
-  VisionBackScaleLost  ///< the same after longer, with one camera
+  VisionBackScaleLost  ///< the same after longer, with one camera and without a measured velocity
 };
 
 const char* toString(ModeEvent event);
@@ -41,9 +41,10 @@ class ModeMachine {
   /// Begins with a window of `frames` frames. `scale_is_given`: by a stereo start.
   void start(bool scale_is_given, int frames);
   void addFrame() { ++frames_since_start_; }
-  /// Whether the newest frame sees enough landmarks. Returns true where images are back after more than
+  /// `sees`: the newest frame sees enough landmarks. `has_velocity`: a sensor beside cameras and IMU measures
+  /// its velocity, which keeps the scale in the dark. Returns true where images are back after more than
   /// kDarkness_s: the linearization points are then those of inertial propagation.
-  bool see(Time now, bool sees);
+  bool see(Time now, bool sees, bool has_velocity = false);
   /// Judges whether the scale is known; it stays so until vision is lost. `sigma`: relative standard
   /// deviation of the scale, or of the speed where scaleWasLost(); unused where the scale is given.
   void judgeScale(Time now, double sigma);
@@ -81,6 +82,7 @@ class ModeMachine {
   int frames_since_settled_ = 0;
   std::optional<Time> settled_at_;
   std::optional<Time> blind_since_;
+  Time unaided_since_;  ///< while blind: the first blind frame, or the last one with a measured velocity
 };
 
 }  // namespace lodeline

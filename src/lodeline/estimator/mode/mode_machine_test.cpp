@@ -102,6 +102,27 @@ TEST_F(ModeMachineTest, AfterALongDarknessOneCameraRecoversItsScale) {
   EXPECT_EQ(machine_.mode(), Mode::Tracking);
 }
 
+TEST_F(ModeMachineTest, AMeasuredVelocityKeepsTheScaleOfOneCameraInTheDark) {
+  start(false);
+  frames(options_.startup_frames_mono + 4);
+  const auto dark = [&](int count, bool has_velocity) {
+    for (int i = 0; i < count; ++i) {
+      now_ = now_ + Duration::fromSeconds(0.1);
+      machine_.see(now_, false, has_velocity);
+    }
+  };
+  dark(30, false);
+  dark(1, true);
+  dark(8, false);
+  EXPECT_TRUE(frame()) << "linearization points are still those of inertial propagation";
+  EXPECT_EQ(machine_.mode(), Mode::Tracking);
+  EXPECT_FALSE(machine_.scaleWasLost());
+  dark(1, true);
+  dark(12, false);
+  EXPECT_TRUE(frame());
+  EXPECT_EQ(machine_.mode(), Mode::Recovering) << "the velocity was measured too long ago";
+}
+
 TEST_F(ModeMachineTest, RecoveringEndsWhereTheWindowIsFull) {
   start(false);
   frames(options_.startup_frames_mono + 4);

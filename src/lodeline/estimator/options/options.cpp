@@ -125,6 +125,7 @@ void EstimatorOptions::check() const {
   magnetometer.check();
   depth.check();
   sonar.check();
+  dvl.check();
 }
 
 }  // namespace lodeline

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lodeline/estimator/options/depth_options.h"
+#include "lodeline/estimator/options/dvl_options.h"
 #include "lodeline/estimator/options/magnetometer_options.h"
 #include "lodeline/estimator/options/sonar_options.h"
 #include "lodeline/imu/gravity.h"
@@ -213,6 +214,7 @@ struct EstimatorOptions {
   MagnetometerOptions magnetometer;
   DepthOptions depth;
   SonarOptions sonar;
+  DvlOptions dvl;
   GravityAlignmentOptions gravity_alignment;
   int min_landmarks_for_vision = 8;  ///< with fewer in view, a frame is propagated by inertial readings
 

@@ -2,7 +2,7 @@
 
 namespace lodeline {
 
-/// Options of the fusion of sonar ranges (docs/theory/sonar.md).
+/// Options of the fusion of ranges by sonar, altimeter and DVL (docs/theory/sonar.md).
 struct SonarOptions {
   bool use = true;
   double noise_inflation = 1.0;  ///< factor on range_noise_std of the sensor's file

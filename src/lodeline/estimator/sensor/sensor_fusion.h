@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -27,6 +28,13 @@ class SensorFusion {
   /// Takes the readings that belong to the frame at the end of `imu`; `imu` as in Estimator::add.
   virtual void take(const SensorReadings& readings, std::span<const ImuSample> imu,
                     const Vec3& gyroscope_bias_B) = 0;
+
+  /// Measurement of a frame at `time` before the start, from the readings since the last one; null where the
+  /// sensor is of no use for a start with one camera.
+  virtual std::shared_ptr<const Measurement> measureBeforeStart(Time /*time*/) { return nullptr; }
+  /// Adds the states that these measurements need, at their initial values, to a window and its prior. The
+  /// window has them already where a start has failed.
+  virtual void addStatesBeforeStart(Window& /*window*/, Prior& /*prior*/) const {}
 
   /// Called once, when the window has just started, with `prior` on its first frame. `tilt_sigma_rad`: sigma
   /// of the window's roll and pitch.

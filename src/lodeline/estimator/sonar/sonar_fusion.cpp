@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "lodeline/estimator/uncertainty/time_correlated_error.h"
 #include "lodeline/geometry/so3.h"
@@ -40,57 +41,58 @@ const char* toString(SonarStatus status) {
   return "";
 }
 
-SonarFusion::SonarFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
+template <typename Sample>
+EchoFusion<Sample>::EchoFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
     : options_(options.sonar), diagnostics_(diagnostics), scale_sigma_(options.sonar.greatest_scale_sigma) {
-  if (!options_.use || !rig.sonar) return;
-  sonar_ = rig.sonar;
-  options_.surface_angle_rad = std::max(options_.surface_angle_rad, 0.5 * sonar_->beam_width_rad);
+  if (!options_.use) return;
+  sonar_ = EchoSource<Sample>::of(rig);
+  if (!sonar_) return;
+  options_.surface_angle_rad = std::max(options_.surface_angle_rad, 0.5 * sonar_->sensor.beam_width_rad);
   estimate_.status = SonarStatus::NoData;
 }
 
-bool SonarFusion::isValid(const SonarSample& sample) const {
-  const bool is_too_far = sonar_->max_range_m > 0.0 && sample.range_m > sonar_->max_range_m;
-  return std::isfinite(sample.range_m) && sample.range_m > 0.0 && !is_too_far &&
-         std::isfinite(sample.angle_rad);
+template <typename Sample>
+bool EchoFusion<Sample>::isValid(const RawEcho& echo) const {
+  const double max_range_m = sonar_->sensor.max_range_m;
+  const bool is_too_far = max_range_m > 0.0 && echo.range_m > max_range_m;
+  return std::isfinite(echo.range_m) && echo.range_m > 0.0 && !is_too_far && echo.beam.axes_B.allFinite();
 }
 
-void SonarFusion::take(const SensorReadings& readings, std::span<const ImuSample>, const Vec3&) {
+template <typename Sample>
+void EchoFusion<Sample>::take(const SensorReadings& readings, std::span<const ImuSample>, const Vec3&) {
   waiting_.clear();
   if (!sonar_) return;
-  for (const SonarSample& sample : readings.of<SonarSample>()) {
-    if (isValid(sample)) {
-      waiting_.push_back(sample);
+  std::vector<RawEcho> echoes;
+  for (const Sample& sample : readings.of<Sample>()) sonar_->append(sample, &echoes);
+  for (const RawEcho& echo : echoes) {
+    if (isValid(echo)) {
+      waiting_.push_back(echo);
       continue;
     }
     diagnostics_->report(
-        Severity::Warning, "sonar_invalid",
-        fmt::format("sonar: at {} ns a range of {} m at {} rad is no echo; such readings are left out. "
+        Severity::Warning, EchoSource<Sample>::kInvalid,
+        fmt::format("{}: at {} ns a range of {} m, or its angle, is no echo; such readings are left out. "
                     "Check the unit of its ranges, and max_range in its calibration",
-                    sample.time.nanoseconds(), sample.range_m, sample.angle_rad));
+                    EchoSource<Sample>::kName, echo.time.nanoseconds(), echo.range_m));
   }
 }
 
-SonarBeam SonarFusion::beamOf(const SonarSample& sample) const {
-  const double c = std::cos(sample.angle_rad), s = std::sin(sample.angle_rad);
-  Mat3 axes_S;
-  axes_S << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
-  return {sonar_->body_from_sonar.translation, sonar_->body_from_sonar.rotation.toRotationMatrix() * axes_S};
-}
-
-SonarEcho SonarFusion::echoOf(const SonarSample& sample, const Frame& before, const Frame& newest) const {
-  const double share = (sample.time - before.time).seconds() / (newest.time - before.time).seconds();
+template <typename Sample>
+SonarEcho EchoFusion<Sample>::echoOf(const RawEcho& raw, const Frame& before, const Frame& newest) const {
+  const double share = (raw.time - before.time).seconds() / (newest.time - before.time).seconds();
   const Rigid3 pose = poseBetween(before.state(), newest.state(), share);
-  SonarEcho echo{sample.range_m,
-                 options_.noise_inflation * sonar_->range_noise_std_m,
-                 beamOf(sample),
+  SonarEcho echo{raw.range_m,
+                 options_.noise_inflation * sonar_->sensor.range_noise_std_m,
+                 raw.beam,
                  PoseInterpolation(before.worldFromBody(), pose, newest.worldFromBody(), share),
                  newest.worldFromBody().inverse() * pose,
                  1.0};
-  echo.share = timeCorrelatedShare(sample.time, last_used_, options_.correlated_noise_time_s);
+  echo.share = timeCorrelatedShare(raw.time, last_used_, options_.correlated_noise_time_s);
   return echo;
 }
 
-bool SonarFusion::agrees(const SonarEcho& echo, const LocalSurface& surface) {
+template <typename Sample>
+bool EchoFusion<Sample>::agrees(const SonarEcho& echo, const LocalSurface& surface) {
   const double sigma_m = std::hypot(echo.sigma_m, surface.sigma_m, scale_sigma_ * surface.range_m);
   const bool agrees = std::abs(echo.range_m - surface.range_m) < options_.max_sigmas * sigma_m;
   ++judged_;
@@ -98,22 +100,24 @@ bool SonarFusion::agrees(const SonarEcho& echo, const LocalSurface& surface) {
   return agrees;
 }
 
-void SonarFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
+template <typename Sample>
+void EchoFusion<Sample>::addToNewest(Window& window, Marginalizer& marginalizer) {
   if (!sonar_) return;
   estimate_ = {SonarStatus::NoData};
   const Frame& newest = window.newest();
   Frame& before = **std::prev(window.frames().end(), 2);
   if (!before.has_motion) return;
   SonarMeasurement measurement;
+  measurement.kind = name();
   measurement.options = options_;
   const auto isChosen = [&](const FeatureTrack& track) {
     const Frame* host = window.find(track.landmark->host);
     return host != nullptr && !host->interpolated;
   };
-  for (const SonarSample& sample : waiting_) {
-    if (sample.time <= before.time || sample.time > newest.time) continue;
+  for (const RawEcho& raw : waiting_) {
+    if (raw.time <= before.time || raw.time > newest.time) continue;
     ++estimate_.echoes;
-    const SonarEcho echo = echoOf(sample, before, newest);
+    const SonarEcho echo = echoOf(raw, before, newest);
     const Rigid3 pose = newest.worldFromBody() * echo.frame_from_echo;
     const auto surface = surfaceAlong(echo.beam, pose, window, marginalizer.factors(), options_, isChosen);
     if (!surface) {
@@ -122,11 +126,11 @@ void SonarFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
     }
     if (!agrees(echo, *surface)) {
       estimate_.status = SonarStatus::Rejected;
-      reportRejections(sample.time);
+      reportRejections(raw.time);
       continue;
     }
     estimate_.innovation_m += echo.range_m - surface->range_m;
-    last_used_ = sample.time;
+    last_used_ = raw.time;
     measurement.echoes.push_back(echo);
   }
   if (measurement.echoes.empty()) return;
@@ -138,21 +142,22 @@ void SonarFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
   window.newest().measurements.set(std::move(measurement));
 }
 
-void SonarFusion::reportRejections(Time time) {
+template <typename Sample>
+void EchoFusion<Sample>::reportRejections(Time time) {
   constexpr int kEnough = 50;
   constexpr double kMany = 0.5;
   if (is_rejection_reported_ || judged_ < kEnough || rejected_ < kMany * judged_) return;
   is_rejection_reported_ = true;
   diagnostics_->report(
-      Severity::Warning, "sonar_rejected",
-      fmt::format(
-          "sonar: up to {} ns {} of {} echoes disagree with the landmarks around their beams; they are "
-          "not used. Check the pose of the sonar in the calibration, the unit of its ranges and the "
-          "sign of its angle",
-          time.nanoseconds(), rejected_, judged_));
+      Severity::Warning, EchoSource<Sample>::kRejected,
+      fmt::format("{}: up to {} ns {} of {} echoes disagree with the landmarks around their beams; they are "
+                  "not used. Check the pose of the sonar in the calibration, the unit of its ranges and the "
+                  "sign of its angle",
+                  EchoSource<Sample>::kName, time.nanoseconds(), rejected_, judged_));
 }
 
-void SonarFusion::remember(const JointCovariance& covariance, Window& window) {
+template <typename Sample>
+void EchoFusion<Sample>::remember(const JointCovariance& covariance, Window& window) {
   if (!sonar_ || covariance.empty()) return;
   const double sigma = scaleUncertainty(window.newest(), covariance.newest());
   scale_sigma_ = std::isfinite(sigma)
@@ -160,17 +165,26 @@ void SonarFusion::remember(const JointCovariance& covariance, Window& window) {
                      : options_.greatest_scale_sigma;
 }
 
-void SonarFusion::report(const Window&, SensorEstimates* estimates) const { estimates->set(estimate_); }
-
-std::optional<SensorRow> SonarFusion::row() const {
-  if (!sonar_) return std::nullopt;
-  const char* status = toString(estimate_.status);
-  return SensorRow{std::string(name()),
-                   status,
-                   {{"sonar", status},
-                    {"sonar_echoes", fmt::format("{}", estimate_.echoes)},
-                    {"sonar_used", fmt::format("{}", estimate_.used)},
-                    {"sonar_innovation [m]", fmt::format("{:.9g}", estimate_.innovation_m)}}};
+template <typename Sample>
+void EchoFusion<Sample>::report(const Window&, SensorEstimates* estimates) const {
+  estimates->set(estimate_);
 }
+
+template <typename Sample>
+std::optional<SensorRow> EchoFusion<Sample>::row() const {
+  if (!sonar_) return std::nullopt;
+  const std::string kind(name());
+  const char* status = toString(estimate_.status);
+  return SensorRow{kind,
+                   status,
+                   {{kind, status},
+                    {kind + "_echoes", fmt::format("{}", estimate_.echoes)},
+                    {kind + "_used", fmt::format("{}", estimate_.used)},
+                    {kind + "_innovation [m]", fmt::format("{:.9g}", estimate_.innovation_m)}}};
+}
+
+template class EchoFusion<SonarSample>;
+template class EchoFusion<AltimeterSample>;
+template class EchoFusion<DvlSample>;
 
 }  // namespace lodeline

@@ -24,12 +24,12 @@ struct SonarEcho {
 /// for each solution by the landmarks that the window has then. In the batch solution, where the frame before
 /// may be no state, the poses at the echoes follow the frame alone.
 struct SonarMeasurement final : Measurement {
+  std::string_view kind;  ///< EchoSource::kName
   std::vector<SonarEcho> echoes;
   SonarOptions options;
   double variance_scale = 1.0;
 
-  static constexpr std::string_view kSensor = "sonar";
-  std::string_view sensor() const override { return kSensor; }
+  std::string_view sensor() const override { return kind; }
   std::vector<Factor> factors(const MeasurementContext& context) const override;
   bool isRelative() const override { return true; }
   bool containsLandmarks() const override { return true; }

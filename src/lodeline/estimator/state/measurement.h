@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lodeline/estimator/state/factor.h"
+#include "lodeline/types.h"
 
 namespace lodeline {
 
@@ -26,6 +27,14 @@ struct MeasurementContext {
   Frame* before;  ///< the frame before; null for the first
   Frame& frame;
   Scope scope = Scope::Window;
+};
+
+/// Velocity that a sensor measured some time before a frame, carried there by inertial readings without
+/// gravity: R_B_W (v_W - g_W elapsed_s) at the frame, with one sigma of each axis.
+struct CarriedVelocity {
+  Vec3 velocity_B = Vec3::Zero();  ///< m/s
+  double elapsed_s = 0.0;
+  double sigma_m_per_s = 0.0;
 };
 
 /// Measurement of one sensor at a frame, until it becomes part of the prior. Each kind of sensor derives its
@@ -48,6 +57,10 @@ class Measurement {
 
   /// Sigma with which it measures the height of the frame, m; empty where it does not.
   virtual std::optional<double> heightSigma_m() const { return std::nullopt; }
+  /// Whether it measures the velocity of the frame, at least in part. Inertial readings are then not alone.
+  virtual bool measuresVelocity() const { return false; }
+  /// The whole velocity, for a start with one camera; empty where it does not measure all of it.
+  virtual std::optional<CarriedVelocity> velocity() const { return std::nullopt; }
 
   /// Whether the batch solver uses it.
   virtual bool isForBatch() const { return true; }
@@ -63,6 +76,10 @@ class Measurements {
   using Item = std::shared_ptr<const Measurement>;
 
   bool empty() const { return items_.empty(); }
+  bool measureVelocity() const {
+    return std::any_of(items_.begin(), items_.end(),
+                       [](const Item& item) { return item->measuresVelocity(); });
+  }
   std::vector<Item>::const_iterator begin() const { return items_.begin(); }
   std::vector<Item>::const_iterator end() const { return items_.end(); }
 

@@ -16,7 +16,9 @@ namespace lodeline {
 /// informations that are larger by 1e14. That exhausts the digits of a double, and the information left comes
 /// out too large. For horizontal position and velocity, which only images determine, the reported variance is
 /// therefore at least the propagated one. The same holds for heading without a magnetometer. Where the window
-/// gives no covariance (isCovariance()), the propagated one replaces it.
+/// gives no covariance (isCovariance()), the propagated one replaces it. A sensor that measures velocity
+/// (Measurement::measuresVelocity) bounds the propagated covariance; what is unknown of its calibration is
+/// part of the window's alone.
 class InertialCovariancePropagation {
  public:
   /// `claimed`: the window's covariance of the newest frame's [dp, dtheta, dv, db_g, db_a]. It is enlarged

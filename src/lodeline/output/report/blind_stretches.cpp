@@ -45,7 +45,7 @@ void BlindStretches::report(Time origin, double least_s, Diagnostics* diagnostic
   }
   if (longest == nullptr) return;
   std::string message = fmt::format(
-      "{} to {}: no usable images; inertial readings alone carried the pose for {:.1f} s, and the position's "
+      "{} to {}: no usable images; other sensors carried the pose for {:.1f} s, and the position's "
       "uncertainty grew from {:.2g} m to {:.2g} m",
       clockText((longest->start - origin).seconds()), clockText((longest->end - origin).seconds()),
       longest->seconds(), longest->sigma_start_m, longest->sigma_end_m);

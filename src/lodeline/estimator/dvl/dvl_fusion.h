@@ -1,0 +1,88 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "lodeline/diagnostics.h"
+#include "lodeline/estimator/dvl/dvl_measurement.h"
+#include "lodeline/estimator/dvl/dvl_rows.h"
+#include "lodeline/estimator/dvl/ping_integrator.h"
+#include "lodeline/estimator/options/options.h"
+#include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/estimator/sensor/sensor_fusion.h"
+#include "lodeline/rig.h"
+
+namespace lodeline {
+
+/// Status of the DVL in a frame. Of several pings, the last in this order counts.
+enum class DvlStatus {
+  Off,         ///< not requested, or not on board
+  NoData,      ///< no ping with lock since the frame before
+  WaterTrack,  ///< velocities through the water, which are not used
+  Invalid,     ///< velocities that no instrument measures
+  Rejected,    ///< all beams disagree with the prediction
+  Used,        ///< at least one beam
+  Readmitted,  ///< used although it disagrees, because it has done so for long
+};
+const char* toString(DvlStatus status);
+
+/// What the DVL told of a frame.
+struct DvlEstimate {
+  DvlStatus status = DvlStatus::Off;
+  int beams = 0;                    ///< beams (or axes) with lock since the frame before
+  int used = 0;                     ///< of these
+  double innovation_m_per_s = 0.0;  ///< root mean square of predicted minus measured velocities, of all beams
+  double scale = 0.0, scale_sigma = 0.0;
+  Vec3 misalignment_rad = Vec3::Zero();
+  double misalignment_sigma_rad = 0.0;  ///< of the axis that is known least
+};
+
+/// Adds a Doppler velocity log to a window. Each ping is carried to the frame after it by inertial readings.
+/// Its beams are compared with the predicted velocity, and those within the gate become rows of the frame's
+/// DvlMeasurement. Scale and misalignment are states from the start.
+class DvlFusion final : public SensorFusion {
+ public:
+  /// `diagnostics` must outlive it.
+  DvlFusion(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics);
+
+  std::string_view name() const override { return DvlMeasurement::kSensor; }
+  void take(const SensorReadings& readings, std::span<const ImuSample> imu,
+            const Vec3& gyroscope_bias_B) override;
+  std::shared_ptr<const Measurement> measureBeforeStart(Time time) override;
+  void addStatesBeforeStart(Window& window, Prior& prior) const override;
+  void start(double tilt_sigma_rad, Window* window, Prior* prior) override;
+  void addToNewest(Window& window, Marginalizer& marginalizer) override;
+  void remember(const JointCovariance& covariance, Window& window) override;
+  void report(const Window& window, SensorEstimates* estimates) const override;
+  std::optional<SensorRow> row() const override;
+  std::vector<BatchState> batchStates(const Window& window) const override;
+
+ private:
+  bool takeReading(const DvlSample& sample);
+  /// The readings up to a frame, carried to it; later ones wait.
+  std::vector<std::pair<Time, DvlPing>> pingsUntil(const NavigationState& frame);
+  DvlMeasurement measurementOf(std::vector<DvlPing> pings) const;
+  /// Removes the rows that disagree with the prediction.
+  DvlStatus judge(Time time, const Window& window, DvlPing* ping);
+  void see(DvlStatus status) { estimate_.status = std::max(estimate_.status, status); }
+  void reportRejections(Time time);
+  void reportCalibration(Time time);
+
+  DvlOptions options_;
+  Diagnostics* diagnostics_;
+  std::optional<DvlCalibration> dvl_;
+  Vec3 gravity_W_;
+  double arm_sigma_m_per_s_ = 0.0;  ///< noise of the gyroscope times the lever arm
+  PingIntegrator integrator_;
+  std::vector<DvlReading> waiting_;
+  DvlEstimate estimate_;
+  DvlStatus taken_ = DvlStatus::NoData;  ///< of readings that are not used, since the frame before
+  JointCovariance covariance_;
+  std::optional<Time> disagrees_since_;  ///< first ping since the last one of which most rows agreed
+  int judged_ = 0, rejected_ = 0;        ///< rows since the start
+  bool is_rejection_reported_ = false, is_calibration_reported_ = false;
+};
+
+}  // namespace lodeline
