@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "simulation/shared/motion.h"
@@ -47,8 +48,10 @@ struct MagneticDisturbances {
   std::vector<PassingIron> passing;
   std::vector<SwitchedCurrent> switched;
   WanderingField wandering = {};
+  /// Field of the vehicle's own currents in axes of the readings, T; it adds to the readings. Empty: none.
+  std::function<Vec3(double time_s)> currents_M = {};
 
-  /// Sum of the fields at the body's origin in world axes, T.
+  /// Sum of the fields except `currents_M` at the body's origin in world axes, T.
   Vec3 at(const Rigid3& world_from_body, double time_s) const;
 };
 
