@@ -16,6 +16,9 @@ struct LyingDipole {
   Vec3 moment_W = Vec3::Zero();  ///< A m^2
 };
 
+/// Sum of their fields at a point, T.
+Vec3 fieldOfDipoles(const std::vector<LyingDipole>& dipoles, const Vec3& point_W);
+
 /// Iron that approaches and leaves: a companion's steel tank. Its position is constant in the diver frame.
 /// Its magnetization, induced by the Earth's field, has a constant direction in the world.
 struct PassingIron {
@@ -48,6 +51,7 @@ struct MagneticDisturbances {
   std::vector<PassingIron> passing;
   std::vector<SwitchedCurrent> switched;
   WanderingField wandering = {};
+  std::vector<LyingDipole> steel = {};  ///< of a wreck's hull
   /// Field of the vehicle's own currents in axes of the readings, T; it adds to the readings. Empty: none.
   std::function<Vec3(double time_s)> currents_M = {};
 
