@@ -62,8 +62,17 @@ enum class Effect {
   Buddy,
   Halocline,
   ShutterInFiles,
+  // Effects of the sensors of a vehicle, and of a wreck of steel.
+  DvlNoise,
+  DvlDropouts,
+  DvlSentinels,
+  DvlScale,
+  DvlMisalignment,
+  ThrusterCurrents,
+  Vibration,
+  Steel,
 };
-constexpr int kEffectCount = static_cast<int>(Effect::ShutterInFiles) + 1;
+constexpr int kEffectCount = static_cast<int>(Effect::Steel) + 1;
 
 struct EffectDescription {
   Effect effect;
@@ -95,7 +104,7 @@ class EffectSet {
   std::bitset<kEffectCount> on_;
 };
 
-/// A rig with its mounting in the diver frame D (x forward, y left, z up).
+/// A rig with its mounting in the frame D of the diver or the vehicle (x forward, y left, z up).
 struct MountedRig {
   Rig rig;
   Rigid3 diver_from_body;
@@ -114,6 +123,11 @@ struct StandardRigOptions {
   bool sonar_scans_ahead = false;
   /// Name of a camera model (cameras/camera_model.h). Empty: the radial-tangential lenses of the rig itself.
   std::string camera_model;
+  // Of a vehicle alone.
+  double dvl_rate_hz = 5.0;
+  double altimeter_rate_hz = 10.0;
+  double current_rate_hz = 10.0;
+  double camera_tilt_rad = 0.0;  ///< of all cameras, downwards from ahead
 };
 
 /// The hand-held rig of the simulator. Its cameras are side by side with a baseline of 14 cm, look ahead, are
@@ -124,10 +138,23 @@ struct StandardRigOptions {
 /// with focal lengths 0.3 % apart.
 MountedRig standardRig(const StandardRigOptions& options);
 
-enum class WorldKind { Cave, Wreck, Board, None };
+/// The rig of a vehicle: IMU and magnetometer near its middle, cameras at its front, and below it a DVL of
+/// four beams at 22.5 degrees, an altimeter and a scanning sonar.
+MountedRig vehicleRig(const StandardRigOptions& options);
+
+enum class WorldKind { Cave, Wreck, SeaFloor, Board, None };
 /// Plan of a cave: one passage, a circuit, a passage with a branch, or one chamber.
 enum class CaveShape { Passage, Loop, Junction, Room };
-enum class MotionKind { Dive, AroundWreck, BeforeBoard, FigureEight, AtRest };
+enum class MotionKind {
+  Dive,
+  AroundWreck,
+  BeforeBoard,
+  FigureEight,
+  AtRest,
+  Transects,     ///< of a vehicle above the sea floor
+  ThroughWreck,  ///< laps of a vehicle around and through a hull
+  CurrentRamps,  ///< a vehicle at rest: the current of each channel rises and falls
+};
 
 /// All settings that determine a recording, down to its bytes.
 struct Scenario {
@@ -135,8 +162,10 @@ struct Scenario {
   std::string description;
   WorldKind world = WorldKind::Cave;
   MotionKind motion = MotionKind::Dive;
-  bool in_water = true;    ///< false: in a room, without lamps and ports
-  bool decorated = false;  ///< a formerly dry cave with stalactites
+  bool in_water = true;       ///< false: in a room, without lamps and ports
+  bool decorated = false;     ///< a formerly dry cave with stalactites
+  bool vehicle = false;       ///< with thrusters, DVL, altimeter and measured currents, in place of a diver
+  bool cables_moved = false;  ///< the vehicle on another day: its currents disturb the magnetometer otherwise
 
   /// Seed of the motion, the rig with its errors, the lamps, the water and the disturbances, and of the place
   /// where `cave_seed` is not given.
@@ -145,7 +174,7 @@ struct Scenario {
   /// (`truth/cave.yaml`), in which all its dives are in the same rock.
   std::optional<uint64_t> cave_seed;
   CaveShape shape = CaveShape::Passage;
-  int laps = 2;                         ///< of a circuit or chamber
+  int laps = 2;                         ///< of a circuit, a chamber, or a wreck
   int entrance = 1;                     ///< 2: a dive from the far end of the passage
   std::optional<double> cave_length_m;  ///< of the passage; half of the path where not given
   int tags = 0;                         ///< AprilTags on the line
@@ -185,6 +214,7 @@ struct ScenarioChanges {
   bool starts_moving = false;
   bool no_images = false;
   bool sonar_ahead = false;  ///< StandardRigOptions::sonar_scans_ahead
+  bool cables_moved = false;
 };
 
 const std::vector<Scenario>& scenarios();

@@ -33,6 +33,8 @@ std::string footer() {
       "  lodeline simulate cave1_short -o dive --metres 60 --effect flat_port=on\n"
       "  lodeline simulate demo -o fisheye --camera-model double-sphere\n"
       "  lodeline simulate figure_eight -o calibration --seed 7\n"
+      "  lodeline simulate auv -o transects --metres 60\n"
+      "  lodeline simulate current_ramps -o ramps --seed 7\n"
       "  lodeline simulate loop_cave -o second --cave-seed 1 --dive-seed 2 --tags 6\n\n"
       "An interrupted simulation goes on where it stopped when the same command is given again.";
   return text;
@@ -74,7 +76,7 @@ void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
                       "of the dive: motion, rig, lamps, water and disturbances (--seed)");
   command->add_option("--cave-metres", c.cave_metres, "length of the passage (half of the path)");
   command->add_option("--entrance", c.entrance, "2: dive from the far end of the passage (1)");
-  command->add_option("--laps", c.laps, "rounds of a circuit or chamber (2)");
+  command->add_option("--laps", c.laps, "rounds of a circuit or chamber (2), or of a wreck (3)");
   command->add_option("--tags", c.tags, "AprilTags on the line of the cave (0)");
   command->add_option("--realism", c.realism,
                       "clean; field: what a diver delivers; physical: more optics, water and life (clean)");
@@ -104,6 +106,8 @@ void addSimulateCommand(CLI::App& program) {
   command->add_option("--cameras", c.cameras, "1 or 2");
   command->add_flag("--sonar-ahead", c.sonar_ahead,
                     "the sonar scans a sector of the view, not the plane across it");
+  command->add_flag("--cables-moved", c.cables_moved,
+                    "of a vehicle: another day, on which its currents disturb the magnetometer otherwise");
   command->add_flag("--no-images", c.no_images, "write everything but the images");
   command->add_option("--threads", arguments->threads, "for rendering (all cores)");
   addVerbosity(&arguments->verbosity, command);

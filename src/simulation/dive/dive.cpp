@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "simulation/dive/dive_life.h"
+#include "simulation/dive/vehicle_dive.h"
 #include "simulation/motion/board_motion.h"
 #include "simulation/motion/dive_motion.h"
 #include "simulation/shared/random.h"
@@ -39,6 +40,7 @@ struct Place {
   std::optional<Centerline> passage;
   std::optional<FramedCave> cave;
   std::optional<WreckLayout> wreck;
+  std::optional<SeaFloorOptions> sea_floor;
   std::optional<PlacedBoard> board;
 };
 
@@ -86,7 +88,16 @@ Motion makeMotion(const Scenario& s, const Rigid3& diver_from_body, Place& place
     }
     case MotionKind::FigureEight:
       return makeFigureEightMotion(s.seed, s.duration_s, diver_from_body);
+    case MotionKind::Transects: {
+      place.sea_floor.emplace();
+      return makeTransects(s, diver_from_body, &*place.sea_floor);
+    }
+    case MotionKind::ThroughWreck: {
+      place.wreck = steelWreck();
+      return makeWreckLaps(s, diver_from_body, &*place.wreck);
+    }
     case MotionKind::AtRest:
+    case MotionKind::CurrentRamps:
       break;
   }
   return makeMotionAtRest(s.seed, s.duration_s, diver_from_body);
@@ -134,8 +145,11 @@ Dive makeDive(const Scenario& s) {
             .passage = place.passage,
             .cave = place.cave,
             .wreck = place.wreck,
+            .sea_floor = place.sea_floor,
             .board = place.board,
             .disturbances = {},
+            .thrust = nullptr,
+            .loads = {},
             .current = nullptr,
             .fish = {},
             .buddy = nullptr,
@@ -151,20 +165,24 @@ Dive makeDive(const Scenario& s) {
   // Dives of one cave are on different days.
   if (s.cave_seed)
     dive.start = dive.start + Duration::fromSeconds(86400.0 * static_cast<double>(s.seed % 1000));
-  if (s.motion == MotionKind::Dive || s.motion == MotionKind::AroundWreck) {
+  if (s.motion == MotionKind::Dive || s.motion == MotionKind::AroundWreck ||
+      s.motion == MotionKind::Transects || s.motion == MotionKind::ThroughWreck) {
     DisturbanceOptions options;
     options.seed = s.seed;
     if (s.effects.has(Effect::MagneticDisturbances)) {
       dive.disturbances = drawDisturbances(dive.motion, dive.field_W, options);
     }
-    if (s.effects.has(Effect::LampCurrent))
+    // The lamps of a vehicle are among its measured currents.
+    if (s.effects.has(Effect::LampCurrent) && !s.vehicle)
       dive.disturbances.switched = drawLampSwitching(s.duration_s, s.seed);
     addLife(dive);
   }
+  if (s.vehicle) equipVehicle(dive);
   return dive;
 }
 
 LandmarkField diveLandmarks(const Dive& dive, double points_per_metre) {
+  if (dive.scenario.vehicle) return vehicleLandmarks(dive, vehicleWorld(dive));
   if (dive.cave) {
     return caveLandmarks(dive.cave->layout.translated(dive.cave->origin_W), points_per_metre,
                          *dive.scenario.cave_seed);

@@ -11,8 +11,11 @@
 #include "simulation/rendering/bodies/fish.h"
 #include "simulation/rendering/cave/centerline.h"
 #include "simulation/rendering/light/halocline.h"
+#include "simulation/rendering/seabed/sea_floor.h"
 #include "simulation/sensors/landmark_field.h"
 #include "simulation/shared/motion.h"
+#include "simulation/vehicle/vehicle_currents.h"
+#include "simulation/vehicle/vehicle_thrust.h"
 
 namespace lodeline {
 
@@ -37,10 +40,13 @@ struct Dive {
   std::optional<Centerline> passage;  ///< in a cave, world frame; first track of a route
   std::optional<FramedCave> cave;
   std::optional<WreckLayout> wreck;  ///< in open water, world frame
+  std::optional<SeaFloorOptions> sea_floor;
   std::optional<PlacedBoard> board;  ///< of a camera calibration
   Vec3 field_W = Vec3::Zero();       ///< Earth's, T
   MagneticDisturbances disturbances;
-  std::shared_ptr<const DriftTrack> current;  ///< nothing in still water
+  std::shared_ptr<const VehicleThrust> thrust;  ///< of a vehicle under way
+  LoadsFunction loads;                          ///< electric ones of a vehicle
+  std::shared_ptr<const DriftTrack> current;    ///< nothing in still water
   std::vector<FishSchool> fish;
   std::shared_ptr<const Buddy> buddy;  ///< nothing where no diver is in view
   std::optional<Halocline> halocline;

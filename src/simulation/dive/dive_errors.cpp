@@ -170,12 +170,39 @@ void drawDepthAndSonar(const Scenario& s, DiveErrors& errors) {
   }
 }
 
+// Sensors of a vehicle. The files say how the DVL is mounted by the drawing.
+void drawVehicle(const Scenario& s, DiveErrors& errors) {
+  const EffectSet& on = s.effects;
+  errors.altimeter = errors.sonar;
+  errors.altimeter.turn_rad_per_s = errors.altimeter.sector_rad = 0.0;
+  errors.altimeter.nearest_m = 0.05;
+  errors.altimeter.farthest_m = 50.0;
+  Random random(s.seed, "dvl/specimen");
+  const double scale = random.sign() * random.uniform(0.007, 0.013);
+  const Quat misalignment = drawTurn(2.0 * kDegree, 3.5 * kDegree, random);
+  if (on.has(Effect::DvlNoise)) {
+    errors.dvl.velocity_noise_m_per_s = 0.006;
+    errors.dvl.range_noise_m = 0.02;
+    errors.current_sensor = kCurrentSensor;
+  }
+  if (on.has(Effect::DvlDropouts)) errors.dvl.dropout_share = 0.10;
+  if (on.has(Effect::DvlSentinels)) errors.dvl.sentinel_share = 0.05;
+  if (on.has(Effect::DvlScale)) errors.dvl.scale = scale;
+  if (on.has(Effect::DvlMisalignment)) {
+    Quat& rotation = errors.truth.rig.dvl->body_from_dvl.rotation;
+    rotation = (rotation * misalignment).normalized();
+  }
+  std::vector<Vec3> fields = drawCurrentFields(s.seed, s.cables_moved);
+  if (!on.has(Effect::ThrusterCurrents)) fields.assign(fields.size(), Vec3::Zero());
+  errors.truth.rig.currents->fields_T_per_A = fields;
+}
+
 }  // namespace
 
 DiveErrors drawErrors(const Scenario& s) {
   const EffectSet& on = s.effects;
   DiveErrors errors;
-  errors.truth = standardRig(s.rig);
+  errors.truth = s.vehicle ? vehicleRig(s.rig) : standardRig(s.rig);
   errors.imu = drawImuErrors(imuGrade(s.imu_grade),
                              {on.has(Effect::ImuNoise), on.has(Effect::ImuBias), on.has(Effect::ImuScale),
                               on.has(Effect::ImuWarmUp), on.has(Effect::GSensitivity)},
@@ -187,6 +214,7 @@ DiveErrors drawErrors(const Scenario& s) {
                              s.seed);
   errors.truth.rig.magnetometer->body_from_magnetometer = errors.magnetometer.body_from_magnetometer;
   drawDepthAndSonar(s, errors);
+  if (s.vehicle) drawVehicle(s, errors);
   drawClocks(s, errors);
 
   errors.in_water = errors.truth.rig;
@@ -206,6 +234,10 @@ DiveErrors drawErrors(const Scenario& s) {
       drawMagnetometerErrors(s.imu_grade, {}, s.seed).noise_density_T_per_sqrtHz;
   errors.given.pressure->depth_noise_std_m = 0.02;
   errors.given.sonar->range_noise_std_m = 0.05;
+  if (s.vehicle) {
+    errors.given.dvl->body_from_dvl = vehicleRig(s.rig).rig.dvl->body_from_dvl;
+    errors.given.currents->fields_T_per_A.clear();
+  }
   return errors;
 }
 

@@ -4,11 +4,13 @@
 
 #include "lodeline/simulation.h"
 #include "simulation/rendering/optics/port_fit.h"
+#include "simulation/sensors/dvl_model.h"
 #include "simulation/sensors/imu_model.h"
 #include "simulation/sensors/magnetometer_model.h"
 #include "simulation/sensors/pressure_model.h"
 #include "simulation/sensors/sensor_clock.h"
 #include "simulation/sensors/sonar_model.h"
+#include "simulation/vehicle/vehicle_currents.h"
 
 namespace lodeline {
 
@@ -24,8 +26,11 @@ struct DiveErrors {
   MagnetometerErrors magnetometer;
   PressureErrors pressure;
   SonarErrors sonar;
-  double readout_s = 0.0;    ///< of the rolling shutter of all cameras; 0: global
-  ClockErrors camera_clock;  ///< one trigger for all cameras
+  SonarErrors altimeter;               ///< of a vehicle, as the next two
+  DvlErrors dvl;                       ///< its misalignment is that of truth.rig.dvl
+  CurrentSensorErrors current_sensor;  ///< k_i are those of truth.rig.currents
+  double readout_s = 0.0;              ///< of the rolling shutter of all cameras; 0: global
+  ClockErrors camera_clock;            ///< one trigger for all cameras
   double dropped_image_share = 0.0;
 };
 

@@ -1,5 +1,8 @@
 #include "simulation/dive/dive_world.h"
 
+#include <cmath>
+
+#include "simulation/dive/vehicle_dive.h"
 #include "simulation/shared/random.h"
 
 namespace lodeline {
@@ -37,10 +40,29 @@ void drawSeason(const EffectSet& on, uint64_t seed, RenderSettings& settings) {
   }
 }
 
+// The lamps of a vehicle are beside its cameras, look where they look, and are switched.
+void equipWithLamps(const Dive& dive, RenderSettings& settings) {
+  const double tilt_rad = dive.scenario.rig.camera_tilt_rad;
+  settings.daylight.irradiance *= 0.3;  // it is deep
+  for (size_t i = 0; i < settings.lamps.size(); ++i) {
+    Lamp& lamp = settings.lamps[i];
+    const double left = i % 2 == 0 ? 1.0 : -1.0;
+    lamp.position_B = Vec3(0.22, 0.24 * left, 0.02);
+    lamp.direction_B = Vec3(std::cos(tilt_rad), 0.05 * left, -std::sin(tilt_rad)).normalized();
+    if (i < kLamps) {
+      lamp.strength = [loads = dive.loads, i](double t) { return loads(t).lamps_A[i] / kLampCurrent_A; };
+    }
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
   const Scenario& s = dive.scenario;
+  if (s.vehicle) {
+    if (s.world == WorldKind::None) return nullptr;
+    return std::make_shared<const RenderWorld>(vehicleWorld(dive), s.seed);
+  }
   if (dive.wreck) {
     WreckOptions options;
     options.seed = s.seed;
@@ -61,7 +83,8 @@ std::shared_ptr<const RenderWorld> buildWorld(const Dive& dive) {
 RenderSettings renderSettings(const Dive& dive) {
   const EffectSet& on = dive.scenario.effects;
   const RenderSettings field = RenderSettings::field();
-  RenderSettings settings = dive.wreck               ? RenderSettings::openWater()
+  const bool in_open_water = dive.wreck || dive.sea_floor;
+  RenderSettings settings = in_open_water            ? RenderSettings::openWater()
                             : dive.scenario.in_water ? RenderSettings::clean()
                                                      : RenderSettings::room();
   settings.seed = dive.scenario.seed;
@@ -83,6 +106,7 @@ RenderSettings renderSettings(const Dive& dive) {
   settings.buddy = dive.buddy;
   settings.halocline = dive.halocline;
   if (dive.cave) drawSeason(on, dive.scenario.seed, settings);
+  if (dive.scenario.vehicle) equipWithLamps(dive, settings);
   if (!on.has(Effect::MarineSnow)) settings.snow.flakes_per_m3 = 0.0;
   settings.sensor.noise = on.has(Effect::ImageNoise);
   settings.motion_blur = on.has(Effect::MotionBlur);

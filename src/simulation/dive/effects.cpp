@@ -71,6 +71,18 @@ const std::array<EffectDescription, kEffectCount>& effectDescriptions() {
        "a quarter of the dive in salt water: density, index, blur"},
       {Effect::ShutterInFiles, "shutter_in_files", false, false, true,
        "calibration files say that the shutter is rolling"},
+      {Effect::DvlNoise, "dvl_noise", true, true, true, "vehicle: 6 mm/s along each beam, 2 cm of range"},
+      {Effect::DvlDropouts, "dvl_dropouts", false, true, true,
+       "vehicle: 10 % of the DVL's beams without lock"},
+      {Effect::DvlSentinels, "dvl_sentinels", false, false, true,
+       "vehicle: 5 % of the beams say 0.0 m/s and -2.0 m as if valid"},
+      {Effect::DvlScale, "dvl_scale", false, true, true, "vehicle: speed of sound off by 0.7-1.3 %"},
+      {Effect::DvlMisalignment, "dvl_misalignment", false, true, true,
+       "vehicle: files say a DVL turned by 2-3.5 degrees"},
+      {Effect::ThrusterCurrents, "thruster_currents", false, true, true,
+       "vehicle: thrusters disturb the magnetometer by 6-12 uT each at 20 A"},
+      {Effect::Vibration, "vibration", false, true, true, "vehicle: thrusters shake the IMU at 20-160 Hz"},
+      {Effect::Steel, "steel", true, true, true, "wreck: the hull bends the field"},
   }};
   return table;
 }

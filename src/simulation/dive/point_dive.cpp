@@ -1,5 +1,10 @@
 #include "simulation/dive/point_dive.h"
 
+#include <memory>
+
+#include "simulation/dive/vehicle_dive.h"
+#include "simulation/rendering/cave/traced_scene.h"
+
 namespace lodeline {
 namespace {
 
@@ -33,6 +38,36 @@ PointDive makeCaveDive(const CavePlanOptions& cave, const DiveMotionOptions& mot
                  caveLandmarks(plan.cave.translated(shift), points_per_metre, cave.seed), shift};
   dive.mounted.rig.imu.noise = statedNoise(imu);
   return dive;
+}
+
+PointSimulation VehicleDive::simulate(const PointSimulationOptions& changed) const {
+  PointSimulationOptions fresh = changed;
+  // The phases of the thrusters begin anew with each simulation.
+  if (fresh.vehicle && fresh.vehicle->shake) fresh.vehicle->shake = makeShaking(dive);
+  return PointSimulation(dive.motion, landmarks, trueRig(), givenRig(), fresh);
+}
+
+VehicleDive makeVehicleDive(const Scenario& scenario) {
+  Dive dive = makeDive(scenario);
+  TriangleMesh world = vehicleWorld(dive);
+  LandmarkField landmarks = vehicleLandmarks(dive, world);
+  const auto scene = std::make_shared<const TracedScene>(std::move(world));
+  const RangeFunction range = [scene](const Vec3& origin_W, const Vec3& direction_W) {
+    return scene->range(origin_W, direction_W);
+  };
+  PointSimulationOptions options;
+  options.seed = noiseSeed(scenario);
+  options.start = dive.start;
+  options.frame_rate_hz = scenario.rig.camera_rate_hz;
+  options.imu = dive.errors.imu;
+  options.magnetometer = {dive.field_W, dive.disturbances, dive.errors.magnetometer};
+  options.vehicle = {range,
+                     dive.errors.dvl,
+                     dive.errors.altimeter,
+                     dive.loads,
+                     dive.errors.current_sensor,
+                     makeShaking(dive)};
+  return {std::move(dive), std::move(landmarks), range, options};
 }
 
 }  // namespace lodeline

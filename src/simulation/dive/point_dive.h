@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lodeline/simulation.h"
+#include "simulation/dive/dive.h"
 #include "simulation/dive/point_simulation.h"
 #include "simulation/motion/dive_motion.h"
 #include "simulation/plan/cave_plan.h"
@@ -31,5 +32,21 @@ PointDive makePointDive(const DiveMotionOptions& motion, const MountedRig& mount
 /// (PointSimulation::pointOf), each in its own world.
 PointDive makeCaveDive(const CavePlanOptions& cave, const DiveMotionOptions& motion,
                        const MountedRig& mounted, const ImuErrors& imu);
+
+/// A dive of a vehicle (scenario `auv` or `wreck`) with the points of its world; it must outlive its
+/// simulations. Errors of the readings follow the effects of the scenario.
+struct VehicleDive {
+  Dive dive;
+  LandmarkField landmarks;
+  RangeFunction range;             ///< to the surface that the scenario renders
+  PointSimulationOptions options;  ///< all errors and sensors; tracks and frames by default
+
+  const Rig& trueRig() const { return dive.errors.in_water; }
+  const Rig& givenRig() const { return dive.errors.given; }
+  PointSimulation simulate() const { return simulate(options); }
+  PointSimulation simulate(const PointSimulationOptions& changed) const;
+};
+
+VehicleDive makeVehicleDive(const Scenario& scenario);
 
 }  // namespace lodeline

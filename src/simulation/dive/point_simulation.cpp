@@ -45,10 +45,23 @@ PointSimulation::PointSimulation(const Motion& motion, const LandmarkField& land
       imu_(options.imu, true_rig.imu.rate_hz, options.seed),
       pixel_noise_(options.seed, "points/pixel"),
       choice_(options.seed, "points/choice") {
-  if (!options.magnetometer) return;
-  const PointMagnetometer& magnetometer = *options.magnetometer;
-  magnetometer_.emplace(motion, magnetometer.field_W, magnetometer.disturbances, magnetometer.errors,
-                        true_rig.magnetometer.value().rate_hz, options.seed);
+  if (options.magnetometer) {
+    const PointMagnetometer& magnetometer = *options.magnetometer;
+    magnetometer_.emplace(motion, magnetometer.field_W, magnetometer.disturbances, magnetometer.errors,
+                          true_rig.magnetometer.value().rate_hz, options.seed);
+  }
+  if (!options.vehicle) return;
+  const PointVehicle& vehicle = *options.vehicle;
+  if (vehicle.range && true_rig.dvl) {
+    dvl_.emplace(motion, true_rig.dvl->body_from_dvl, true_rig.dvl->beams_D, vehicle.range, vehicle.dvl,
+                 options.seed);
+  }
+  if (vehicle.range && true_rig.altimeter) {
+    altimeter_.emplace(motion, true_rig.altimeter->body_from_sonar, vehicle.range, vehicle.altimeter,
+                       options.seed, "altimeter");
+  }
+  if (vehicle.loads && true_rig.currents)
+    currents_.emplace(vehicle.loads, vehicle.current_sensor, options.seed);
 }
 
 std::optional<SimulatedFrame> PointSimulation::next() {
@@ -62,6 +75,7 @@ std::optional<SimulatedFrame> PointSimulation::next() {
   frame.tracks.time = frame.truth.time;
   takeImu(frame);
   takeMagnetometer(frame);
+  takeVehicle(frame);
 
   const bool dark = std::any_of(options_.blackouts.begin(), options_.blackouts.end(),
                                 [&](const TimeSpan& span) { return span.contains(time_s); });
@@ -89,7 +103,9 @@ void PointSimulation::takeImu(SimulatedFrame& frame) {
   while (!after_) {
     const double t = static_cast<double>(next_imu_++) / true_rig_.imu.rate_hz;
     const Time stamp = options_.start + Duration::fromSeconds(t);
-    const ImuSample sample = imu_.measure(perfectImuSample(motion_.at(t), stamp, options_.gravity_W));
+    ImuSample perfect = perfectImuSample(motion_.at(t), stamp, options_.gravity_W);
+    if (options_.vehicle && options_.vehicle->shake) options_.vehicle->shake(t, &perfect);
+    const ImuSample sample = imu_.measure(perfect);
     const Reading reading{sample, imu_.gyroscopeBias(), imu_.accelerometerBias()};
     if (stamp <= border) {
       keep(reading);
@@ -113,6 +129,34 @@ void PointSimulation::takeMagnetometer(SimulatedFrame& frame) {
     if (stamp > frame.truth.time) return;
     frame.magnetometer.push_back({stamp, magnetometer_->measure(t)});
     ++next_magnetometer_;
+  }
+}
+
+void PointSimulation::takeVehicle(SimulatedFrame& frame) {
+  // Reads a sensor up to the frame; `phase` is the place of its readings between those of the IMU.
+  const auto take = [&](double rate_hz, double phase, int64_t* next, const auto& read) {
+    for (;; ++*next) {
+      const double t = (static_cast<double>(*next) + phase) / rate_hz;
+      const Time stamp = options_.start + Duration::fromSeconds(t);
+      if (stamp > frame.truth.time) return;
+      read(t, stamp);
+    }
+  };
+  if (dvl_) {
+    take(true_rig_.dvl->rate_hz, 0.4, &next_dvl_, [&](double t, Time stamp) {
+      frame.dvl.push_back(dvl_->measure(t));
+      frame.dvl.back().time = stamp;
+    });
+  }
+  if (altimeter_) {
+    take(true_rig_.altimeter->rate_hz, 0.6, &next_altimeter_, [&](double t, Time stamp) {
+      if (const auto echo = altimeter_->measure(t)) frame.altimeter.push_back({stamp, echo->range_m});
+    });
+  }
+  if (currents_) {
+    take(true_rig_.currents->rate_hz, 0.2, &next_currents_, [&](double t, Time stamp) {
+      frame.currents.push_back({stamp, currents_->measure(t)});
+    });
   }
 }
 

@@ -1,15 +1,19 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/frontend/tracking/tracks.h"
+#include "simulation/sensors/dvl_model.h"
 #include "simulation/sensors/imu_model.h"
 #include "simulation/sensors/landmark_field.h"
 #include "simulation/sensors/magnetometer_model.h"
+#include "simulation/sensors/sonar_model.h"
 #include "simulation/shared/motion.h"
+#include "simulation/vehicle/vehicle_currents.h"
 
 namespace lodeline {
 
@@ -25,6 +29,17 @@ struct PointMagnetometer {
   Vec3 field_W = Vec3(0.0, 24e-6, -38e-6);  ///< the Earth's field, T
   MagneticDisturbances disturbances;
   MagnetometerErrors errors;
+};
+
+/// Sensors of a vehicle; their rates and poses are those of the true rig.
+struct PointVehicle {
+  RangeFunction range;  ///< to the surface, for DVL and altimeter
+  DvlErrors dvl;
+  SonarErrors altimeter;
+  LoadsFunction loads;  ///< empty: no readings of currents
+  CurrentSensorErrors current_sensor;
+  /// Shakes a perfect reading of the IMU; called in order of time. Empty: no vibration.
+  std::function<void(double time_s, ImuSample* reading)> shake;
 };
 
 struct PointSimulationOptions {
@@ -50,6 +65,7 @@ struct PointSimulationOptions {
 
   ImuErrors imu;
   std::optional<PointMagnetometer> magnetometer;  ///< requires a rig with a magnetometer
+  std::optional<PointVehicle> vehicle;            ///< requires a rig with its sensors
   Vec3 gravity_W = Vec3(0.0, 0.0, -9.80665);
 };
 
@@ -69,6 +85,9 @@ struct SimulatedFrame {
   std::vector<ImuSample> imu;
   /// Readings after the previous frame up to this one; for the first frame, from the motion's start.
   std::vector<MagnetometerSample> magnetometer;
+  std::vector<DvlSample> dvl;  ///< these three in the same interval
+  std::vector<AltimeterSample> altimeter;
+  std::vector<CurrentSample> currents;
   TrueState truth;
 };
 
@@ -109,6 +128,7 @@ class PointSimulation {
   double secondsOf(int frame) const { return options_.first_frame_s + frame / options_.frame_rate_hz; }
   void takeImu(SimulatedFrame& frame);
   void takeMagnetometer(SimulatedFrame& frame);
+  void takeVehicle(SimulatedFrame& frame);
   void renewTracks(double time_s, const Rigid3& world_from_body);
   std::optional<Vec2> seen(int camera, const Rigid3& world_from_body, const LandmarkPoint& point) const;
   void observe(const Rigid3& world_from_body, FrameTracks& tracks);
@@ -121,10 +141,14 @@ class PointSimulation {
   std::vector<std::shared_ptr<const Camera>> true_cameras_, given_cameras_;
   ImuModel imu_;
   std::optional<MagnetometerModel> magnetometer_;
+  std::optional<DvlModel> dvl_;
+  std::optional<SonarModel> altimeter_;
+  std::optional<CurrentSensorModel> currents_;
   Random pixel_noise_, choice_;
   int next_frame_ = 0;
   int64_t next_imu_ = 0;
   int64_t next_magnetometer_ = 0;
+  int64_t next_dvl_ = 0, next_altimeter_ = 0, next_currents_ = 0;
   std::optional<Reading> before_, after_;  // readings on both sides of the last border
   std::optional<ImuSample> border_;
   std::vector<Track> tracks_;

@@ -7,7 +7,11 @@
 #include "lodeline/cameras/camera_model.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
+#include "lodeline/util/angles.h"
+#include "simulation/dive/vehicle_dive.h"
+#include "simulation/motion/vehicle_motion.h"
 #include "simulation/sensors/imu_model.h"
+#include "simulation/vehicle/still_ramps.h"
 
 namespace lodeline {
 namespace {
@@ -33,6 +37,38 @@ Scenario caveScenario(const char* name, const char* description, double duration
   s.shape = shape;
   s.cave_seed = s.seed;
   return s;
+}
+
+Scenario vehicleScenario(const char* name, const char* description, double duration_s, double path_length_m,
+                         WorldKind world, MotionKind motion) {
+  Scenario s = scenario(name, description, duration_s, path_length_m, kDevilsEye);
+  s.vehicle = true;
+  s.world = world;
+  s.motion = motion;
+  s.imu_grade = "consumer";
+  s.start_depth_m = 20.0;
+  s.rig.cameras = 1;
+  return s;
+}
+
+void addVehicleScenarios(std::vector<Scenario>& all) {
+  Scenario auv = vehicleScenario("auv", "a vehicle on transects 2 m above the sea floor; one camera", 780.0,
+                                 300.0, WorldKind::SeaFloor, MotionKind::Transects);
+  auv.rig.camera_tilt_rad = 60.0 * kDegree;
+  all.push_back(auv);
+
+  Scenario wreck =
+      vehicleScenario("wreck", "a vehicle, three laps around and through a steel hull; stereo", 1180.0,
+                      wreckLapLength_m(steelWreck(), 3), WorldKind::Wreck, MotionKind::ThroughWreck);
+  wreck.rig.cameras = 2;
+  wreck.rig.camera_tilt_rad = 5.0 * kDegree;
+  wreck.laps = 3;
+  all.push_back(wreck);
+
+  Scenario ramps = vehicleScenario("current_ramps", "a vehicle at rest; each current rises and falls",
+                                   RampTimes().duration_s(), 0.0, WorldKind::None, MotionKind::CurrentRamps);
+  ramps.images = false;
+  all.push_back(ramps);
 }
 
 std::vector<Scenario> makeScenarios() {
@@ -100,6 +136,7 @@ std::vector<Scenario> makeScenarios() {
   open_water.motion = MotionKind::AroundWreck;
   open_water.start_depth_m = 14.0;
   all.push_back(open_water);
+  addVehicleScenarios(all);
   return all;
 }
 
@@ -128,7 +165,9 @@ void changePlace(const ScenarioChanges& c, Scenario& s) {
   };
   only(c.cave_seed.has_value(), in_cave, "--cave-seed", "cave");
   only(c.tags.has_value(), in_cave, "--tags", "cave");
-  only(c.laps.has_value(), s.shape == CaveShape::Loop || s.shape == CaveShape::Room, "--laps", "circuit");
+  const bool around_wreck = s.motion == MotionKind::ThroughWreck;
+  only(c.laps.has_value(), s.shape == CaveShape::Loop || s.shape == CaveShape::Room || around_wreck, "--laps",
+       "circuit");
   const bool has_far_end = in_cave && s.shape == CaveShape::Passage;
   only(c.entrance.has_value(), has_far_end, "--entrance", "passage with two ends");
   only(c.cave_metres.has_value(), has_far_end, "--cave-metres", "passage with two ends");
@@ -137,9 +176,11 @@ void changePlace(const ScenarioChanges& c, Scenario& s) {
   if (in_cave && framed) s.cave_seed = c.cave_seed.value_or(c.seed.value_or(1));
   if (c.laps) {
     // A change of laps alone keeps the circuit.
-    if (!c.metres && s.shape == CaveShape::Loop && !c.seconds) {
-      s.path_length_m *= static_cast<double>(*c.laps) / s.laps;
-      s.duration_s *= static_cast<double>(*c.laps) / s.laps;
+    if (!c.metres && (s.shape == CaveShape::Loop || around_wreck) && !c.seconds) {
+      const double ratio = around_wreck ? wreckLapLength_m(steelWreck(), *c.laps) / s.path_length_m
+                                        : static_cast<double>(*c.laps) / s.laps;
+      s.path_length_m *= ratio;
+      s.duration_s *= ratio;
     }
     s.laps = *c.laps;
   }
@@ -147,6 +188,23 @@ void changePlace(const ScenarioChanges& c, Scenario& s) {
   if (c.cave_metres) s.cave_length_m = positive(*c.cave_metres, "--cave-metres");
   if (c.tags) s.tags = *c.tags;
   if (s.tags < 0 || s.tags > 100) throw UsageError(fmt::format("--tags must be 0 to 100, got {}", s.tags));
+}
+
+constexpr Effect kVehicleEffects[] = {Effect::DvlNoise, Effect::DvlDropouts,     Effect::DvlSentinels,
+                                      Effect::DvlScale, Effect::DvlMisalignment, Effect::ThrusterCurrents,
+                                      Effect::Vibration};
+
+// Effects of things that the scenario does not have.
+void refuseForeignEffects(const Scenario& s) {
+  const auto refuse = [&](Effect effect, const char* where) {
+    if (!s.effects.has(effect)) return;
+    throw UsageError(fmt::format("--effect {}: {} has no {}",
+                                 effectDescriptions()[static_cast<size_t>(effect)].name, s.name, where));
+  };
+  if (!s.vehicle) {
+    for (const Effect effect : kVehicleEffects) refuse(effect, "vehicle");
+  }
+  if (s.motion != MotionKind::ThroughWreck) refuse(Effect::Steel, "wreck of steel");
 }
 
 void changeCameraModel(const std::string& name, Scenario& s) {
@@ -205,7 +263,13 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
       s.effects.set(effect, false);
     }
   }
+  if (!s.vehicle) {
+    for (const Effect effect : kVehicleEffects) s.effects.set(effect, false);
+  }
+  if (s.motion != MotionKind::ThroughWreck) s.effects.set(Effect::Steel, false);
+  if (s.motion == MotionKind::CurrentRamps) s.effects.set(Effect::ThrusterCurrents, true);
   for (const std::string& assignment : c.effects) s.effects.set(assignment);
+  refuseForeignEffects(s);
   if (c.camera_model) changeCameraModel(*c.camera_model, s);
   if (c.readout_ms) {
     s.readout_s = 1e-3 * positive(*c.readout_ms, "--readout-ms");
@@ -214,6 +278,9 @@ Scenario makeScenario(std::string_view name, const ScenarioChanges& c) {
   s.starts_at_rest = !c.starts_moving;
   if (c.no_images) s.images = false;
   s.rig.sonar_scans_ahead = c.sonar_ahead;
+  if (c.cables_moved && !s.vehicle)
+    throw UsageError(fmt::format("--cables-moved: {} has no vehicle", s.name));
+  s.cables_moved = c.cables_moved;
   return s;
 }
 
@@ -241,6 +308,7 @@ std::string describe(const Scenario& s) {
   if (!s.rig.camera_model.empty()) text += fmt::format("camera_model: {}\n", s.rig.camera_model);
   if (s.readout_s) text += fmt::format("readout_s: {}\n", *s.readout_s);
   if (s.rig.sonar_scans_ahead) text += "sonar_scans_ahead: true\n";
+  if (s.cables_moved) text += "cables_moved: true\n";
   if (s.cave_seed) {
     text += fmt::format("cave_seed: {}\nlaps: {}\nentrance: {}\ntags: {}\n", *s.cave_seed, s.laps, s.entrance,
                         s.tags);

@@ -13,14 +13,9 @@ namespace {
 
 constexpr double kEnvelopeKnot_s = 0.25;
 
-// Noise up to about 0.3 / spacing Hz from independent normal control points. A quintic spline keeps 0.65 of
-// their standard deviation.
 MotionChannel::Enveloped noise(const HandMotionOptions& o, const char* stream, double spacing_s,
                                double sigma) {
-  Random random(o.seed, stream);
-  const double scale = sigma / 0.65 * o.liveliness;
-  return {motionSpline(o.duration_s, kEnvelopeKnot_s, o.activity),
-          motionSpline(o.duration_s, spacing_s, [&](double) { return scale * random.normal(); })};
+  return motionNoise(o.seed, stream, o.duration_s, o.activity, spacing_s, sigma / 0.65 * o.liveliness);
 }
 
 Spline strength(const HandMotionOptions& o, const TimeFunction& share, double amplitude) {
@@ -90,6 +85,13 @@ void addSweeps(const HandMotionOptions& o, MotionChannels& c) {
 
 Spline motionSpline(double duration_s, double spacing_s, const TimeFunction& control) {
   return Spline(-Motion::kMargin_s, duration_s + Motion::kMargin_s, spacing_s, control);
+}
+
+MotionChannel::Enveloped motionNoise(uint64_t seed, std::string_view stream, double duration_s,
+                                     const TimeFunction& envelope, double spacing_s, double control_sigma) {
+  Random random(seed, stream);
+  return {motionSpline(duration_s, kEnvelopeKnot_s, envelope),
+          motionSpline(duration_s, spacing_s, [&](double) { return control_sigma * random.normal(); })};
 }
 
 void addHandMotion(const HandMotionOptions& o, MotionChannels& c) {

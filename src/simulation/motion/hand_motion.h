@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string_view>
 
 #include "simulation/shared/motion.h"
 
@@ -27,5 +28,10 @@ void addHandMotion(const HandMotionOptions& options, MotionChannels& channels);
 
 /// A spline over the whole range in which a motion of `duration_s` is defined.
 Spline motionSpline(double duration_s, double spacing_s, const TimeFunction& control);
+
+/// Noise up to about 0.3 / spacing Hz under an envelope, from independent normal control points of the given
+/// sigma. A quintic spline keeps 0.65 of their standard deviation.
+MotionChannel::Enveloped motionNoise(uint64_t seed, std::string_view stream, double duration_s,
+                                     const TimeFunction& envelope, double spacing_s, double control_sigma);
 
 }  // namespace lodeline

@@ -7,6 +7,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "simulation/shared/random.h"
+#include "simulation/shared/smoother_step.h"
 #include "simulation/shared/waves.h"
 
 namespace lodeline {
@@ -33,11 +34,6 @@ std::vector<double> smoothed(std::vector<double> values, double half_width_s) {
     }
   }
   return values;
-}
-
-double smootherStep01(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
 
 }  // namespace

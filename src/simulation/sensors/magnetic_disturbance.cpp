@@ -41,6 +41,10 @@ Vec3 inducedDirection(const Vec3& field_W, Random& random) {
   return (field_W.normalized() + 0.6 * random.normal3()).normalized();
 }
 
+void addDipoles(const std::vector<LyingDipole>& dipoles, const Vec3& point_W, Vec3* sum) {
+  for (const LyingDipole& d : dipoles) *sum += dipoleField(d.moment_W, point_W - d.position_W);
+}
+
 }  // namespace
 
 Vec3 dipoleField(const Vec3& moment, const Vec3& offset) {
@@ -48,6 +52,12 @@ Vec3 dipoleField(const Vec3& moment, const Vec3& offset) {
   const double r = std::max(offset.norm(), 0.05);
   const Vec3 direction = offset / r;
   return kMu0Over4Pi / (r * r * r) * (3.0 * direction * direction.dot(moment) - moment);
+}
+
+Vec3 fieldOfDipoles(const std::vector<LyingDipole>& dipoles, const Vec3& point_W) {
+  Vec3 sum = Vec3::Zero();
+  addDipoles(dipoles, point_W, &sum);
+  return sum;
 }
 
 Vec3 WanderingField::at(double time_s) const {
@@ -62,8 +72,8 @@ Vec3 WanderingField::at(double time_s) const {
 
 Vec3 MagneticDisturbances::at(const Rigid3& world_from_body, double time_s) const {
   Vec3 sum = wandering.at(time_s);
-  for (const LyingDipole& d : lying)
-    sum += dipoleField(d.moment_W, world_from_body.translation - d.position_W);
+  addDipoles(lying, world_from_body.translation, &sum);
+  addDipoles(steel, world_from_body.translation, &sum);
   for (const PassingIron& iron : passing) {
     const double share = strength(iron, time_s);
     if (share > 0.0) sum += share * dipoleField(iron.moment_W, -(world_from_body.rotation * iron.position_B));

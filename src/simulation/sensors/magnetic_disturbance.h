@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "simulation/shared/motion.h"
@@ -14,6 +15,9 @@ struct LyingDipole {
   Vec3 position_W = Vec3::Zero();
   Vec3 moment_W = Vec3::Zero();  ///< A m^2
 };
+
+/// Sum of their fields at a point, T.
+Vec3 fieldOfDipoles(const std::vector<LyingDipole>& dipoles, const Vec3& point_W);
 
 /// Iron that approaches and leaves: a companion's steel tank. Its position is constant in the diver frame.
 /// Its magnetization, induced by the Earth's field, has a constant direction in the world.
@@ -47,8 +51,11 @@ struct MagneticDisturbances {
   std::vector<PassingIron> passing;
   std::vector<SwitchedCurrent> switched;
   WanderingField wandering = {};
+  std::vector<LyingDipole> steel = {};  ///< of a wreck's hull
+  /// Field of the vehicle's own currents in axes of the readings, T; it adds to the readings. Empty: none.
+  std::function<Vec3(double time_s)> currents_M = {};
 
-  /// Sum of the fields at the body's origin in world axes, T.
+  /// Sum of the fields except `currents_M` at the body's origin in world axes, T.
   Vec3 at(const Rigid3& world_from_body, double time_s) const;
 };
 

@@ -34,6 +34,7 @@ Vec3 MagnetometerModel::measure(double time_s) {
   const Vec3 field_M = errors_.body_from_magnetometer.rotation.conjugate() * field_B;
   Vec3 reading = errors_.soft_iron * field_M + errors_.hard_iron_T +
                  errors_.hard_iron_creep_T_per_s * sensed_s + walked_T_ + noise;
+  if (disturbances_.currents_M) reading += disturbances_.currents_M(sensed_s);
   reading = reading.cwiseMax(-errors_.range_T).cwiseMin(errors_.range_T);
   if (errors_.resolution_T > 0.0) {
     reading = (reading / errors_.resolution_T).array().round().matrix() * errors_.resolution_T;

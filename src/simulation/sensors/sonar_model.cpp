@@ -8,12 +8,12 @@
 namespace lodeline {
 
 SonarModel::SonarModel(const Motion& motion, const Rigid3& body_from_sonar, RangeFunction range,
-                       const SonarErrors& errors, uint64_t seed)
+                       const SonarErrors& errors, uint64_t seed, std::string_view random_stream)
     : motion_(motion),
       body_from_sonar_(body_from_sonar),
       range_(std::move(range)),
       errors_(errors),
-      random_(seed, "sonar") {}
+      random_(seed, random_stream) {}
 
 double SonarModel::angleAt_rad(double time_s) const {
   const double around_rad = std::remainder(errors_.turn_rad_per_s * time_s, 2.0 * std::numbers::pi);

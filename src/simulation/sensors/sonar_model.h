@@ -14,7 +14,7 @@ namespace lodeline {
 using RangeFunction = std::function<std::optional<double>(const Vec3& origin_W, const Vec3& direction_W)>;
 
 /// A pencil-beam sonar whose head rotates at a constant rate about its z axis, all around or within a sector;
-/// at angle 0 the beam points along x.
+/// at angle 0 the beam points along x. An altimeter is one whose head does not rotate.
 struct SonarErrors {
   double noise_m = 0.0;
   double dropout_share = 0.0;   ///< fraction of randomly lost echoes
@@ -31,7 +31,7 @@ class SonarModel {
  public:
   /// `motion` must outlive the model.
   SonarModel(const Motion& motion, const Rigid3& body_from_sonar, RangeFunction range,
-             const SonarErrors& errors, uint64_t seed);
+             const SonarErrors& errors, uint64_t seed, std::string_view random_stream = "sonar");
 
   /// The echo at `time_s` (the caller sets its time); nothing where it is too far, too near, or lost.
   std::optional<SonarSample> measure(double time_s);

@@ -12,11 +12,6 @@
 namespace lodeline {
 namespace {
 
-constexpr float kHalfLength_m = 12.0f;
-constexpr float kHalfBeam_m = 3.0f;
-constexpr float kHullDepth_m = 3.5f;
-constexpr float kSunk_m = 0.7f;  ///< depth of the keel below the sand
-
 using PointOn = std::function<Vec3f(float u, float v)>;
 using HoleAt = std::function<bool(float u, float v)>;
 
@@ -53,37 +48,30 @@ void addSheet(TriangleMesh& out, const PointOn& point, const HoleAt& hole, float
   out.append(sheet);
 }
 
-/// Point of the hull at u along (stern 0, bow 1) and v around (starboard rail 0, keel 0.5, port rail 1).
-Vec3f hullPoint(float u, float v) {
-  const float along = 2.0f * u - 1.0f;
-  const float fullness =
-      std::pow(std::max(0.0f, 1.0f - std::pow(std::abs(along), along > 0.0f ? 2.2f : 5.0f)), 0.6f);
-  const float angle = std::numbers::pi_v<float> * v;
-  const float cosine = std::cos(angle);
-  const float beam = kHalfBeam_m * (0.05f + 0.95f * fullness);
-  // Flat bottom and round bilge as a superellipse.
-  const float across = -beam * (cosine < 0.0f ? -1.0f : 1.0f) * std::pow(std::abs(cosine), 0.6f);
-  const float sheer = 0.8f * along * along * (along > 0.0f ? 1.0f : 0.4f);
-  const float depth = (kHullDepth_m + sheer) * (1.0f - std::pow(std::sin(angle), 0.5f)) - kSunk_m;
-  // Plates overlap by their thickness.
-  const float seam = 0.015f * std::floor(v * 14.0f - std::floor(v * 14.0f) + 0.5f);
-  return {kHalfLength_m * along, across * (1.0f + 0.01f * seam), depth + seam};
+/// Size of a ship relative to the small one, along x, y and z.
+Vec3f growthOf(const HullShape& hull) {
+  const HullShape small;
+  return {hull.half_length_m / small.half_length_m, hull.half_beam_m / small.half_beam_m,
+          hull.depth_m / small.depth_m};
 }
 
-void addHull(TriangleMesh& ship, uint32_t seed) {
+void addHull(TriangleMesh& ship, const HullShape& hull, uint32_t seed) {
+  const PointOn point = [&](float u, float v) { return hull.point(u, v); };
+  const auto brokenOff = [&](float u) { return u < hull.open_share || u > 1.0f - hull.open_share; };
   const HoleAt rusted_through = [&](float u, float v) {
-    const Vec3f p = hullPoint(u, v);
-    return fractalNoise(p / 2.3f, 3, seed + 11) > 0.62f && p.z() > 0.4f;
+    const Vec3f p = hull.point(u, v);
+    return brokenOff(u) || (fractalNoise(p / 2.3f, 3, seed + 11) > 0.62f && p.z() > 0.4f);
   };
-  addSheet(ship, hullPoint, rusted_through, 2.0f * kHalfLength_m, 11.0f, seed);
-  const PointOn deck = [](float u, float v) {
-    const Vec3f rail = hullPoint(u, 0.0f);
+  // The girth is 11 m for the small ship.
+  addSheet(ship, point, rusted_through, 2.0f * hull.half_length_m, 11.0f * growthOf(hull).y(), seed);
+  const PointOn deck = [&](float u, float v) {
+    const Vec3f rail = hull.point(u, 0.0f);
     return Vec3f(rail.x(), rail.y() * (1.0f - 2.0f * v) * 0.98f, rail.z() - 0.5f);
   };
-  const HoleAt hatches = [](float u, float v) {
-    return v > 0.3f && v < 0.7f && ((u > 0.28f && u < 0.42f) || (u > 0.52f && u < 0.64f));
+  const HoleAt hatches = [&](float u, float v) {
+    return brokenOff(u) || (v > 0.3f && v < 0.7f && ((u > 0.28f && u < 0.42f) || (u > 0.52f && u < 0.64f)));
   };
-  addSheet(ship, deck, hatches, 2.0f * kHalfLength_m, 2.0f * kHalfBeam_m, seed + 20);
+  addSheet(ship, deck, hatches, 2.0f * hull.half_length_m, 2.0f * hull.half_beam_m, seed + 20);
 }
 
 /// Adds four walls and a roof, optionally with windows.
@@ -120,16 +108,18 @@ void addTube(TriangleMesh& ship, const Vec3f& from, const Vec3f& to, float radiu
   addSheet(ship, point, HoleAt(), (to - from).norm(), 6.3f * radius_m, seed, 0.05f);
 }
 
-void addSuperstructure(TriangleMesh& ship, uint32_t seed) {
-  const float deck = kHullDepth_m - kSunk_m - 0.5f;
-  addBox(ship, {-9.0f, -1.8f, deck}, {4.0f, 3.6f, 2.3f}, true, seed + 40);
-  addBox(ship, {-8.4f, -1.3f, deck + 2.3f}, {2.2f, 2.6f, 1.7f}, true, seed + 50);
-  addTube(ship, {1.2f, 0.0f, deck}, {1.5f, 0.3f, 8.0f}, 0.14f, seed + 60);
-  addTube(ship, {1.4f, 0.2f, 5.0f}, {5.6f, 1.9f, 3.6f}, 0.08f, seed + 61);
-  addTube(ship, {-6.8f, 0.6f, deck + 4.0f}, {-6.8f, 0.6f, deck + 5.6f}, 0.35f, seed + 62);
+void addSuperstructure(TriangleMesh& ship, const HullShape& hull, uint32_t seed) {
+  const float deck = hull.depth_m - hull.sunk_m - 0.5f;
+  // Farther aft and higher than on the small ship.
+  const float aft = 9.0f * (growthOf(hull).x() - 1.0f), rise = hull.depth_m - HullShape().depth_m;
+  addBox(ship, {-9.0f - aft, -1.8f, deck}, {4.0f, 3.6f, 2.3f}, true, seed + 40);
+  addBox(ship, {-8.4f - aft, -1.3f, deck + 2.3f}, {2.2f, 2.6f, 1.7f}, true, seed + 50);
+  addTube(ship, {1.2f, 0.0f, deck}, {1.5f, 0.3f, 8.0f + rise}, 0.14f, seed + 60);
+  addTube(ship, {1.4f, 0.2f, 5.0f + rise}, {5.6f, 1.9f, 3.6f + rise}, 0.08f, seed + 61);
+  addTube(ship, {-6.8f - aft, 0.6f, deck + 4.0f}, {-6.8f - aft, 0.6f, deck + 5.6f}, 0.35f, seed + 62);
   for (int k = 0; k < 9; ++k) {
     // Rail posts.
-    const Vec3f foot = hullPoint(0.2f + 0.08f * k, k % 2 == 0 ? 0.0f : 1.0f);
+    const Vec3f foot = hull.point(0.2f + 0.08f * k, k % 2 == 0 ? 0.0f : 1.0f);
     addTube(ship, foot - 0.2f * Vec3f::UnitZ(), foot + 0.9f * Vec3f::UnitZ(), 0.04f, seed + 70 + k);
   }
 }
@@ -156,13 +146,15 @@ void addSeabed(TriangleMesh& out, float half_m, uint32_t seed) {
   out.append(bed);
 }
 
-void scatterDebris(TriangleMesh& out, uint64_t seed) {
+void scatterDebris(TriangleMesh& out, const HullShape& hull, uint64_t seed) {
   Random random(seed, "wreck/debris");
+  const Vec3f growth = growthOf(hull);
   const uint32_t noise_seed = static_cast<uint32_t>(seed);
   for (int k = 0; k < 90; ++k) {
     const float angle = static_cast<float>(random.uniform(0.0, 2.0 * std::numbers::pi));
     const float reach = static_cast<float>(random.uniform(1.05, 2.4));
-    const float x = 13.0f * reach * std::cos(angle), y = 5.5f * reach * std::sin(angle);
+    const float x = 13.0f * growth.x() * reach * std::cos(angle);
+    const float y = 5.5f * growth.y() * reach * std::sin(angle);
     const float size = 0.12f + 0.6f * std::pow(static_cast<float>(random.uniform()), 2.0f);
     const Vec3f place(x, y, seabedLevel(x, y, noise_seed));
     if (k % 6 == 0) {
@@ -182,16 +174,31 @@ void scatterDebris(TriangleMesh& out, uint64_t seed) {
 
 }  // namespace
 
+Vec3f HullShape::point(float u, float v) const {
+  const float along = 2.0f * u - 1.0f;
+  const float fullness =
+      std::pow(std::max(0.0f, 1.0f - std::pow(std::abs(along), along > 0.0f ? 2.2f : 5.0f)), 0.6f);
+  const float angle = std::numbers::pi_v<float> * v;
+  const float cosine = std::cos(angle);
+  const float beam = half_beam_m * (0.05f + 0.95f * fullness);
+  // Flat bottom and round bilge as a superellipse.
+  const float across = -beam * (cosine < 0.0f ? -1.0f : 1.0f) * std::pow(std::abs(cosine), 0.6f);
+  const float sheer = 0.8f * along * along * (along > 0.0f ? 1.0f : 0.4f);
+  const float height = (depth_m + sheer) * (1.0f - std::pow(std::sin(angle), 0.5f)) - sunk_m;
+  // Plates overlap by their thickness.
+  const float seam = 0.015f * std::floor(v * 14.0f - std::floor(v * 14.0f) + 0.5f);
+  return {half_length_m * along, across * (1.0f + 0.01f * seam), height + seam};
+}
+
 TriangleMesh makeWreck(const WreckOptions& options) {
   const uint32_t seed = static_cast<uint32_t>(options.seed);
   TriangleMesh mesh;
-  addHull(mesh, seed);
-  addSuperstructure(mesh, seed);
-  // The ship has a small list.
-  const Mat3f list = Eigen::AngleAxisf(0.16f, Vec3f::UnitX()).toRotationMatrix();
+  addHull(mesh, options.hull, seed);
+  addSuperstructure(mesh, options.hull, seed);
+  const Mat3f list = Eigen::AngleAxisf(options.list_rad, Vec3f::UnitX()).toRotationMatrix();
   for (Vec3f& p : mesh.positions) p = list * p;
   for (Vec3f& n : mesh.normals) n = list * n;
-  scatterDebris(mesh, options.seed);
+  scatterDebris(mesh, options.hull, options.seed);
   addSeabed(mesh, options.seabed_half_m, seed);
   const Mat3f turn = Eigen::AngleAxisf(options.heading_rad, Vec3f::UnitZ()).toRotationMatrix();
   for (Vec3f& p : mesh.positions) p = options.center_W + turn * p;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "lodeline/types.h"
@@ -17,6 +18,7 @@ struct Lamp {
   double spot_half_angle_rad = 0.16;  ///< angle of half intensity
   double flood_intensity = 0.0;       ///< on the axis, W/sr
   double flood_half_angle_rad = 0.70;
+  std::function<double(double time_s)> strength = {};  ///< share of the intensities; empty: always 1
 };
 
 /// A lamp with its world pose at one moment.

@@ -16,12 +16,21 @@ PlacedLamp placeTorch(const Buddy& buddy, double time_s) {
   return PlacedLamp(torch, Rigid3());
 }
 
+Lamp dimmed(Lamp lamp, double strength) {
+  lamp.spot_intensity *= strength;
+  lamp.flood_intensity *= strength;
+  return lamp;
+}
+
 }  // namespace
 
 LightField placeLight(const RenderSettings& settings, const CameraOptics& optics,
                       const Rigid3& world_from_body, double time_s) {
   LightField light{{}, settings.daylight, Water(settings.water, time_s, settings.seed)};
-  for (const Lamp& lamp : settings.lamps) light.lamps.emplace_back(lamp, world_from_body);
+  for (const Lamp& lamp : settings.lamps) {
+    const double strength = lamp.strength ? lamp.strength(time_s) : 1.0;
+    if (strength > 0.0) light.lamps.emplace_back(dimmed(lamp, strength), world_from_body);
+  }
   if (settings.second_diver) {
     const Vec3 forward = world_from_body.rotation * (optics.bodyFromCamera().rotation * Vec3::UnitZ());
     const auto torch =

@@ -1,4 +1,4 @@
-#include "simulation/dive/recording_files.h"
+#include "simulation/recording/recording_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -46,6 +46,38 @@ std::string imuText(const ImuCalibration& imu) {
              n.accelerometer_density_m_per_s2_sqrtHz, n.accelerometer_random_walk_m_per_s3_sqrtHz);
 }
 
+std::string sonarText(const char* type, const SonarCalibration& sonar) {
+  std::string text = fmt::format("sensor_type: {}\n", type) + transform(sonar.body_from_sonar) +
+                     fmt::format("rate_hz: {}\nrange_noise_std: {}  # m\nbeam_width: {}  # rad\n",
+                                 sonar.rate_hz, sonar.range_noise_std_m, sonar.beam_width_rad);
+  if (sonar.max_range_m > 0.0) text += fmt::format("max_range: {}  # m\n", sonar.max_range_m);
+  return text;
+}
+
+std::string dvlText(const DvlCalibration& dvl) {
+  std::string text = "sensor_type: dvl\n" + transform(dvl.body_from_dvl) +
+                     fmt::format(
+                         "rate_hz: {}\nvelocity_noise_std: {}  # m/s\nrange_noise_std: {}  # m\n"
+                         "scale_sigma: {}  # relative\nmisalignment_sigma: {}  # rad\nbeams:\n",
+                         dvl.rate_hz, dvl.velocity_noise_std_m_per_s, dvl.range_noise_std_m, dvl.scale_sigma,
+                         dvl.misalignment_sigma_rad);
+  for (const Vec3& beam : dvl.beams_D)
+    text += fmt::format("  - [{}, {}, {}]\n", beam.x(), beam.y(), beam.z());
+  return text;
+}
+
+std::string currentText(const CurrentCalibration& currents) {
+  std::string text = fmt::format("sensor_type: current\nrate_hz: {}\n", currents.rate_hz);
+  if (currents.fields_T_per_A.empty())
+    return text + fmt::format("channels: [{}]\n", fmt::join(currents.channels, ", "));
+  text += "channels:\n";
+  for (size_t i = 0; i < currents.channels.size(); ++i) {
+    const Vec3& k = currents.fields_T_per_A[i];
+    text += fmt::format("  {}: {{field_T_per_A: [{}, {}, {}]}}\n", currents.channels[i], k.x(), k.y(), k.z());
+  }
+  return text;
+}
+
 void writeText(const std::filesystem::path& path, const std::string& text) {
   RecordingFile file(path);
   file.write(text);
@@ -70,12 +102,17 @@ void writeCalibration(const Rig& rig, const std::filesystem::path& mav0) {
                   fmt::format("rate_hz: {}\ndepth_noise_std: {}  # m\n", rig.pressure->rate_hz,
                               rig.pressure->depth_noise_std_m));
   }
-  if (rig.sonar) {
-    writeText(mav0 / "sonar0" / "sensor.yaml",
-              "sensor_type: sonar\n" + transform(rig.sonar->body_from_sonar) +
-                  fmt::format("rate_hz: {}\nrange_noise_std: {}  # m\nbeam_width: {}  # rad\n",
-                              rig.sonar->rate_hz, rig.sonar->range_noise_std_m, rig.sonar->beam_width_rad));
-  }
+  if (rig.sonar) writeText(mav0 / "sonar0" / "sensor.yaml", sonarText("sonar", *rig.sonar));
+  if (rig.altimeter) writeText(mav0 / "altimeter0" / "sensor.yaml", sonarText("altimeter", *rig.altimeter));
+  if (rig.dvl) writeText(mav0 / "dvl0" / "sensor.yaml", dvlText(*rig.dvl));
+  if (rig.currents) writeText(mav0 / "current0" / "sensor.yaml", currentText(*rig.currents));
+}
+
+std::string numbers(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
+
+std::string numbers(const Mat3& m) {
+  const Vec3 a = m.row(0), b = m.row(1), c = m.row(2);
+  return fmt::format("[{}, {}, {}]", numbers(a), numbers(b), numbers(c));
 }
 
 }  // namespace lodeline

@@ -1,4 +1,4 @@
-#include "simulation/dive/truth_recording.h"
+#include "simulation/recording/truth_recording.h"
 
 #include <fmt/format.h>
 
@@ -6,17 +6,11 @@
 
 #include "lodeline/geometry/so3.h"
 #include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
-#include "simulation/dive/recording_files.h"
+#include "simulation/recording/recording_files.h"
+#include "simulation/recording/vehicle_recording.h"
 
 namespace lodeline {
 namespace {
-
-std::string numbers(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
-
-std::string numbers(const Mat3& m) {
-  const Vec3 a = m.row(0), b = m.row(1), c = m.row(2);
-  return fmt::format("[{}, {}, {}]", numbers(a), numbers(b), numbers(c));
-}
 
 std::string triadText(const char* name, const TriadErrors& e) {
   return fmt::format(
@@ -217,8 +211,10 @@ void recordTruth(const Dive& dive, const RenderSettings& settings, const std::ve
   errors.write(otherText(dive, settings));
   errors.write(rareText(dive));
   if (dive.cave) errors.write(lampsText(settings));
+  if (dive.scenario.vehicle) errors.write(vehicleText(dive));
   errors.close();
 
+  if (dive.scenario.vehicle) recordVehicleTruth(dive, truth);
   if (dive.cave) recordCave(*dive.cave, dive.scenario, truth);
   if (!images.empty()) {
     RecordingFile times(truth / "image_times.csv");

@@ -1,11 +1,13 @@
-#include "simulation/dive/sensor_recording.h"
+#include "simulation/recording/sensor_recording.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "lodeline/geometry/so3.h"
-#include "simulation/dive/recording_files.h"
+#include "simulation/dive/vehicle_dive.h"
+#include "simulation/recording/recording_files.h"
+#include "simulation/recording/vehicle_recording.h"
 
 namespace lodeline {
 namespace {
@@ -23,6 +25,10 @@ std::string truthRow(Time time, const MotionState& state, const ImuModel& imu) {
       g.z(), a.x(), a.y(), a.z());
 }
 
+bool isAtRest(const Scenario& s) {
+  return s.motion == MotionKind::AtRest || s.motion == MotionKind::CurrentRamps;
+}
+
 // Records inertial readings, and the true states with the biases of these readings.
 void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
   RecordingFile readings(mav0 / "imu0" / "data.csv");
@@ -35,7 +41,8 @@ void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
       "s^-1], "
       "b_w_RS_S_z [rad s^-1], b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\n");
   const double rate_hz = dive.scenario.rig.imu_rate_hz;
-  const double truth_rate_hz = dive.scenario.motion == MotionKind::AtRest ? 1.0 : 100.0;
+  const double truth_rate_hz = isAtRest(dive.scenario) ? 1.0 : 100.0;
+  const Shaking shake = makeShaking(dive);
   const int64_t every = std::max<int64_t>(1, std::llround(rate_hz / truth_rate_hz));
   ImuModel imu(dive.errors.imu, rate_hz, noiseSeed(dive.scenario));
   for (int64_t i = 0;; ++i) {
@@ -43,7 +50,9 @@ void recordImu(const Dive& dive, const std::filesystem::path& mav0) {
     if (t > dive.motion.duration_s()) break;
     const MotionState state = dive.motion.at(t);
     const Time stamp = dive.start + Duration::fromSeconds(t);
-    const ImuSample sample = imu.measure(perfectImuSample(state, stamp, dive.gravity_W));
+    ImuSample perfect = perfectImuSample(state, stamp, dive.gravity_W);
+    if (shake) shake(t, &perfect);
+    const ImuSample sample = imu.measure(perfect);
     const Vec3& w = sample.angular_velocity_B;
     const Vec3& f = sample.specific_force_B;
     readings.write(fmt::format("{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", stamp.nanoseconds(),
@@ -109,16 +118,23 @@ void recordSonar(const Dive& dive, const RangeFunction& range, const std::filesy
 
 void recordSensors(const Dive& dive, const RangeFunction& range, const std::filesystem::path& folder) {
   const std::filesystem::path mav0 = folder / "mav0";
-  const bool in_water = dive.scenario.motion != MotionKind::AtRest;
+  const bool in_water = !isAtRest(dive.scenario);
   Rig given = dive.errors.given;
   if (!dive.scenario.images) given.cameras.clear();
   if (!in_water) given.pressure.reset();
-  if (!range) given.sonar.reset();
+  if (!range) {
+    given.sonar.reset();
+    given.altimeter.reset();
+    given.dvl.reset();
+  }
   writeCalibration(given, mav0);
   recordImu(dive, mav0);
   recordMagnetometer(dive, mav0);
   if (given.pressure) recordDepth(dive, mav0);
   if (given.sonar) recordSonar(dive, range, mav0);
+  if (given.altimeter) recordAltimeter(dive, range, mav0);
+  if (given.dvl) recordDvl(dive, range, mav0);
+  if (given.currents) recordCurrents(dive, mav0);
 }
 
 }  // namespace lodeline

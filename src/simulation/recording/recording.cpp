@@ -6,10 +6,10 @@
 
 #include "lodeline/diagnostics.h"
 #include "simulation/dive/dive_world.h"
-#include "simulation/dive/image_recording.h"
-#include "simulation/dive/recording_files.h"
-#include "simulation/dive/sensor_recording.h"
-#include "simulation/dive/truth_recording.h"
+#include "simulation/recording/image_recording.h"
+#include "simulation/recording/recording_files.h"
+#include "simulation/recording/sensor_recording.h"
+#include "simulation/recording/truth_recording.h"
 
 namespace lodeline {
 namespace {
@@ -117,8 +117,9 @@ void recordOtherNoise(const Scenario& scenario, const std::filesystem::path& ori
   const Dive dive = makeDive(scenario);
   claim(folder, describe(scenario));
   recordSensors(dive, {}, folder);
-  if (std::filesystem::exists(original / "mav0" / "sonar0")) {
-    linkTo(original / "mav0" / "sonar0", folder / "mav0" / "sonar0");
+  for (const char* name : {"sonar0", "altimeter0", "dvl0"}) {
+    if (std::filesystem::exists(original / "mav0" / name))
+      linkTo(original / "mav0" / name, folder / "mav0" / name);
   }
   for (int camera = 0; scenario.images && camera < scenario.rig.cameras; ++camera) {
     const std::string name = fmt::format("cam{}", camera);

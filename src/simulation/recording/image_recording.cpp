@@ -1,4 +1,4 @@
-#include "simulation/dive/image_recording.h"
+#include "simulation/recording/image_recording.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "lodeline/diagnostics.h"
-#include "simulation/dive/recording_files.h"
+#include "simulation/recording/recording_files.h"
 #include "simulation/sensors/sensor_clock.h"
 
 namespace lodeline {
