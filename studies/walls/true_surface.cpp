@@ -32,6 +32,23 @@ std::vector<double> TrueSurface::distances_m(const std::vector<Vec3>& points, si
   return distances;
 }
 
+std::vector<double> TrueSurface::behind_m(const std::vector<Vec3>& points, const Trajectory& true_poses,
+                                          size_t most) const {
+  std::vector<Vec3> eyes;
+  for (const StampedPose& pose : true_poses.poses) eyes.push_back(pose.world_from_body.translation);
+  const CloudIndex index(eyes);
+  const size_t step = std::max<size_t>(1, points.size() / most);
+  std::vector<double> distances;
+  std::vector<Neighbour> found;
+  for (size_t i = 0; i < points.size(); i += step) {
+    index.find(points[i], 1, found);
+    const Vec3 sight = points[i] - eyes[found.front().index];
+    const auto range = world_->scene.range(eyes[found.front().index], sight.normalized());
+    if (range) distances.push_back(sight.norm() - *range);
+  }
+  return distances;
+}
+
 std::vector<Vec3> TrueSurface::visible(const Trajectory& true_poses, double reach_m) const {
   constexpr double kStep_m = 0.2, kCell_m = 0.04;
   constexpr int kPixelStep = 6;

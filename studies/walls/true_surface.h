@@ -18,6 +18,9 @@ class TrueSurface {
 
   /// Distances of at most `most` of the points, evenly chosen, from the surface: the shortest of 642 rays.
   std::vector<double> distances_m(const std::vector<Vec3>& points, size_t most) const;
+  /// Signed distances of at most `most` of the points behind the surface, seen from the nearest pose, m.
+  std::vector<double> behind_m(const std::vector<Vec3>& points, const Trajectory& true_poses,
+                               size_t most) const;
   /// Points that camera 0 sees within `reach_m` from any pose, one in each cell of 4 cm.
   std::vector<Vec3> visible(const Trajectory& true_poses, double reach_m) const;
   /// Area that is seen from a station in its plane. `plane`: in the frame of a map.

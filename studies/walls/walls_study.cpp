@@ -10,6 +10,7 @@
 
 #include "lodeline/output/survey/map/dive_map.h"
 #include "lodeline/output/walls/section/cross_section.h"
+#include "lodeline/util/csv_fields.h"
 #include "studies/walls/true_surface.h"
 
 namespace {
@@ -65,10 +66,11 @@ void printAreas(const std::filesystem::path& file, const DiveMap& map, const Tru
   std::vector<double> errors;
   for (const PassageSection& section : sections) {
     std::getline(stream, line);
-    std::vector<std::string> cells(1);
-    for (const char c : line) c == ',' ? cells.emplace_back() : cells.back().push_back(c);
-    if (cells.size() < 12 || cells[9].empty()) continue;
-    const double area_m2 = std::stod(cells[9]), true_m2 = truth.area_m2(truth_from_map, planeAcross(section));
+    std::vector<std::string_view> cells;
+    csv::split(line, &cells);
+    double area_m2 = 0.0;
+    if (cells.size() < 12 || !csv::parse(cells[9], &area_m2)) continue;
+    const double true_m2 = truth.area_m2(truth_from_map, planeAcross(section));
     errors.push_back(100.0 * (area_m2 / true_m2 - 1.0));
     fmt::print("section {:>3}: {:6.2f} m2, true {:6.2f} m2, {:+5.1f} %, walls in {} of the directions\n",
                cells[0], area_m2, true_m2, errors.back(), cells[10]);
@@ -113,6 +115,10 @@ void study(const Arguments& arguments) {
   fmt::print("{:<32}{:>8}{:>8}{:>8}{:>8}{:>8}{:>12}{:>10}\n", "share (%) within", "2 cm", "4 cm", "5 cm",
              "8 cm", "10 cm", "90 % in cm", "points");
   printErrors("cloud from the true surface", truth.distances_m(cloud, 20'000));
+  std::vector<double> behind = truth.behind_m(cloud, true_poses, 20'000);
+  std::sort(behind.begin(), behind.end());
+  fmt::print("behind the surface: quartiles {:+.1f}, {:+.1f}, {:+.1f} cm\n", 100.0 * quantile(behind, 0.25),
+             100.0 * quantile(behind, 0.5), 100.0 * quantile(behind, 0.75));
   for (const double reach_m : {3.0, 4.0, 5.0}) {
     const std::vector<Vec3> visible = truth.visible(true_poses, reach_m);
     printErrors(fmt::format("visible surface within {:.0f} m", reach_m).c_str(), nearest_m(cloud, visible));

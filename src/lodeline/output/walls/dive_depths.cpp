@@ -16,15 +16,13 @@ class BlindSpan {
   explicit BlindSpan(Time origin) : origin_(origin) {}
 
   void add(Time time, bool is_blind) {
-    if (!is_blind) {
-      first_.reset();
-      return;
-    }
-    if (!first_) first_ = time;
+    if (is_blind && !was_blind_) first_ = time;
+    was_blind_ = is_blind;
+    if (!is_blind) return;
     ++keyframes_;
-    if ((time - *first_).seconds() < longest_s_) return;
-    longest_s_ = (time - *first_).seconds();
-    longest_first_ = *first_;
+    if ((time - first_).seconds() < longest_s_) return;
+    longest_s_ = (time - first_).seconds();
+    longest_first_ = first_;
   }
 
   void report(size_t keyframes, Diagnostics* diagnostics) const {
@@ -39,9 +37,8 @@ class BlindSpan {
   }
 
  private:
-  Time origin_;
-  std::optional<Time> first_;
-  Time longest_first_;
+  Time origin_, first_, longest_first_;
+  bool was_blind_ = false;
   double longest_s_ = 0.0;
   size_t keyframes_ = 0;
 };

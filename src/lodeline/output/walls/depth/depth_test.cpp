@@ -4,6 +4,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/walls/depth/depth_store.h"
+#include "lodeline/output/walls/depth/refine_disparity.h"
 #include "lodeline/output/walls/depth/stereo_depth.h"
 #include "lodeline/output/walls/depth/sweep_depth.h"
 #include "lodeline/output/walls/depth/test_wall_images.h"
@@ -61,13 +62,28 @@ TEST_F(StereoDepthTest, LeavesOutWhatIsTooUncertain) {
   const cv::Mat texture = test::wallTexture();
   const cv::Mat first = test::planeImage(texture, 0.0, 3.0);
   const cv::Mat second = test::planeImage(texture, test::kWallBaseline_m, 3.0);
-  // dz = z^2 / (f b) sigma = 9 cm for 0.3 px.
+  // dz = z^2 / (f b) sigma = 30 cm a pixel, and no match is better than 0.06 px.
   options_.max_sigma_m = 0.12;
   const DepthImage kept = depths(first, second);
   EXPECT_GT(kept.share(), 0.5);
-  EXPECT_NEAR(kept.sigma_m(200, 120), 0.09, 0.01);
-  options_.max_sigma_m = 0.06;
+  EXPECT_NEAR(kept.sigma_m(200, 120), 0.02, 0.005);
+  options_.max_sigma_m = 0.015;
   EXPECT_LT(depths(first, second).share(), 0.03);
+}
+
+TEST(RefineDisparity, FindsFractionsOfAPixel) {
+  const cv::Mat texture = test::wallTexture();
+  const double depth_m = 1.37, true_px = test::kWallFocal_px * test::kWallBaseline_m / depth_m;
+  cv::Mat second = test::planeImage(texture, test::kWallBaseline_m, depth_m);
+  second += 12;  // a brighter camera
+  cv::Mat start(240, 320, CV_32F, cv::Scalar(std::round(true_px)));
+  start.rowRange(0, 40).setTo(-1.0F);
+  const Disparities refined = refineDisparity(test::planeImage(texture, 0.0, depth_m), second, start);
+  for (int u = 60; u < 300; u += 20) {
+    EXPECT_NEAR(refined.value_px.at<float>(120, u), true_px, 0.05) << u;
+    EXPECT_GT(refined.sigma_px.at<float>(120, u), 0.05F);
+    EXPECT_EQ(refined.value_px.at<float>(20, u), -1.0F);
+  }
 }
 
 class SweepDepthTest : public testing::Test {

@@ -18,7 +18,7 @@ struct KeyframeView {
 
 /// Distance from one keyframe to the next: whichever is reached first.
 struct KeyframeSteps {
-  double step_m = 0.2;
+  double step_m = 0.15;
   double step_rad = 0.26;  ///< 15 degrees
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "lodeline/output/walls/depth/refine_disparity.h"
+
 namespace lodeline {
 
 cv::Mat textureOf(const cv::Mat& grey) {
@@ -37,17 +39,25 @@ StereoDepth::StereoDepth(const RectifiedView& view, const DepthOptions& options)
     : view_(view), options_(options) {}
 
 DepthImage StereoDepth::compute(const cv::Mat& first, const cv::Mat& second) const {
-  cv::Mat sixteenths;
-  makeMatcher(view_, options_)->compute(first, second, sixteenths);
+  const cv::Ptr<cv::StereoSGBM> matcher = makeMatcher(view_, options_);
+  // The matcher leaves out as many columns on the left as it tries disparities, near walls or not.
+  const int margin_px = matcher->getNumDisparities();
+  cv::Mat wide_first, wide_second, wide;
+  cv::copyMakeBorder(first, wide_first, 0, 0, margin_px, 0, cv::BORDER_CONSTANT);
+  cv::copyMakeBorder(second, wide_second, 0, 0, margin_px, 0, cv::BORDER_CONSTANT);
+  matcher->compute(wide_first, wide_second, wide);
+  cv::Mat whole;
+  wide.colRange(margin_px, wide.cols).convertTo(whole, CV_32F, 1.0 / 16.0);
+  whole.setTo(-1.0, whole <= 0.0F);
+  const auto [disparities, sigmas] = refineDisparity(first, second, whole);
   const cv::Mat texture = textureOf(first);
   DepthImage result(first.size());
   for (int v = 0; v < first.rows; ++v) {
     for (int u = 0; u < first.cols; ++u) {
-      const int value = sixteenths.at<int16_t>(v, u);
-      if (value <= 0 || view_.seen(0).at<uint8_t>(v, u) == 0) continue;
+      const double disparity_px = disparities.at<float>(v, u);
+      if (disparity_px <= 0.0 || view_.seen(0).at<uint8_t>(v, u) == 0) continue;
       if (texture.at<float>(v, u) < options_.min_texture) continue;
-      const double disparity_px = value / 16.0;
-      const double sigma_m = view_.depthPerDisparity(u, v, disparity_px) * options_.disparity_sigma_px;
+      const double sigma_m = view_.depthPerDisparity(u, v, disparity_px) * sigmas.at<float>(v, u);
       if (!(sigma_m <= options_.max_sigma_m)) continue;
       const double depth_m = view_.depth_m(u, v, disparity_px);
       if (!(depth_m >= options_.nearest_m && depth_m <= DepthImage::kMaxDepth_m)) continue;

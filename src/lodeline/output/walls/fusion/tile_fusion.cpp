@@ -64,10 +64,13 @@ class Volume {
       : options_(options),
         grid_({"tsdf", "weight", "color"}, {o3::core::Float32, o3::core::Float32, o3::core::Float32},
               {{1}, {1}, {3}}, static_cast<float>(options.voxel_m), kBlockVoxels,
-              static_cast<int64_t>(blocks.size()) + 1, o3::core::Device("CPU:0")) {
+              static_cast<int64_t>(blocks.size()) + 2, o3::core::Device("CPU:0")) {
     std::vector<int> keys;
     for (const Eigen::Vector3i& block : blocks) keys.insert(keys.end(), block.data(), block.data() + 3);
     const o3::core::Tensor coordinates(keys, {static_cast<int64_t>(blocks.size()), 3}, o3::core::Int32);
+    // Open3D 0.16 asserts that no voxel beside a surface is the very first one of its memory, so that one is
+    // given to a block far from everything.
+    grid_.GetHashMap().Activate(o3::core::Tensor(std::vector<int>(3, 1 << 20), {1, 3}, o3::core::Int32));
     grid_.GetHashMap().Activate(coordinates);
     for (const char* name : {"tsdf", "weight", "color"}) grid_.GetAttribute(name).Fill(0.0F);
     const auto [places, found] = grid_.GetHashMap().Find(coordinates);

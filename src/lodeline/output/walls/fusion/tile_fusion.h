@@ -14,7 +14,7 @@ struct FusionOptions {
   double truncation_voxels = 5.0;   ///< half thickness of the volume about the surface
   int min_views = 3;                ///< keyframes that must see a voxel near a surface; fewer are particles
   size_t max_blocks = 16'000;       ///< of one volume, which bounds the memory: about 11 kB a block
-  size_t min_part_triangles = 200;  ///< smaller separate parts are left out
+  size_t min_part_triangles = 100;  ///< smaller separate parts are left out
 
   double block_m() const;
   double truncation_m() const { return truncation_voxels * voxel_m; }
