@@ -55,6 +55,11 @@ faults: build
 effects: build
 	./scripts/effects.py build/effects --markdown build/effects/table.md
 
+# Walls of a simulated dive against the exact surface; some minutes.
+.PHONY: walls-figures
+walls-figures: everything
+	./scripts/walls_figures.sh build/walls_figures
+
 # Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
 fuzz: test-dependencies
 	cmake --preset sanitized

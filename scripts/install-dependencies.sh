@@ -41,6 +41,7 @@ test=(
   clang-format-14  # other versions lay code out differently
   clang-14 libclang-rt-14-dev  # the sanitized build and its fuzzers
   clang-tidy-14 gcovr  # `make tidy`, `make coverage`
+  libopen3d-dev  # `lodeline walls`; `make build` leaves its surfaces out without it
   libgdal-dev  # GeoPackage and DXF by `export`; `make build` leaves them out without it
   survex therion gdal-bin proj-bin libxml2-utils  # tests ask these whether they understand what `export` writes
   "${ros[@]}"

@@ -36,6 +36,7 @@
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/simulate/simulate_command.h"
 #include "apps/lodeline/survey/survey_command.h"
+#include "apps/lodeline/walls/walls_command.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/util/printable_text.h"
 #include "lodeline/version.h"
@@ -83,6 +84,7 @@ int main(int argc, char** argv) {
   lodeline::addExportCommand(program);
   lodeline::addMapCommand(program);
   lodeline::addSurveyCommand(program);
+  lodeline::addWallsCommand(program);
   lodeline::addReportCommand(program);
   lodeline::addEvaluateCommand(program);
   lodeline::addCompareCommand(program);

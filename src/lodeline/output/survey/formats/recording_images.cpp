@@ -58,6 +58,15 @@ std::string shortName(const PendingImage& image, const std::string& camera) {
 
 }  // namespace
 
+std::vector<CameraCalibration> camerasOfRun(const Rig& rig, const RunFolder& run) {
+  std::vector<CameraCalibration> cameras = rig.cameras;
+  correct(run.camera_corrections, &cameras);
+  if (run.intrinsics_corrections.size() != cameras.size()) return cameras;
+  for (size_t i = 0; i < cameras.size(); ++i)
+    cameras[i] = correctedIntrinsics(cameras[i], run.intrinsics_corrections[i].data());
+  return cameras;
+}
+
 MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagnostics* diagnostics) {
   MapImages result;
   result.cameras = source.rig().cameras;
@@ -68,11 +77,7 @@ MapImages recordingImages(MeasurementSource& source, const RunFolder& run, Diagn
       if (pose) result.images.push_back({camera, *pose, shortName(*image, result.cameras[camera].name)});
     }
   }
-  correct(run.camera_corrections, &result.cameras);
-  if (run.intrinsics_corrections.size() == result.cameras.size()) {
-    for (size_t i = 0; i < result.cameras.size(); ++i)
-      result.cameras[i] = correctedIntrinsics(result.cameras[i], run.intrinsics_corrections[i].data());
-  }
+  result.cameras = camerasOfRun(source.rig(), run);
   if (result.images.empty()) {
     diagnostics->report(Severity::Warning, "no_image_with_pose",
                         "no image of the recording lies within 5 ms of a pose: is it the run's recording?");

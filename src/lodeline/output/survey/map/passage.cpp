@@ -9,15 +9,6 @@
 namespace lodeline {
 namespace {
 
-/// Axes of the passage at a station: unit vectors along it, horizontally to its left, and normal to both.
-struct Section {
-  Vec3 origin = Vec3::Zero();
-  Vec3 along = Vec3::UnitX();
-  Vec3 left = Vec3::UnitY();
-
-  Vec3 above() const { return along.cross(left); }
-};
-
 /// Horizontal direction to the left of `along`; `fallback` if that is nearly vertical.
 Vec3 leftOf(const Vec3& along, const Vec3& fallback) {
   const Vec3 left = Vec3::UnitZ().cross(along);
@@ -35,21 +26,8 @@ Vec3 directionAt(const std::vector<SurveyStation>& stations, size_t i) {
   return mean.norm() > 0.2 ? mean.normalized() : leg(i - 1);
 }
 
-std::vector<Section> sectionsOf(const std::vector<SurveyStation>& stations) {
-  std::vector<Section> sections(stations.size());
-  Vec3 left = Vec3::UnitY();
-  for (size_t i = 0; i < stations.size(); ++i) {
-    const Vec3 along = directionAt(stations, i);
-    left = leftOf(along, left);
-    // Makes them orthogonal, also where `left` is that of an earlier station.
-    const Vec3 horizontal = (left - left.dot(along) * along).normalized();
-    sections[i] = {stations[i].position_ENU, along, horizontal};
-  }
-  return sections;
-}
-
 /// Wall points near the plane across the passage, relative to the station.
-std::vector<Vec3> pointsAcross(const std::vector<Vec3>& walls, const Section& section,
+std::vector<Vec3> pointsAcross(const std::vector<Vec3>& walls, const PassageSection& section,
                                const PassageOptions& options) {
   std::vector<Vec3> points;
   for (const Vec3& wall : walls) {
@@ -83,7 +61,7 @@ std::optional<double> wallDistance(const std::vector<Vec3>& points, const Vec3& 
   return std::nullopt;
 }
 
-std::vector<Vec3> chooseSplays(const std::vector<Vec3>& points, const Section& section,
+std::vector<Vec3> chooseSplays(const std::vector<Vec3>& points, const PassageSection& section,
                                const PassageOptions& options) {
   std::vector<std::vector<Vec3>> sectors(options.splay_sectors);
   for (const Vec3& point : points) {
@@ -105,10 +83,23 @@ std::vector<Vec3> chooseSplays(const std::vector<Vec3>& points, const Section& s
 
 }  // namespace
 
+std::vector<PassageSection> passageSections(const std::vector<SurveyStation>& stations) {
+  std::vector<PassageSection> sections(stations.size());
+  Vec3 left = Vec3::UnitY();
+  for (size_t i = 0; i < stations.size(); ++i) {
+    const Vec3 along = directionAt(stations, i);
+    left = leftOf(along, left);
+    // Makes them orthogonal, also where `left` is that of an earlier station.
+    const Vec3 horizontal = (left - left.dot(along) * along).normalized();
+    sections[i] = {stations[i].position_ENU, along, horizontal};
+  }
+  return sections;
+}
+
 void measurePassage(const std::vector<Vec3>& walls_ENU, const PassageOptions& options, Survey* survey) {
-  const std::vector<Section> sections = sectionsOf(survey->stations);
+  const std::vector<PassageSection> sections = passageSections(survey->stations);
   for (size_t i = 0; i < sections.size(); ++i) {
-    const Section& section = sections[i];
+    const PassageSection& section = sections[i];
     const std::vector<Vec3> points = pointsAcross(walls_ENU, section, options);
     PassageSize& passage = survey->stations[i].passage;
     passage.left = wallDistance(points, section.left, options);

@@ -1,49 +1,20 @@
-#include <fmt/format.h>
-#include <ogrsf_frmts.h>
-
-#include <functional>
 #include <memory>
-#include <mutex>
 
-#include "lodeline/diagnostics.h"
+#include "lodeline/output/survey/formats/gis/dxf_drawing.h"
+#include "lodeline/output/survey/formats/gis/gdal_dataset.h"
 #include "lodeline/output/survey/formats/write_formats.h"
 #include "lodeline/output/survey/map/map_times.h"
 
 namespace lodeline {
 namespace {
 
-/// A file in GDAL's memory, which is removed at the end.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& name) : path_("/vsimem/lodeline/" + name) {
-    VSIUnlink(path_.c_str());
-  }
-  ~MemoryFile() { VSIUnlink(path_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
+using gdal::check;
+using gdal::MemoryFile;
+using gdal::Table;
 
-  const std::string& path() const { return path_; }
-  std::string bytes() const {
-    vsi_l_offset size = 0;
-    const GByte* data = VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
-    if (data == nullptr || size == 0) throw InputError("GDAL wrote nothing");
-    return {reinterpret_cast<const char*>(data), static_cast<size_t>(size)};
-  }
-
- private:
-  std::string path_;
-};
-
-void check(bool is_good, const char* what) {
-  if (!is_good) throw InputError(fmt::format("GDAL cannot write {}: {}", what, CPLGetLastErrorMsg()));
-}
-
-/// Coordinates on the grid in its own unit, height in metres; east, north, up without a place.
 OGRPoint pointOf(const DiveMap& map, const Vec3& point_ENU) {
-  if (!map.place) return {point_ENU.x(), point_ENU.y(), -map.depth_m(point_ENU)};
-  const Vec3 grid = map.place->grid(point_ENU);
-  const double unit_m = map.place->gridDescription().metres_per_unit;
-  return {grid.x() / unit_m, grid.y() / unit_m, grid.z()};
+  const Vec3 point = drawingPoint(map, point_ENU);
+  return {point.x(), point.y(), point.z()};
 }
 
 OGRLineString lineOf(const DiveMap& map) {
@@ -66,41 +37,6 @@ OGRPolygon polygonOf(const DiveMap& map, const std::vector<Vec3>& corners_ENU) {
   polygon.addRing(&ring);
   return polygon;
 }
-
-/// Dataset of one of GDAL's drivers in memory.
-GDALDatasetUniquePtr createDataset(const char* driver_name, const MemoryFile& file) {
-  static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
-  check(driver != nullptr, driver_name);
-  GDALDatasetUniquePtr dataset(driver->Create(file.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  check(dataset != nullptr, driver_name);
-  return dataset;
-}
-
-/// Adds features to a table.
-class Table {
- public:
-  Table(GDALDataset* dataset, const char* name, OGRSpatialReference* grid, OGRwkbGeometryType type)
-      : layer_(dataset->CreateLayer(name, grid, type, nullptr)) {
-    check(layer_ != nullptr, name);
-  }
-
-  void addField(const char* name, OGRFieldType type) {
-    OGRFieldDefn field(name, type);
-    check(layer_->CreateField(&field) == OGRERR_NONE, name);
-  }
-
-  void add(const OGRGeometry& geometry, const std::function<void(OGRFeature&)>& fill) {
-    const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer_->GetLayerDefn()));
-    feature->SetGeometry(&geometry);
-    fill(*feature);
-    check(layer_->CreateFeature(feature.get()) == OGRERR_NONE, "a feature");
-  }
-
- private:
-  OGRLayer* layer_;
-};
 
 void addStations(const DiveMap& map, Table* table) {
   table->addField("name", OFTString);
@@ -154,7 +90,7 @@ std::string geopackageBytes(const DiveMap& map) {
   const MemoryFile file(map.name + ".gpkg");
   // The same map gives the same bytes.
   CPLConfigOptionSetter date("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z", false);
-  GDALDatasetUniquePtr dataset = createDataset("GPKG", file);
+  GDALDatasetUniquePtr dataset = gdal::createDataset("GPKG", file);
   const std::unique_ptr<OGRSpatialReference> grid = gridOf(map);
   Table line(dataset.get(), "line", grid.get(), wkbLineString25D);
   addLine(map, &line);
@@ -164,30 +100,6 @@ std::string geopackageBytes(const DiveMap& map) {
   for (const std::vector<Vec3>& ring : passagePlan(map.survey))
     passage.add(polygonOf(map, ring), [](OGRFeature&) {});
   dataset.reset();  // writes the file
-  return file.bytes();
-}
-
-std::string dxfText(const DiveMap& map) {
-  const MemoryFile file(map.name + ".dxf");
-  GDALDatasetUniquePtr dataset = createDataset("DXF", file);
-  Table entities(dataset.get(), "entities", nullptr, wkbUnknown);
-  const auto onLayer = [](const char* name) {
-    return [name](OGRFeature& feature) { feature.SetField("Layer", name); };
-  };
-  entities.add(lineOf(map), onLayer("LINE"));
-  for (const std::vector<Vec3>& ring : passagePlan(map.survey)) {
-    const OGRPolygon polygon = polygonOf(map, ring);
-    entities.add(OGRLineString(*polygon.getExteriorRing()), onLayer("PASSAGE"));
-  }
-  for (size_t i = 0; i < map.survey.stations.size(); ++i) {
-    const OGRPoint point = pointOf(map, map.survey.stations[i].position_ENU);
-    entities.add(point, onLayer("STATIONS"));
-    entities.add(point, [i](OGRFeature& feature) {
-      feature.SetField("Layer", "NAMES");
-      feature.SetStyleString(fmt::format("LABEL(f:\"Arial\",t:\"{}\",s:0.5g)", i).c_str());
-    });
-  }
-  dataset.reset();
   return file.bytes();
 }
 

@@ -1,0 +1,11 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace lodeline {
+
+void addWallsCommand(CLI::App& program);
+
+}  // namespace lodeline

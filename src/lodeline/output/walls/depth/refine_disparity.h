@@ -1,0 +1,22 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace lodeline {
+
+/// Disparities with their uncertainty, px, CV_32F. Negative where there is none.
+struct Disparities {
+  cv::Mat value_px, sigma_px;
+};
+
+/// Refines disparities to fractions of a pixel by least squares on the grey values in a window, which may
+/// differ by an offset between the images (B. Lucas, T. Kanade, IJCAI 1981, along rows alone):
+///
+///     delta = -cov(g, e) / var(g),    e(u, v) = first(u, v) - second(u - d, v),
+///
+/// with the gradient g of the second image at u - d. The sigma is that of delta by the residuals, and a floor
+/// for what the window cannot know. `disparity_px`: CV_32F, negative where there is none. Disparities that
+/// move by more than one pixel are removed.
+Disparities refineDisparity(const cv::Mat& first, const cv::Mat& second, const cv::Mat& disparity_px);
+
+}  // namespace lodeline

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <opencv2/calib3d.hpp>
+
+#include "lodeline/output/walls/depth/depth_image.h"
+
+namespace lodeline {
+
+/// Depths of the first camera of a rectified pair by semi-global matching (H. Hirschmüller, "Stereo
+/// processing by semiglobal matching and mutual information", PAMI 2008, in OpenCV's implementation). A depth
+/// is kept where the match of the second image leads back to it, the surface has texture, the region is no
+/// speck, and the expected error, |dz/dd| times the sigma of a match, is small enough.
+class StereoDepth {
+ public:
+  /// Keeps a reference to `view`, which has two cameras.
+  StereoDepth(const RectifiedView& view, const DepthOptions& options);
+
+  /// `first`, `second`: rectified 8-bit grey images. The result has no colour.
+  DepthImage compute(const cv::Mat& first, const cv::Mat& second) const;
+
+ private:
+  const RectifiedView& view_;
+  DepthOptions options_;
+};
+
+}  // namespace lodeline

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lodeline/output/survey/map/dive_map.h"
+#include "lodeline/output/walls/files/wall_tiles.h"
+#include "lodeline/output/walls/section/cross_section.h"
+
+namespace lodeline {
+
+/// The walls at one station of the survey.
+struct StationWalls {
+  SectionPlane across;             ///< plane across the passage
+  std::vector<SectionLine> lines;  ///< of the walls in it
+  SectionOutline outline;
+  PassageSize size;  ///< by the walls, in the vertical plane
+  /// Of the passage from this station to the next, m3: mean area times the leg. Empty where an area is
+  /// unknown, and where the leg runs along a passage that earlier legs have measured.
+  std::optional<double> volume_to_next_m3;
+};
+
+/// Cuts the walls at every station. Reads one tile at a time.
+std::vector<StationWalls> wallsAtStations(const WallTiles& tiles, const Survey& survey,
+                                          const SectionOptions& options);
+
+/// Sum of the known volumes and the length of their legs.
+struct PassageVolume {
+  double volume_m3 = 0.0, length_m = 0.0;
+};
+PassageVolume passageVolume(const std::vector<StationWalls>& walls, const Survey& survey);
+
+/// One line per station: position, distances, area, coverage and volume.
+std::string sectionsCsv(const DiveMap& map, const std::vector<StationWalls>& walls);
+/// All sections on one sheet, in one scale, as seen along the passage.
+std::string sectionsSvg(const DiveMap& map, const std::vector<StationWalls>& walls);
+/// All sections in space, layers SECTIONS and NAMES. Throws UsageError without GDAL.
+std::string sectionsDxf(const DiveMap& map, const std::vector<StationWalls>& walls);
+
+}  // namespace lodeline

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lodeline/output/walls/section/cross_section.h"
+#include "lodeline/simulation.h"
+#include "lodeline/trajectory.h"
+#include "simulation/dive/dive.h"
+#include "simulation/rendering/image_renderer.h"
+
+namespace lodeline {
+
+/// The exact walls of a simulated dive, in its world.
+class TrueSurface {
+ public:
+  explicit TrueSurface(const Scenario& scenario);
+
+  /// Distances of at most `most` of the points, evenly chosen, from the surface: the shortest of 642 rays.
+  std::vector<double> distances_m(const std::vector<Vec3>& points, size_t most) const;
+  /// Signed distances of at most `most` of the points behind the surface, seen from the nearest pose, m.
+  std::vector<double> behind_m(const std::vector<Vec3>& points, const Trajectory& true_poses,
+                               size_t most) const;
+  /// Points that camera 0 sees within `reach_m` from any pose, one in each cell of 4 cm.
+  std::vector<Vec3> visible(const Trajectory& true_poses, double reach_m) const;
+  /// Area that is seen from a station in its plane. `plane`: in the frame of a map.
+  double area_m2(const Rigid3& truth_from_map, const SectionPlane& plane) const;
+
+ private:
+  Dive dive_;
+  std::shared_ptr<const RenderWorld> world_;
+  std::unique_ptr<ImageRenderer> renderer_;
+};
+
+/// Distances of the `places` from the nearest of the points.
+std::vector<double> nearest_m(const std::vector<Vec3>& points, const std::vector<Vec3>& places);
+
+}  // namespace lodeline

@@ -1,0 +1,153 @@
+// Compares the walls of a simulated dive with the simulator's exact surface: accuracy of the cloud,
+// completeness of the visible surface, areas of cross-sections. Prints one table.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "lodeline/output/survey/map/dive_map.h"
+#include "lodeline/output/walls/section/cross_section.h"
+#include "lodeline/util/csv_fields.h"
+#include "studies/walls/true_surface.h"
+
+namespace {
+
+using namespace lodeline;
+
+struct Arguments {
+  std::string recording, run, walls, scenario = "cave1_short";
+  ScenarioChanges changes;
+};
+
+/// Points of cloud.ply as `lodeline walls` writes it.
+std::vector<Vec3> readCloud(const std::filesystem::path& file) {
+  constexpr size_t kVertexBytes = 31;
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  size_t count = 0;
+  while (std::getline(stream, line) && line != "end_header") {
+    if (line.starts_with("element vertex ")) count = std::stoull(line.substr(15));
+  }
+  std::vector<char> bytes(kVertexBytes * count);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!stream || count == 0) throw InputError(file.string() + ": no cloud of `lodeline walls`");
+  std::vector<Vec3> points;
+  for (size_t i = 0; i < count; ++i) {
+    std::array<float, 3> position;
+    std::copy_n(bytes.data() + kVertexBytes * i, sizeof(position), reinterpret_cast<char*>(position.data()));
+    points.emplace_back(position[0], position[1], position[2]);
+  }
+  return points;
+}
+
+double shareWithin(const std::vector<double>& errors_m, double limit_m) {
+  const auto within = std::count_if(errors_m.begin(), errors_m.end(), [&](double e) { return e <= limit_m; });
+  return 100.0 * static_cast<double>(within) / static_cast<double>(std::max<size_t>(1, errors_m.size()));
+}
+
+void printErrors(const char* what, std::vector<double> errors_m) {
+  std::sort(errors_m.begin(), errors_m.end());
+  fmt::print("{:<32}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}{:>12.1f}{:>10}\n", what,
+             shareWithin(errors_m, 0.02), shareWithin(errors_m, 0.04), shareWithin(errors_m, 0.05),
+             shareWithin(errors_m, 0.08), shareWithin(errors_m, 0.10), 100.0 * quantile(errors_m, 0.9),
+             errors_m.size());
+}
+
+/// Areas by sections.csv against the true ones.
+void printAreas(const std::filesystem::path& file, const DiveMap& map, const TrueSurface& truth,
+                const Rigid3& truth_from_map) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  const std::vector<PassageSection> sections = passageSections(map.survey.stations);
+  std::vector<double> errors;
+  for (const PassageSection& section : sections) {
+    std::getline(stream, line);
+    std::vector<std::string_view> cells;
+    csv::split(line, &cells);
+    double area_m2 = 0.0;
+    if (cells.size() < 12 || !csv::parse(cells[9], &area_m2)) continue;
+    const double true_m2 = truth.area_m2(truth_from_map, planeAcross(section));
+    errors.push_back(100.0 * (area_m2 / true_m2 - 1.0));
+    fmt::print("section {:>3}: {:6.2f} m2, true {:6.2f} m2, {:+5.1f} %, walls in {} of the directions\n",
+               cells[0], area_m2, true_m2, errors.back(), cells[10]);
+  }
+  double sum = 0.0;
+  for (const double error : errors) sum += std::abs(error);
+  if (!errors.empty())
+    fmt::print("areas: {} of {} stations, mean error {:.1f} %\n", errors.size(), sections.size(),
+               sum / static_cast<double>(errors.size()));
+}
+
+void printCost(const std::filesystem::path& file) {
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+  const double frames = json["keyframes"], dive_s = json["dive_s"], processor_s = json["processor_s"];
+  double work_s = 0.0;
+  for (const auto& stage : json["seconds"]) work_s += stage.get<double>();
+  fmt::print(
+      "cost: {:.0f} core-ms a keyframe, {:.2f} x real time in core time, {:.2f} on the clock; {:.0f} MB\n",
+      1e3 * processor_s / frames, processor_s / dive_s, work_s / dive_s,
+      json["peak_memory_MB"].get<double>());
+}
+
+void study(const Arguments& arguments) {
+  const Scenario scenario = makeScenario(arguments.scenario, arguments.changes);
+  if (!holdsRecording(scenario, arguments.recording))
+    throw InputError(arguments.recording + ": another scenario; give the options of `lodeline simulate`");
+  Diagnostics diagnostics;
+  const DiveMap map = makeDiveMap(readRunFolder(arguments.run, &diagnostics), {}, {}, &diagnostics);
+  const Trajectory true_poses = readTrajectory(arguments.recording, {}, diagnostics);
+  const PosePairs pairs = associate(map.trajectory, true_poses, {AssociationMethod::Interpolate, 0.1, 0.0});
+  const Rigid3 truth_from_map = align(AlignmentType::SE3, pairs).reference_from_estimate;
+  double squares = 0.0;
+  for (size_t i = 0; i < pairs.size(); ++i)
+    squares +=
+        (truth_from_map * pairs.estimate[i].translation - pairs.reference[i].translation).squaredNorm();
+  fmt::print("trajectory: {:.1f} cm RMS from the truth after alignment\n",
+             100.0 * std::sqrt(squares / static_cast<double>(pairs.size())));
+
+  const TrueSurface truth(scenario);
+  std::vector<Vec3> cloud = readCloud(std::filesystem::path(arguments.walls) / "cloud.ply");
+  for (Vec3& point : cloud) point = truth_from_map * point;
+  fmt::print("{:<32}{:>8}{:>8}{:>8}{:>8}{:>8}{:>12}{:>10}\n", "share (%) within", "2 cm", "4 cm", "5 cm",
+             "8 cm", "10 cm", "90 % in cm", "points");
+  printErrors("cloud from the true surface", truth.distances_m(cloud, 20'000));
+  std::vector<double> behind = truth.behind_m(cloud, true_poses, 20'000);
+  std::sort(behind.begin(), behind.end());
+  fmt::print("behind the surface: quartiles {:+.1f}, {:+.1f}, {:+.1f} cm\n", 100.0 * quantile(behind, 0.25),
+             100.0 * quantile(behind, 0.5), 100.0 * quantile(behind, 0.75));
+  for (const double reach_m : {3.0, 4.0, 5.0}) {
+    const std::vector<Vec3> visible = truth.visible(true_poses, reach_m);
+    printErrors(fmt::format("visible surface within {:.0f} m", reach_m).c_str(), nearest_m(cloud, visible));
+  }
+  printAreas(std::filesystem::path(arguments.walls) / "sections.csv", map, truth, truth_from_map);
+  printCost(std::filesystem::path(arguments.walls) / "walls.json");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Compares the walls of a simulated dive with the true surface");
+  Arguments arguments;
+  program.add_option("RECORDING", arguments.recording)->required();
+  program.add_option("RUN", arguments.run)->required();
+  program.add_option("WALLS", arguments.walls)->required();
+  program.add_option("--scenario", arguments.scenario);
+  program.add_option("--realism", arguments.changes.realism);
+  program.add_option("--metres", arguments.changes.metres);
+  program.add_option("--seconds", arguments.changes.seconds);
+  program.add_option("--seed", arguments.changes.seed);
+  program.add_option("--camera-rate-hz", arguments.changes.camera_rate_hz);
+  program.add_option("--cameras", arguments.changes.cameras);
+  CLI11_PARSE(program, argc, argv);
+  try {
+    study(arguments);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
