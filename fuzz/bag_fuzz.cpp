@@ -20,5 +20,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     }
     while (bag.nextSonar()) {
     }
+    while (bag.nextAltimeter()) {
+    }
+    while (bag.nextDvl()) {
+    }
+    while (bag.nextCurrents()) {
+    }
   });
 }

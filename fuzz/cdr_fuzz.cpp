@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "lodeline/io/rosbag/definitions/definition_parser.h"
 #include "lodeline/io/rosbag/definitions/message_conversion.h"
 #include "lodeline/io/rosbag/definitions/message_text.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
+#include "lodeline/io/rosbag/robots/dvl_messages.h"
 
 // A definition of a message, a zero byte, and a message. The message is printed as the definition says, and
-// converted as a scan of a sonar.
+// converted as a scan of a sonar, as pings of DVLs and as currents.
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lodeline;
@@ -28,12 +31,18 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     } catch (const wire::Reader::CutOff&) {
     }
   }
-  static const MessageConversion kScan(knownForm("sensor_msgs/LaserScan", Serialization::Cdr),
-                                       knownForm("sensor_msgs/LaserScan", Serialization::Ros1));
-  try {
-    kScan.convert(message);
-  } catch (const DefinitionError&) {
-  } catch (const wire::Reader::CutOff&) {
+  for (const std::string type : {"sensor_msgs/LaserScan", "dvl_msgs/DVL", "marine_acoustic_msgs/Dvl",
+                                 "uuv_sensor_ros_plugins_msgs/DVL", "sensor_msgs/JointState"}) {
+    try {
+      const MessageConversion conversion(knownForm(type, Serialization::Cdr),
+                                         knownForm(type, Serialization::Ros1));
+      const wire::Bytes ros1 = conversion.convert(message);
+      if (type.ends_with("/DVL") || type.ends_with("/Dvl"))
+        withoutSentinels(messages::parseDvl(type, ros1).ping);
+      if (type.ends_with("/JointState")) messages::parseCurrents(type, ros1);
+    } catch (const DefinitionError&) {
+    } catch (const wire::Reader::CutOff&) {
+    }
   }
   return 0;
 }

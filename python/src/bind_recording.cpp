@@ -136,6 +136,59 @@ py::tuple sonarOf(Recording& recording) {
                         column<double>(samples, [](const SonarSample& s) { return s.angle_rad; }));
 }
 
+py::tuple altimeterOf(Recording& recording) {
+  const auto samples =
+      recording.read<AltimeterSample>([](RecordedSource* source) { return source->nextAltimeter(); });
+  return py::make_tuple(timeColumn(samples, [](const AltimeterSample& s) { return s.time; }),
+                        column<double>(samples, [](const AltimeterSample& s) { return s.range_m; }));
+}
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<DvlSample> pingsOf(Recording& recording) {
+  return recording.read<DvlSample>([](RecordedSource* source) { return source->nextDvl(); });
+}
+
+py::tuple dvlOf(Recording& recording) {
+  const std::vector<DvlSample> pings = pingsOf(recording);
+  return py::make_tuple(
+      timeColumn(pings, [](const DvlSample& s) { return s.time; }),
+      stack(pings, [](const DvlSample& s) { return s.velocity_D.value_or(Vec3::Constant(kMissing)); }),
+      column<double>(pings, [](const DvlSample& s) { return s.velocity_sigma_m_per_s.value_or(kMissing); }),
+      column<bool>(pings, [](const DvlSample& s) { return s.track == DvlTrack::Water; }));
+}
+
+py::tuple dvlBeamsOf(Recording& recording) {
+  struct BeamReading {
+    Time time;
+    DvlBeam beam;
+  };
+  std::vector<BeamReading> readings;
+  for (const DvlSample& ping : pingsOf(recording)) {
+    for (const DvlBeam& beam : ping.beams) readings.push_back({ping.time, beam});
+  }
+  const auto value = [&](std::optional<double> DvlBeam::*member) {
+    return column<double>(readings,
+                          [=](const BeamReading& r) { return (r.beam.*member).value_or(kMissing); });
+  };
+  return py::make_tuple(timeColumn(readings, [](const BeamReading& r) { return r.time; }),
+                        column<int32_t>(readings, [](const BeamReading& r) { return r.beam.index; }),
+                        value(&DvlBeam::velocity_m_per_s), value(&DvlBeam::range_m));
+}
+
+/// The times, and by the names of the channels their currents.
+py::tuple currentsOf(Recording& recording) {
+  const auto samples =
+      recording.read<CurrentSample>([](RecordedSource* source) { return source->nextCurrents(); });
+  py::dict channels;
+  const std::optional<CurrentCalibration>& currents = recording.rig().rig.currents;
+  for (size_t i = 0; currents && i < currents->channels.size(); ++i) {
+    channels[py::str(currents->channels[i])] =
+        column<double>(samples, [=](const CurrentSample& s) { return s.currents_A[i]; });
+  }
+  return py::make_tuple(timeColumn(samples, [](const CurrentSample& s) { return s.time; }), channels);
+}
+
 Images imagesOf(Recording& recording, size_t camera) {
   const size_t count = recording.rig().rig.cameras.size();
   if (camera >= count) throw py::index_error(fmt::format("camera {}: the recording has {}", camera, count));
@@ -253,6 +306,17 @@ void bindRecording(py::module_& module) {
       .def("magnetometer", &magnetometerOf, "(times_ns (N) int64, field (N, 3) T), axes of the magnetometer.")
       .def("depth", &depthOf, "(times_ns (N) int64, depth (N) m), positive down.")
       .def("sonar", &sonarOf, "(times_ns (N) int64, range (N) m, angle (N) rad).")
+      .def("altimeter", &altimeterOf, "(times_ns (N) int64, range (N) m).")
+      .def("dvl", &dvlOf,
+           "(times_ns (N) int64, velocity (N, 3) m/s, sigma (N) m/s, is_water_track (N) bool), axes of the "
+           "DVL.\n"
+           "NaN without lock, and where the instrument states no sigma.")
+      .def("dvl_beams", &dvlBeamsOf,
+           "(times_ns (M) int64, beam (M) int32, velocity (M) m/s, range (M) m), one entry for each beam of "
+           "a\n"
+           "ping; NaN without lock.")
+      .def("currents", &currentsOf,
+           "(times_ns (N) int64, dict of the channels' currents (N) A by their names).")
       .def("images", &imagesOf, py::arg("camera") = 0, py::keep_alive<0, 1>(),
            "Iterates over (time_ns, image) of a camera by its index; the image is (height, width) uint8, or\n"
            "None where it cannot be decoded, which is a finding.")

@@ -160,6 +160,13 @@ void bindRig(py::module_& module) {
       .def_property_readonly("magnetometer", [](const DescribedRig& d) { return d.rig.magnetometer; })
       .def_property_readonly("pressure", [](const DescribedRig& d) { return d.rig.pressure; })
       .def_property_readonly("has_sonar", [](const DescribedRig& d) { return d.rig.sonar.has_value(); })
+      .def_property_readonly("has_altimeter",
+                             [](const DescribedRig& d) { return d.rig.altimeter.has_value(); })
+      .def_property_readonly("has_dvl", [](const DescribedRig& d) { return d.rig.dvl.has_value(); })
+      .def_property_readonly(
+          "current_channels",
+          [](const DescribedRig& d) { return d.rig.currents.value_or(CurrentCalibration()).channels; },
+          "Names of the channels of current0.")
       .def_property_readonly(
           "has_imu_correction", [](const DescribedRig& d) { return d.imu_correction.has_value(); },
           "whether the files state scale, misalignment or biases of the IMU, which are then applied");

@@ -84,6 +84,40 @@ class RecordingTest(FolderTest):
             lodeline.Recording(SAMPLE, topics={"cam0": "/x"})
 
 
+class RobotSensorsTest(FolderTest):
+    def write(self, sensor, calibration, table):
+        folder = self.folder / "mav0" / sensor
+        folder.mkdir(parents=True)
+        (folder / "sensor.yaml").write_text("T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n" + calibration)
+        (folder / "data.csv").write_text(table)
+
+    def test_altimeter_dvl_and_currents(self):
+        times = [10**15 + i * 200_000_000 for i in range(4)]
+        noise = "gyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-5\n"
+        noise += "accelerometer_noise_density: 1e-3\naccelerometer_random_walk: 1e-4\n"
+        imu = "".join(f"{10**15 + i * 5_000_000},0,0,0,0,0,9.8\n" for i in range(160))
+        self.write("imu0", noise, "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n" + imu)
+        self.write("altimeter0", "range_noise_std: 0.05\n",
+                   "#timestamp [ns],range [m]\n" + "".join(f"{t},3.5\n" for t in times))
+        self.write("dvl0", "velocity_noise_std: 0.01\n", "#timestamp [ns],beam,velocity [mm/s],range [m],valid\n"
+                   + "".join(f"{t},{b},{100 * (b + 1)},2.5,{int(b != 2)}\n" for t in times for b in range(4)))
+        self.write("current0", "channels: [lamp, thruster]\n", "#timestamp [ns],thruster [A],lamp [mA]\n"
+                   + "".join(f"{t},7,250\n" for t in times))
+        recording = lodeline.Recording(self.folder)
+        self.assertEqual(recording.rig.current_channels, ["lamp", "thruster"])
+        np.testing.assert_array_equal(recording.altimeter()[1], [3.5] * 4)
+        stamps, velocity, sigma, is_water = recording.dvl()
+        np.testing.assert_array_equal(stamps, times)
+        self.assertTrue(np.isnan(velocity).all() and np.isnan(sigma).all() and not is_water.any())
+        _, beams, along, ranges = recording.dvl_beams()
+        np.testing.assert_array_equal(beams[:4], [0, 1, 2, 3])
+        np.testing.assert_allclose(along[:4], [0.1, 0.2, np.nan, 0.4])
+        np.testing.assert_allclose(ranges[:4], [2.5, 2.5, np.nan, 2.5])
+        _, currents = recording.currents()
+        np.testing.assert_array_equal(currents["lamp"], [0.25] * 4)
+        np.testing.assert_array_equal(currents["thruster"], [7.0] * 4)
+
+
 class OtherFilesTest(FolderTest):
     def test_depth_profiles(self):
         rows = "\n".join(f"{10 * i},{min(i, 20) * 0.5:.1f}" for i in range(60))

@@ -16,7 +16,7 @@ void addBagOptions(BagArguments* arguments, CLI::App* command) {
   command
       ->add_option(
           "--topic", arguments->topics,
-          "for a bag: the topic of a sensor (cam0, imu0, mag0, pressure0, sonar0); found by type where it "
+          "for a bag: the topic of a sensor (cam0, imu0, mag0, dvl0 and so on); found by type where it "
           "is not named; imu0=/gyro,/accel unites two halves")
       ->type_name("SENSOR=TOPIC");
   command->add_flag(

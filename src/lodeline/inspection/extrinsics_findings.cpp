@@ -84,6 +84,8 @@ void judgeExtrinsics(Inspection* inspection) {
   if (rig.magnetometer) judgeLeverArm("mag0", rig.magnetometer->body_from_magnetometer, inspection);
   if (rig.pressure) judgeLeverArm("pressure0", rig.pressure->body_from_pressure, inspection);
   if (rig.sonar) judgeLeverArm("sonar0", rig.sonar->body_from_sonar, inspection);
+  if (rig.altimeter) judgeLeverArm("altimeter0", rig.altimeter->body_from_sonar, inspection);
+  if (rig.dvl) judgeLeverArm("dvl0", rig.dvl->body_from_dvl, inspection);
   if (!inspection->stereo) return;
   judgeBaseline(*inspection->stereo, rig.cameras[1].name, inspection);
   judgePair(*inspection->stereo, rig.cameras[1].name, inspection);

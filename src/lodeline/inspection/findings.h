@@ -11,5 +11,6 @@ void judgeImages(Inspection* inspection);
 void judgeExtrinsics(Inspection* inspection);
 void judgeTurning(Inspection* inspection);
 void judgeMagnetometer(Inspection* inspection);
+void judgeRobotSensors(Inspection* inspection);
 
 }  // namespace lodeline::findings

@@ -4,28 +4,12 @@
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/other_sensors.h"
 #include "lodeline/inspection/survey/camera_words.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {
-
-constexpr double kSlowGapPeriods = 4.0;
-
-template <typename Next, typename Value>
-void surveyPlain(const std::string& sensor, const Next& next, const Value& value, Inspection* inspection) {
-  StreamSurvey stream;
-  PlainSurvey survey{sensor, {}, 0.0, 0.0};
-  bool is_first = true;
-  while (const auto reading = next()) {
-    stream.add(reading->time);
-    survey.least = is_first ? value(*reading) : std::min(survey.least, value(*reading));
-    survey.greatest = is_first ? value(*reading) : std::max(survey.greatest, value(*reading));
-    is_first = false;
-  }
-  survey.stream = stream.summarize(kSlowGapPeriods);
-  inspection->others.push_back(survey);
-}
 
 /// Adds errors in the order of the time stamps that the other functions do not find.
 void takeOrderFindings(const Diagnostics& diagnostics, const std::string& sensor, Inspection* inspection) {
@@ -41,16 +25,7 @@ std::vector<StreamSummary> readStreams(MeasurementSource* source, Inspection* in
   Diagnostics imu_order;
   inspection->imu = surveyImu(source, &imu_order);
   takeOrderFindings(imu_order, "imu0", inspection);
-  if (inspection->rig.pressure) {
-    surveyPlain(
-        "pressure0", [&] { return source->nextDepth(); },
-        [](const DepthSample& sample) { return sample.depth_m; }, inspection);
-  }
-  if (inspection->rig.sonar) {
-    surveyPlain(
-        "sonar0", [&] { return source->nextSonar(); },
-        [](const SonarSample& sample) { return sample.range_m; }, inspection);
-  }
+  inspection->others = surveyOtherSensors(source);
   std::vector<StreamSummary> images;
   for (size_t i = 0; i < inspection->rig.cameras.size(); ++i) {
     Diagnostics image_order;
@@ -149,11 +124,13 @@ Inspection inspect(const SourceFactory& open, const InspectionOptions& options) 
     for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection.rate_to_SI;
     inspection.magnetometer = surveyMagnetometer(source.get(), samples);
   }
+  if (!inspection.imu.samples.empty()) compareRobotSensors(open, &inspection);
   findings::judgeStreams(&inspection);
   findings::judgeImages(&inspection);
   findings::judgeExtrinsics(&inspection);
   findings::judgeTurning(&inspection);
   findings::judgeMagnetometer(&inspection);
+  findings::judgeRobotSensors(&inspection);
   takeReaderFindings(diagnostics, &inspection);
   std::stable_sort(inspection.findings.begin(), inspection.findings.end(),
                    [](const InspectionFinding& a, const InspectionFinding& b) {

@@ -8,10 +8,13 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
+#include "lodeline/inspection/robots/current_comparison.h"
+#include "lodeline/inspection/robots/dvl_comparison.h"
 #include "lodeline/inspection/survey/camera_survey.h"
 #include "lodeline/inspection/survey/imu_survey.h"
 #include "lodeline/inspection/survey/magnetometer_survey.h"
 #include "lodeline/inspection/survey/stereo_survey.h"
+#include "lodeline/io/robots/dvl_screen.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {
@@ -29,11 +32,19 @@ struct InspectionFinding {
   std::string message;  ///< the finding, and a recommendation
 };
 
-/// Survey of a stream of which only the time stamps are checked.
+/// Range of one quantity of a stream.
+struct ValueRange {
+  std::string name;  ///< "depth", "v_x", or the name of a channel
+  std::string unit;
+  double least = 0.0, greatest = 0.0;
+};
+
+/// Survey of a stream of which only the time stamps and the range of the values are checked.
 struct PlainSurvey {
-  std::string sensor;  ///< "pressure0", "sonar0"
+  std::string sensor;  ///< "pressure0", "dvl0", …
   StreamSummary stream;
-  double least = 0.0, greatest = 0.0;  ///< of the readings: depth or range, m
+  std::vector<ValueRange> values;  ///< of quantities that have readings
+  std::optional<DvlLock> lock;     ///< of a DVL
 };
 
 /// Survey of a camera, and the comparison of its rotations with the gyroscope.
@@ -53,6 +64,8 @@ struct Inspection {
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
   std::vector<PlainSurvey> others;
+  std::optional<DvlComparison> dvl;           ///< with the IMU
+  std::optional<CurrentComparison> currents;  ///< with the magnetometer
   std::optional<Vec3> site_field_W;  ///< east, north, up, T: at the site and date of the recording, if known
   std::vector<InspectionFinding> findings;  ///< most harmful first
 

@@ -128,8 +128,25 @@ nlohmann::ordered_json inspectionJson(const Inspection& inspection) {
   if (inspection.magnetometer) json["sensors"].push_back(magnetometerJson(inspection));
   for (const PlainSurvey& other : inspection.others) {
     Json entry = streamJson(inspection, other.sensor, other.stream);
-    entry["least_m"] = other.least;
-    entry["greatest_m"] = other.greatest;
+    entry["values"] = Json::array();
+    for (const ValueRange& value : other.values) {
+      entry["values"].push_back(
+          {{"name", value.name}, {"unit", value.unit}, {"least", value.least}, {"greatest", value.greatest}});
+    }
+    if (other.lock) {
+      entry["pings_without_lock"] = other.lock->without_lock;
+      entry["pings_without_some_beams"] = other.lock->partial;
+    }
+    if (other.sensor == "dvl0" && inspection.dvl) {
+      entry["imu_motion_m_per_s"] = inspection.dvl->motion_m_per_s;
+      entry["imu_remainder_m_per_s"] = inspection.dvl->remainder_m_per_s;
+      entry["imu_time_offset_s"] = inspection.dvl->time_offset_s;
+    }
+    if (other.sensor == "current0" && inspection.currents) {
+      entry["field_scatter_T"] = inspection.currents->scatter_T;
+      entry["field_scatter_with_currents_T"] = inspection.currents->explained_scatter_T;
+      entry["field_time_offset_s"] = inspection.currents->time_offset_s;
+    }
     json["sensors"].push_back(entry);
   }
   return json;

@@ -132,6 +132,35 @@ std::string magnetometerText(const Inspection& inspection) {
   return text + "\n";
 }
 
+std::string lockText(const DvlLock& lock) {
+  if (lock.pings == 0) return {};
+  return fmt::format("          no lock in {:.1f} % of the pings, some beams missing in {:.1f} %\n",
+                     100.0 * lock.without_lock / lock.pings, 100.0 * lock.partial / lock.pings);
+}
+
+std::string dvlText(const DvlComparison& dvl) {
+  return fmt::format(
+      "          with the IMU over {} pings: velocity changes by {:.3f} m/s, {:.3f} m/s do not fit, least "
+      "with stamps "
+      "{:+.2f} s\n",
+      dvl.pings, dvl.motion_m_per_s, dvl.remainder_m_per_s, dvl.time_offset_s);
+}
+
+std::string currentsText(const CurrentComparison& currents) {
+  std::string text = fmt::format(
+      "          with the magnetometer over {} readings: scatter {:.2f} uT, {:.2f} uT with currents, least "
+      "with stamps "
+      "{:+.2f} s\n",
+      currents.readings, 1e6 * currents.scatter_T, 1e6 * currents.explained_scatter_T,
+      currents.time_offset_s);
+  for (const ChannelField& channel : currents.channels) {
+    const Vec3 field_uT = 1e6 * channel.field_T_per_A;
+    text += fmt::format("          {} {:.3f} {:.3f} {:.3f} (+-{:.3f}) uT/A\n", channel.name, field_uT.x(),
+                        field_uT.y(), field_uT.z(), 1e6 * channel.sigma_T_per_A);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string inspectionText(const Inspection& inspection) {
@@ -140,7 +169,13 @@ std::string inspectionText(const Inspection& inspection) {
   if (inspection.magnetometer) text += magnetometerText(inspection);
   for (const PlainSurvey& other : inspection.others) {
     text += streamLine(inspection, other.sensor, other.stream);
-    text += fmt::format("          {:.2f} to {:.2f} m\n", other.least, other.greatest);
+    for (const ValueRange& value : other.values) {
+      text += fmt::format("          {} {:.2f} to {:.2f} {}\n", value.name, value.least, value.greatest,
+                          value.unit);
+    }
+    if (other.lock) text += lockText(*other.lock);
+    if (other.sensor == "dvl0" && inspection.dvl) text += dvlText(*inspection.dvl);
+    if (other.sensor == "current0" && inspection.currents) text += currentsText(*inspection.currents);
   }
   return text;
 }

@@ -140,8 +140,12 @@ void judgeStreams(Inspection* inspection) {
     overlap.judge("mag0", inspection->magnetometer->stream,
                   inspection->rig.magnetometer->time_offset_to_imu_s,
                   "time_offset_to_imu_s of its calibration");
-  for (const PlainSurvey& other : inspection->others)
-    overlap.judge(other.sensor, other.stream, 0.0, "its clock");
+  const Rig& rig = inspection->rig;
+  for (const PlainSurvey& other : inspection->others) {
+    const double dvl_s = other.sensor == "dvl0" ? rig.dvl->time_offset_to_imu_s : 0.0;
+    const double current_s = other.sensor == "current0" ? rig.currents->time_offset_to_imu_s : 0.0;
+    overlap.judge(other.sensor, other.stream, dvl_s + current_s, "its clock");
+  }
   if (inspection->imu.stream.readings > 0) {
     StreamJudge("imu0", inspection->imu.stream, true, inspection).judge();
   }

@@ -31,6 +31,9 @@ RunDescription describe(const RunRequest& request, const RunSettings& options, c
   if (rig.magnetometer) description.other_sensors.push_back("magnetometer");
   if (rig.pressure) description.other_sensors.push_back("pressure");
   if (rig.sonar) description.other_sensors.push_back("sonar");
+  if (rig.altimeter) description.other_sensors.push_back("altimeter");
+  if (rig.dvl) description.other_sensors.push_back("DVL");
+  if (rig.currents) description.other_sensors.push_back("currents");
   description.observation_sigma_px = options.odometry.front_end.sigma_px;
   return description;
 }

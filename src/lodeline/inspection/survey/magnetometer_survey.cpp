@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/geometry/so3.h"
+#include "lodeline/inspection/survey/inertial_path.h"
 #include "lodeline/inspection/survey/median.h"
 #include "lodeline/inspection/survey/signed_axes.h"
 
@@ -20,35 +20,6 @@ constexpr size_t kMostWindows = 12;
 /// Minimum rotation of the rig within a window, rad.
 constexpr double kLeastTurn_rad = 0.35;
 
-/// Attitudes of the body by the gyroscope, from the first reading on.
-class AttitudePath {
- public:
-  AttitudePath(const std::vector<ImuSample>& imu, const Vec3& bias_B) {
-    Quat attitude = Quat::Identity();
-    for (size_t i = 0; i < imu.size(); ++i) {
-      if (i > 0) {
-        const double step_s = (imu[i].time - imu[i - 1].time).seconds();
-        const Vec3 rate = 0.5 * (imu[i].angular_velocity_B + imu[i - 1].angular_velocity_B) - bias_B;
-        attitude = (attitude * so3::exp(step_s * rate)).normalized();
-      }
-      times_.push_back(imu[i].time);
-      attitudes_.push_back(attitude);
-    }
-  }
-
-  std::optional<Mat3> at(Time time) const {
-    const auto after = std::lower_bound(times_.begin(), times_.end(), time);
-    if (after == times_.end() || after == times_.begin()) return std::nullopt;
-    const auto i = static_cast<size_t>(after - times_.begin());
-    const double share = (time - times_[i - 1]).seconds() / (times_[i] - times_[i - 1]).seconds();
-    return attitudes_[i - 1].slerp(share, attitudes_[i]).toRotationMatrix();
-  }
-
- private:
-  std::vector<Time> times_;
-  std::vector<Quat> attitudes_;
-};
-
 /// Readings of one time span.
 using Window = std::vector<MagnetometerSample>;
 
@@ -61,7 +32,7 @@ struct Remainder {
   double relative(double field) const { return count > 0.0 ? std::sqrt(squares / count) / field : 0.0; }
 };
 
-Remainder remainderOf(const std::vector<Window>& windows, const AttitudePath& path, const Mat3& axes,
+Remainder remainderOf(const std::vector<Window>& windows, const InertialPath& path, const Mat3& axes,
                       Duration offset) {
   Remainder result;
   Mat3 hessian = Mat3::Zero();
@@ -73,7 +44,7 @@ Remainder remainderOf(const std::vector<Window>& windows, const AttitudePath& pa
     Mat3 mean_attitude = Mat3::Zero();
     Vec3 mean_field = Vec3::Zero();
     for (const MagnetometerSample& sample : window) {
-      const std::optional<Mat3> attitude = path.at(sample.time + offset);
+      const std::optional<Mat3> attitude = path.attitude(sample.time + offset);
       if (!attitude) continue;
       attitudes.push_back(*attitude);
       fields.push_back(*attitude * axes * sample.field_M);
@@ -121,23 +92,11 @@ std::vector<Window> windowsOf(const std::vector<MagnetometerSample>& readings,
   return chosen;
 }
 
-Vec3 medianRate(const std::vector<ImuSample>& imu) {
-  Vec3 result;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const ImuSample& sample : imu) values.push_back(sample.angular_velocity_B[axis]);
-    result[axis] = median(values);
-  }
-  // The bias at switch-on is small; a larger mean is a long rotation.
-  constexpr double kLargestBias_rad_per_s = 0.1;
-  return result.norm() < kLargestBias_rad_per_s ? result : Vec3::Zero();
-}
-
 std::optional<FieldTurning> compareWithGyroscope(const std::vector<MagnetometerSample>& readings,
                                                  const std::vector<ImuSample>& imu,
                                                  const MagnetometerCalibration& calibration, double field) {
   const std::vector<Window> windows = windowsOf(readings, imu);
-  const AttitudePath path(imu, medianRate(imu));
+  const InertialPath path(imu, medianRate_B(imu));
   const Mat3 given = calibration.body_from_magnetometer.rotation.toRotationMatrix();
   const Duration offset = Duration::fromSeconds(calibration.time_offset_to_imu_s);
   const Remainder as_recorded = remainderOf(windows, path, given, offset);

@@ -45,6 +45,15 @@ class RigReader {
       rig.sonar = readEurocSonar(map);
       moveToBody(&rig.sonar->body_from_sonar);
     });
+    visit("altimeter0", [&](CalibrationMap* map, SectionKeys) {
+      rig.altimeter = readEurocSonar(map);
+      moveToBody(&rig.altimeter->body_from_sonar);
+    });
+    visit("dvl0", [&](CalibrationMap* map, SectionKeys) {
+      rig.dvl = readDvl(map);
+      moveToBody(&rig.dvl->body_from_dvl);
+    });
+    visit("current0", [&](CalibrationMap* map, SectionKeys) { rig.currents = readCurrents(map); });
   }
 
  private:

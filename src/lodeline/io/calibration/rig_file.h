@@ -29,7 +29,7 @@ struct RigFile {
   bool has_imu = false;
   /// Correction to apply to the recorded inertial readings; nothing where no file states it.
   std::optional<ImuCorrection> imu_correction;
-  /// Topics given in the files, by sensor: cam0, imu0, mag0, pressure0, sonar0.
+  /// Topics given in the files, by sensor: cam0, imu0, mag0, dvl0, ….
   std::map<std::string, std::string> topics;
   WaterColumn water;
   /// The sections from which the rig was read, without unknown keys.
@@ -51,7 +51,7 @@ struct RigRequirements {
 ///     imu0: {topic: /imu, gyroscope_noise_density: …, …}
 ///     mag0: {T_BS: …, magnetometer_noise_density: …}
 ///     pressure0: {T_BS: …, depth_noise_std: …, water_density_kg_per_m3: 1025, surface_pressure_Pa: 101325}
-///     sonar0: {T_BS: …, range_noise_std: …}
+///     sonar0, altimeter0: {T_BS: …, range_noise_std: …}, dvl0, current0: see readDvl(), readCurrents()
 ///
 /// The keys are those of EuRoC's sensor.yaml or of Kalibr and OpenVINS; files of other programs are also
 /// accepted (see collectRigSections). `topic` may be missing. Throws InputError for unknown keys, naming the

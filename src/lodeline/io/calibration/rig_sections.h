@@ -25,7 +25,7 @@ struct RigSection {
   std::string prefix;  ///< key of the section in the file; empty where the whole file is the section
 };
 
-/// Sections by sensor: cam0, cam1, …, imu0, mag0, pressure0, sonar0.
+/// Sections by sensor: cam0, cam1, …, imu0, mag0, pressure0, ….
 using RigSections = std::map<std::string, RigSection>;
 
 /// Collects the sensor descriptions of one or several files. The keys of a file determine its format (see

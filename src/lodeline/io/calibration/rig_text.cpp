@@ -67,6 +67,45 @@ std::string correctionText(const ImuCorrection& correction) {
   return text;
 }
 
+std::string sonarText(const SonarCalibration& sonar) {
+  std::string text = transformText(sonar.body_from_sonar) +
+                     fmt::format("  range_noise_std: {}  # m\n  beam_width: {}  # rad\n",
+                                 sonar.range_noise_std_m, sonar.beam_width_rad);
+  if (sonar.max_range_m > 0.0) text += fmt::format("  max_range: {}  # m\n", sonar.max_range_m);
+  return text + rateText(sonar.rate_hz);
+}
+
+std::string dvlText(const DvlCalibration& dvl) {
+  std::string text = fmt::format("  velocity_noise_std: {}  # m/s\n  range_noise_std: {}  # m\n  beams:\n",
+                                 dvl.velocity_noise_std_m_per_s, dvl.range_noise_std_m);
+  for (const Vec3& beam : dvl.beams_D)
+    text += fmt::format("    - [{}, {}, {}]\n", beam.x(), beam.y(), beam.z());
+  text += fmt::format("  scale_sigma: {}\n  misalignment_sigma: {}  # rad\n", dvl.scale_sigma,
+                      dvl.misalignment_sigma_rad);
+  if (dvl.time_offset_to_imu_s != 0.0)
+    text += fmt::format("  timeshift: {}  # s\n", dvl.time_offset_to_imu_s);
+  return text;
+}
+
+std::string currentText(const CurrentCalibration& currents) {
+  std::string text;
+  if (!currents.channels.empty()) text += "  channels:\n";
+  for (size_t i = 0; i < currents.channels.size(); ++i) {
+    const YAML::Node name(currents.channels[i]);  // quoted where YAML needs it
+    if (currents.fields_T_per_A.empty()) {
+      text += fmt::format("    - {}\n", YAML::Dump(name));
+      continue;
+    }
+    const Vec3& k = currents.fields_T_per_A[i];
+    text += fmt::format("    {}: {{field_T_per_A: [{}, {}, {}]}}\n", YAML::Dump(name), k.x(), k.y(), k.z());
+  }
+  if (currents.field_sigma_T_per_A > 0.0)
+    text += fmt::format("  field_sigma_T_per_A: {}\n", currents.field_sigma_T_per_A);
+  if (currents.time_offset_to_imu_s != 0.0)
+    text += fmt::format("  timeshift: {}  # s\n", currents.time_offset_to_imu_s);
+  return text;
+}
+
 std::string imuText(const ImuCalibration& imu, const std::optional<ImuCorrection>& correction) {
   const ImuNoise& noise = imu.noise;
   std::string text = fmt::format(
@@ -119,12 +158,21 @@ std::string rigText(const RigFile& file) {
   }
   if (rig.sonar) {
     begin("sonar0");
-    text += transformText(rig.sonar->body_from_sonar) +
-            fmt::format("  range_noise_std: {}  # m\n  beam_width: {}  # rad\n", rig.sonar->range_noise_std_m,
-                        rig.sonar->beam_width_rad) +
-            (rig.sonar->max_range_m > 0.0 ? fmt::format("  max_range: {}  # m\n", rig.sonar->max_range_m)
-                                          : std::string()) +
-            rateText(rig.sonar->rate_hz);
+    text += sonarText(*rig.sonar);
+  }
+  if (rig.altimeter) {
+    begin("altimeter0");
+    text += sonarText(*rig.altimeter);
+  }
+  if (rig.dvl) {
+    begin("dvl0");
+    text += transformText(rig.dvl->body_from_dvl) + dvlText(*rig.dvl) + rateText(rig.dvl->rate_hz);
+  }
+  if (rig.currents) {
+    begin("current0");
+    // A section without a key is no map.
+    const std::string keys = currentText(*rig.currents) + rateText(rig.currents->rate_hz);
+    text += keys.empty() ? "  field_sigma_T_per_A: 0\n" : keys;
   }
   return text;
 }
@@ -190,6 +238,30 @@ imu0:                               # continuous noise densities: a datasheet's,
 #   T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]
 #   range_noise_std: 0.05                   # m
 #   beam_width: 0.035                       # rad, full width
+
+# altimeter0:                               # its beam points along x; keys as sonar0
+#   topic: /altimeter
+#   T_BS: [0,0,1,0, 0,1,0,0, -1,0,0,0, 0,0,0,1]
+#   range_noise_std: 0.05                   # m
+#   max_range: 50                           # m; greater ranges are no echoes
+
+# dvl0:                                     # z points along the axis of the beams, from the instrument outwards
+#   topic: /dvl/data
+#   T_BS: [1,0,0,0, 0,-1,0,0, 0,0,-1,0, 0,0,0,1]
+#   velocity_noise_std: 0.01                # m/s
+#   range_noise_std: 0.05                   # m
+#   beams: {angle_deg: 22.5, azimuths_deg: [45, 135, 225, 315]}  # to z; from x towards y; or vectors [x, y, z]
+#   scale_sigma: 0.01                       # of the speed of sound, relative
+#   misalignment_sigma: 0.03                # rad
+#   timeshift: 0.0                          # s; stamp + this = IMU clock
+
+# current0:                                 # currents that disturb mag0; names as in the recording
+#   topic: /currents
+#   channels:                               # or names alone: [thruster_1, lamp]
+#     thruster_1: {field_T_per_A: [1.2e-07, -3.0e-08, 4.0e-08]}  # axes of the magnetometer
+#     lamp: {field_T_per_A: [0, 0, 2.0e-08]}
+#   field_sigma_T_per_A: 5.0e-09
+#   timeshift: 0.0                          # s
 )";
 }
 

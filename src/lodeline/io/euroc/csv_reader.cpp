@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/sensor_columns.h"
@@ -22,6 +23,7 @@ std::size_t numberCount(CsvContent content) {
     case CsvContent::Magnetometer:
       return 3;
     case CsvContent::Depth:
+    case CsvContent::Altimeter:
       return 1;
     case CsvContent::Sonar:
       return 2;
@@ -43,6 +45,8 @@ const char* expectedHeader(CsvContent content) {
       return "#timestamp [ns],depth [m]";
     case CsvContent::Sonar:
       return "#timestamp [ns],range [m],angle [rad]";
+    case CsvContent::Altimeter:
+      return "#timestamp [ns],range [m]";
     case CsvContent::TruePose:
       return "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z";
   }
@@ -83,9 +87,20 @@ std::optional<std::size_t> columnWith(const std::vector<ColumnName>& columns,
   return std::nullopt;
 }
 
+/// A number of a column that may be missing.
+double numberOrNan(const std::optional<double>& number) {
+  return number && std::isfinite(*number) ? *number : std::numeric_limits<double>::quiet_NaN();
+}
+
 bool hasDecimals(std::string_view stamp) { return stamp.find_first_of(".,") != std::string_view::npos; }
 
 }  // namespace
+
+double unitFactorOf(const std::filesystem::path& file, const StatedUnit& unit, Quantity quantity) {
+  if (!unit.isUnknown()) return unit.factor.value_or(1.0);
+  throw InputError(fmt::format("{}: unit '{}' of the {} is not known; known for it are {}", file.string(),
+                               unit.text, toString(quantity), knownUnits(quantity)));
+}
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, std::filesystem::path file, std::size_t number_count,
                      Diagnostics* diagnostics)
@@ -111,6 +126,22 @@ CsvReader::CsvReader(const std::filesystem::path& file, CsvContent content, Diag
   settleStampUnit(CsvReader(file, content, &reported_when_read_in_earnest), *rate, diagnostics);
 }
 
+CsvReader::CsvReader(const std::filesystem::path& file, const CsvLayout& layout, Diagnostics* diagnostics,
+                     std::optional<PlausibleRate> rate)
+    : CsvReader(openSensorFile(file), file, layout.least_columns, diagnostics) {
+  if (!table_.hasHeader()) {
+    throw InputError(fmt::format("{}: has no header that names its columns; expected one such as `{}`",
+                                 file.string(), layout.expected_header));
+  }
+  CsvColumns found = layout.find(table_.columns());
+  numbers_ = std::move(found.numbers);
+  text_column_ = found.text.value_or(table_.columns().size());
+  findTimeColumn(findSensorColumns(table_.columns()));
+  if (!rate) return;
+  Diagnostics reported_when_read_in_earnest;
+  settleStampUnit(CsvReader(file, layout, &reported_when_read_in_earnest), *rate, diagnostics);
+}
+
 CsvReader::CsvReader(std::unique_ptr<ByteSource> bytes, const std::filesystem::path& file, CsvContent content,
                      Diagnostics* diagnostics)
     : CsvReader(std::move(bytes), file, numberCount(content), diagnostics) {
@@ -121,11 +152,9 @@ void CsvReader::findColumns(CsvContent content) {
   const std::vector<ColumnName>& columns = table_.columns();
   const SensorColumns sensors = findSensorColumns(columns);
   const auto factorOf = [&](const StatedUnit& unit, Quantity quantity) {
-    if (!unit.isUnknown()) return unit.factor.value_or(1.0);
-    throw InputError(fmt::format("{}: unit '{}' of the {} is not known; known for it are {}", file_.string(),
-                                 unit.text, toString(quantity), knownUnits(quantity)));
+    return unitFactorOf(file_, unit, quantity);
   };
-  std::vector<NumberColumn> found;
+  std::vector<CsvColumn> found;
   const auto addTriad = [&](const TriadColumns& triad, Quantity quantity) {
     for (const std::size_t column : triad.column) found.push_back({column, factorOf(triad.unit, quantity)});
   };
@@ -165,6 +194,9 @@ void CsvReader::findColumns(CsvContent content) {
       if (angle) found.push_back({*angle, is_degrees ? M_PI / 180.0 : 1.0});
       break;
     }
+    case CsvContent::Altimeter:
+      addLength(columnWith(columns, {"range", "distance", "altitude", "height"}));
+      break;
     case CsvContent::TruePose:
       if (const std::optional<PoseColumns> pose = findPoseColumns(columns)) {
         for (const std::size_t column : pose->position) found.push_back({column, 1.0});
@@ -233,6 +265,10 @@ std::string CsvReader::parseRow(CsvRow* row) const {
   row->numbers.resize(numbers_.size());
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     const std::optional<double> number = table_.number(numbers_[i].column);
+    if (numbers_[i].may_be_missing) {
+      row->numbers[i] = numbers_[i].to_si * numberOrNan(number);
+      continue;
+    }
     if (!number || !std::isfinite(*number)) {
       return fmt::format("'{}' in column {} is not a {}number", excerpt(table_.cell(numbers_[i].column)),
                          numbers_[i].column + 1, number ? "finite " : "");

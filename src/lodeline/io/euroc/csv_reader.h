@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,8 +28,33 @@ enum class CsvContent {
   Magnetometer,  ///< field x y z (T)
   Depth,         ///< depth (m), positive down
   Sonar,         ///< range (m), angle (rad)
+  Altimeter,     ///< range (m)
   TruePose,      ///< position x y z (m), quaternion w x y z
 };
+
+/// A column of numbers that was found by its name.
+struct CsvColumn {
+  std::size_t column = 0;
+  double to_si = 1.0;
+  bool may_be_missing = false;  ///< an empty cell, or one without a finite number, is then NaN
+};
+
+/// Columns that a caller found in a header, in the order of CsvRow::numbers.
+struct CsvColumns {
+  std::vector<CsvColumn> numbers;
+  std::optional<std::size_t> text;
+};
+
+/// A table whose header decides how many numbers a row has.
+struct CsvLayout {
+  std::size_t least_columns = 1;  ///< beside the stamp
+  /// Throws InputError where the header lacks a column or states an unknown unit.
+  std::function<CsvColumns(const std::vector<ColumnName>&)> find;
+  std::string expected_header;  ///< for the message about a file without a header
+};
+
+/// SI units per unit of a column. Throws InputError, beginning with `file`, for a unit of another quantity.
+double unitFactorOf(const std::filesystem::path& file, const StatedUnit& unit, Quantity quantity);
 
 /// Reads a sensor's table (a TableReader) row by row. A header that names the columns defines the column and
 /// unit of each quantity. Without such a header, the columns have the order of CsvContent and SI units. A row
@@ -47,6 +73,9 @@ class CsvReader {
             std::optional<PlausibleRate> rate = {});
   CsvReader(std::unique_ptr<ByteSource> bytes, const std::filesystem::path& file, CsvContent content,
             Diagnostics* diagnostics);
+  /// Reads a table with a header of its own; throws InputError where the header is missing.
+  CsvReader(const std::filesystem::path& file, const CsvLayout& layout, Diagnostics* diagnostics,
+            std::optional<PlausibleRate> rate = {});
   /// Reads `number_count` numbers after the stamp, in the order of the file.
   CsvReader(const std::filesystem::path& file, int number_count, Diagnostics* diagnostics,
             std::optional<PlausibleRate> rate = {});
@@ -56,15 +85,13 @@ class CsvReader {
 
   const std::filesystem::path& file() const { return file_; }
   int line() const { return table_.line(); }
+  const std::vector<ColumnName>& columns() const { return table_.columns(); }  ///< of the header
+  /// Reports that the row read last cannot be used.
+  void passOver(const std::string& problem) { table_.passOver(problem); }
   /// Text of the stamp in the row read last, as written in the file; valid until the next row is read.
   std::string_view stampText() const { return table_.cell(time_column_); }
 
  private:
-  struct NumberColumn {
-    std::size_t column;
-    double to_si;
-  };
-
   CsvReader(std::unique_ptr<ByteSource> bytes, std::filesystem::path file, std::size_t number_count,
             Diagnostics* diagnostics);
   void findColumns(CsvContent content);
@@ -79,7 +106,7 @@ class CsvReader {
   std::size_t time_column_ = 0;
   TimeUnit stamp_unit_ = TimeUnit::Nanoseconds;
   std::optional<TimeUnit> decimal_unit_;  ///< of stamps with decimals; nothing if invalid
-  std::vector<NumberColumn> numbers_;
+  std::vector<CsvColumn> numbers_;
   std::size_t text_column_ = 0;
 };
 

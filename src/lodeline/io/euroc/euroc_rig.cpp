@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/csv_reader.h"
+#include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 #include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/euroc/image_list.h"
 #include "lodeline/io/streams/stream_rate.h"
@@ -18,22 +21,46 @@ struct StreamStart {
   std::string why_empty;  ///< reason why there is no stamp
 };
 
-StreamStart readStart(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate) {
+/// The first stamps of a table. `open` returns a function that returns the next stamp.
+template <typename Open>
+StreamStart readStartOf(const std::filesystem::path& csv, const Open& open) {
   Diagnostics reported_when_read_in_earnest;
-  CsvReader reader(csv, content, &reported_when_read_in_earnest, rate);
+  auto next = open(&reported_when_read_in_earnest);
   StreamStart start;
-  CsvRow row, before;
-  while (start.stamps.size() < kStampsForRate && reader.next(&row)) {
-    // Rows that are written twice are left out of the rate measurement.
-    const bool is_repeat = !start.stamps.empty() && row.time == before.time && row.numbers == before.numbers;
-    if (!is_repeat) start.stamps.push_back(row.time);
-    before = row;
+  while (start.stamps.size() < kStampsForRate) {
+    const std::optional<Time> stamp = next();
+    if (!stamp) break;
+    start.stamps.push_back(*stamp);
   }
   if (!start.stamps.empty()) return start;
   start.why_empty = fmt::format("{}: holds no usable row", csv.string());
   const std::vector<Finding> findings = reported_when_read_in_earnest.ranked();
   if (!findings.empty()) start.why_empty += fmt::format(" (first: {})", findings.front().first_message);
   return start;
+}
+
+/// A function that returns the stamps of a table.
+template <typename Table>
+auto nextTime(const std::shared_ptr<Table>& table) {
+  return [table]() -> std::optional<Time> {
+    const auto reading = table->next();
+    return reading ? std::optional(reading->time) : std::nullopt;
+  };
+}
+
+StreamStart readStart(const std::filesystem::path& csv, CsvContent content, PlausibleRate rate) {
+  return readStartOf(csv, [&](Diagnostics* diagnostics) {
+    const auto reader = std::make_shared<CsvReader>(csv, content, diagnostics, rate);
+    return [reader, before = std::optional<CsvRow>()]() mutable -> std::optional<Time> {
+      CsvRow row;
+      // Rows that are written twice are left out of the rate measurement.
+      do {
+        if (!reader->next(&row)) return std::nullopt;
+      } while (before && row.time == before->time && row.numbers == before->numbers);
+      before = row;
+      return row.time;
+    };
+  });
 }
 
 /// Stamps of a required sensor; throws InputError with `advice` where there is none.
@@ -106,15 +133,14 @@ std::vector<CameraCalibration> settledCameras(const EurocLayout& layout, const R
   return cameras;
 }
 
-/// Reads a sensor that a recording may lack.
-template <typename Calibration>
-std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name, CsvContent content,
+/// Reads a sensor that a recording may lack. `read_start`: reads the first stamps of its table.
+template <typename Calibration, typename Start>
+std::optional<Calibration> settledOptional(const EurocLayout& layout, const char* name,
                                            const std::optional<Calibration>& described,
-                                           Diagnostics* diagnostics) {
+                                           const Start& read_start, Diagnostics* diagnostics) {
   const std::filesystem::path csv = layout.csv(name);
   if (!std::filesystem::exists(csv)) return std::nullopt;
-  const PlausibleRate rate = std::string_view(name) == "pressure0" ? kDepthRate : kMagnetometerRate;
-  const StreamStart start = readStart(csv, content, rate);
+  const StreamStart start = read_start(csv);
   if (start.stamps.empty()) {
     diagnostics->report(Severity::Warning, "sensor_empty",
                         start.why_empty + "; carrying on without this sensor");
@@ -131,6 +157,26 @@ std::optional<Calibration> settledOptional(const EurocLayout& layout, const char
   if (described) calibration = *described;
   settle(csv, start.stamps, Calibration().rate_hz, &calibration.rate_hz, diagnostics);
   return calibration;
+}
+
+/// Reads the sensors whose tables have several rows for a reading, or columns with names of their own.
+void settleRobotSensors(const EurocLayout& layout, const Rig& known, Rig* rig, Diagnostics* diagnostics) {
+  const size_t beams = known.dvl.value_or(DvlCalibration()).beams_D.size();
+  const auto dvlStart = [&](const std::filesystem::path& csv) {
+    return readStartOf(
+        csv, [&](Diagnostics* ignored) { return nextTime(std::make_shared<DvlTable>(csv, beams, ignored)); });
+  };
+  rig->dvl = settledOptional(layout, "dvl0", known.dvl, dvlStart, diagnostics);
+  std::vector<std::string> channels = known.currents.value_or(CurrentCalibration()).channels;
+  const auto currentStart = [&](const std::filesystem::path& csv) {
+    return readStartOf(csv, [&](Diagnostics* ignored) {
+      const auto table = std::make_shared<CurrentTable>(csv, channels, ignored);
+      channels = table->channels();
+      return nextTime(table);
+    });
+  };
+  rig->currents = settledOptional(layout, "current0", known.currents, currentStart, diagnostics);
+  if (rig->currents) rig->currents->channels = channels;
 }
 
 ImuCalibration settledImu(const EurocLayout& layout, const RigFile& described, Diagnostics* diagnostics) {
@@ -156,10 +202,19 @@ Rig settleEurocRig(const EurocLayout& layout, const RigFile& described, Diagnost
   Rig rig;
   rig.imu = settledImu(layout, described, diagnostics);
   rig.cameras = settledCameras(layout, described.rig, diagnostics);
-  rig.magnetometer =
-      settledOptional(layout, "mag0", CsvContent::Magnetometer, described.rig.magnetometer, diagnostics);
-  rig.pressure = settledOptional(layout, "pressure0", CsvContent::Depth, described.rig.pressure, diagnostics);
-  rig.sonar = settledOptional(layout, "sonar0", CsvContent::Sonar, described.rig.sonar, diagnostics);
+  const auto startOf = [](CsvContent content, PlausibleRate rate) {
+    return [content, rate](const std::filesystem::path& csv) { return readStart(csv, content, rate); };
+  };
+  const Rig& known = described.rig;
+  rig.magnetometer = settledOptional(layout, "mag0", known.magnetometer,
+                                     startOf(CsvContent::Magnetometer, kMagnetometerRate), diagnostics);
+  rig.pressure = settledOptional(layout, "pressure0", known.pressure, startOf(CsvContent::Depth, kDepthRate),
+                                 diagnostics);
+  rig.sonar = settledOptional(layout, "sonar0", known.sonar, startOf(CsvContent::Sonar, kMagnetometerRate),
+                              diagnostics);
+  rig.altimeter = settledOptional(layout, "altimeter0", known.altimeter,
+                                  startOf(CsvContent::Altimeter, kDepthRate), diagnostics);
+  settleRobotSensors(layout, known, &rig, diagnostics);
   return rig;
 }
 

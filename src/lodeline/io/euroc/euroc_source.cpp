@@ -43,6 +43,11 @@ EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnosti
     magnetometer_.emplace(layout_.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   if (rig_.pressure) pressure_.emplace(layout_.csv("pressure0"), CsvContent::Depth, diagnostics, kDepthRate);
   if (rig_.sonar) sonar_.emplace(layout_.csv("sonar0"), CsvContent::Sonar, diagnostics, kMagnetometerRate);
+  if (rig_.altimeter)
+    altimeter_.emplace(layout_.csv("altimeter0"), CsvContent::Altimeter, diagnostics, kDepthRate);
+  if (rig_.dvl) dvl_ = std::make_unique<DvlTable>(layout_.csv("dvl0"), rig_.dvl->beams_D.size(), diagnostics);
+  if (rig_.currents)
+    currents_ = std::make_unique<CurrentTable>(layout_.csv("current0"), rig_.currents->channels, diagnostics);
 }
 
 std::unique_ptr<RecordedSource> openEuroc(const std::filesystem::path& data, const EurocOptions& options,
@@ -107,6 +112,23 @@ std::optional<DepthSample> EurocSource::nextDepth() {
 std::optional<SonarSample> EurocSource::nextSonar() {
   if (!next(&sonar_, &row_)) return std::nullopt;
   return SonarSample{row_.time, row_.numbers[0], row_.numbers[1]};
+}
+
+std::optional<AltimeterSample> EurocSource::nextAltimeter() {
+  while (next(&altimeter_, &row_)) {
+    if (row_.numbers[0] > 0.0) return AltimeterSample{row_.time, row_.numbers[0]};
+    diagnostics_->report(
+        Severity::Notice, "altimeter_no_echo",
+        fmt::format("{}:{}: a range of {:g} m is no echo; passed over", layout_.csv("altimeter0").string(),
+                    altimeter_->line(), row_.numbers[0]));
+  }
+  return std::nullopt;
+}
+
+std::optional<DvlSample> EurocSource::nextDvl() { return dvl_ ? dvl_->next() : std::nullopt; }
+
+std::optional<CurrentSample> EurocSource::nextCurrents() {
+  return currents_ ? currents_->next() : std::nullopt;
 }
 
 }  // namespace lodeline

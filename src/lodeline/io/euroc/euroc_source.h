@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "lodeline/io/euroc/csv_reader.h"
+#include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/dvl_table.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 #include "lodeline/io/euroc/image_list.h"
 #include "lodeline/io/images/grey_range.h"
@@ -19,6 +22,9 @@ namespace lodeline {
 ///     mav0/mag0/data.csv       #timestamp [ns],m_x [T],m_y [T],m_z [T]
 ///     mav0/pressure0/data.csv  #timestamp [ns],depth [m]     (positive down)
 ///     mav0/sonar0/data.csv     #timestamp [ns],range [m],angle [rad]
+///     mav0/altimeter0/data.csv #timestamp [ns],range [m]
+///     mav0/dvl0/data.csv       see DvlTable
+///     mav0/current0/data.csv   see CurrentTable
 ///
 /// Each folder has its sensor.yaml (see readEurocRig).
 class EurocSource : public RecordedSource {
@@ -32,6 +38,9 @@ class EurocSource : public RecordedSource {
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
   std::optional<SonarSample> nextSonar() override;
+  std::optional<AltimeterSample> nextAltimeter() override;
+  std::optional<DvlSample> nextDvl() override;
+  std::optional<CurrentSample> nextCurrents() override;
 
  private:
   EurocSource(EurocLayout layout, Diagnostics* diagnostics);
@@ -47,6 +56,9 @@ class EurocSource : public RecordedSource {
   std::optional<CsvReader> magnetometer_;
   std::optional<CsvReader> pressure_;
   std::optional<CsvReader> sonar_;
+  std::optional<CsvReader> altimeter_;
+  std::unique_ptr<DvlTable> dvl_;
+  std::unique_ptr<CurrentTable> currents_;
   bool is_magnetic_unit_doubted_ = false;  ///< already reported for the whole column
   CsvRow row_;                             ///< reused to avoid allocation
 };

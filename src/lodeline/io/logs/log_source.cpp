@@ -34,6 +34,10 @@ LogSource::LogSource(const std::filesystem::path& file, Diagnostics* diagnostics
     throw InputError(fmt::format("{}: has no gyroscope and accelerometer; both are needed", file.string()));
   }
   if (log_->sensors().has_magnetometer) rig_.magnetometer.emplace();
+  if (!log_->sensors().current_channels.empty()) {
+    rig_.currents.emplace().channels = log_->sensors().current_channels;
+    last_currents_A_.resize(rig_.currents->channels.size());
+  }
   measureRates();
 }
 
@@ -47,6 +51,7 @@ void LogSource::measureRates() {
   }
   measureRate(log_->sensors().has_whole_imu ? imu_ : gyroscope_, &rig_.imu.rate_hz);
   if (rig_.magnetometer) measureRate(magnetometer_, &rig_.magnetometer->rate_hz);
+  if (rig_.currents) measureRate(currents_, &rig_.currents->rate_hz);
 }
 
 bool LogSource::readOne() {
@@ -63,7 +68,23 @@ bool LogSource::readOne() {
     if (reading.specific_force) accelerometer_.push_back(sample);
   }
   if (reading.field) magnetometer_.push_back({reading.time, *reading.field});
+  takeCurrents(reading);
   return true;
+}
+
+void LogSource::takeCurrents(const LogReading& reading) {
+  bool is_due = false;
+  for (const LogCurrent& current : reading.currents) {
+    last_currents_A_[current.channel] = current.current_A;
+    is_due = is_due || current.channel == log_->sensors().fastest_current;
+  }
+  CurrentSample sample;
+  sample.time = reading.time;
+  for (const std::optional<double>& current_A : last_currents_A_) {
+    if (!current_A) return;  // a channel that has not begun yet
+    sample.currents_A.push_back(*current_A);
+  }
+  if (is_due) currents_.push_back(std::move(sample));
 }
 
 std::optional<ImuSample> LogSource::takeHalf(std::deque<ImuSample>* readings) {
@@ -81,6 +102,12 @@ std::optional<MagnetometerSample> LogSource::nextMagnetometer() {
   while (rig_.magnetometer && magnetometer_.empty() && readOne()) {
   }
   return takeFirst(&magnetometer_);
+}
+
+std::optional<CurrentSample> LogSource::nextCurrents() {
+  while (rig_.currents && currents_.empty() && readOne()) {
+  }
+  return takeFirst(&currents_);
 }
 
 }  // namespace lodeline

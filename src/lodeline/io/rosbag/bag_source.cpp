@@ -7,7 +7,6 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/rosbag/bag_kinds.h"
-#include "lodeline/io/rosbag/checked_reading.h"
 #include "lodeline/io/rosbag/image_messages.h"
 #include "lodeline/io/streams/stream_rate.h"
 
@@ -118,6 +117,7 @@ BagSource::BagSource(const std::filesystem::path& bag, const BagOptions& options
     if (sensors_[kind.section].topic == nullptr) (rig_.*kind.calibration).reset();
   });
   settleRates();
+  settleRobotSensors();
 }
 
 void BagSource::refuseUnknownTopics(const BagOptions& options) const {
@@ -195,22 +195,6 @@ std::optional<wire::Bytes> BagSource::nextMessage(Cursor* cursor) {
       }
     }
     if (message && message->size() >= kHeaderBytes) return message;
-  }
-  return std::nullopt;
-}
-
-template <typename Reading>
-void BagSource::restamp(const Cursor& cursor, Reading* reading) const {
-  if (use_received_times_) reading->time = cursor.topic->entries[cursor.next - 1].received;
-}
-
-template <typename Parse>
-auto BagSource::nextReading(Cursor* cursor, const Parse& parse)
-    -> std::optional<decltype(parse(std::span<const uint8_t>()))> {
-  while (const std::optional<wire::Bytes> message = nextMessage(cursor)) {
-    std::string problem;
-    if (auto reading = messages::checkedReading(*message, parse, &problem)) return reading;
-    reportMessage(*cursor, problem);
   }
   return std::nullopt;
 }

@@ -10,6 +10,8 @@
 
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/images/grey_range.h"
+#include "lodeline/io/robots/dvl_screen.h"
+#include "lodeline/io/rosbag/checked_reading.h"
 #include "lodeline/io/rosbag/container/bag_file.h"
 #include "lodeline/io/rosbag/film_topic.h"
 #include "lodeline/io/rosbag/imu_content.h"
@@ -35,6 +37,9 @@ class BagSource : public RecordedSource {
   std::optional<MagnetometerSample> nextMagnetometer() override;
   std::optional<DepthSample> nextDepth() override;
   std::optional<SonarSample> nextSonar() override;
+  std::optional<AltimeterSample> nextAltimeter() override;
+  std::optional<DvlSample> nextDvl() override;
+  std::optional<CurrentSample> nextCurrents() override;
 
   BagFile& bag() { return *bag_; }
   const RigFile& rigFile() const { return rig_file_; }
@@ -50,6 +55,8 @@ class BagSource : public RecordedSource {
   void refuseUnknownTopics(const BagOptions& options) const;
   void settleCameras(const BagOptions& options);
   void settleRates();
+  void settleRobotSensors();
+  void checkBeams(const std::vector<Vec3>& stated_D);
   Cursor cursorOf(const std::string& sensor) const;
   template <typename Sample>
   Cursor& cursorOfKind() {
@@ -60,11 +67,21 @@ class BagSource : public RecordedSource {
   std::vector<Time> firstStamps(Cursor cursor, const std::string& name);
   /// Assigns a reading the time of the message that was read last.
   template <typename Reading>
-  void restamp(const Cursor& cursor, Reading* reading) const;
+  void restamp(const Cursor& cursor, Reading* reading) const {
+    if (use_received_times_) reading->time = cursor.topic->entries[cursor.next - 1].received;
+  }
   std::optional<ImuSample> nextOf(Cursor* imu);
+  /// The next reading of a topic that `parse` can make of a message.
   template <typename Parse>
   auto nextReading(Cursor* cursor, const Parse& parse)
-      -> std::optional<decltype(parse(std::span<const uint8_t>()))>;
+      -> std::optional<decltype(parse(std::span<const uint8_t>()))> {
+    while (const std::optional<wire::Bytes> message = nextMessage(cursor)) {
+      std::string problem;
+      if (auto reading = messages::checkedReading(*message, parse, &problem)) return reading;
+      reportMessage(*cursor, problem);
+    }
+    return std::nullopt;
+  }
 
   std::unique_ptr<BagFile> bag_;
   Diagnostics* diagnostics_;
@@ -78,6 +95,8 @@ class BagSource : public RecordedSource {
   std::map<std::string, Cursor> sensors_;  ///< by SensorKind::section
   ImuHalves halves_;                       ///< state for an IMU in two topics
   std::deque<SonarSample> echoes_;         ///< echoes of the scan that was read last
+  std::optional<DvlScreen> dvl_screen_;
+  bool are_beams_checked_ = false;
 };
 
 }  // namespace lodeline

@@ -21,6 +21,7 @@ inline bool isFinite(const StampedPosition& s) {
 inline bool isFinite(Time) { return true; }
 inline bool isFinite(const DepthSample& s) { return std::isfinite(s.depth_m); }
 inline bool isFinite(const std::vector<SonarSample>&) { return true; }  // parsing drops invalid echoes
+inline bool isFinite(const std::vector<AltimeterSample>&) { return true; }
 
 /// Parses a message with `parse`, one of the functions of messages.h. Returns nothing where the message
 /// cannot be used; `problem` then gives the reason.

@@ -1,58 +1,20 @@
 #include "lodeline/io/rosbag/messages.h"
 
-#include <fmt/format.h>
-
-#include <charconv>
 #include <cmath>
 #include <limits>
+
+#include "lodeline/io/rosbag/robots/current_messages.h"
+#include "lodeline/io/rosbag/robots/dvl_messages.h"
 
 namespace lodeline::messages {
 namespace {
 
 constexpr size_t kCovarianceBytes = 9 * sizeof(double);
 
-Time takeHeader(wire::Reader* reader) {
-  reader->take<uint32_t>();  // sequence number
-  const Time stamp = reader->takeTime();
-  reader->takeText();  // frame
-  return stamp;
-}
-
-void putHeader(Time stamp, uint32_t sequence, std::string_view frame, wire::Writer* writer) {
-  writer->put(sequence);
-  writer->putTime(stamp);
-  writer->putText(frame);
-}
-
-Vec3 takeVector(wire::Reader* reader) {
-  const double x = reader->take<double>();
-  const double y = reader->take<double>();
-  return {x, y, reader->take<double>()};
-}
-
-Rigid3 takePose(wire::Reader* reader) {
-  const Vec3 translation = takeVector(reader);
-  const Vec3 imaginary = takeVector(reader);
-  return {Quat(reader->take<double>(), imaginary.x(), imaginary.y(), imaginary.z()), translation};
-}
-
-void putVector(const Vec3& vector, wire::Writer* writer) {
-  for (const double value : {vector.x(), vector.y(), vector.z()}) writer->put(value);
-}
-
 /// Writes an all-zero covariance, which means unknown; `first` -1 means that the quantity is missing.
 void putCovariance(double first, wire::Writer* writer) {
   writer->put(first);
   for (int i = 1; i < 9; ++i) writer->put(0.0);
-}
-
-/// The shortest decimal number that identifies a float: 3.1 where 32 bits store 3.0999999.
-double decimal(float value) {
-  if (!std::isfinite(value)) return value;
-  const std::string text = fmt::format("{}", value);
-  double number = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return number;
 }
 
 bool isWithin(float range, float least, float greatest) {
@@ -66,6 +28,9 @@ std::vector<Type> typesOf(const std::string& sensor) {
   if (sensor == "mag0") return {messages::kMagneticField};
   if (sensor == "pressure0") return {messages::kFluidPressure};
   if (sensor == "sonar0") return {messages::kLaserScan, messages::kRange};
+  if (sensor == "altimeter0") return {messages::kRange};
+  if (sensor == "dvl0") return {kMarineDvl, kA50Dvl, kA50Dvl2, kSimulatedDvl, kColaDvl};
+  if (sensor == "current0") return {kBatteryState};
   return {messages::kImage, messages::kCompressedImage, messages::kCompressedVideo};
 }
 
@@ -73,6 +38,8 @@ std::vector<Type> namedTypesOf(const std::string& sensor) {
   std::vector<Type> types = typesOf(sensor);
   if (sensor == "mag0") types.push_back(kVector3Stamped);
   if (sensor == "pressure0") types.push_back(kOdometry);
+  if (sensor == "dvl0") types.insert(types.end(), {kTwist, kTwistWithCovariance});
+  if (sensor == "current0") types.push_back(kJointState);
   return types;
 }
 
@@ -121,6 +88,14 @@ std::vector<SonarSample> parseRange(std::span<const uint8_t> message) {
   const auto range = reader.take<float>();
   if (!isWithin(range, least, greatest)) return {};
   return {{time, decimal(range), 0.0}};
+}
+
+std::vector<AltimeterSample> parseAltimeter(std::span<const uint8_t> message) {
+  std::vector<AltimeterSample> echoes;
+  for (const SonarSample& echo : parseRange(message)) {
+    if (echo.range_m > 0.0) echoes.push_back({echo.time, echo.range_m});
+  }
+  return echoes;
 }
 
 std::vector<SonarSample> parseLaserScan(std::span<const uint8_t> message) {
@@ -196,6 +171,18 @@ wire::Bytes laserScan(const SonarSample& sample, uint32_t sequence) {
   writer.put(uint32_t{1});
   writer.put(static_cast<float>(sample.range_m));
   writer.put(uint32_t{0});  // no intensities
+  return writer.take();
+}
+
+wire::Bytes altimeterRange(const AltimeterSample& sample, uint32_t sequence) {
+  constexpr uint8_t kUltrasound = 0;
+  wire::Writer writer;
+  putHeader(sample.time, sequence, "altimeter0", &writer);
+  writer.put(kUltrasound);
+  for (const float value :
+       {0.0F, 0.0F, std::numeric_limits<float>::max(), static_cast<float>(sample.range_m)}) {
+    writer.put(value);
+  }
   return writer.take();
 }
 

@@ -8,18 +8,13 @@
 
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/rosbag/chunks/wire.h"
+#include "lodeline/io/rosbag/definitions/message_fields.h"
 #include "lodeline/recording.h"
 #include "lodeline/rig.h"
 
 /// Functions that convert ROS 1 messages of a rig's sensors (packages sensor_msgs 1.13, geometry_msgs 1.13)
 /// to readings and back. Parsing functions throw wire::Reader::CutOff where bytes are missing.
 namespace lodeline::messages {
-
-/// Name of a message type and the checksum of its definition, which changes when the definition does.
-struct Type {
-  const char* name;
-  const char* md5sum;
-};
 
 inline constexpr Type kImu = {"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2"};
 inline constexpr Type kMagneticField = {"sensor_msgs/MagneticField", "2f3b0b43eed0c9501de0fa3ff89a45aa"};
@@ -36,10 +31,11 @@ inline constexpr Type kPoseStamped = {"geometry_msgs/PoseStamped", "d3812c3cbc69
 inline constexpr Type kOdometry = {"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"};
 inline constexpr Type kVector3Stamped = {"geometry_msgs/Vector3Stamped", "7b324c7325e683bf02a9b14b01090ec7"};
 
-/// Types that a sensor may publish: imu0, mag0, pressure0, sonar0; any other name is a camera.
+/// Types that a sensor may publish: imu0, mag0, pressure0, …; any other name is a camera.
 std::vector<Type> typesOf(const std::string& sensor);
 /// Types that a sensor may publish on a topic that the user names. They include types of several meanings:
-/// Vector3Stamped as a field in tesla, and Odometry as a depth.
+/// Vector3Stamped as a field in tesla, Odometry as a depth, Twist as the velocity of a DVL, and JointState as
+/// currents.
 std::vector<Type> namedTypesOf(const std::string& sensor);
 
 /// The stamp in the header with which each of these messages begins.
@@ -53,6 +49,8 @@ DepthSample parseFluidPressure(std::span<const uint8_t> message, const WaterColu
 DepthSample parseOdometryDepth(std::span<const uint8_t> message);
 /// One echo straight ahead (angle 0); none where the range is not a number within the sensor's limits.
 std::vector<SonarSample> parseRange(std::span<const uint8_t> message);
+/// The echo of a Range; none where it is not a number within the sensor's limits.
+std::vector<AltimeterSample> parseAltimeter(std::span<const uint8_t> message);
 /// The echoes of a scan, with stamps and angles computed from their positions in the scan.
 std::vector<SonarSample> parseLaserScan(std::span<const uint8_t> message);
 
@@ -70,6 +68,8 @@ wire::Bytes magneticField(const MagnetometerSample& sample, uint32_t sequence);
 wire::Bytes fluidPressure(const DepthSample& sample, const WaterColumn& water, uint32_t sequence);
 /// A LaserScan with a single beam. Ranges and angles have 32 bits in ROS.
 wire::Bytes laserScan(const SonarSample& sample, uint32_t sequence);
+/// A Range, which has 32 bits.
+wire::Bytes altimeterRange(const AltimeterSample& sample, uint32_t sequence);
 wire::Bytes poseStamped(const StampedPosition& pose, uint32_t sequence);
 
 }  // namespace lodeline::messages

@@ -140,9 +140,19 @@ class Chooser {
     for (size_t i = 0; i < missing.size(); ++i) take(missing[i], free[i]);
   }
 
+  /// Whether a topic has the first type of another sensor of the rig, but not that of this one: a Range is
+  /// an altimeter's, where the rig has one, and otherwise a sonar's.
+  bool isRatherOfOther(const BagTopic& topic, const std::string& sensor) const {
+    const auto hasFirstTypeOf = [&](const std::string& other) {
+      return topic.connection.type == typesOf(other).front().name;
+    };
+    return !hasFirstTypeOf(sensor) && std::any_of(wish_.sensors.begin(), wish_.sensors.end(), hasFirstTypeOf);
+  }
+
   void chooseSensor(const std::string& sensor) {
     if (choice_.of(sensor) != nullptr) return;
     std::vector<const BagTopic*> found = topicsFor(bag_, sensor);
+    std::erase_if(found, [&](const BagTopic* topic) { return isRatherOfOther(*topic, sensor); });
     if (found.empty()) return;
     if (found.size() > 1 && sensor == "imu0") found = wholeOrHalves(found);
     if (found.size() > 1) {

@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Topic of each sensor: cam0, cam1, …, imu0, mag0, pressure0, sonar0.
+/// Topic of each sensor: cam0, cam1, …, imu0, mag0, pressure0, ….
 struct TopicChoice {
   std::map<std::string, const BagTopic*> topics;
   /// Accelerometer topic of imu0, where its own topic has only the gyroscope; null otherwise.

@@ -27,5 +27,6 @@ inline constexpr const char* kImageColumns = "#timestamp [ns],filename\n";
 inline constexpr const char* kMagnetometerColumns = "#timestamp [ns],m_x [T],m_y [T],m_z [T]\n";
 inline constexpr const char* kDepthColumns = "#timestamp [ns],depth [m]\n";
 inline constexpr const char* kSonarColumns = "#timestamp [ns],range [m],angle [rad]\n";
+inline constexpr const char* kAltimeterColumns = "#timestamp [ns],range [m]\n";
 
 }  // namespace lodeline

@@ -18,6 +18,7 @@ struct Unit {
 
 constexpr double kGravity = 9.80665;
 constexpr double kFoot = 0.3048;
+constexpr double kKnot = 1852.0 / 3600.0;
 
 constexpr Unit kLengths[] = {{"m", 1.0},
                              {"cm", 1e-2},
@@ -62,6 +63,14 @@ constexpr Unit kFields[] = {
     {"mga", 1e-7},        {"mgs", 1e-7},        {"tesla", 1.0},   {"microtesla", 1e-6}, {"nanotesla", 1e-9},
     {"millitesla", 1e-3}, {"milligauss", 1e-7}, {"ugauss", 1e-10}};
 
+constexpr Unit kVelocities[] = {{"m/s", 1.0},     {"mm/s", 1e-3},    {"cm/s", 1e-2},     {"km/h", 1.0 / 3.6},
+                                {"kn", kKnot},    {"ft/s", kFoot},   {"m/sec", 1.0},     {"mps", 1.0},
+                                {"mmps", 1e-3},   {"cmps", 1e-2},    {"kmh", 1.0 / 3.6}, {"kt", kKnot},
+                                {"knots", kKnot}, {"metres/s", 1.0}, {"meters/s", 1.0},  {"fps", kFoot}};
+constexpr Unit kCurrents[] = {{"a", 1.0},       {"ma", 1e-3},        {"ka", 1e3},          {"ca", 1e-2},
+                              {"ua", 1e-6},     {"amp", 1.0},        {"amps", 1.0},        {"ampere", 1.0},
+                              {"amperes", 1.0}, {"milliamps", 1e-3}, {"milliampere", 1e-3}};
+
 std::span<const Unit> unitsOf(Quantity quantity) {
   switch (quantity) {
     case Quantity::Length:
@@ -72,6 +81,10 @@ std::span<const Unit> unitsOf(Quantity quantity) {
       return kForces;
     case Quantity::MagneticField:
       return kFields;
+    case Quantity::Velocity:
+      return kVelocities;
+    case Quantity::Current:
+      return kCurrents;
   }
   return {};
 }
@@ -142,6 +155,10 @@ const char* toString(Quantity quantity) {
       return "specific force";
     case Quantity::MagneticField:
       return "magnetic field";
+    case Quantity::Velocity:
+      return "velocity";
+    case Quantity::Current:
+      return "electric current";
   }
   return "";
 }

@@ -9,9 +9,9 @@
 namespace lodeline {
 
 /// Quantity measured in a column of numbers. For times, see util/time/time_unit.h.
-enum class Quantity { Length, AngularRate, SpecificForce, MagneticField };
+enum class Quantity { Length, AngularRate, SpecificForce, MagneticField, Velocity, Current };
 
-/// "length", "angular rate", "specific force", "magnetic field".
+/// "length", "angular rate", "specific force", "magnetic field", "velocity", "electric current".
 const char* toString(Quantity quantity);
 
 /// SI units per named unit ("uT": 1e-6), for any case and notation ("deg/s", "°/s", "dps"). Returns nothing

@@ -43,6 +43,9 @@ VideoSource::VideoSource(const std::filesystem::path& data, const VideoOptions& 
   imu_correction_ = rig_file_.imu_correction;
   rig_.pressure.reset();
   rig_.sonar.reset();
+  rig_.altimeter.reset();
+  rig_.dvl.reset();
+  rig_.currents.reset();
   settleCamera(options);
   settleImu(options);
   settleMagnetometer(options);

@@ -6,6 +6,8 @@
 
 #include "lodeline/io/rosbag/checked_reading.h"
 #include "lodeline/io/rosbag/image_messages.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
+#include "lodeline/io/rosbag/robots/dvl_messages.h"
 
 namespace lodeline {
 namespace {
@@ -62,6 +64,8 @@ void MessageIntake::receive(size_t place, const std::string& type, const std::st
       problem = error.what();
     } catch (const definitions::DefinitionError& error) {
       problem = error.what();
+    } catch (const InputError& error) {  // other channels of currents than those of the rig
+      problem = error.what();
     }
   }
   const std::lock_guard lock(mutex_);
@@ -95,12 +99,33 @@ void MessageIntake::push(size_t place, const std::string& type, wire::Bytes mess
     const auto echoes =
         messages::checkedReading(message, is_scan ? messages::parseLaserScan : messages::parseRange, problem);
     for (const SonarSample& echo : echoes.value_or(std::vector<SonarSample>())) source_->push(echo);
+  } else if (topic.sensor == "altimeter0") {
+    const auto echoes = messages::checkedReading(message, messages::parseAltimeter, problem);
+    for (const AltimeterSample& echo : echoes.value_or(std::vector<AltimeterSample>())) source_->push(echo);
+  } else if (topic.sensor == "dvl0") {
+    const auto parse = [&](std::span<const uint8_t> bytes) { return messages::parseDvl(type, bytes); };
+    const auto reading = messages::checkedReading(message, parse, problem);
+    if (reading) pushDvl(withoutSentinels(reading->ping));
+  } else if (topic.sensor == "current0") {
+    const auto parse = [&](std::span<const uint8_t> bytes) { return messages::parseCurrents(type, bytes); };
+    const auto currents = messages::checkedReading(message, parse, problem);
+    const std::vector<std::string>& channels = source_->rig().currents->channels;
+    if (channels.empty()) throw InputError("the rig names no `channels` of current0");
+    if (currents) source_->push(messages::inOrder("the message", *currents, channels));
   } else if (type == messages::kOdometry.name) {
     pushReading(messages::parseOdometryDepth);
   } else {
     pushReading(
         [this](std::span<const uint8_t> bytes) { return messages::parseFluidPressure(bytes, water_); });
   }
+}
+
+void MessageIntake::pushDvl(DvlSample sample) {
+  const size_t beams = source_->rig().dvl->beams_D.size();
+  std::erase_if(sample.beams, [&](const DvlBeam& beam) {
+    return beam.index < 0 || static_cast<size_t>(beam.index) >= beams;
+  });
+  source_->push(sample);
 }
 
 void MessageIntake::pushImu(const SensorTopic& topic, std::span<const uint8_t> message,

@@ -44,6 +44,7 @@ class MessageIntake {
                                       const std::string& md5sum);
   wire::Bytes inRos1(const std::string& type, wire::Bytes message) const;
   void push(size_t topic, const std::string& type, wire::Bytes message, std::string* problem);
+  void pushDvl(DvlSample sample);
   void pushImu(const SensorTopic& topic, std::span<const uint8_t> message, std::string* problem);
 
   std::vector<SensorTopic> topics_;

@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Topics by sensor (cam0, imu0, mag0, pressure0, sonar0): from `named`, otherwise from the rig file. Throws
+/// Topics by sensor (cam0, imu0, mag0, pressure0, …): from `named`, otherwise from the rig file. Throws
 /// InputError where a camera of `rig` or the IMU has none, and UsageError for a sensor that the rig does not
 /// have. Removes other sensors without a topic from the rig.
 std::map<std::string, std::string> chooseLiveTopics(const RigFile& rig_file,

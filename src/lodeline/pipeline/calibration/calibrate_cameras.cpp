@@ -28,6 +28,9 @@ std::string rigFileText(const RigCalibrationResult& result, const RecordedSource
   file.rig.magnetometer.reset();
   file.rig.pressure.reset();
   file.rig.sonar.reset();
+  file.rig.altimeter.reset();
+  file.rig.dvl.reset();
+  file.rig.currents.reset();
   return "# Calibrated without IMU: T_BS takes camera coordinates to those of the first camera.\n" +
          rigText(file);
 }

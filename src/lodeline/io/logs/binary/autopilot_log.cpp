@@ -17,7 +17,6 @@ void put(LogSensor sensor, const std::array<double, 3>& value, LogReading* readi
   if (sensor == LogSensor::Accelerometer) reading->specific_force = vector;
   if (sensor == LogSensor::Magnetometer) reading->field = vector;
   if (sensor == LogSensor::Pressure) reading->pressure_Pa = value[0];
-  if (sensor == LogSensor::Current) reading->current_A = value[0];
 }
 
 }  // namespace
@@ -35,6 +34,13 @@ AutopilotLog::AutopilotLog(const Open& open, std::string file, const std::string
   sensors_.has_accelerometer = accelerometer != channels_.end();
   sensors_.has_magnetometer = find(LogSensor::Magnetometer) != channels_.end();
   sensors_.states_field_unit = true;
+  size_t most = 0;
+  for (const LogChannel& channel : channels_) {
+    if (channel.sensor != LogSensor::Current) continue;
+    if (channel.messages > most) sensors_.fastest_current = sensors_.current_channels.size();
+    most = std::max(most, channel.messages);
+    sensors_.current_channels.push_back(channel.name);
+  }
   sensors_.has_whole_imu = sensors_.has_gyroscope && sensors_.has_accelerometer &&
                            gyroscope->topic == accelerometer->topic && !accelerometer->has_relative_time &&
                            gyroscope->instance == accelerometer->instance;
@@ -90,6 +96,11 @@ void AutopilotLog::take(const LogMessage& message) {
       continue;
     }
     put(channel.sensor, *value, &reading);
+    if (channel.sensor == LogSensor::Current) {
+      const std::vector<std::string>& names = sensors_.current_channels;
+      const auto place = std::find(names.begin(), names.end(), channel.name) - names.begin();
+      reading.currents.push_back({static_cast<size_t>(place), (*value)[0]});
+    }
     has_any = true;
   }
   const std::optional<int64_t> time_ns = has_any ? timeOf_ns(message) : std::nullopt;
@@ -100,7 +111,7 @@ void AutopilotLog::take(const LogMessage& message) {
   if (is_half) {
     reading.angular_velocity.reset();
     reading.specific_force.reset();
-    if (!reading.field && !reading.pressure_Pa && !reading.current_A) return;
+    if (!reading.field && !reading.pressure_Pa && reading.currents.empty()) return;
   }
   if (!sensors_.has_whole_imu && reading.specific_force && reading.angular_velocity) {
     LogReading force;

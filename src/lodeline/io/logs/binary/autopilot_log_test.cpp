@@ -20,6 +20,7 @@ using test::having;
 using test::kRows;
 using test::raws;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -103,12 +104,70 @@ TEST_F(AutopilotLogTest, ReadsALogOfPx4) {
   EXPECT_NEAR((*fields[0].field - Vec3(20e-6, 0, 40e-6)).norm(), 0.0, 1e-12);
   EXPECT_NEAR(*having(readings, [](const LogReading& r) { return r.pressure_Pa.has_value(); })[0].pressure_Pa,
               101325.0, 1.0);
-  EXPECT_EQ(*having(readings, [](const LogReading& r) { return r.current_A.has_value(); })[0].current_A,
-            12.5);
+  const auto currents = having(readings, [](const LogReading& r) { return !r.currents.empty(); });
+  ASSERT_FALSE(currents.empty());
+  EXPECT_EQ(currents[0].currents[0].current_A, 12.5);
   EXPECT_THAT(finding("log_content"), AllOf(HasSubstr("PX4"), HasSubstr("sensor_combined 0 in rad/s"),
                                             HasSubstr("sensor_mag 0 in gauss"), HasSubstr("Pa or hPa"),
                                             HasSubstr("battery_status 0 in A")));
   EXPECT_THAT(finding("log_other_sources"), HasSubstr("sensor_mag 1 (40)"));
+}
+
+/// Rows of an IMU of ArduPilot at 100 Hz, a battery at every fourth of them, and three motors at every
+/// second; the third motor never takes a current.
+std::string ardupilotCurrents() {
+  test::DataFlashBytes log;
+  log.format(20, 3 + 8 + 1 + 24, "IMU", "QBffffff", "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ");
+  log.format(23, 3 + 8 + 1 + 4, "BAT", "QBf", "TimeUS,Instance,Curr");
+  log.format(24, 3 + 8 + 1 + 8, "ESC", "QBff", "TimeUS,Instance,RPM,Curr");
+  for (uint64_t i = 0; i < 200; ++i) {
+    const uint64_t t = 2'000'000 + 10'000 * i;
+    const auto number = static_cast<float>(i);
+    log.message(20, raws<uint64_t, uint8_t, float, float, float>(t, 0, 0.1F, 0.2F, 0.3F) +
+                        raws<float, float, float>(0.0F, 0.0F, -9.8F));
+    if (i % 4 == 0) log.message(23, raws<uint64_t, uint8_t, float>(t, 0, 100.0F + number));
+    for (uint8_t motor = 0; i % 2 == 0 && motor < 3; ++motor)
+      log.message(24, raws<uint64_t, uint8_t, float, float>(t, motor, 900.0F,
+                                                            motor == 2 ? 0.0F : number + 0.25F * motor));
+  }
+  return log.bytes();
+}
+
+TEST_F(AutopilotLogTest, TakesTheCurrentsOfBatteryAndMotors) {
+  LogSource source(write("log.BIN", ardupilotCurrents()), &diagnostics_);
+  ASSERT_TRUE(source.rig().currents);
+  EXPECT_THAT(source.rig().currents->channels, ElementsAre("battery_0", "esc_0", "esc_1"));
+  EXPECT_NEAR(source.rig().currents->rate_hz, 50.0, 0.1);
+  // The second motor has no reading yet when the first reports for the first time.
+  const std::optional<CurrentSample> first = source.nextCurrents(), second = source.nextCurrents();
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->time.nanoseconds(), 2'020'000'000);
+  EXPECT_THAT(first->currents_A, ElementsAre(100.0, 2.0, 0.25));
+  EXPECT_THAT(second->currents_A, ElementsAre(104.0, 4.0, 2.25));
+  EXPECT_TRUE(source.nextImu());
+}
+
+TEST_F(AutopilotLogTest, TakesTheCurrentsOfPx4sMotors) {
+  test::ULogBytes log;
+  log.flags(0)
+      .format("sensor_combined:uint64_t timestamp;float[3] gyro_rad;float[3] accelerometer_m_s2;")
+      .format("esc_report:uint64_t timestamp;float esc_voltage;float esc_current;")
+      .format("esc_status:uint64_t timestamp;uint8_t esc_count;uint8_t[7] _padding0;esc_report[8] esc;")
+      .subscribe(0, "sensor_combined")
+      .subscribe(1, "esc_status");
+  for (uint64_t i = 0; i < 100; ++i) {
+    const uint64_t t = 1'000'000 + 10'000 * i;
+    log.data(
+        0, raws<uint64_t, float, float, float>(t, 0.1F, 0.2F, 0.3F) + raws<float, float, float>(0, 0, -9.8F));
+    std::string status = raws<uint64_t, uint8_t>(t, 2) + std::string(7, '\0');
+    for (int motor = 0; motor < 8; ++motor)
+      status += raws<uint64_t, float, float>(t, 16.0F, motor < 2 ? 1.5F + static_cast<float>(motor) : 0.0F);
+    log.data(1, status);
+  }
+  LogSource source(write("log.ulg", log.bytes()), &diagnostics_);
+  ASSERT_TRUE(source.rig().currents);
+  EXPECT_THAT(source.rig().currents->channels, ElementsAre("esc_0", "esc_1"));
+  EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(1.5, 2.5));
 }
 
 TEST_F(AutopilotLogTest, TakesTheTimeOfTheAccelerometer) {

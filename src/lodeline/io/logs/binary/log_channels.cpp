@@ -19,8 +19,12 @@ struct Rule {
   const char* topic;
   std::array<const char*, 3> fields;  ///< the first alone for a scalar
   const char* unit;
+  const char* group = nullptr;  ///< of a channel of currents
+  int member = -1;              ///< number of the channel; by default, that of the instance
 };
 
+constexpr const char* kBattery = "battery";
+constexpr const char* kEsc = "esc";
 constexpr const char* kPascalOrHectopascal = "Pa or hPa";
 constexpr const char* kRelativeTime = "accelerometer_timestamp_relative";
 
@@ -53,9 +57,18 @@ constexpr Rule kRules[] = {
     {LogSensor::Pressure, "vehicle_air_data", {"baro_pressure_pa"}, "Pa"},
     {LogSensor::Pressure, "sensor_baro", {"pressure"}, kPascalOrHectopascal},
     {LogSensor::Pressure, "BARO", {"Press"}, "Pa"},
-    {LogSensor::Current, "battery_status", {"current_a"}, "A"},
-    {LogSensor::Current, "BAT", {"Curr"}, "A"},
-    {LogSensor::Current, "CURR", {"Curr"}, "A"},
+    {LogSensor::Current, "battery_status", {"current_a"}, "A", kBattery},
+    {LogSensor::Current, "BAT", {"Curr"}, "A", kBattery},
+    {LogSensor::Current, "CURR", {"Curr"}, "A", kBattery},
+    {LogSensor::Current, "ESC", {"Curr"}, "A", kEsc},
+    {LogSensor::Current, "esc_status", {"esc[0].esc_current"}, "A", kEsc, 0},
+    {LogSensor::Current, "esc_status", {"esc[1].esc_current"}, "A", kEsc, 1},
+    {LogSensor::Current, "esc_status", {"esc[2].esc_current"}, "A", kEsc, 2},
+    {LogSensor::Current, "esc_status", {"esc[3].esc_current"}, "A", kEsc, 3},
+    {LogSensor::Current, "esc_status", {"esc[4].esc_current"}, "A", kEsc, 4},
+    {LogSensor::Current, "esc_status", {"esc[5].esc_current"}, "A", kEsc, 5},
+    {LogSensor::Current, "esc_status", {"esc[6].esc_current"}, "A", kEsc, 6},
+    {LogSensor::Current, "esc_status", {"esc[7].esc_current"}, "A", kEsc, 7},
 };
 
 /// A topic with one instance of a sensor, and what was seen of it.
@@ -68,7 +81,9 @@ struct Seen {
   size_t messages = 0;
   std::string unit;  ///< stated by the log; empty where there is none
   bool has_relative_time = false;
+  bool has_current = false;  ///< other than 0
 };
+using Sources = std::map<Source, Seen>;
 
 bool hasFields(const LogFormat& format, const Rule& rule) {
   return std::all_of(rule.fields.begin(), rule.fields.end(),
@@ -99,6 +114,8 @@ LogChannel channelOf(const Source& source, const Seen& seen, const std::string& 
   channel.instance = source.instance;
   channel.messages = seen.messages;
   channel.has_relative_time = seen.has_relative_time;
+  if (rule.group != nullptr)
+    channel.name = fmt::format("{}_{}", rule.group, rule.member < 0 ? source.instance : rule.member);
   for (const char* field : rule.fields) {
     if (field != nullptr) channel.fields.emplace_back(field);
   }
@@ -119,29 +136,65 @@ const char* toString(LogSensor sensor) {
   return kNames[static_cast<size_t>(sensor)];
 }
 
-std::vector<LogChannel> selectChannels(MessageLog* log, const std::string& file) {
-  std::map<Source, Seen> sources;
+namespace {
+
+Sources sourcesOf(MessageLog* log) {
+  Sources sources;
   for (LogMessage message; log->next(&message);) {
     for (size_t rank = 0; rank < std::size(kRules); ++rank) {
-      if (message.format->topic != kRules[rank].topic || !hasFields(*message.format, kRules[rank])) continue;
+      const Rule& rule = kRules[rank];
+      if (message.format->topic != rule.topic || !hasFields(*message.format, rule)) continue;
+      const LogField& field = *message.format->field(rule.fields[0]);
       Seen& seen = sources[{rank, message.instance}];
+      if (rule.group != nullptr && !seen.has_current)
+        seen.has_current = message.value(field).value_or(0.0) != 0.0;
       if (seen.messages++ > 0) continue;
-      seen.unit = message.format->field(kRules[rank].fields[0])->unit;
+      seen.unit = field.unit;
       seen.has_relative_time = message.format->field(kRelativeTime) != nullptr;
     }
   }
+  return sources;
+}
+
+/// The first source of a kind that has at least half of the messages of the most frequent one.
+template <typename IsWanted>
+Sources::const_iterator chosenOf(const Sources& sources, const IsWanted& is_wanted) {
+  size_t most = 0;
+  for (const auto& entry : sources) {
+    if (is_wanted(entry)) most = std::max(most, entry.second.messages);
+  }
+  return std::find_if(sources.begin(), sources.end(), [&](const auto& entry) {
+    return is_wanted(entry) && 2 * entry.second.messages >= most;
+  });
+}
+
+/// Adds all channels of the topic that is chosen for a group of currents.
+void addCurrents(const Sources& sources, const std::string& group, const std::string& file,
+                 std::vector<LogChannel>* channels) {
+  const auto isOfGroup = [&](const auto& entry) {
+    const Rule& rule = kRules[entry.first.rank];
+    return rule.group != nullptr && rule.group == group && entry.second.has_current;
+  };
+  const auto chosen = chosenOf(sources, isOfGroup);
+  if (chosen == sources.end()) return;
+  const std::string topic = kRules[chosen->first.rank].topic;
+  for (const auto& entry : sources) {
+    if (isOfGroup(entry) && kRules[entry.first.rank].topic == topic)
+      channels->push_back(channelOf(entry.first, entry.second, file));
+  }
+}
+
+}  // namespace
+
+std::vector<LogChannel> selectChannels(MessageLog* log, const std::string& file) {
+  const Sources sources = sourcesOf(log);
   std::vector<LogChannel> channels;
   for (size_t sensor = 0; sensor < kLogSensors; ++sensor) {
     const auto isOfSensor = [&](const auto& entry) {
       return kRules[entry.first.rank].sensor == static_cast<LogSensor>(sensor);
     };
-    size_t most = 0;
-    for (const auto& entry : sources) {
-      if (isOfSensor(entry)) most = std::max(most, entry.second.messages);
-    }
-    const auto chosen = std::find_if(sources.begin(), sources.end(), [&](const auto& entry) {
-      return isOfSensor(entry) && 2 * entry.second.messages >= most;
-    });
+    if (static_cast<LogSensor>(sensor) == LogSensor::Current) continue;
+    const auto chosen = chosenOf(sources, isOfSensor);
     if (chosen == sources.end()) continue;
     channels.push_back(channelOf(chosen->first, chosen->second, file));
     for (const auto& entry : sources) {
@@ -150,6 +203,7 @@ std::vector<LogChannel> selectChannels(MessageLog* log, const std::string& file)
                                                    entry.first.instance, entry.second.messages));
     }
   }
+  for (const char* group : {kBattery, kEsc}) addCurrents(sources, group, file, &channels);
   return channels;
 }
 

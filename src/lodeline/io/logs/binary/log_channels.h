@@ -18,6 +18,7 @@ const char* toString(LogSensor sensor);
 /// The topic and fields from which the readings of one sensor are taken.
 struct LogChannel {
   LogSensor sensor = LogSensor::Gyroscope;
+  std::string name;  ///< of a channel of currents: battery_0, esc_3
   std::string topic;
   int instance = 0;
   size_t messages = 0;
@@ -32,8 +33,9 @@ struct LogChannel {
 
 /// Selects the topics of a log that hold the sensors, by one pass over it. Topics and fields are those of PX4
 /// and ArduPilot. Among several topics of a sensor, the first of the table wins that has at least half of the
-/// messages of the most frequent one; among several instances the lowest such one. The unit that the log
-/// states has priority over the documented one. Throws InputError, with `file`, where a stated unit is not
+/// messages of the most frequent one; among several instances the lowest such one. Of
+/// currents, all instances are channels that have a reading other than 0. The unit that the log states has
+/// priority over the documented one. Throws InputError, with `file`, where a stated unit is not
 /// known.
 std::vector<LogChannel> selectChannels(MessageLog* log, const std::string& file);
 

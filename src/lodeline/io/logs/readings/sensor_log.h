@@ -1,15 +1,23 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "lodeline/io/csv/plain_csv.h"
 
 namespace lodeline {
 
+/// Current of one channel of a log.
+struct LogCurrent {
+  size_t channel = 0;  ///< in LogSensors::current_channels
+  double current_A = 0.0;
+};
+
 /// Readings of a log with one stamp, in SI units. Sensors without a reading at that time are empty.
 struct LogReading : PlainReading {
   std::optional<double> pressure_Pa;  ///< of a barometer or a water pressure sensor, absolute
-  std::optional<double> current_A;    ///< of the battery, positive while it supplies
+  std::vector<LogCurrent> currents;   ///< of batteries, positive while they supply, and of motors
 };
 
 /// Sensors of a log, and what is known of them.
@@ -20,7 +28,9 @@ struct LogSensors {
   bool has_times = true;  ///< false: the stamps only number the readings, 10 ms apart
   /// Whether the unit of the field is known. Otherwise the readings have the numbers of the file.
   bool states_field_unit = false;
-  bool has_relative_field = false;  ///< see PlainCsv::hasRelativeField()
+  bool has_relative_field = false;            ///< see PlainCsv::hasRelativeField()
+  std::vector<std::string> current_channels;  ///< names: battery_0, …, esc_0, …
+  size_t fastest_current = 0;                 ///< the channel with the most readings
 };
 
 /// A log of inertial, magnetic and other readings, read once from its beginning to its end.

@@ -13,35 +13,49 @@ namespace lodeline {
 namespace {
 
 using definitions::DefinitionError;
+using definitions::MessageForm;
 using definitions::Serialization;
-using definitions::TypeDescription;
 
-/// The definition in the bag; where it has none or a damaged one, the built-in one.
-TypeDescription describe(const BagConnection& connection, Serialization serialization) {
+/// The form of the messages, by the definition in the bag; where it has none or a damaged one, by the
+/// built-in one.
+MessageForm describe(const BagConnection& connection, Serialization serialization) {
   const bool is_known = definitions::knownFields(connection.type, serialization).has_value();
   if (connection.definition.empty() && !is_known) {
     throw DefinitionError(fmt::format("the bag has no definition of {}", connection.type));
   }
+  const auto builtIn = [&] {
+    return MessageForm{definitions::parseDefinition(connection.type, "", serialization), serialization, false,
+                       definitions::hasVersions(connection.type)};
+  };
   try {
-    return definitions::parseDefinition(connection.type, connection.definition, serialization);
+    if (connection.definition.empty()) return builtIn();
+    return {definitions::parseDefinition(connection.type, connection.definition, serialization),
+            serialization};
   } catch (const DefinitionError& error) {
-    if (is_known) return definitions::parseDefinition(connection.type, "", serialization);
+    if (is_known) return builtIn();
     throw DefinitionError(fmt::format("the definition of {} in the bag {}", connection.type, error.what()));
   }
 }
 
-/// Finds how to convert the messages of a ROS 2 topic.
+/// Whether readers take the messages as they are stored: those of ROS 1, except where the definition in the
+/// bag is another version of the one that Lodeline knows.
+bool isReadAsStored(const BagConnection& connection) {
+  if (*connection.serialization != Serialization::Ros1 || connection.md5sum.empty()) return false;
+  return !definitions::hasVersions(connection.type) || connection.definition.empty() ||
+         connection.md5sum == definitions::ros1Checksum(connection.type);
+}
+
+/// Finds how to convert the messages of a topic to the form that readers know.
 void settleConversion(BagTopic* topic) {
   BagConnection& connection = topic->connection;
-  if (!connection.serialization) return;
-  if (*connection.serialization == Serialization::Ros1 && !connection.md5sum.empty()) return;
+  if (!connection.serialization || isReadAsStored(connection)) return;
   try {
-    TypeDescription type = describe(connection, *connection.serialization);
+    MessageForm form = describe(connection, *connection.serialization);
     const std::string_view checksum = definitions::ros1Checksum(connection.type);
     if (checksum.empty()) return;
     topic->to_ros1 = std::make_shared<const definitions::MessageConversion>(
-        definitions::MessageForm{std::move(type), *connection.serialization},
-        definitions::knownForm(connection.type, Serialization::Ros1));
+        std::move(form), definitions::knownForm(connection.type, Serialization::Ros1));
+    if (!connection.md5sum.empty()) connection.other_md5sum = connection.md5sum;
     connection.md5sum = checksum;
   } catch (const DefinitionError& error) {
     connection.problem = error.what();
@@ -97,7 +111,7 @@ MessageLister::MessageLister(const BagTopic& topic, size_t most_elements)
   if (!problem_.empty() || !topic.connection.serialization) return;
   serialization_ = *topic.connection.serialization;
   try {
-    type_ = describe(topic.connection, serialization_);
+    type_ = describe(topic.connection, serialization_).type;
   } catch (const DefinitionError& error) {
     problem_ = error.what();
   }

@@ -30,6 +30,8 @@ struct BagConnection {
   std::string definition;  ///< in the bag; empty where it has none
   /// How the messages are stored; nothing for an encoding that Lodeline does not read.
   std::optional<definitions::Serialization> serialization = definitions::Serialization::Ros1;
+  /// ROS 1's checksum in the bag, where it is not md5sum: of another version of the definition.
+  std::string other_md5sum = {};
   std::string problem = {};  ///< reason why the messages cannot be decoded; empty where they can
 };
 

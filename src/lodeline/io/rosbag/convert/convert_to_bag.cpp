@@ -13,8 +13,11 @@
 #include "lodeline/io/rosbag/convert/bag_writer.h"
 #include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/io/rosbag/convert/rig_conversion.h"
+#include "lodeline/io/rosbag/definitions/message_fields.h"
 #include "lodeline/io/rosbag/image_messages.h"
 #include "lodeline/io/rosbag/messages.h"
+#include "lodeline/io/rosbag/robots/current_messages.h"
+#include "lodeline/io/rosbag/robots/dvl_messages.h"
 
 namespace lodeline {
 namespace {
@@ -73,6 +76,9 @@ class RecordingConversion {
     streams.push_back([this] { return magnetometer(); });
     streams.push_back([this] { return depth(); });
     streams.push_back([this] { return sonar(); });
+    streams.push_back([this] { return altimeter(); });
+    streams.push_back([this] { return dvl(); });
+    streams.push_back([this] { return currents(); });
     std::optional<CsvReader> truth_reader;
     if (std::filesystem::exists(truth)) {
       truth_reader.emplace(truth, CsvContent::TruePose, diagnostics_);
@@ -148,6 +154,50 @@ class RecordingConversion {
                       }
                       write("sonar0", "/sonar0", messages::kLaserScan, sample->time, std::move(message));
                     }};
+  }
+
+  std::optional<Outgoing> altimeter() {
+    const std::optional<AltimeterSample> sample = source_.nextAltimeter();
+    if (!sample) return std::nullopt;
+    return Outgoing{sample->time, [this, sample] {
+                      wire::Bytes message = messages::altimeterRange(*sample, sequence("altimeter0"));
+                      const std::vector<AltimeterSample> kept = messages::parseAltimeter(message);
+                      if (!kept.empty())
+                        reportRounded("altimeter range", sample->time, sample->range_m, kept.front().range_m);
+                      write("altimeter0", "/altimeter0", messages::kRange, sample->time, std::move(message));
+                    }};
+  }
+
+  std::optional<Outgoing> dvl() {
+    const std::optional<DvlSample> sample = source_.nextDvl();
+    if (!sample) return std::nullopt;
+    return Outgoing{sample->time, [this, sample] {
+                      for (const DvlBeam& beam : sample->beams) reportBeam(*sample, beam);
+                      write("dvl0", "/dvl0", messages::kMarineDvl, sample->time,
+                            messages::marineDvl(*sample, source_.rig().dvl->beams_D, sequence("dvl0")));
+                    }};
+  }
+
+  /// Reports what the message does not hold of a beam.
+  void reportBeam(const DvlSample& sample, const DvlBeam& beam) {
+    if (static_cast<size_t>(beam.index) >= messages::kMarineBeams) {
+      diagnostics_->report(Severity::Warning, "convert_left_out",
+                           fmt::format("dvl0: beam {} at {} ns is left out: the message has {} beams",
+                                       beam.index, sample.time.nanoseconds(), messages::kMarineBeams));
+    } else if (beam.velocity_m_per_s) {
+      reportRounded("velocity of a beam", sample.time, *beam.velocity_m_per_s,
+                    messages::decimal(static_cast<float>(*beam.velocity_m_per_s)));
+    }
+  }
+
+  std::optional<Outgoing> currents() {
+    const std::optional<CurrentSample> sample = source_.nextCurrents();
+    if (!sample) return std::nullopt;
+    return Outgoing{
+        sample->time, [this, sample] {
+          write("current0", "/current0", messages::kJointState, sample->time,
+                messages::jointCurrents(*sample, source_.rig().currents->channels, sequence("current0")));
+        }};
   }
 
   std::optional<Outgoing> image(size_t camera) {

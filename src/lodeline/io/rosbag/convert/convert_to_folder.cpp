@@ -1,11 +1,14 @@
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <unordered_map>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/euroc/current_table.h"
 #include "lodeline/io/images/image_loader.h"
+#include "lodeline/io/robots/dvl_text.h"
 #include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/io/rosbag/checked_reading.h"
 #include "lodeline/io/rosbag/convert/convert.h"
@@ -56,6 +59,14 @@ class FolderWriter {
     writeReadings(
         "sonar0", kSonarColumns, [&] { return source_->nextSonar(); },
         [](const SonarSample& s) { return fmt::format("{},{}", s.range_m, s.angle_rad); });
+    writeReadings(
+        "altimeter0", kAltimeterColumns, [&] { return source_->nextAltimeter(); },
+        [](const AltimeterSample& s) { return fmt::format("{}", s.range_m); });
+    writeDvl();
+    const std::vector<std::string> channels = rig.currents.value_or(CurrentCalibration()).channels;
+    writeReadings(
+        "current0", currentHeader(channels).c_str(), [&] { return source_->nextCurrents(); },
+        [](const CurrentSample& s) { return fmt::format("{}", fmt::join(s.currents_A, ",")); });
     return std::move(summary_);
   }
 
@@ -74,6 +85,19 @@ class FolderWriter {
       file.write(fmt::format("{},{}\n", reading->time.nanoseconds(), text(*reading)));
       ++summary_.readings[name];
     }
+    file.close();
+  }
+
+  /// All pings are read first, because they decide which columns the table has.
+  void writeDvl() {
+    std::vector<DvlSample> pings;
+    while (std::optional<DvlSample> ping = source_->nextDvl()) pings.push_back(std::move(*ping));
+    if (pings.empty()) return;
+    const DvlText text(pings);
+    RecordingFile file(sensor("dvl0") / "data.csv");
+    file.write(text.header());
+    for (const DvlSample& ping : pings) file.write(text.rows(ping));
+    summary_.readings["dvl0"] = static_cast<int>(pings.size());
     file.close();
   }
 

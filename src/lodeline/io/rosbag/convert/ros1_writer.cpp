@@ -161,7 +161,9 @@ bool Ros1Writer::takesStored(const BagConnection& connection) const {
 }
 
 void Ros1Writer::writeStored(const BagConnection& connection, Time received, wire::Bytes message) {
-  implementation_->take({connection.type, connection.md5sum, connection.definition});
+  const bool is_other = !connection.other_md5sum.empty();
+  implementation_->take(
+      {connection.type, is_other ? connection.other_md5sum : connection.md5sum, connection.definition});
   write(connection.topic, connection.type, received, std::move(message));
 }
 

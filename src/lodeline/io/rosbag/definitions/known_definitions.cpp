@@ -16,7 +16,19 @@ struct Known {
   std::string_view fields;
   std::string_view ros1_fields = {};  ///< where they differ
   std::string_view ros1_checksum = {};
+  bool has_versions = false;  ///< whether definitions of other versions are in use
 };
+
+// Definitions of DVLs that two packages share.
+constexpr std::string_view kA50Beam =
+    "int64 id\nfloat64 velocity\nfloat64 distance\nfloat64 rssi\nfloat64 nsd\nbool valid\n";
+constexpr std::string_view kSimulatedBeam =
+    "float64 range\nfloat64 range_covariance\nfloat64 velocity\nfloat64 velocity_covariance\n"
+    "geometry_msgs/PoseStamped pose\n";
+constexpr std::string_view kSimulatedDvl =
+    "std_msgs/Header header\ngeometry_msgs/Vector3 velocity\nfloat64[9] velocity_covariance\n"
+    "float64 altitude\nDVLBeam[] beams\n";
+constexpr std::string_view kSimulatedDvlChecksum = "02bba6182b6f271447d7f88473256572";
 
 constexpr std::array kKnown = {
     Known{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
@@ -43,8 +55,14 @@ constexpr std::array kKnown = {
           "d3812c3cbc69362b77dc0b19b345f8f5"},
     Known{"geometry_msgs/PointStamped", "std_msgs/Header header\nPoint point\n"},
     Known{"geometry_msgs/PoseWithCovarianceStamped", "std_msgs/Header header\nPoseWithCovariance pose\n"},
-    Known{"geometry_msgs/TwistStamped", "std_msgs/Header header\nTwist twist\n"},
-    Known{"geometry_msgs/TwistWithCovarianceStamped", "std_msgs/Header header\nTwistWithCovariance twist\n"},
+    Known{"geometry_msgs/TwistStamped",
+          "std_msgs/Header header\nTwist twist\n",
+          {},
+          "98d34b0043a2093cf9d9345ab6eef12e"},
+    Known{"geometry_msgs/TwistWithCovarianceStamped",
+          "std_msgs/Header header\nTwistWithCovariance twist\n",
+          {},
+          "8927a1a12fb2607ceea095b2dc440a96"},
     Known{"geometry_msgs/Vector3Stamped",
           "std_msgs/Header header\nVector3 vector\n",
           {},
@@ -118,10 +136,46 @@ constexpr std::array kKnown = {
           "float32 capacity\nfloat32 design_capacity\nfloat32 percentage\nuint8 power_supply_status\n"
           "uint8 power_supply_health\nuint8 power_supply_technology\nbool present\n"
           "float32[] cell_voltage\nfloat32[] cell_temperature\nstring location\nstring serial_number\n",
-          "std_msgs/Header header\nfloat32 voltage\nfloat32 current\nfloat32 charge\nfloat32 capacity\n"
-          "float32 design_capacity\nfloat32 percentage\nuint8 power_supply_status\n"
-          "uint8 power_supply_health\nuint8 power_supply_technology\nbool present\n"
-          "float32[] cell_voltage\nstring location\nstring serial_number\n"},
+          {},
+          "4ddae7f048e32fda22cac764685e3974",
+          true},  // ROS 1 before Noetic has no temperatures
+    Known{"sensor_msgs/JointState",
+          "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n",
+          {},
+          "3066dcd76a6cfaef579bd0f34173e9fd"},
+    // github.com/apl-ocean-engineering/marine_msgs
+    Known{"marine_acoustic_msgs/Dvl",
+          "std_msgs/Header header\nuint8 velocity_mode\nuint8 dvl_type\ngeometry_msgs/Vector3 velocity\n"
+          "float64[9] velocity_covar\nfloat64 altitude\nfloat64 course_gnd\nfloat64 speed_gnd\n"
+          "uint8 num_good_beams\nfloat32 sound_speed\nbool beam_ranges_valid\nbool beam_velocities_valid\n"
+          "geometry_msgs/Vector3[4] beam_unit_vec\nfloat64[4] range\nfloat32[4] range_covar\n"
+          "float32[4] beam_quality\nfloat32[4] beam_velocity\nfloat32[4] beam_velocity_covar\n",
+          {},
+          "f09bbfba6f467f84523073fb27d38e3e",
+          true},
+    // github.com/waterlinked/dvl-a50-ros-driver
+    Known{"waterlinked_a50_ros_driver/DVLBeam", kA50Beam},
+    Known{"waterlinked_a50_ros_driver/DVL",
+          "std_msgs/Header header\nfloat64 time\ngeometry_msgs/Vector3 velocity\nfloat64 fom\nfloat64 "
+          "altitude\n"
+          "DVLBeam[] beams\nbool velocity_valid\nint64 status\nstring form\n",
+          {},
+          "dea1debc1aca7804a62c507714ec3777",
+          true},
+    // github.com/paagutie/dvl_msgs, for the driver dvl-a50 of ROS 2
+    Known{"dvl_msgs/DVLBeam", kA50Beam},
+    Known{"dvl_msgs/DVL",
+          "std_msgs/Header header\nfloat64 time\ngeometry_msgs/Vector3 velocity\nfloat64 fom\n"
+          "float64[] covariance\nfloat64 altitude\nDVLBeam[] beams\nbool velocity_valid\nint64 status\n"
+          "int64 time_of_validity\nint64 time_of_transmission\nstring form\n",
+          {},
+          "c82a2ba376dad0651b1400be6c9227aa",
+          true},
+    // github.com/uuvsimulator/uuv_simulator, and COLA2 after it
+    Known{"uuv_sensor_ros_plugins_msgs/DVLBeam", kSimulatedBeam},
+    Known{"uuv_sensor_ros_plugins_msgs/DVL", kSimulatedDvl, {}, kSimulatedDvlChecksum, true},
+    Known{"cola2_msgs/DVLBeam", kSimulatedBeam},
+    Known{"cola2_msgs/DVL", kSimulatedDvl, {}, kSimulatedDvlChecksum, true},
     Known{"service_msgs/ServiceEventInfo",
           "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number\n"},
     Known{"rcl_interfaces/Log",
@@ -155,6 +209,11 @@ std::optional<std::string_view> knownFields(std::string_view type, Serialization
 std::string_view ros1Checksum(std::string_view type) {
   const Known* known = find(type);
   return known == nullptr ? std::string_view() : known->ros1_checksum;
+}
+
+bool hasVersions(std::string_view type) {
+  const Known* known = find(type);
+  return known != nullptr && known->has_versions;
 }
 
 std::string fullDefinition(const std::string& type, Serialization serialization) {

@@ -15,6 +15,10 @@ std::optional<std::string_view> knownFields(std::string_view type, Serialization
 /// Checksum of a type in ROS 1 that Lodeline reads; empty for other types.
 std::string_view ros1Checksum(std::string_view type);
 
+/// Whether definitions of other versions of a known type are in use: messages are then read by the definition
+/// in the bag, and fields that it does not have are 0.
+bool hasVersions(std::string_view type);
+
 /// A complete definition with the types of all fields, as bags contain it. Throws std::logic_error for an
 /// unknown type.
 std::string fullDefinition(const std::string& type, Serialization serialization);

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "lodeline/io/rosbag/definitions/definition_parser.h"
+#include "lodeline/io/rosbag/definitions/known_definitions.h"
 
 namespace lodeline::definitions {
 namespace {
@@ -41,14 +42,15 @@ size_t MessageConversion::makePlan(size_t from, size_t to, const std::string& pa
     const auto source = std::find_if(old_message.fields.begin(), old_message.fields.end(),
                                      [&](const Field& other) { return isSameName(other.name, field.name); });
     plan.inner.push_back(0);
-    if (source == old_message.fields.end()) {
-      if (!isSequenceNumber(new_message.name, field)) {
+    const bool is_same = source != old_message.fields.end() && isSameShape(*source, field);
+    if (source == old_message.fields.end() || (!is_same && to_.may_be_filled)) {
+      if (!isSequenceNumber(new_message.name, field) && !to_.may_be_filled) {
         throw DefinitionError(fmt::format("has no field {}{}", path, field.name));
       }
       plan.sources.emplace_back();
       continue;
     }
-    if (!isSameShape(*source, field)) {
+    if (!is_same) {
       throw DefinitionError(fmt::format("has another kind of field {}{}", path, field.name));
     }
     const auto place = static_cast<size_t>(source - old_message.fields.begin());
@@ -67,6 +69,14 @@ wire::Bytes MessageConversion::convert(std::span<const uint8_t> message) const {
   FieldReader reader(message, from_.serialization);
   FieldWriter writer(to_.serialization, message.size() + 16);
   run(plans_[root_], &reader, &writer);
+  constexpr size_t kPadding = 8;  // that a serializer may add at the end
+  if (from_.must_fit && reader.remaining() >= kPadding) {
+    throw DefinitionError(
+        fmt::format("is {} bytes longer than the built-in definition of its type, so it is of another "
+                    "version; record with "
+                    "definitions (MCAP, or ROS 2 from Iron on)",
+                    reader.remaining()));
+  }
   return writer.take();
 }
 
@@ -116,7 +126,10 @@ void MessageConversion::copy(const Field& from, const Field& to, size_t inner, F
 }
 
 MessageForm knownForm(const std::string& type, Serialization serialization) {
-  return {parseDefinition(type, "", serialization), serialization};
+  const bool has_versions = hasVersions(type);
+  return {parseDefinition(type, "", serialization), serialization,
+          has_versions && serialization == Serialization::Ros1,
+          has_versions && serialization == Serialization::Cdr};
 }
 
 }  // namespace lodeline::definitions

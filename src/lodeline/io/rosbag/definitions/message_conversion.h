@@ -16,11 +16,17 @@ namespace lodeline::definitions {
 struct MessageForm {
   TypeDescription type;
   Serialization serialization = Serialization::Ros1;
+  /// Whether the other form of the type may lack fields, or have them as another kind; they become 0.
+  bool may_be_filled = false;
+  /// Whether messages must end with their last field: true where the definition may be that of another
+  /// version.
+  bool must_fit = false;
 };
 
 /// Converts messages between two forms of a type, field by field, by the names of the fields (capital letters
 /// do not matter: CameraInfo has K in ROS 1 and k in ROS 2). Fields that only the old form has are dropped.
-/// The sequence number of a header, which ROS 2 does not have, becomes 0.
+/// The sequence number of a header, which ROS 2 does not have, becomes 0; so do all fields that the old form
+/// lacks where the new form may be filled.
 class MessageConversion {
  public:
   /// Throws DefinitionError where the old form lacks another field of the new form, or has it as another kind
@@ -48,7 +54,8 @@ class MessageConversion {
   size_t root_ = 0;
 };
 
-/// Form of a common type with Lodeline's built-in definition. Throws DefinitionError for an unknown type.
+/// Form of a common type with Lodeline's built-in definition. Messages of a type with versions may be filled
+/// in ROS 1's form and must fit as CDR. Throws DefinitionError for an unknown type.
 MessageForm knownForm(const std::string& type, Serialization serialization);
 
 }  // namespace lodeline::definitions
