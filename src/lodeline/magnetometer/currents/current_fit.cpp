@@ -170,8 +170,19 @@ void leaveOutUnexcited(const StillTest& test, TestFit* problem, CurrentFit* fit)
   problem->use(std::move(excited));
 }
 
-/// Says which channels run together so much that only the sum of their fields is known.
+/// Sigma, uT, of the sum of all fields where the channel has its largest current in the test.
+double sigmaAtLargest_uT(const CurrentFit& fit, Eigen::Index channel) {
+  Eigen::Index row = 0;
+  fit.currents_A.col(channel).cwiseAbs().maxCoeff(&row);
+  const Eigen::VectorXd currents_A = fit.currents_A.row(row).transpose();
+  return 1e6 * std::sqrt(std::max(0.0, currents_A.dot(fit.covariance * currents_A)));
+}
+
+/// Says which channels run together so much that only the sum of their fields is known. A channel that is the
+/// sum of others, such as a battery, is no fault: the sum of all fields is known where each of them runs
+/// alone.
 void judgeCollinear(const TestFit& problem, const Eigen::MatrixXd& information, CurrentFit* fit) {
+  constexpr double kTogether = 0.9;
   const std::vector<Eigen::Index>& used = problem.used();
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * information * scale.asDiagonal();
@@ -183,10 +194,10 @@ void judgeCollinear(const TestFit& problem, const Eigen::MatrixXd& information, 
     others[static_cast<Eigen::Index>(i)] = -1.0;
     Eigen::Index partner = 0;
     const double most = others.maxCoeff(&partner);
+    if (most < kTogether && sigmaAtLargest_uT(*fit, used[i]) <= kGreatestFieldSigma_uT) continue;
     channel.objection = fmt::format(
         "it runs together with {} (correlation {:.3f}): known to {:.2f} uT/A only, their sum better; ramp "
-        "each "
-        "alone",
+        "each alone",
         fit->channels[static_cast<size_t>(used[static_cast<size_t>(partner)])].name, most,
         1e6 * channel.sigma_T_per_A);
   }

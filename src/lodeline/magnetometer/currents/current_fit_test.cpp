@@ -107,6 +107,17 @@ TEST(CurrentFit, NamesChannelsThatRunTogether) {
   EXPECT_LT(fit.correlated_rms_rad, 0.1 * kDegree);
 }
 
+TEST(CurrentFit, AcceptsABatteryThatCarriesTheSum) {
+  StillTestOptions options;
+  options.battery = true;
+  options.noise_T = 0.8e-6;  // of a consumer sensor
+  const CurrentFit fit = fitOf(options);
+  EXPECT_TRUE(fit.isComplete()) << fit.verdict;
+  EXPECT_GT(fit.channels[3].sigma_T_per_A * fit.channels[3].largest_A, 0.2e-6) << "known alone too?";
+  const Vec3 sum = options.fields_T_per_A[0] + options.fields_T_per_A[3];
+  EXPECT_LT((fit.channels[0].field_T_per_A + fit.channels[3].field_T_per_A - sum).norm(), 0.02e-6);
+}
+
 TEST(CurrentFit, TakesOutASmallMotionAndRefusesALargeOne) {
   StillTestOptions options;
   options.sway_rad = 1.0 * kDegree;

@@ -25,16 +25,24 @@ struct StillTestOptions {
   double sway_rad = 0.0;     ///< about a horizontal and the vertical axis
   double spike_share = 0.0;  ///< of readings, off by 20 uT
   bool together = false;     ///< the first two channels run as one
+  bool battery = false;      ///< the last channel is the sum of all, with its own ramp
   bool with_imu = true;
 };
 
-/// Current of a channel at a time, A.
-inline double rampCurrent_A(const StillTestOptions& options, size_t channel, double time_s) {
+/// Current of a channel at a time, A, without those that a battery carries for others.
+inline double ownCurrent_A(const StillTestOptions& options, size_t channel, double time_s) {
   const size_t turn = options.together && channel == 1 ? 0 : channel;
   const double cycle_s = options.ramp_s * static_cast<double>(options.largest_A.size());
   const double at = std::fmod(time_s - 2.0, cycle_s) / options.ramp_s - static_cast<double>(turn);
   if (time_s < 2.0 || at < 0.0 || at > 0.9) return 0.0;
   return options.largest_A[channel] * std::clamp(3.0 * std::min(at, 0.9 - at), 0.0, 1.0);
+}
+
+inline double rampCurrent_A(const StillTestOptions& options, size_t channel, double time_s) {
+  double current_A = ownCurrent_A(options, channel, time_s);
+  if (!options.battery || channel + 1 < options.largest_A.size()) return current_A;
+  for (size_t i = 0; i < channel; ++i) current_A += ownCurrent_A(options, i, time_s);
+  return current_A;
 }
 
 /// A vehicle that is held while each thruster runs up and down, twice.
