@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "apps/lodeline/calibrate_cameras_command.h"
+#include "apps/lodeline/calibrate_currents_command.h"
 #include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
@@ -30,11 +31,14 @@ ROS bag (--rig may be missing; the noise of a usual IMU is assumed then), a log 
 a folder or zip of a telephone's CSV files, a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`,
 or rows of t, mx, my, mz or mx, my, mz without one.
 How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
-while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure.
+while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure,
+docs/how-to/compensate-currents.md the test for --currents.
 Examples:
   lodeline calibrate magnetometer dive1 -o mag.yaml --to 90 --site 29.83,-82.60,20 --date 2026-11-21
   lodeline calibrate magnetometer cloud.txt --unit mG -o mag.yaml --plots plots
   lodeline calibrate magnetometer after.yaml --compare before.yaml
+  lodeline calibrate magnetometer still_test --currents -o currents.yaml --old mag.yaml
+  lodeline calibrate magnetometer still_test_2 --currents --check currents.yaml
 Ends with 3, and writes nothing, where the readings cannot calibrate the magnetometer.)";
 
 struct CalibrateArguments {
@@ -49,6 +53,8 @@ struct CalibrateArguments {
   std::string compare;
   std::string json;
   std::string plots;
+  bool currents = false;
+  std::string check;
 };
 
 RecordOptions recordOptions(const CalibrateArguments& arguments) {
@@ -84,7 +90,18 @@ bool isCalibrationFile(const std::filesystem::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
 }
 
+void calibrateCurrents(const CalibrateArguments& arguments) {
+  if (!arguments.compare.empty())
+    throw UsageError("--compare is for calibrations of iron; --check compares calibrations of currents");
+  if (!arguments.site.position.empty() || !arguments.site.date.empty())
+    throw UsageError("--site and --date do not belong to --currents, which needs no field of the Earth");
+  calibrateCurrentsFromTest({arguments.data, arguments.bag, recordOptions(arguments), arguments.old,
+                             arguments.check, arguments.output, arguments.json, arguments.plots});
+}
+
 void calibrate(const CalibrateArguments& arguments) {
+  if (arguments.currents) return calibrateCurrents(arguments);
+  if (!arguments.check.empty()) throw UsageError("--check belongs to --currents");
   const std::optional<Vec3> site_field_ENU = arguments.site.field_ENU();
   std::optional<MagnetometerFit> first;
   if (!arguments.compare.empty()) first = readCalibrationFile(arguments.compare);
@@ -145,12 +162,21 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
       "of a file without header: T, uT, nT, mG, G or raw; told by the field's size where not given");
   addRecordingPart(&arguments->part, command);
   addSite(&arguments->site, "the scale by the Earth's field", command);
-  command->add_option("--old", arguments->old,
-                      "calibration to fall back on where the readings say too little");
+  command->add_option(
+      "--old", arguments->old,
+      "calibration to fall back on where the readings say too little; with --currents: that of the "
+      "magnetometer, for its axes and its lag");
   command->add_option("--compare", arguments->compare,
                       "calibration to compare with, e.g. that from before the dive");
   command->add_option("--json", arguments->json, "write all figures to this file");
   command->add_option("--plots", arguments->plots, "folder for pictures of the readings and of the coverage");
+  command->add_flag(
+      "--currents", arguments->currents,
+      "fields of electric currents (thrusters, lamps) from a still test, in which each channel is "
+      "ramped up and down; writes the section current0 of a rig file");
+  command->add_option(
+      "--check", arguments->check,
+      "with --currents: a rig file with an earlier calibration; says whether cables have moved");
   addVerbosity(&arguments->verbosity, command);
   command->footer(kCalibrateFooter);
   command->callback([arguments] { calibrate(*arguments); });

@@ -65,7 +65,8 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
       gate_(options.magnetometer.gate),
       errors_(options.magnetometer, offsetSigma()),
       deviation_(options.magnetometer),
-      step_(options.magnetometer.step) {
+      step_(options.magnetometer.step),
+      currents_(rig, diagnostics) {
   if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
     return;
   if (use_ == MagnetometerUse::Off) {
@@ -91,7 +92,8 @@ void MagnetometerFusion::take(const SensorReadings& readings, std::span<const Im
   const std::span<const FieldSample> samples = recent(fields, imu);
   const Time time = imu.back().time;
   std::erase_if(means_, [&](const auto& entry) { return (time - entry.first).seconds() > kLongestWait_s; });
-  if (!samples.empty()) means_[time] = carryToFrame(samples, imu, gyroscope_bias_B, gyroscope_density_);
+  if (currents_.isOnBoard()) currents_.add(readings.of<CurrentSample>());
+  if (!samples.empty()) keepMean(samples, imu, gyroscope_bias_B);
 }
 
 void MagnetometerFusion::start(double tilt_sigma_rad, Window* window, Prior* prior) {
@@ -132,11 +134,16 @@ void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* wi
         fieldPrior(alignment.field_W, wanted.field_sigma_T, options_.initial_state.yaw_sigma_rad);
   }
   prior->append(offset.value.data(), 3, Vec3::Constant(offsetSigma()));
+  for (ParameterBlock& state : currents_.states()) {
+    ParameterBlock& field_of_current = window->add(std::move(state));
+    prior->append(field_of_current.value.data(), 3, CurrentCompensation::stateSigmas());
+  }
 }
 
-double MagnetometerFusion::whiteVariance(const MagnetometerMean& mean) const {
+double MagnetometerFusion::whiteVariance(const FrameField& field) const {
   const double density = options_.magnetometer.noise_inflation * calibration_.noise_density_T_per_sqrtHz;
-  return density * density * calibration_.rate_hz / mean.readings;
+  const double variance_T2 = density * density * calibration_.rate_hz / field.mean.readings;
+  return currents_.isOnBoard() ? variance_T2 + currents_.noiseVariance_T2(field.currents) : variance_T2;
 }
 
 void MagnetometerFusion::remember(const JointCovariance& covariance, Window&) {
@@ -165,19 +172,26 @@ double MagnetometerFusion::tiltSigma(Time now) {
   return 1.0 / std::sqrt(information / shared + learned);
 }
 
-FieldMeasurement MagnetometerFusion::measurementOf(const MagnetometerMean& mean, double variance_scale,
+FieldMeasurement MagnetometerFusion::measurementOf(const FrameField& field, double variance_scale,
                                                    bool disturbed) {
   const MagnetometerOptions& wanted = options_.magnetometer;
+  const MagnetometerMean& mean = field.mean;
   FieldMeasurement measurement;
   measurement.mean = mean;
   measurement.relative = !absolute();
   measurement.disturbed = disturbed;
   if (measurement.relative) {
-    measurement.noise.sigma_T = std::sqrt(whiteVariance(mean) * mean.readings);
+    measurement.mean = withoutCurrents(field, nullptr);
+    measurement.noise.sigma_T = std::sqrt(whiteVariance(field) * mean.readings);
     return measurement;
   }
+  if (currents_.isOnBoard() && currents_.areStates()) {
+    measurement.currents_A.assign(field.currents.currents_A.begin(), field.currents.currents_A.end());
+  } else {
+    measurement.mean = withoutCurrents(field, nullptr);
+  }
   const double shared = timeCorrelatedShare(mean.time, last_seen_, wanted.correlated_noise_time_s);
-  const double variance_T2 = whiteVariance(mean) + shared * std::pow(floorSigma(mean.field_B), 2);
+  const double variance_T2 = whiteVariance(field) + shared * std::pow(floorSigma(mean.field_B), 2);
   measurement.noise.sigma_T = std::sqrt(variance_scale * variance_T2);
   measurement.noise.rotation_sigma_rad = mean.rotation_sigma_rad * std::sqrt(variance_scale);
   measurement.noise.tilt_sigma_rad = tiltSigma(mean.time) * std::sqrt(variance_scale);
@@ -194,29 +208,36 @@ void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer)
     missField(window);
     return;
   }
-  const MagnetometerMean mean = found->second;
+  const FrameField field = found->second;
   means_.clear();
   if (!absolute()) {
-    findNorth(newest.worldFromBody().rotation * mean.field_B, newest.time);
+    findNorth(newest.worldFromBody().rotation * withoutCurrents(field, nullptr).field_B, newest.time);
     status_ = MagnetometerStatus::Used;
-    newest.measurements.set(measurementOf(mean, 1.0, false));
+    newest.measurements.set(measurementOf(field, 1.0, false));
     return;
   }
-  if (MagnetometerStates(window).field == nullptr) startLate(mean, window, marginalizer);
+  if (MagnetometerStates(window).field == nullptr) startLate(field, window, marginalizer);
   findNorth(MagnetometerStates(window).field_W(), newest.time);
-  judge(withoutSteps(mean, window), window, marginalizer);
-  if (takeBetterField(mean, window, marginalizer)) status_ = MagnetometerStatus::Used;
+  if (currents_.isOnBoard()) checkCurrents(field, window);
+  judge(withoutSteps(field, window), window, marginalizer);
+  if (takeBetterField(field, window, marginalizer)) status_ = MagnetometerStatus::Used;
 }
 
-MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, Window& window) {
-  if (!options_.magnetometer.step.enabled) return mean;
+MagnetometerFusion::FrameField MagnetometerFusion::withoutSteps(const FrameField& field, Window& window) {
+  if (!options_.magnetometer.step.enabled) return field;
+  const MagnetometerMean mean = withoutCurrents(field, &window);
+  FrameField corrected = field;
+  if (areCurrentsUncertain(field, window)) {
+    corrected.mean.field_B -= mean.carried * step_.step_B();
+    return corrected;
+  }
   const MagnetometerStates states(window);
   const Quat body_from_world = window.newest().worldFromBody().rotation.conjugate();
   MagneticStepDetector::Reading reading;
   reading.time = mean.time;
   reading.difference_B = mean.field_B - body_from_world * states.field_W() - mean.carried * states.offset_B();
   reading.heading_B = body_from_world * Vec3::UnitZ().cross(states.field_W()).normalized();
-  reading.white_variance_T2 = whiteVariance(mean);
+  reading.white_variance_T2 = whiteVariance(field);
   reading.is_believed =
       status_before_ == MagnetometerStatus::Used || status_before_ == MagnetometerStatus::Off;
   if (const auto change = step_.add(reading)) {
@@ -227,24 +248,27 @@ MagnetometerMean MagnetometerFusion::withoutSteps(const MagnetometerMean& mean, 
                     "motor was switched); readings are corrected by it",
                     mean.time.nanoseconds(), 1e6 * change->by_B.norm()));
   }
-  MagnetometerMean corrected = mean;
-  corrected.field_B -= mean.carried * step_.step_B();
+  corrected.mean.field_B -= mean.carried * step_.step_B();
   return corrected;
 }
 
-void MagnetometerFusion::startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
+void MagnetometerFusion::startLate(const FrameField& field, Window& window, Marginalizer& marginalizer) {
   HeadingAlignment alignment;
-  alignment.field_W = window.newest().worldFromBody().rotation * mean.field_B;
+  alignment.field_W = window.newest().worldFromBody().rotation * withoutCurrents(field, nullptr).field_B;
   Prior states;
   addStates(alignment, &window, &states);
   const MagnetometerStates added(window);
   marginalizer.addKnowledge(*added.field, Vec3::Constant(options_.magnetometer.field_sigma_T));
   marginalizer.addKnowledge(*added.offset, Vec3::Constant(offsetSigma()));
+  for (ParameterBlock* state : CurrentStates(window, currents_.states().size()).blocks)
+    marginalizer.addKnowledge(*state, CurrentCompensation::stateSigmas());
 }
 
-void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer) {
+void MagnetometerFusion::judge(const FrameField& field, Window& window, Marginalizer& marginalizer) {
   Frame& newest = window.newest();
-  comparison_.add(mean, whiteVariance(mean), window);
+  const MagnetometerMean mean = withoutCurrents(field, &window);
+  std::vector<double> currents_A(field.currents.currents_A.begin(), field.currents.currents_A.end());
+  comparison_.add(mean, whiteVariance(field), window, currents_A);
   const FieldCheck earth = comparison_.check(window, covariance_, errors_.correlated_noise_sigma_T(), false);
   std::optional<FieldCheck> with_disturbance;
   if (disturbed_)
@@ -257,19 +281,21 @@ void MagnetometerFusion::judge(const MagnetometerMean& mean, Window& window, Mar
   if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
   // A rejected sensor (Inconsistent) is also evaluated; otherwise it could never be accepted again.
   if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
-    learnErrors(mean, earth, window);
+    learnErrors(field, mean, earth, window);
   if (!decision.use) {
     // A field that was rejected a moment ago is not independent information: its disturbance fades slowly.
     last_seen_ = mean.time;
     return;
   }
   const bool disturbed = status_ == MagnetometerStatus::Readmitted;
-  newest.measurements.set(measurementOf(mean, decision.variance_scale, disturbed));
+  newest.measurements.set(measurementOf(field, decision.variance_scale, disturbed));
 }
 
-void MagnetometerFusion::learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window) {
+void MagnetometerFusion::learnErrors(const FrameField& field, const MagnetometerMean& clean,
+                                     const FieldCheck& earth, Window& window) {
+  if (areCurrentsUncertain(field, window)) return;
   const MagnetometerStates states(window);
-  errors_.add(mean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(mean),
+  errors_.add(clean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(field),
               tiltError());
   states.offset->walk_per_sqrt_s = errors_.walk_T_per_sqrt_s();
   const double norm_T = states.field_W().norm();
@@ -278,15 +304,15 @@ void MagnetometerFusion::learnErrors(const MagnetometerMean& mean, const FieldCh
   const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
   const double state_variance_T2 =
       norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
-  deviation_.add(mean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
-                 std::max(0.0, state_variance_T2), whiteVariance(mean));
+  deviation_.add(clean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
+                 std::max(0.0, state_variance_T2), whiteVariance(field));
 }
 
-void MagnetometerFusion::beginDisturbance(const MagnetometerMean& mean, Window& window,
+void MagnetometerFusion::beginDisturbance(const MagnetometerMean& clean, Window& window,
                                           Marginalizer& marginalizer) {
   const MagnetometerStates states(window);
   const Vec3 measured_W =
-      window.newest().worldFromBody().rotation * (mean.field_B - mean.carried * states.offset_B());
+      window.newest().worldFromBody().rotation * (clean.field_B - clean.carried * states.offset_B());
   const Vec3 disturbance_W = measured_W - states.field_W();
   std::copy_n(disturbance_W.data(), 3, states.disturbance->value.begin());
   marginalizer.addKnowledge(*states.disturbance, Vec3::Constant(options_.magnetometer.disturbance_sigma_T));

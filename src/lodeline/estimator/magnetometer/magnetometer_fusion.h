@@ -7,6 +7,7 @@
 #include "lodeline/ahrs/magnetometer_readings.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimate.h"
+#include "lodeline/estimator/magnetometer/currents/current_compensation.h"
 #include "lodeline/estimator/magnetometer/earth_field_search.h"
 #include "lodeline/estimator/magnetometer/field/field_innovation.h"
 #include "lodeline/estimator/magnetometer/field/field_measurement.h"
@@ -42,6 +43,8 @@ class MagnetometerFusion final : public SensorFusion {
   /// Converts the covariance to one relative to north, where north was found after the first pose.
   void relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const override;
   void report(const Window& window, SensorEstimates* estimates) const override;
+  /// That of the compensation of currents; empty without current sensors.
+  std::optional<SensorRow> row() const override;
   /// Counts replacements of the field that is taken for the Earth's.
   int measurementEpoch() const override { return field_epoch_; }
   std::vector<BatchState> batchStates(const Window& window) const override;
@@ -49,6 +52,12 @@ class MagnetometerFusion final : public SensorFusion {
   MagnetometerEstimate estimate(const Window& window) const;
 
  private:
+  /// Mean field of a frame and the currents at its readings.
+  struct FrameField {
+    MagnetometerMean mean;
+    CurrentsAt currents;
+  };
+
   bool absolute() const { return use_ == MagnetometerUse::Absolute; }
 
   /// Sigma of the axes errors that no state represents, relative and rad.
@@ -57,7 +66,7 @@ class MagnetometerFusion final : public SensorFusion {
   double floorSigma(const Vec3& field_B) const;
   void align(Window* window, Prior* prior);
   /// Adds the states where the first reading arrives only after the start.
-  void startLate(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  void startLate(const FrameField& field, Window& window, Marginalizer& marginalizer);
   /// Determines north from the field estimate at `time`, unless it is known already.
   void findNorth(const Vec3& field_W, Time time);
   /// Handles a newest frame without a field.
@@ -65,28 +74,41 @@ class MagnetometerFusion final : public SensorFusion {
   void reportNorthMissing(Time time, const std::string& reason);
   /// Replaces the field taken for the Earth's if another one is more plausible (EarthFieldSearch). Returns
   /// true where it did.
-  bool takeBetterField(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
-  void takeField(const Vec3& field_W, const MagnetometerMean& mean, Window& window,
-                 Marginalizer& marginalizer);
+  bool takeBetterField(const FrameField& field, Window& window, Marginalizer& marginalizer);
+  void takeField(const Vec3& field_W, const FrameField& field, Window& window, Marginalizer& marginalizer);
+  /// Discards what gate, noise estimator and step detector have learnt of the field.
+  void restartChecks();
   AzimuthCovariance azimuth(const Window& window) const;
   /// The field from which north is determined, T.
   Vec3 northField(const Window& window) const;
   void describeNorth(const Window& window, MagnetometerEstimate* estimate) const;
   void addStates(const HeadingAlignment& alignment, Window* window, Prior* prior) const;
-  FieldMeasurement measurementOf(const MagnetometerMean& mean, double variance_scale, bool disturbed);
+  FieldMeasurement measurementOf(const FrameField& field, double variance_scale, bool disturbed);
+  /// The readings whose currents are known, with those, carried to the frame at the end of `imu`.
+  void keepMean(std::span<const FieldSample> samples, std::span<const ImuSample> imu,
+                const Vec3& gyroscope_bias_B);
+  /// The mean minus the field of measured currents: by the window's states, or by the calibration alone where
+  /// `window` is null.
+  MagnetometerMean withoutCurrents(const FrameField& field, const Window* window) const;
+  /// Compares measured currents with their calibration; starts the checks again where that is wrong.
+  void checkCurrents(const FrameField& field, Window& window);
+  /// Whether the fields of the present currents are too uncertain to learn errors and steps from a mean.
+  bool areCurrentsUncertain(const FrameField& field, const Window& window) const;
   /// The mean minus the steps of currents on board since the start.
-  MagnetometerMean withoutSteps(const MagnetometerMean& mean, Window& window);
-  void judge(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
-  /// White noise of a mean, T^2 per axis.
-  double whiteVariance(const MagnetometerMean& mean) const;
+  FrameField withoutSteps(const FrameField& field, Window& window);
+  void judge(const FrameField& field, Window& window, Marginalizer& marginalizer);
+  /// White noise of a mean, T^2 per axis, with that of its currents.
+  double whiteVariance(const FrameField& field) const;
   /// Error of the window's roll and pitch, rad^2 per axis. Its correlation time is limited to the time in
   /// which gyroscope noise accumulates to the same variance.
   TimeCorrelatedError tiltError() const;
   /// Sigma of roll and pitch in the factor of a frame at `now`, rad per axis. The factor does not estimate
   /// roll and pitch, so this sigma has to account for their time-correlated error.
   double tiltSigma(Time now);
-  void learnErrors(const MagnetometerMean& mean, const FieldCheck& earth, Window& window);
-  void beginDisturbance(const MagnetometerMean& mean, Window& window, Marginalizer& marginalizer);
+  /// `clean`: the mean without the fields of currents.
+  void learnErrors(const FrameField& field, const MagnetometerMean& clean, const FieldCheck& earth,
+                   Window& window);
+  void beginDisturbance(const MagnetometerMean& clean, Window& window, Marginalizer& marginalizer);
   void endDisturbance(Window& window, Marginalizer& marginalizer);
   void reportDecision(const GateDecision& decision, Time time);
 
@@ -102,7 +124,8 @@ class MagnetometerFusion final : public SensorFusion {
   MagneticNoiseEstimator errors_;
   StudentTWeight deviation_;
   MagneticStepDetector step_;
-  std::map<Time, MagnetometerMean> means_;  ///< of frames that are not yet in a window
+  std::map<Time, FrameField> means_;  ///< of frames that are not yet in a window
+  CurrentCompensation currents_;
   HeadingReference heading_reference_ = HeadingReference::Start;
   EarthFieldSearch search_;
   Time started_;                          ///< time of the first pose

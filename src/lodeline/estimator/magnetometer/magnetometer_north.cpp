@@ -42,7 +42,7 @@ void MagnetometerFusion::align(Window* window, Prior* prior) {
   for (const auto& frame : window->frames()) {
     const auto mean = means_.find(frame->time);
     if (mean == means_.end()) continue;
-    sum_W += frame->worldFromBody().rotation * mean->second.field_B;
+    sum_W += frame->worldFromBody().rotation * withoutCurrents(mean->second, nullptr).field_B;
     ++count;
   }
   if (count == 0) return;
@@ -97,13 +97,14 @@ void MagnetometerFusion::missField(const Window& window) {
     reportNorthMissing(now, "no magnetometer reading since the start");
 }
 
-bool MagnetometerFusion::takeBetterField(const MagnetometerMean& mean, Window& window,
+bool MagnetometerFusion::takeBetterField(const FrameField& field, Window& window,
                                          Marginalizer& marginalizer) {
   const MagnetometerOptions& wanted = options_.magnetometer;
   // An uncalibrated magnetometer has an error field that rotates with the rig and fits no constant field.
   if (!calibration_.is_calibrated || wanted.heading_reference == HeadingReference::Start) return false;
   const MagnetometerStates states(window);
   const auto isPlausible = [&](const Vec3& field_W) { return alignHeading(field_W, wanted).refusal.empty(); };
+  const MagnetometerMean mean = withoutCurrents(field, &window);
   EarthFieldSearch::Reading reading;
   reading.time = mean.time;
   reading.field_W =
@@ -112,11 +113,20 @@ bool MagnetometerFusion::takeBetterField(const MagnetometerMean& mean, Window& w
   reading.is_plausible = isPlausible(reading.field_W);
   reading.is_field_in_force_plausible = isPlausible(states.field_W());
   const std::optional<Vec3> better_W = search_.add(reading);
-  if (better_W) takeField(*better_W, mean, window, marginalizer);
+  if (better_W) takeField(*better_W, field, window, marginalizer);
   return better_W.has_value();
 }
 
-void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& mean, Window& window,
+void MagnetometerFusion::restartChecks() {
+  gate_ = MagnetometerGate(options_.magnetometer.gate);
+  comparison_.restart();
+  errors_ = MagneticNoiseEstimator(options_.magnetometer, offsetSigma());
+  deviation_ = StudentTWeight(options_.magnetometer);
+  step_ = MagneticStepDetector(options_.magnetometer.step);
+  rejecting_ = false;
+}
+
+void MagnetometerFusion::takeField(const Vec3& field_W, const FrameField& field, Window& window,
                                    Marginalizer& marginalizer) {
   const MagnetometerStates states(window);
   const double moved_rad = azimuthBetween(states.field_W(), field_W);
@@ -126,7 +136,7 @@ void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& 
           "magnetometer: another field has held for longer, at {} ns, than the one that was taken for "
           "the Earth's at the start (a boat or tanks nearby?); north is moved by {:.1f} degrees, from "
           "the first pose on",
-          mean.time.nanoseconds(), moved_rad * kDegreesPerRadian));
+          field.mean.time.nanoseconds(), moved_rad * kDegreesPerRadian));
   for (const auto& frame : window.frames()) frame->measurements.remove<FieldMeasurement>();
   for (ParameterBlock* state : {states.field, states.offset, states.disturbance}) {
     marginalizer.forget(window, *state);
@@ -136,18 +146,14 @@ void MagnetometerFusion::takeField(const Vec3& field_W, const MagnetometerMean& 
   std::copy_n(field_W.data(), 3, states.field->value.begin());
   marginalizer.addKnowledge(*states.field, Vec3::Constant(options_.magnetometer.field_sigma_T));
   marginalizer.addKnowledge(*states.offset, Vec3::Constant(offsetSigma()));
-  gate_ = MagnetometerGate(options_.magnetometer.gate);
-  comparison_.restart();
-  errors_ = MagneticNoiseEstimator(options_.magnetometer, offsetSigma());
-  deviation_ = StudentTWeight(options_.magnetometer);
-  step_ = MagneticStepDetector(options_.magnetometer.step);
-  disturbed_ = rejecting_ = false;
+  restartChecks();
+  disturbed_ = false;
   last_seen_.reset();
   least_tilt_variance_rad2_ = 0.0;
   ++field_epoch_;
   heading_reference_ = HeadingReference::Start;
-  findNorth(field_W, mean.time);
-  window.newest().measurements.set(measurementOf(mean, 1.0, false));
+  findNorth(field_W, field.mean.time);
+  window.newest().measurements.set(measurementOf(field, 1.0, false));
   status_before_ = MagnetometerStatus::Used;
 }
 
@@ -199,7 +205,11 @@ std::vector<BatchState> MagnetometerFusion::batchStates(const Window& window) co
   offset.sigma = offsetSigma();
   offset.value = {0.0, 0.0, 0.0};
   field.is_start_replaced = offset.is_start_replaced = field_epoch_ > 0;
-  return {field, offset};
+  std::vector<BatchState> states = {field, offset};
+  if (currents_.isOnBoard()) {
+    for (BatchState& state : currents_.batchStates(window)) states.push_back(std::move(state));
+  }
+  return states;
 }
 
 }  // namespace lodeline

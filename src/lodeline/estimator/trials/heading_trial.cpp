@@ -137,6 +137,19 @@ EstimatorOptions estimatorOptions(const HeadingTrialOptions& options) {
   return estimator;
 }
 
+/// Readings of a frame, those of the magnetometer with the field of currents.
+SensorReadings readingsOf(const SimulatedFrame& frame, Time start,
+                          const std::optional<TrialCurrents>& currents, const Rig& rig) {
+  if (!currents) return SensorReadings(frame.magnetometer);
+  std::vector<MagnetometerSample> fields = frame.magnetometer;
+  for (MagnetometerSample& sample : fields)
+    sample.field_M += currents->field_M((sample.time - start).seconds());
+  if (!rig.currents) return SensorReadings(std::move(fields));
+  const double begin_s = (frame.imu.front().time - start).seconds(),
+               end_s = (frame.imu.back().time - start).seconds();
+  return SensorReadings(std::move(fields), currents->readings(start, begin_s, end_s));
+}
+
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
 template <typename Figure>
@@ -198,7 +211,8 @@ double HeadingTrial::share(MagnetometerStatus status) const {
   return samples.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(samples.size());
 }
 
-double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& observe) {
+double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& observe,
+                    Diagnostics* diagnostics) {
   SpecimenOptions specimen;
   ImuErrors imu = drawImuErrors(imuGrade(options.imu_grade), specimen, options.seed);
   if (!options.bias_instability) imu.gyroscope.bias_instability = imu.accelerometer.bias_instability = 0.0;
@@ -218,8 +232,12 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
   points.magnetometer = magnetometer;
   PointSimulation simulation = dive.simulate(points);
 
-  Diagnostics diagnostics;
-  Estimator estimator(dive.mounted.rig, estimatorOptions(options), &diagnostics);
+  std::optional<TrialCurrents> currents;
+  if (options.currents) currents.emplace(*options.currents, options.duration_s, options.seed);
+  if (currents && options.currents->has_sensor) dive.mounted.rig.currents = currents->calibration();
+
+  Diagnostics unseen;
+  Estimator estimator(dive.mounted.rig, estimatorOptions(options), diagnostics ? diagnostics : &unseen);
   double estimator_s = 0.0;
   std::optional<Time> first;
   while (auto frame = simulation.next()) {
@@ -227,9 +245,9 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
     const double time_s = (frame->truth.time - *first).seconds();
     const bool is_silent = options.magnetometer_pause && options.magnetometer_pause->contains(time_s);
     if (time_s < options.magnetometer_from_s || is_silent) frame->magnetometer.clear();
+    const SensorReadings readings = readingsOf(*frame, points.start, currents, dive.mounted.rig);
     const double before_s = threadSeconds();
-    const FrameEstimate estimate =
-        estimator.add(frame->tracks, frame->imu, SensorReadings(frame->magnetometer));
+    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, readings);
     estimator_s += threadSeconds() - before_s;
     observe(*frame, estimate, estimator);
   }
@@ -248,6 +266,9 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
     const Quat& truth = frame.truth.motion.world_from_body.rotation;
     const MagnetometerEstimate& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
     trial.reference = magnetometer.heading_reference;
+    for (const SensorRow& row : estimate.sensor_rows) {
+      if (row.sensor == "currents") ++trial.current_status[row.status];
+    }
     trial.correlated_noise_sigma_T = magnetometer.correlated_noise_sigma_T.value_or(0.0);
     headings_rad.push_back(so3::log(estimated * truth.conjugate()).z());
     if (!first_rad) first_rad = headings_rad.back();
@@ -258,7 +279,7 @@ HeadingTrial runHeadingTrial(const HeadingTrialOptions& options) {
     trial.samples.push_back({(frame.truth.time - begin).seconds(), wrapped(headings_rad.back() + north_rad),
                              sigma_rad, 0.0, magnetometer.status});
   };
-  trial.estimator_s = runTrialDive(options, observe);
+  trial.estimator_s = runTrialDive(options, observe, &trial.findings);
   for (size_t i = 0; i < headings_rad.size(); ++i)
     trial.samples[i].finished_error_rad = wrapped(headings_rad[i] + north_rad);
   return trial;

@@ -2,10 +2,13 @@
 
 #include <array>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lodeline/estimator/estimator.h"
+#include "lodeline/estimator/trials/trial_currents.h"
 #include "simulation/dive/point_simulation.h"
 #include "simulation/sensors/magnetometer_model.h"
 
@@ -39,9 +42,10 @@ struct HeadingTrialOptions {
   int cameras = 2;
   std::string imu_grade = "gx5-25";  ///< of simulation/sensors/imu_model.h, with its magnetometer
   FieldTrouble trouble = FieldTrouble::None;
-  double magnetometer_from_s = 0.0;            ///< no reading before, since the first frame
-  std::optional<TimeSpan> magnetometer_pause;  ///< nor within
-  double lamp_earliest_s = 30.0;               ///< the lamp is first switched within 90 s from then on
+  double magnetometer_from_s = 0.0;             ///< no reading before, since the first frame
+  std::optional<TimeSpan> magnetometer_pause;   ///< nor within
+  double lamp_earliest_s = 30.0;                ///< the lamp is first switched within 90 s from then on
+  std::optional<TrialCurrentOptions> currents;  ///< electric currents that disturb the magnetometer
   EstimatorOptions estimator;
   bool honest_imu = true;  ///< the estimator uses the IMU's true noise (noise_inflation 1)
   /// Flicker noise of the biases, which the estimator models as a random walk.
@@ -61,6 +65,8 @@ struct HeadingTrial {
   HeadingReference reference = HeadingReference::Start;
   double correlated_noise_sigma_T = 0.0;  ///< of the field, as estimated at the end
   double estimator_s = 0.0;               ///< processor time
+  Diagnostics findings;
+  std::map<std::string, int> current_status;  ///< frames by the status of the compensation of currents
 
   /// Root mean square over the samples from `begin_s` on.
   double rms(double begin_s = 60.0) const;
@@ -81,7 +87,8 @@ using TrialObserver = std::function<void(const SimulatedFrame& frame, const Fram
                                          const Estimator& estimator)>;
 
 /// Runs the dive of a heading trial with an observer, for evaluations beyond the heading. Returns the
-/// estimator's processor time, s.
-double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& observe);
+/// estimator's processor time, s. `diagnostics`: for the estimator's findings, or null.
+double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& observe,
+                    Diagnostics* diagnostics = nullptr);
 
 }  // namespace lodeline

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <Eigen/Cholesky>
+#include <utility>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
@@ -37,13 +38,15 @@ Mat3 fieldCovariance_W(const Vec3& field_W, const FieldNoise& noise) {
 MagnetometerFieldFactor::MagnetometerFieldFactor(const Vec3& mean_B, const Mat3& carried,
                                                  const Quat& reference, const Vec3& field_W,
                                                  const FieldNoise& noise, bool disturbed,
-                                                 const double* first_pose, const double* first_field)
+                                                 const double* first_pose, const double* first_field,
+                                                 std::vector<double> currents_A)
     : mean_B_(mean_B),
       carried_(carried),
       reference_(reference),
       disturbed_(disturbed),
       first_pose_(first_pose),
-      first_field_(first_field) {
+      first_field_(first_field),
+      currents_A_(std::move(currents_A)) {
   const Mat3 covariance = fieldCovariance_W(field_W, noise);
   if (!mean_B.allFinite() || !covariance.allFinite() || !(noise.sigma_T > 0.0)) {
     throw InputError(fmt::format("a magnetometer mean of ({}, {}, {}) T with sigma {} T cannot be weighed",
@@ -53,6 +56,7 @@ MagnetometerFieldFactor::MagnetometerFieldFactor(const Vec3& mean_B, const Mat3&
   set_num_residuals(3);
   *mutable_parameter_block_sizes() = {kPoseSize, 3, 3};
   if (disturbed) mutable_parameter_block_sizes()->push_back(3);
+  mutable_parameter_block_sizes()->insert(mutable_parameter_block_sizes()->end(), currents_A_.size(), 3);
 }
 
 bool MagnetometerFieldFactor::Evaluate(double const* const* parameters, double* residuals,
@@ -62,7 +66,11 @@ bool MagnetometerFieldFactor::Evaluate(double const* const* parameters, double* 
     return Quat(so3::exp(psi * Vec3::UnitZ()) * reference_);
   };
   const Vec3 field_W = Vec3Map(parameters[1]) + (disturbed_ ? Vec3(Vec3Map(parameters[3])) : Vec3::Zero());
-  const Vec3 measured_W = turned(parameters[0]) * (mean_B_ - carried_ * Vec3Map(parameters[2]));
+  Vec3 on_board_B = Vec3Map(parameters[2]);
+  const size_t first_current = disturbed_ ? 4 : 3;
+  for (size_t i = 0; i < currents_A_.size(); ++i)
+    on_board_B += currents_A_[i] * Vec3Map(parameters[first_current + i]);
+  const Vec3 measured_W = turned(parameters[0]) * (mean_B_ - carried_ * on_board_B);
   Eigen::Map<Vec3>(residuals).noalias() = whitening_ * (measured_W - field_W);
   if (jacobians == nullptr) return true;
 
@@ -77,12 +85,14 @@ bool MagnetometerFieldFactor::Evaluate(double const* const* parameters, double* 
     by_pose.setZero();
     by_pose.middleCols<3>(3) = whitening_ * Vec3::UnitZ().cross(seen_W) * psi_by_rotation.transpose();
   }
-  const auto write = [&](int block, const Mat3& jacobian) {
+  const auto write = [&](size_t block, const Mat3& jacobian) {
     if (jacobians[block] != nullptr) Eigen::Map<RowMajor3>{jacobians[block]} = jacobian;
   };
   write(1, -whitening_);
-  write(2, -whitening_ * turned(pose).toRotationMatrix() * carried_);
+  const Mat3 by_offset = -whitening_ * turned(pose).toRotationMatrix() * carried_;
+  write(2, by_offset);
   if (disturbed_) write(3, -whitening_);
+  for (size_t i = 0; i < currents_A_.size(); ++i) write(first_current + i, currents_A_[i] * by_offset);
   return true;
 }
 

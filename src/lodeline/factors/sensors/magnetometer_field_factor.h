@@ -2,6 +2,8 @@
 
 #include <ceres/cost_function.h>
 
+#include <vector>
+
 #include "lodeline/factors/parameters.h"
 #include "lodeline/types.h"
 
@@ -16,12 +18,14 @@ struct FieldNoise {
 };
 
 /// Mean magnetometer reading of one frame compared with the field of the world: 3 residuals on the blocks
-/// pose (7), field m_W (3, T), offset o_B (3, T) and, where there is one, disturbance d_W (3, T):
+/// pose (7), field m_W (3, T), offset o_B (3, T) and, where there are any, disturbance d_W (3, T) and fields
+/// k_i of electric currents (3 each, T/A, body axes):
 ///
-///   e = Rz R_ref (z_B - C o_B) - m_W - d_W                       T, world axes
+///   e = Rz R_ref (z_B - C (o_B + sum_i k_i I_i)) - m_W - d_W     T, world axes
 ///   Rz = exp(psi e_z),  psi = e_z . log(R_W_B R_ref^-1)          rad
 ///
-/// z_B is the mean reading and C the mean rotation that carried its readings (MagnetometerMean). R_ref is an
+/// z_B is the mean reading and C the mean rotation that carried its readings (MagnetometerMean), I_i are the
+/// mean currents at the readings (A). R_ref is an
 /// attitude close to R_W_B. The factor informs only the heading of the pose: roll and pitch are those of
 /// R_ref, so no disturbance of the field can tilt gravity. All three components inform m_W, o_B and d_W. Only
 /// the component of the residual across the horizontal field, (e_z x m_W) / |e_z x m_W|, informs the heading.
@@ -33,15 +37,15 @@ struct FieldNoise {
 /// A yaw of the world that rotates poses, m_W and d_W together does not change the residual. The factor ties
 /// the heading to m_W, so other terms have to determine the direction of m_W. The linearization points of the
 /// pose (which are R_ref too) are as in factors/parameters.h, that of m_W is as given. The residual is linear
-/// in o_B and d_W. Derivation: docs/theory/magnetometer.md.
+/// in o_B, k_i and d_W. Derivation: docs/theory/magnetometer.md.
 class MagnetometerFieldFactor final : public ceres::CostFunction {
  public:
   /// `reference` is R_ref. `first_pose`, `first_field` (T): linearization points; null for the current
-  /// values. Throws InputError for readings or noise that are not finite, and for a sigma_T that is not
-  /// positive.
+  /// values. `currents_A`: I_i; the blocks k_i come last. Throws InputError for readings or noise that are
+  /// not finite, and for a sigma_T that is not positive.
   MagnetometerFieldFactor(const Vec3& mean_B, const Mat3& carried, const Quat& reference, const Vec3& field_W,
                           const FieldNoise& noise, bool disturbed, const double* first_pose = nullptr,
-                          const double* first_field = nullptr);
+                          const double* first_field = nullptr, std::vector<double> currents_A = {});
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
@@ -53,6 +57,7 @@ class MagnetometerFieldFactor final : public ceres::CostFunction {
   bool disturbed_;
   const double* first_pose_;
   const double* first_field_;
+  std::vector<double> currents_A_;
 };
 
 /// Angle psi (rad) of the rotation from `reference` to `rotation` (both R_W_B) about the vertical.

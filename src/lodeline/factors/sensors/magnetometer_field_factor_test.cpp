@@ -79,6 +79,24 @@ TEST(MagnetometerFieldFactor, JacobiansAgreeWithNumericDifferentiation) {
   }
 }
 
+TEST(MagnetometerFieldFactor, ContainsTheFieldsOfCurrents) {
+  const std::vector<double> currents_A = {12.0, -0.5};
+  const Vec3 fields_B[2] = {Vec3(0.3e-6, -0.2e-6, 0.4e-6), Vec3(-2e-6, 1e-6, 3e-6)};
+  for (const bool disturbed : {false, true}) {
+    const Vec3 field_W = disturbed ? Vec3(kField_W + kDisturbance_W) : kField_W;
+    const Vec3 mean_B =
+        meanOf(kPose, field_W) + kCarried * (currents_A[0] * fields_B[0] + currents_A[1] * fields_B[1]);
+    const MagnetometerFieldFactor factor(mean_B, kCarried, so3::exp(Vec3(0.05, -0.08, 0.3)) * kPose.rotation,
+                                         field_W, kNoise, disturbed, nullptr, nullptr, currents_A);
+    Blocks blocks = trueBlocks(disturbed);
+    for (const Vec3& field_B : fields_B) blocks.push_back(field_B);
+    const MagnetometerFieldFactor exact(mean_B, kCarried, kPose.rotation, field_W, kNoise, disturbed, nullptr,
+                                        nullptr, currents_A);
+    EXPECT_LT(residualOf(exact, blocks).norm(), 1e-9);
+    expectJacobiansMatch(factor, blocks);
+  }
+}
+
 TEST(MagnetometerFieldFactor, SeesHeadingButNeitherTiltNorPosition) {
   const MagnetometerFieldFactor factor = makeFactor(false);
   const auto jacobian = poseJacobian(factor, trueBlocks(false));

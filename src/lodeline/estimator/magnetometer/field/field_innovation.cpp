@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lodeline/ahrs/field_gate.h"
+#include "lodeline/estimator/magnetometer/currents/current_states.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
 #include "lodeline/geometry/so3.h"
@@ -17,12 +18,14 @@ constexpr double kLongestGap_s = 2.0;  // longest gap over which an average cont
 
 }  // namespace
 
-void FieldInnovation::add(const MagnetometerMean& mean, double white_variance_T2, const Window& window) {
+void FieldInnovation::add(const MagnetometerMean& mean, double white_variance_T2, const Window& window,
+                          const std::vector<double>& currents_A) {
   const Quat world_from_body = window.newest().worldFromBody().rotation;
   const Vec3 measured_W =
       world_from_body * (mean.field_B - mean.carried * MagnetometerStates(window).offset_B());
   const bool is_continued = measured_W_ && (mean.time - newest_.time).seconds() < kLongestGap_s;
   newest_ = mean;
+  currents_A_ = currents_A;
   if (!is_continued) {
     measured_W_ = measured_W;
     white_variance_T2_ = white_variance_T2;
@@ -77,6 +80,11 @@ Mat3 FieldInnovation::differenceCovariance(const Window& window, const JointCova
       {states.field->value.data(), -Mat3::Identity()},
       {states.offset->value.data(), -world_from_body * newest_.carried}};
   if (disturbed) derivatives.emplace_back(states.disturbance->value.data(), -Mat3::Identity());
+  const CurrentStates currents(window, currents_A_.size());
+  for (size_t i = 0; i < currents.blocks.size(); ++i) {
+    derivatives.emplace_back(currents.blocks[i]->value.data(),
+                             -currents_A_[i] * world_from_body * newest_.carried);
+  }
   for (const auto& [row, by_row] : derivatives) {
     for (const auto& [column, by_column] : derivatives) {
       if (!known.knows(row) || !known.knows(column)) continue;

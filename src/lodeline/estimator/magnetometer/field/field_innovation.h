@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_gate.h"
@@ -22,8 +23,10 @@ class FieldInnovation {
   /// Discards the average.
   void restart() { measured_W_.reset(); }
 
-  /// Adds the newest frame's mean, with white noise of `white_variance_T2` per axis.
-  void add(const MagnetometerMean& mean, double white_variance_T2, const Window& window);
+  /// Adds the newest frame's mean, with white noise of `white_variance_T2` per axis. `currents_A`: mean
+  /// currents at its readings, whose fields by the window's states are already subtracted (CurrentStates).
+  void add(const MagnetometerMean& mean, double white_variance_T2, const Window& window,
+           const std::vector<double>& currents_A = {});
 
   /// Compares the average, after the last add(), with the field that the window expects, with or without its
   /// disturbance. `covariance`: joint covariance of the frame before and the states of the field.
@@ -39,6 +42,7 @@ class FieldInnovation {
 
   const MagnetometerOptions& options_;
   MagnetometerMean newest_;
+  std::vector<double> currents_A_;  ///< at the readings of the newest mean
   std::optional<Vec3> measured_W_;  ///< average
   double white_variance_T2_ = 0.0;
 };

@@ -1,7 +1,10 @@
 #include "lodeline/estimator/magnetometer/field/field_measurement.h"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "lodeline/estimator/magnetometer/currents/current_states.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/factors/sensors/magnetometer_relative_factor.h"
 
@@ -19,16 +22,21 @@ Factor relativeFactor(const FieldMeasurement& measured, Frame& before, Frame& fr
   return factor;
 }
 
-Factor fieldFactor(const FieldMeasurement& measured, const MagnetometerStates& states, Frame& frame) {
+/// Nothing where the window lacks the fields of the measurement's currents.
+std::optional<Factor> fieldFactor(const FieldMeasurement& measured, const Window& window,
+                                  const MagnetometerStates& states, Frame& frame) {
   const double* first_pose = frame.firstPose();
   const Quat reference = poseFromBlock(first_pose ? first_pose : frame.pose.data()).rotation;
   const Vec3 field_W = states.field_W() + (measured.disturbed ? states.disturbance_W() : Vec3::Zero());
+  const CurrentStates currents(window, measured.currents_A.size());
+  if (currents.blocks.size() != measured.currents_A.size()) return {};
   Factor factor;
   factor.function = std::make_unique<MagnetometerFieldFactor>(
       measured.mean.field_B, measured.mean.carried, reference, field_W, measured.noise, measured.disturbed,
-      first_pose, states.field->linearizationPoint());
+      first_pose, states.field->linearizationPoint(), measured.currents_A);
   factor.blocks = {frame.pose.data(), states.field->value.data(), states.offset->value.data()};
   if (measured.disturbed) factor.blocks.push_back(states.disturbance->value.data());
+  for (ParameterBlock* block : currents.blocks) factor.blocks.push_back(block->value.data());
   return factor;
 }
 
@@ -42,7 +50,9 @@ std::vector<Factor> FieldMeasurement::factors(const MeasurementContext& context)
     return factors;
   }
   const MagnetometerStates states(context.window);
-  if (states.field && states.offset) factors.push_back(fieldFactor(*this, states, context.frame));
+  if (!states.field || !states.offset) return factors;
+  if (auto factor = fieldFactor(*this, context.window, states, context.frame))
+    factors.push_back(std::move(*factor));
   return factors;
 }
 

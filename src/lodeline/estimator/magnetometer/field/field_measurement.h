@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/estimator/state/measurement.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
@@ -12,7 +14,8 @@ struct FieldMeasurement final : Measurement {
   MagnetometerMean mean;
   bool relative = false;  ///< relative to the frame before, not to the field
   FieldNoise noise;
-  bool disturbed = false;  ///< the field has a disturbance to be estimated
+  bool disturbed = false;          ///< the field has a disturbance to be estimated
+  std::vector<double> currents_A;  ///< mean currents at the readings, whose fields are states (CurrentStates)
 
   static constexpr std::string_view kSensor = "magnetometer";
   std::string_view sensor() const override { return kSensor; }
