@@ -96,7 +96,8 @@ void calibrateCurrents(const CalibrateArguments& arguments) {
   if (!arguments.site.position.empty() || !arguments.site.date.empty())
     throw UsageError("--site and --date do not belong to --currents, which needs no field of the Earth");
   calibrateCurrentsFromTest({arguments.data, arguments.bag, recordOptions(arguments), arguments.old,
-                             arguments.check, arguments.output, arguments.json, arguments.plots});
+                             arguments.check, arguments.output, arguments.json, arguments.plots,
+                             arguments.verbosity});
 }
 
 void calibrate(const CalibrateArguments& arguments) {

@@ -29,7 +29,7 @@ void calibrateCurrentsFromTest(const CalibrateCurrentsArguments& arguments) {
     const StillTest test = readStillTest(*source, arguments.data, true, arguments.record, iron, &diagnostics);
     result = calibrateCurrents(test, earlier, &diagnostics);
   } catch (const EstimationError&) {
-    fmt::print(stderr, "{}", findingsText(diagnostics));
+    printFindings(diagnostics, arguments.verbosity);
     throw;
   }
   if (!arguments.output.empty()) writeCurrentFile(result, arguments.output);
@@ -37,7 +37,8 @@ void calibrateCurrentsFromTest(const CalibrateCurrentsArguments& arguments) {
   nlohmann::ordered_json json = currentJson(result);
   json["findings"] = findingsJson(diagnostics);
   if (!arguments.json.empty()) writeOutput(arguments.json, jsonText(json) + "\n");
-  fmt::print("{}{}", currentText(result), findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) fmt::print("{}", currentText(result));
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace lodeline

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/magnetometer/calibration/magnetometer_record.h"
 #include "lodeline/pipeline/open_recording.h"
 
@@ -15,6 +16,7 @@ struct CalibrateCurrentsArguments {
   std::string iron;   ///< calibration of the magnetometer; empty for none
   std::string check;  ///< rig file with an earlier calibration of currents; empty for none
   std::string output, json, plots;
+  Verbosity verbosity;
 };
 
 /// Calibrates the fields of electric currents from a still test, and prints the report.

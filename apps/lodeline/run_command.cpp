@@ -1,7 +1,6 @@
 #include "apps/lodeline/run_command.h"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -45,25 +44,6 @@ void executeRun(RunRequest request) {
   }
   if (summary.interrupted) throw Interruption(fmt::format("{} holds the results up to then", request.output));
   requireResult(request, summary, diagnostics);
-}
-
-RunRequest requestOf(const RunArguments& arguments) {
-  RunRequest request = arguments.request;
-  request.site = arguments.site.numbers();
-  request.date = arguments.site.date;
-  request.quiet = arguments.verbosity.quiet;
-  request.verbose = arguments.verbosity.verbose;
-  // The part of the recording is two settings, which the command line sets like any other.
-  const auto set = [&](const char* key, const std::string& value) {
-    request.overrides.push_back(fmt::format("{}={}", key, value));
-  };
-  const RecordingPart& part = arguments.part;
-  if (part.from_s > 0.0) set("source.skip_s", fmt::format("{}", part.from_s));
-  if (part.to_s) set("source.duration_s", fmt::format("{}", *part.length_s()));
-  if (!arguments.cameras.empty()) {
-    set("source.cameras", fmt::format("[{}]", fmt::join(arguments.cameras, ", ")));
-  }
-  return request;
 }
 
 void addRunOptions(RunArguments* arguments, CLI::App* command) {

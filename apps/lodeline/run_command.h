@@ -4,22 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/lodeline/shared/common_options.h"
-#include "lodeline/pipeline/run_request.h"
+#include "apps/lodeline/shared/run_arguments.h"
 
 namespace lodeline {
-
-/// The command line of `lodeline run` and `lodeline refine`.
-struct RunArguments {
-  RunRequest request;
-  RecordingPart part;
-  std::vector<int> cameras;
-  SiteArguments site;
-  Verbosity verbosity;
-};
-
-/// The request with all options applied. Throws UsageError.
-RunRequest requestOf(const RunArguments& arguments);
 
 /// Adds the common options of `lodeline run` and `lodeline refine`: recording, output folder and settings.
 /// `arguments` must outlive the command.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/lodeline/run_command.h"
+#include "apps/lodeline/shared/run_arguments.h"
 #include "lodeline/pipeline/run_recording.h"
 #include "lodeline/simulation.h"
 #include "lodeline/types.h"
