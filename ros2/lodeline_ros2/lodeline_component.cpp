@@ -95,13 +95,19 @@ void LodelineComponent::lookForPublishers() {
         std::find_if(subscription.types.begin(), subscription.types.end(), [&](const std::string& own) {
           return std::find(topic->second.begin(), topic->second.end(), ros2Type(own)) != topic->second.end();
         });
-    if (type != subscription.types.end()) {
-      subscribe(i, *type);
-    } else if (refused_.insert(topic->first).second) {
-      const std::string problem =
-          "is of type " + topic->second.front() + ", which " + subscription.sensor + " does not have";
+    const auto refuse = [&](const std::string& problem) {
+      if (!refused_.insert(topic->first).second) return;
       RCLCPP_WARN(get_logger(), "%s %s", topic->first.c_str(), problem.c_str());
       session_->addProblem(i, problem);
+    };
+    if (type == subscription.types.end()) {
+      refuse("is of type " + topic->second.front() + ", which " + subscription.sensor + " does not have");
+      continue;
+    }
+    try {
+      subscribe(i, *type);
+    } catch (const std::exception& error) {  // the package of a driver's messages is not installed
+      refuse(std::string("cannot be subscribed: ") + error.what());
     }
   }
   if (subscribed_.size() == sensor_topics_.size()) search_timer_->cancel();
