@@ -39,7 +39,7 @@ std::string refusalOf(const StillTest& still) {
 }
 
 TEST(CurrentFit, FindsTheFieldsWithinTheirSigmas) {
-  constexpr int kSeeds = 12;
+  constexpr int kSeeds = 8;
   double chi_square = 0.0;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     StillTestOptions options;
