@@ -7,14 +7,14 @@
 namespace lodeline {
 namespace {
 
-constexpr int kWindow_px = 17, kRounds = 4;
+constexpr int kSide_px = 17, kRounds = 4;
 constexpr float kLargestStep_px = 0.5F, kLargestChange_px = 1.0F;
 constexpr float kFloor_px = 0.06F;
 constexpr float kNoise = 1.0F;  ///< variance of a grey value that residuals never fall below
 
 cv::Mat windowMean(const cv::Mat& image) {
   cv::Mat mean;
-  cv::boxFilter(image, mean, CV_32F, {kWindow_px, kWindow_px});
+  cv::boxFilter(image, mean, CV_32F, {kSide_px, kSide_px});
   return mean;
 }
 
@@ -66,7 +66,7 @@ Disparities refineDisparity(const cv::Mat& first, const cv::Mat& second, const c
         value = -1.0F;
         continue;
       }
-      const float pixels = kWindow_px * kWindow_px * share.at<float>(v, u);
+      const float pixels = kSide_px * kSide_px * share.at<float>(v, u);
       const float by_noise = std::max(kNoise, variance_e.at<float>(v, u)) /
                              (pixels * std::max(1e-3F, variance_g.at<float>(v, u)));
       result.sigma_px.at<float>(v, u) = std::sqrt(by_noise + kFloor_px * kFloor_px);
