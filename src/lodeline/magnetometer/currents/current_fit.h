@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lodeline/magnetometer/currents/robust_lines.h"
-#include "lodeline/magnetometer/currents/still_test.h"
+#include "lodeline/magnetometer/currents/still_record.h"
 
 namespace lodeline {
 

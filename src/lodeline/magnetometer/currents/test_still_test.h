@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lodeline/geometry/so3.h"
-#include "lodeline/magnetometer/currents/still_test.h"
+#include "lodeline/magnetometer/currents/still_record.h"
 
 namespace lodeline::test {
 

@@ -31,7 +31,7 @@ constexpr const char* kImu =
     "accelerometer_random_walk: 1e-4}\n";
 constexpr const char* kDvl = "dvl0: {T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], velocity_noise_std: 0.01}\n";
 
-Time at(int64_t step) { return Time::fromNanoseconds(1'000'000'000'000 + step * 200'000'000); }
+Time timeOf(int64_t step) { return Time::fromNanoseconds(1'000'000'000'000 + step * 200'000'000); }
 
 /// Everything that a source gives of the three streams, as text.
 std::string streamsOf(MeasurementSource* source) {
@@ -100,11 +100,11 @@ class RobotBagsTest : public testing::Test {
   std::filesystem::path bagWith(const messages::Type& type, const std::vector<wire::Bytes>& contents) {
     const std::unique_ptr<BagWriter> writer = makeBagWriter(path("driver.mcap"), BagFormat::Mcap, "none");
     for (int i = 0; i < 100; ++i) {
-      const ImuSample imu{at(0) + Duration::fromSeconds(0.005 * i), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
+      const ImuSample imu{timeOf(0) + Duration::fromSeconds(0.005 * i), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
       writer->write("/imu", messages::kImu.name, imu.time, messages::imu(imu, 0));
     }
     for (size_t i = 0; i < contents.size(); ++i)
-      writer->write("/sensor", type.name, at(static_cast<int64_t>(i)), contents[i]);
+      writer->write("/sensor", type.name, timeOf(static_cast<int64_t>(i)), contents[i]);
     writer->close();
     return path("driver.mcap");
   }
@@ -142,7 +142,7 @@ TEST_F(RobotBagsTest, StreamsStayTheSameInAllFormats) {
     ConvertOptions options;
     options.format = format;
     const ConvertSummary summary = convertFolderToBag(place_.folder(), path(name), options, &diagnostics_);
-    EXPECT_EQ(summary.readings.at("dvl0"), 12) << name;
+    EXPECT_EQ(summary.readings.timeOf("dvl0"), 12) << name;
     EXPECT_EQ(streamsOfBag(path(name)), given) << name;
     convertBagToFolder(path(name), path(name + "_folder"), {}, &diagnostics_);
     EXPECT_EQ(streamsOfFolder(path(name + "_folder")), given) << name;
@@ -205,11 +205,11 @@ TEST_F(RobotBagsTest, ReadsWaterLinkedsMessages) {
     std::vector<wire::Bytes> contents;
     for (int i = 0; i < 4; ++i)
       contents.push_back(
-          a50(at(i), i == 2 ? Vec3(0, 0, 0) : Vec3(0.5, 0.25, -0.125), i != 2, is_second, is_second));
+          a50(timeOf(i), i == 2 ? Vec3(0, 0, 0) : Vec3(0.5, 0.25, -0.125), i != 2, is_second, is_second));
     const auto bag = bagWith(is_second ? messages::kA50Dvl2 : messages::kA50Dvl, contents);
     const std::vector<DvlSample> read = pings(open(bag, kDvl));
     ASSERT_EQ(read.size(), 4u);
-    EXPECT_EQ(read[0].time, at(0));
+    EXPECT_EQ(read[0].time, timeOf(0));
     EXPECT_EQ(read[0].velocity_D, Vec3(0.5, 0.25, -0.125));
     EXPECT_EQ(read[0].velocity_sigma_m_per_s, 0.004);
     ASSERT_EQ(read[0].beams.size(), 4u);
@@ -230,8 +230,8 @@ TEST_F(RobotBagsTest, ReadsOtherVersionsByTheirDefinition) {
       "float64 fom\n" +
       std::string(80, '=') + "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
   const std::unique_ptr<BagWriter> writer = makeBagWriter(path("other.mcap"), BagFormat::Mcap, "none");
-  const ImuSample imu{at(0), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
-  writer->write("/imu", messages::kImu.name, at(0), messages::imu(imu, 0));
+  const ImuSample imu{timeOf(0), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
+  writer->write("/imu", messages::kImu.name, timeOf(0), messages::imu(imu, 0));
   BagConnection connection;
   connection.topic = "/dvl";
   connection.type = "dvl_msgs/DVL";
@@ -256,7 +256,7 @@ TEST_F(RobotBagsTest, ReadsOtherVersionsByTheirDefinition) {
   for (const double number : {0.5, 0.25, -0.125, 0.01}) rest.put(number);
   const wire::Bytes numbers = rest.take();
   message.insert(message.end(), numbers.begin(), numbers.end());
-  writer->writeStored(connection, at(0), message);
+  writer->writeStored(connection, timeOf(0), message);
   writer->close();
   const std::vector<DvlSample> read = pings(open(path("other.mcap"), kDvl));
   ASSERT_EQ(read.size(), 1u);
@@ -272,7 +272,7 @@ TEST_F(RobotBagsTest, RefusesMessagesThatTheBuiltInDefinitionDoesNotFit) {
   const definitions::MessageConversion back(
       definitions::knownForm("dvl_msgs/DVL", definitions::Serialization::Ros1),
       definitions::knownForm("dvl_msgs/DVL", definitions::Serialization::Cdr));
-  wire::Bytes cdr = back.convert(a50(at(0), Vec3(1, 2, 3), true, 0, true));
+  wire::Bytes cdr = back.convert(a50(timeOf(0), Vec3(1, 2, 3), true, 0, true));
   EXPECT_NO_THROW(conversion.convert(cdr));
   cdr.resize(cdr.size() + 16);
   EXPECT_THROW(conversion.convert(cdr), definitions::DefinitionError);
@@ -282,7 +282,7 @@ TEST_F(RobotBagsTest, TakesATwistOnlyWhereItIsNamed) {
   std::vector<wire::Bytes> contents;
   for (int i = 0; i < 3; ++i) {
     wire::Writer writer;
-    messages::putHeader(at(i), 0, "dvl", &writer);
+    messages::putHeader(timeOf(i), 0, "dvl", &writer);
     messages::putVector(i == 1 ? Vec3(0, 0, 0) : Vec3(0.5, 0.25, -0.125), &writer);
     messages::putVector(Vec3(0, 0, 0), &writer);
     contents.push_back(writer.take());
@@ -297,7 +297,7 @@ TEST_F(RobotBagsTest, TakesATwistOnlyWhereItIsNamed) {
 
 TEST_F(RobotBagsTest, ReportsOtherBeamsThanThoseOfTheRig) {
   DvlSample sample;
-  sample.time = at(0);
+  sample.time = timeOf(0);
   sample.beams = {{0, 0.1, 2.0}};
   const auto bag =
       bagWith(messages::kMarineDvl, {messages::marineDvl(sample, DvlCalibration::janusBeams_D(0.5), 0)});
@@ -307,7 +307,7 @@ TEST_F(RobotBagsTest, ReportsOtherBeamsThanThoseOfTheRig) {
 
 TEST_F(RobotBagsTest, ReadsTheMessageOfTheUuvSimulator) {
   wire::Writer writer;
-  messages::putHeader(at(0), 0, "dvl", &writer);
+  messages::putHeader(timeOf(0), 0, "dvl", &writer);
   messages::putVector(Vec3(0.5, 0.25, -0.125), &writer);
   for (int i = 0; i < 9; ++i) writer.put(i % 4 == 0 ? 1e-4 : 0.0);
   writer.put(2.0);
@@ -315,7 +315,7 @@ TEST_F(RobotBagsTest, ReadsTheMessageOfTheUuvSimulator) {
   for (int beam = 0; beam < 4; ++beam) {
     for (const double number : {2.5, beam == 1 ? -1.0 : 0.0, 0.1 * (beam + 1), beam == 2 ? -1.0 : 1e-4})
       writer.put(number);
-    messages::putHeader(at(0), 0, "beam", &writer);
+    messages::putHeader(timeOf(0), 0, "beam", &writer);
     for (int i = 0; i < 7; ++i) writer.put(0.0);
   }
   const std::vector<DvlSample> read = pings(open(bagWith(messages::kSimulatedDvl, {writer.take()}), kDvl));
@@ -341,12 +341,12 @@ wire::Bytes battery(Time time, float current, const std::string& location) {
 }
 
 TEST_F(RobotBagsTest, ReadsTheCurrentOfABattery) {
-  const auto named =
-      bagWith(messages::kBatteryState, {battery(at(0), -7.5F, "main"), battery(at(1), -8.5F, "main")});
+  const auto named = bagWith(messages::kBatteryState,
+                             {battery(timeOf(0), -7.5F, "main"), battery(timeOf(1), -8.5F, "main")});
   BagSource source = open(named, "current0: {channels: [main]}\n");
   EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(-7.5));
   EXPECT_THROW(open(named, "current0: {channels: [lamp]}\n"), InputError);
-  const auto unnamed = bagWith(messages::kBatteryState, {battery(at(0), -7.5F, "")});
+  const auto unnamed = bagWith(messages::kBatteryState, {battery(timeOf(0), -7.5F, "")});
   BagSource single = open(unnamed, "current0: {channels: [all]}\n");
   EXPECT_THAT(single.nextCurrents()->currents_A, ElementsAre(-7.5));
   EXPECT_THROW(open(unnamed, "current0: {channels: [lamp, all]}\n"), InputError);
@@ -354,12 +354,12 @@ TEST_F(RobotBagsTest, ReadsTheCurrentOfABattery) {
 
 TEST_F(RobotBagsTest, PassesOverMessagesWithOtherChannels) {
   const std::vector<std::string> names = {"lamp", "thruster"};
-  const auto bag =
-      bagWith(messages::kJointState, {messages::jointCurrents({at(0), {1.0, 2.0}}, names, 0),
-                                      messages::jointCurrents({at(1), {1.0, 2.0}}, {"lamp", "other"}, 0),
-                                      messages::jointCurrents({at(2), {4.0, 3.0}}, {"thruster", "lamp"}, 0),
-                                      messages::jointCurrents({at(3), {1.0}}, names, 0),
-                                      messages::jointCurrents({at(4), {kNan, 1.0}}, names, 0)});
+  const auto bag = bagWith(messages::kJointState,
+                           {messages::jointCurrents({timeOf(0), {1.0, 2.0}}, names, 0),
+                            messages::jointCurrents({timeOf(1), {1.0, 2.0}}, {"lamp", "other"}, 0),
+                            messages::jointCurrents({timeOf(2), {4.0, 3.0}}, {"thruster", "lamp"}, 0),
+                            messages::jointCurrents({timeOf(3), {1.0}}, names, 0),
+                            messages::jointCurrents({timeOf(4), {kNan, 1.0}}, names, 0)});
   BagSource source = open(bag, "current0: {channels: [lamp, thruster]}\n", {{"current0", "/sensor"}});
   EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(1.0, 2.0));
   EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(3.0, 4.0)) << "in the order of the rig";
@@ -368,7 +368,7 @@ TEST_F(RobotBagsTest, PassesOverMessagesWithOtherChannels) {
 }
 
 TEST_F(RobotBagsTest, ARangeBelongsToTheAltimeterWhereTheRigHasOne) {
-  const auto bag = bagWith(messages::kRange, {messages::altimeterRange({at(0), 2.5}, 0)});
+  const auto bag = bagWith(messages::kRange, {messages::altimeterRange({timeOf(0), 2.5}, 0)});
   const std::string keys = "{T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], range_noise_std: 0.05}\n";
   BagSource both = open(bag, "sonar0: " + keys + "altimeter0: " + keys);
   EXPECT_EQ(both.nextAltimeter()->range_m, 2.5);

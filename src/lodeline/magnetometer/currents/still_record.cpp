@@ -1,4 +1,4 @@
-#include "lodeline/magnetometer/currents/still_test.h"
+#include "lodeline/magnetometer/currents/still_record.h"
 
 #include <fmt/format.h>
 
