@@ -142,7 +142,7 @@ TEST_F(RobotBagsTest, StreamsStayTheSameInAllFormats) {
     ConvertOptions options;
     options.format = format;
     const ConvertSummary summary = convertFolderToBag(place_.folder(), path(name), options, &diagnostics_);
-    EXPECT_EQ(summary.readings.timeOf("dvl0"), 12) << name;
+    EXPECT_EQ(summary.readings.at("dvl0"), 12) << name;
     EXPECT_EQ(streamsOfBag(path(name)), given) << name;
     convertBagToFolder(path(name), path(name + "_folder"), {}, &diagnostics_);
     EXPECT_EQ(streamsOfFolder(path(name + "_folder")), given) << name;
