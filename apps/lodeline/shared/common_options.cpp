@@ -61,7 +61,8 @@ void addSite(SiteArguments* site, const std::string& use, CLI::App* command) {
   command
       ->add_option("--site", site->position,
                    "place of the recording, for " + use +
-                       ": LATITUDE,LONGITUDE,HEIGHT in degrees and m, or another usual notation")
+                       ": LATITUDE,LONGITUDE,HEIGHT in degrees and m (height 0 if not stated), or another "
+                       "usual notation")
       ->type_name("PLACE");
   command->add_option("--date", site->date, "date of the recording, with --site")->type_name("YYYY-MM-DD");
 }

@@ -174,9 +174,9 @@ TEST_F(RunMagnetometer, WithLeftHandedAxesIsDoubted) {
 }
 
 TEST_F(RunMagnetometer, WrongWordsAreUsageErrors) {
-  for (const char* options : {"--magnetometer on", "--site 29.83,-82.60,0", "--date 2026-11-21",
-                              "--site 29.83,-82.60 --date 2026-11-21",
-                              "--site 29.83,-82.60,0 --date 21.11.2026", "--site here --date 2026-11-21"}) {
+  for (const char* options :
+       {"--magnetometer on", "--site 29.83,-82.60,0", "--date 2026-11-21", "--site 29.83 --date 2026-11-21",
+        "--site 29.83,-82.60,0 --date 21.11.2026", "--site here --date 2026-11-21"}) {
     EXPECT_EQ(run(options).exit_code, 2) << options;
   }
 }
