@@ -173,14 +173,14 @@ void EchoFusion<Sample>::report(const Window&, SensorEstimates* estimates) const
 template <typename Sample>
 std::optional<SensorRow> EchoFusion<Sample>::row() const {
   if (!sonar_) return std::nullopt;
-  const std::string kind(name());
+  const std::string prefix(name());
   const char* status = toString(estimate_.status);
-  return SensorRow{kind,
+  return SensorRow{prefix,
                    status,
-                   {{kind, status},
-                    {kind + "_echoes", fmt::format("{}", estimate_.echoes)},
-                    {kind + "_used", fmt::format("{}", estimate_.used)},
-                    {kind + "_innovation [m]", fmt::format("{:.9g}", estimate_.innovation_m)}}};
+                   {{prefix, status},
+                    {prefix + "_echoes", fmt::format("{}", estimate_.echoes)},
+                    {prefix + "_used", fmt::format("{}", estimate_.used)},
+                    {prefix + "_innovation [m]", fmt::format("{:.9g}", estimate_.innovation_m)}}};
 }
 
 template class EchoFusion<SonarSample>;
