@@ -163,7 +163,9 @@ TEST(DvlFusion, CarriesTheRigThroughAMinuteOfDarkness) {
     EXPECT_LT(sigma_m, 0.5) << "the reported covariance knows of the DVL";
     EXPECT_LT(dark.positionError(), 4.0 * sigma_m);
     for (const Comparison& c : with.frames) {
-      if (c.time_s > 80.5) EXPECT_NE(c.estimate.mode, Mode::Recovering) << "the scale is not lost";
+      if (c.time_s > 80.5) {
+        EXPECT_NE(c.estimate.mode, Mode::Recovering) << "the scale is not lost";
+      }
     }
     EXPECT_LT(with.frames.back().positionError(), 0.4);
     const Dive without = dive(options, std::nullopt);
