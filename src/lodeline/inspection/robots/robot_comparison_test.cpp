@@ -15,7 +15,7 @@ constexpr double kImuRate_hz = 100.0, kLength_s = 60.0;
 const Vec3 kGravity_W(0.0, 0.0, -9.80665);
 const Vec3 kField_W(5e-6, 24e-6, -38e-6);
 
-Time at(double seconds) { return Time::fromSeconds(100.0 + seconds); }
+Time swimTime(double seconds) { return Time::fromSeconds(100.0 + seconds); }
 
 Quat attitudeAt(double t) {
   return Quat(Eigen::AngleAxisd(0.5 * std::sin(0.4 * t) + 0.1 * t, Vec3::UnitZ()) *
@@ -36,7 +36,8 @@ std::vector<ImuSample> imu() {
   std::vector<ImuSample> samples;
   for (int i = 0; i < kLength_s * kImuRate_hz; ++i) {
     const double t = i / kImuRate_hz;
-    samples.push_back({at(t), rateAt_B(t), attitudeAt(t).conjugate() * (accelerationAt_W(t) - kGravity_W)});
+    samples.push_back(
+        {swimTime(t), rateAt_B(t), attitudeAt(t).conjugate() * (accelerationAt_W(t) - kGravity_W)});
   }
   return samples;
 }
@@ -57,7 +58,7 @@ std::vector<DvlSample> pings(const Mat3& axes, double delay_s, bool has_beams) {
         attitudeAt(t).conjugate() * velocityAt_W(t) + rateAt_B(t).cross(dvl.body_from_dvl.translation);
     const Vec3 velocity_D = dvl.body_from_dvl.rotation.conjugate() * Vec3(axes * velocity_B);
     DvlSample ping;
-    ping.time = at(t + delay_s);
+    ping.time = swimTime(t + delay_s);
     if (!has_beams) ping.velocity_D = velocity_D;
     for (int beam = 0; has_beams && beam < 3; ++beam)
       ping.beams.push_back({beam, dvl.beams_D[static_cast<size_t>(beam)].dot(velocity_D), 2.0});
@@ -129,8 +130,8 @@ struct Disturbed {
           body_from_magnetometer.conjugate() * (attitudeAt(t).conjugate() * kField_W) + Vec3(1e-6, 2e-6, 0.0);
       for (size_t channel = 0; channel < 2; ++channel)
         field_M += currentAt(t, channel) * fields_T_per_A[channel];
-      field.push_back({at(t), field_M});
-      if (i % 5 == 0) currents.push_back({at(t + delay_s), {currentAt(t, 0), currentAt(t, 1), 0.02}});
+      field.push_back({swimTime(t), field_M});
+      if (i % 5 == 0) currents.push_back({swimTime(t + delay_s), {currentAt(t, 0), currentAt(t, 1), 0.02}});
     }
   }
 };

@@ -25,13 +25,14 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kPose = "T_BS: [1,0,0,0.1, 0,-1,0,0, 0,0,-1,0.2, 0,0,0,1]\n";
-constexpr const char* kImu =
+constexpr const char* kDownwards = "T_BS: [1,0,0,0.1, 0,-1,0,0, 0,0,-1,0.2, 0,0,0,1]\n";
+constexpr const char* kImuSection =
     "imu0: {gyroscope_noise_density: 1e-4, gyroscope_random_walk: 1e-5, accelerometer_noise_density: 1e-3, "
     "accelerometer_random_walk: 1e-4}\n";
-constexpr const char* kDvl = "dvl0: {T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], velocity_noise_std: 0.01}\n";
+constexpr const char* kDvlSection =
+    "dvl0: {T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], velocity_noise_std: 0.01}\n";
 
-Time timeOf(int64_t step) { return Time::fromNanoseconds(1'000'000'000'000 + step * 200'000'000); }
+Time stepTime(int64_t step) { return Time::fromNanoseconds(1'000'000'000'000 + step * 200'000'000); }
 
 /// Everything that a source gives of the three streams, as text.
 std::string streamsOf(MeasurementSource* source) {
@@ -78,9 +79,9 @@ class RobotBagsTest : public testing::Test {
       }
     }
     place_.write("altimeter0/data.csv", altimeter);
-    place_.write("altimeter0/sensor.yaml", std::string(kPose) + "range_noise_std: 0.02\n");
+    place_.write("altimeter0/sensor.yaml", std::string(kDownwards) + "range_noise_std: 0.02\n");
     place_.write("dvl0/data.csv", dvl);
-    place_.write("dvl0/sensor.yaml", std::string(kPose) +
+    place_.write("dvl0/sensor.yaml", std::string(kDownwards) +
                                          "velocity_noise_std: 0.012\n"
                                          "beams: {angle_deg: 25, azimuths_deg: [0, 90, 180, 270]}\n");
     place_.write("current0/data.csv", current);
@@ -100,17 +101,17 @@ class RobotBagsTest : public testing::Test {
   std::filesystem::path bagWith(const messages::Type& type, const std::vector<wire::Bytes>& contents) {
     const std::unique_ptr<BagWriter> writer = makeBagWriter(path("driver.mcap"), BagFormat::Mcap, "none");
     for (int i = 0; i < 100; ++i) {
-      const ImuSample imu{timeOf(0) + Duration::fromSeconds(0.005 * i), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
+      const ImuSample imu{stepTime(0) + Duration::fromSeconds(0.005 * i), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
       writer->write("/imu", messages::kImu.name, imu.time, messages::imu(imu, 0));
     }
     for (size_t i = 0; i < contents.size(); ++i)
-      writer->write("/sensor", type.name, timeOf(static_cast<int64_t>(i)), contents[i]);
+      writer->write("/sensor", type.name, stepTime(static_cast<int64_t>(i)), contents[i]);
     writer->close();
     return path("driver.mcap");
   }
   BagSource open(const std::filesystem::path& bag, const std::string& rig,
                  std::map<std::string, std::string> topics = {}) {
-    place_.write("rig.yaml", kImu + rig);
+    place_.write("rig.yaml", kImuSection + rig);
     BagOptions options;
     options.rig_files = {place_.path("rig.yaml")};
     options.with_cameras = false;
@@ -165,7 +166,7 @@ TEST_F(RobotBagsTest, ReportsWhatAMessageDoesNotHold) {
       "dvl0/data.csv",
       fmt::format("#timestamp [ns],beam,velocity [m/s],range [m],valid\n{0},0,0.1,2,1\n{0},4,0.5,2,1\n",
                   testStamp(1.0)));
-  place_.write("dvl0/sensor.yaml", std::string(kPose) +
+  place_.write("dvl0/sensor.yaml", std::string(kDownwards) +
                                        "velocity_noise_std: 0.012\nbeams: {angle_deg: 25, "
                                        "azimuths_deg: [0, 72, 144, 216, 288]}\n");
   ConvertOptions options;
@@ -205,11 +206,11 @@ TEST_F(RobotBagsTest, ReadsWaterLinkedsMessages) {
     std::vector<wire::Bytes> contents;
     for (int i = 0; i < 4; ++i)
       contents.push_back(
-          a50(timeOf(i), i == 2 ? Vec3(0, 0, 0) : Vec3(0.5, 0.25, -0.125), i != 2, is_second, is_second));
+          a50(stepTime(i), i == 2 ? Vec3(0, 0, 0) : Vec3(0.5, 0.25, -0.125), i != 2, is_second, is_second));
     const auto bag = bagWith(is_second ? messages::kA50Dvl2 : messages::kA50Dvl, contents);
-    const std::vector<DvlSample> read = pings(open(bag, kDvl));
+    const std::vector<DvlSample> read = pings(open(bag, kDvlSection));
     ASSERT_EQ(read.size(), 4u);
-    EXPECT_EQ(read[0].time, timeOf(0));
+    EXPECT_EQ(read[0].time, stepTime(0));
     EXPECT_EQ(read[0].velocity_D, Vec3(0.5, 0.25, -0.125));
     EXPECT_EQ(read[0].velocity_sigma_m_per_s, 0.004);
     ASSERT_EQ(read[0].beams.size(), 4u);
@@ -230,8 +231,8 @@ TEST_F(RobotBagsTest, ReadsOtherVersionsByTheirDefinition) {
       "float64 fom\n" +
       std::string(80, '=') + "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
   const std::unique_ptr<BagWriter> writer = makeBagWriter(path("other.mcap"), BagFormat::Mcap, "none");
-  const ImuSample imu{timeOf(0), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
-  writer->write("/imu", messages::kImu.name, timeOf(0), messages::imu(imu, 0));
+  const ImuSample imu{stepTime(0), {0.1, 0.2, 0.3}, {0.0, 0.0, 9.8}};
+  writer->write("/imu", messages::kImu.name, stepTime(0), messages::imu(imu, 0));
   BagConnection connection;
   connection.topic = "/dvl";
   connection.type = "dvl_msgs/DVL";
@@ -256,9 +257,9 @@ TEST_F(RobotBagsTest, ReadsOtherVersionsByTheirDefinition) {
   for (const double number : {0.5, 0.25, -0.125, 0.01}) rest.put(number);
   const wire::Bytes numbers = rest.take();
   message.insert(message.end(), numbers.begin(), numbers.end());
-  writer->writeStored(connection, timeOf(0), message);
+  writer->writeStored(connection, stepTime(0), message);
   writer->close();
-  const std::vector<DvlSample> read = pings(open(path("other.mcap"), kDvl));
+  const std::vector<DvlSample> read = pings(open(path("other.mcap"), kDvlSection));
   ASSERT_EQ(read.size(), 1u);
   EXPECT_EQ(read[0].velocity_D, Vec3(0.5, 0.25, -0.125));
   EXPECT_EQ(read[0].velocity_sigma_m_per_s, 0.01);
@@ -272,7 +273,7 @@ TEST_F(RobotBagsTest, RefusesMessagesThatTheBuiltInDefinitionDoesNotFit) {
   const definitions::MessageConversion back(
       definitions::knownForm("dvl_msgs/DVL", definitions::Serialization::Ros1),
       definitions::knownForm("dvl_msgs/DVL", definitions::Serialization::Cdr));
-  wire::Bytes cdr = back.convert(a50(timeOf(0), Vec3(1, 2, 3), true, 0, true));
+  wire::Bytes cdr = back.convert(a50(stepTime(0), Vec3(1, 2, 3), true, 0, true));
   EXPECT_NO_THROW(conversion.convert(cdr));
   cdr.resize(cdr.size() + 16);
   EXPECT_THROW(conversion.convert(cdr), definitions::DefinitionError);
@@ -282,14 +283,14 @@ TEST_F(RobotBagsTest, TakesATwistOnlyWhereItIsNamed) {
   std::vector<wire::Bytes> contents;
   for (int i = 0; i < 3; ++i) {
     wire::Writer writer;
-    messages::putHeader(timeOf(i), 0, "dvl", &writer);
+    messages::putHeader(stepTime(i), 0, "dvl", &writer);
     messages::putVector(i == 1 ? Vec3(0, 0, 0) : Vec3(0.5, 0.25, -0.125), &writer);
     messages::putVector(Vec3(0, 0, 0), &writer);
     contents.push_back(writer.take());
   }
   const auto bag = bagWith(messages::kTwist, contents);
-  EXPECT_FALSE(open(bag, kDvl).rig().dvl) << "a Twist has many meanings";
-  const std::vector<DvlSample> read = pings(open(bag, kDvl, {{"dvl0", "/sensor"}}));
+  EXPECT_FALSE(open(bag, kDvlSection).rig().dvl) << "a Twist has many meanings";
+  const std::vector<DvlSample> read = pings(open(bag, kDvlSection, {{"dvl0", "/sensor"}}));
   ASSERT_EQ(read.size(), 3u);
   EXPECT_EQ(read[0].velocity_D, Vec3(0.5, 0.25, -0.125));
   EXPECT_FALSE(read[1].velocity_D) << "zeros without a validity";
@@ -297,17 +298,17 @@ TEST_F(RobotBagsTest, TakesATwistOnlyWhereItIsNamed) {
 
 TEST_F(RobotBagsTest, ReportsOtherBeamsThanThoseOfTheRig) {
   DvlSample sample;
-  sample.time = timeOf(0);
+  sample.time = stepTime(0);
   sample.beams = {{0, 0.1, 2.0}};
   const auto bag =
       bagWith(messages::kMarineDvl, {messages::marineDvl(sample, DvlCalibration::janusBeams_D(0.5), 0)});
-  EXPECT_EQ(pings(open(bag, kDvl)).size(), 1u);
+  EXPECT_EQ(pings(open(bag, kDvlSection)).size(), 1u);
   EXPECT_EQ(diagnostics_.count("dvl_beams"), 1);
 }
 
 TEST_F(RobotBagsTest, ReadsTheMessageOfTheUuvSimulator) {
   wire::Writer writer;
-  messages::putHeader(timeOf(0), 0, "dvl", &writer);
+  messages::putHeader(stepTime(0), 0, "dvl", &writer);
   messages::putVector(Vec3(0.5, 0.25, -0.125), &writer);
   for (int i = 0; i < 9; ++i) writer.put(i % 4 == 0 ? 1e-4 : 0.0);
   writer.put(2.0);
@@ -315,10 +316,11 @@ TEST_F(RobotBagsTest, ReadsTheMessageOfTheUuvSimulator) {
   for (int beam = 0; beam < 4; ++beam) {
     for (const double number : {2.5, beam == 1 ? -1.0 : 0.0, 0.1 * (beam + 1), beam == 2 ? -1.0 : 1e-4})
       writer.put(number);
-    messages::putHeader(timeOf(0), 0, "beam", &writer);
+    messages::putHeader(stepTime(0), 0, "beam", &writer);
     for (int i = 0; i < 7; ++i) writer.put(0.0);
   }
-  const std::vector<DvlSample> read = pings(open(bagWith(messages::kSimulatedDvl, {writer.take()}), kDvl));
+  const std::vector<DvlSample> read =
+      pings(open(bagWith(messages::kSimulatedDvl, {writer.take()}), kDvlSection));
   ASSERT_EQ(read.size(), 1u);
   ASSERT_EQ(read[0].velocity_D, Vec3(0.5, 0.25, -0.125));
   EXPECT_DOUBLE_EQ(*read[0].velocity_sigma_m_per_s, 0.01);
@@ -342,11 +344,11 @@ wire::Bytes battery(Time time, float current, const std::string& location) {
 
 TEST_F(RobotBagsTest, ReadsTheCurrentOfABattery) {
   const auto named = bagWith(messages::kBatteryState,
-                             {battery(timeOf(0), -7.5F, "main"), battery(timeOf(1), -8.5F, "main")});
+                             {battery(stepTime(0), -7.5F, "main"), battery(stepTime(1), -8.5F, "main")});
   BagSource source = open(named, "current0: {channels: [main]}\n");
   EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(-7.5));
   EXPECT_THROW(open(named, "current0: {channels: [lamp]}\n"), InputError);
-  const auto unnamed = bagWith(messages::kBatteryState, {battery(timeOf(0), -7.5F, "")});
+  const auto unnamed = bagWith(messages::kBatteryState, {battery(stepTime(0), -7.5F, "")});
   BagSource single = open(unnamed, "current0: {channels: [all]}\n");
   EXPECT_THAT(single.nextCurrents()->currents_A, ElementsAre(-7.5));
   EXPECT_THROW(open(unnamed, "current0: {channels: [lamp, all]}\n"), InputError);
@@ -355,11 +357,11 @@ TEST_F(RobotBagsTest, ReadsTheCurrentOfABattery) {
 TEST_F(RobotBagsTest, PassesOverMessagesWithOtherChannels) {
   const std::vector<std::string> names = {"lamp", "thruster"};
   const auto bag = bagWith(messages::kJointState,
-                           {messages::jointCurrents({timeOf(0), {1.0, 2.0}}, names, 0),
-                            messages::jointCurrents({timeOf(1), {1.0, 2.0}}, {"lamp", "other"}, 0),
-                            messages::jointCurrents({timeOf(2), {4.0, 3.0}}, {"thruster", "lamp"}, 0),
-                            messages::jointCurrents({timeOf(3), {1.0}}, names, 0),
-                            messages::jointCurrents({timeOf(4), {kNan, 1.0}}, names, 0)});
+                           {messages::jointCurrents({stepTime(0), {1.0, 2.0}}, names, 0),
+                            messages::jointCurrents({stepTime(1), {1.0, 2.0}}, {"lamp", "other"}, 0),
+                            messages::jointCurrents({stepTime(2), {4.0, 3.0}}, {"thruster", "lamp"}, 0),
+                            messages::jointCurrents({stepTime(3), {1.0}}, names, 0),
+                            messages::jointCurrents({stepTime(4), {kNan, 1.0}}, names, 0)});
   BagSource source = open(bag, "current0: {channels: [lamp, thruster]}\n", {{"current0", "/sensor"}});
   EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(1.0, 2.0));
   EXPECT_THAT(source.nextCurrents()->currents_A, ElementsAre(3.0, 4.0)) << "in the order of the rig";
@@ -368,7 +370,7 @@ TEST_F(RobotBagsTest, PassesOverMessagesWithOtherChannels) {
 }
 
 TEST_F(RobotBagsTest, ARangeBelongsToTheAltimeterWhereTheRigHasOne) {
-  const auto bag = bagWith(messages::kRange, {messages::altimeterRange({timeOf(0), 2.5}, 0)});
+  const auto bag = bagWith(messages::kRange, {messages::altimeterRange({stepTime(0), 2.5}, 0)});
   const std::string keys = "{T_BS: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], range_noise_std: 0.05}\n";
   BagSource both = open(bag, "sonar0: " + keys + "altimeter0: " + keys);
   EXPECT_EQ(both.nextAltimeter()->range_m, 2.5);
