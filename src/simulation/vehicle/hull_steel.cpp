@@ -24,15 +24,15 @@ std::vector<LyingDipole> drawHullSteel(const WreckLayout& wreck, const Vec3& fie
       const Vec3 place = hull.point((static_cast<float>(i) + 0.5f) / static_cast<float>(along),
                                     (static_cast<float>(j) + 0.5f) / static_cast<float>(around))
                              .cast<double>();
-      const double induced = random.uniform(60.0, 180.0);
-      const double permanent = 120.0 * random.normal();
+      const double induced = random.uniform(150.0, 450.0);
+      const double permanent = 300.0 * random.normal();
       const Vec3 moment_W =
-          induced * induced_direction + permanent * permanent_direction + 60.0 * random.normal3();
+          induced * induced_direction + permanent * permanent_direction + 150.0 * random.normal3();
       steel.push_back({wreck.center_W + heading * place, moment_W});
     }
   }
   constexpr double kPlateLength_m = 8.0, kPlateWidth_m = 6.0, kPlateStep_m = 0.5;
-  const Vec3 plate_moment_W = random.uniform(30.0, 50.0) * (heading * random.direction());
+  const Vec3 plate_moment_W = random.uniform(80.0, 120.0) * (heading * random.direction());
   for (double x = 0.0; x <= kPlateLength_m; x += kPlateStep_m) {
     for (double y = -0.5 * kPlateWidth_m; y <= 0.5 * kPlateWidth_m; y += kPlateStep_m) {
       const Vec3 place(x - 0.40 * wreck.length_m, y, wreck.height_m - 1.2);

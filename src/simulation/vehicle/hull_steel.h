@@ -9,8 +9,8 @@ namespace lodeline {
 
 /// Draws the magnetization of a steel hull. Dipoles stand on its plates every 2 m; each has an induced moment
 /// along the Earth's field and a permanent one. A magnetized deck plate of 8 x 6 m above the stern is a grid
-/// of equal dipoles every 0.5 m. The field is tens of microtesla at the hull and below 0.5 uT at 30 m from
-/// it.
+/// of equal dipoles every 0.5 m. The field is several microtesla beside the hull and below 1 uT at 15 m
+/// from it.
 std::vector<LyingDipole> drawHullSteel(const WreckLayout& wreck, const Vec3& field_W, uint64_t seed);
 
 }  // namespace lodeline

@@ -43,7 +43,7 @@ void scatterStones(const SeaFloor& floor, const SeaFloorOptions& o, TriangleMesh
     }
   };
   scatter(0.08, 0.15, 0.60);
-  scatter(1.2, 0.025, 0.12);
+  scatter(2.0, 0.025, 0.12);
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ float SeaFloor::height_m(float x, float y) const {
   const float crags =
       0.22f * (1.0f + ridgedNoise(p / 1.6f, 3, seed_ + 12)) + 0.03f * fractalNoise(p / 0.3f, 2, seed_ + 13);
   // Crests of ripples bend and fork.
-  const float phase = 9.0f * x + 4.0f * y + 5.0f * fractalNoise(p / 2.2f, 2, seed_ + 14);
-  const float ripples = 0.022f * (1.0f - std::abs(std::sin(0.5f * phase)));
+  const float phase = 22.0f * x + 9.0f * y + 5.0f * fractalNoise(p / 2.2f, 2, seed_ + 14);
+  const float ripples = 0.035f * (1.0f - std::abs(std::sin(0.5f * phase)));
   return dunes + rock * crags + (1.0f - rock) * ripples;
 }
 
