@@ -32,13 +32,15 @@ class WallsTest : public RoomTest {
     std::filesystem::create_directories(output_);
     std::filesystem::copy_file(recording_.truth, output_ / "trajectory.tum");
     std::ofstream(output_ / "run.json")
-        << R"({"program": "test", "heading": {"reference": "true north"}, "data": ")" << recording_.data.string() << "\"}";
+        << R"({"program": "test", "heading": {"reference": "true north"}, "data": ")"
+        << recording_.data.string() << "\"}";
     if (!hasOpen3d()) GTEST_SKIP() << "built without Open3D";
   }
 
   Execution walls(const std::string& options) const {
-    return runProgram(fmt::format("walls {} -o {} --quiet --step 0.04 --voxel 0.04 --max-error 0.2 --spacing 0.5 {}",
-                                  quoted(output_), quoted(walls_), options));
+    return runProgram(
+        fmt::format("walls {} -o {} --quiet --step 0.04 --voxel 0.04 --max-error 0.2 --spacing 0.5 {}",
+                    quoted(output_), quoted(walls_), options));
   }
 
   /// Share of the cloud within 5 cm of a wall of the room.

@@ -80,7 +80,8 @@ TEST(RefineDisparity, FindsFractionsOfAPixel) {
   start.rowRange(0, 40).setTo(-1.0F);
   const Disparities refined = refineDisparity(test::planeImage(texture, 0.0, depth_m), second, start);
   for (int u = 60; u < 300; u += 20) {
-    EXPECT_NEAR(refined.value_px.at<float>(120, u), true_px, 0.05) << u;
+    // warpAffine() places pixels to 1/32 px.
+    EXPECT_NEAR(refined.value_px.at<float>(120, u), true_px, 0.08) << u;
     EXPECT_GT(refined.sigma_px.at<float>(120, u), 0.05F);
     EXPECT_EQ(refined.value_px.at<float>(20, u), -1.0F);
   }

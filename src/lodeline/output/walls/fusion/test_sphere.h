@@ -12,7 +12,7 @@ inline constexpr double kSphere_m = 1.5;
 /// Views from inside a grey sphere about the origin, from places a little off its middle, in all directions.
 inline DepthKeyframes sphereViews() {
   DepthKeyframes input;
-  input.pinhole = {120, 120, 60.0, Vec2(59.5, 59.5)};
+  input.pinhole = {80, 80, 40.0, Vec2(39.5, 39.5)};
   for (size_t i = 0; i < 60; ++i) {
     const double k = static_cast<double>(i);
     const Quat turn = so3::exp(Vec3(std::sin(1.7 * k), std::cos(2.3 * k), std::sin(0.9 * k + 1.0)) * 2.2);
