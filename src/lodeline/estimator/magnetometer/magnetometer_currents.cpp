@@ -33,7 +33,8 @@ void MagnetometerFusion::checkCurrents(const FrameField& field, Window& window) 
   const MagnetometerStates states(window);
   const Quat body_from_world = window.newest().worldFromBody().rotation.conjugate();
   const Vec3 expected_B = body_from_world * states.field_W() + field.mean.carried * states.offset_B();
-  if (currents_.check(field.mean.time, field.currents, field.mean.field_B - expected_B, window)) {
+  if (currents_.check(field.mean.time, field.currents, field.mean.field_B - expected_B, whiteVariance(field),
+                      window)) {
     // Steps that were found with the wrong compensation come back into the readings.
     states.offset->sudden_variance += step_.step_B().squaredNorm();
     restartChecks();

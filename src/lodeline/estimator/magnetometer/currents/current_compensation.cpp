@@ -192,9 +192,9 @@ double CurrentCompensation::noiseVariance_T2(const CurrentsAt& currents) const {
 }
 
 bool CurrentCompensation::check(Time time, const CurrentsAt& currents, const Vec3& difference_B,
-                                Window& window) {
+                                double white_variance_T2, Window& window) {
   if (!isCalibrated() || status_ == CurrentStatus::NoData) return false;
-  monitor_.add(time, currents.currents_A, difference_B - field_B(currents, nullptr));
+  monitor_.add(time, currents.currents_A, difference_B - field_B(currents, nullptr), white_variance_T2);
   if (!monitor_.isContradicted()) return false;
   diagnostics_->report(
       Severity::Warning, "current_compensation_wrong",

@@ -70,9 +70,11 @@ class CurrentCompensation {
   /// Variance per axis that is not in the states' covariance, T^2: of held currents, and of constants.
   double noiseVariance_T2(const CurrentsAt& currents) const;
 
-  /// Compares with the calibration. `difference_B`: measured minus expected field without any compensation.
+  /// Compares with the calibration. `difference_B`: measured minus expected field without any compensation,
+  /// with white noise of `white_variance_T2` per axis.
   /// Returns true where the calibration is refused now; `window` has lost its prior then.
-  bool check(Time time, const CurrentsAt& currents, const Vec3& difference_B, Window& window);
+  bool check(Time time, const CurrentsAt& currents, const Vec3& difference_B, double white_variance_T2,
+             Window& window);
 
   CurrentStatus status() const { return status_; }
   /// Status, present field and its sigma, fields of all channels.

@@ -26,7 +26,8 @@ CurrentMonitor::CurrentMonitor(size_t channels, double sigma_T_per_A)
       residual_square_T2_(kUsualWeight * kUsualResidual_T * kUsualResidual_T),
       residual_weight_(kUsualWeight) {}
 
-void CurrentMonitor::add(Time time, const Eigen::VectorXd& currents_A, const Vec3& difference_B) {
+void CurrentMonitor::add(Time time, const Eigen::VectorXd& currents_A, const Vec3& difference_B,
+                         double white_variance_T2) {
   const Sample now{time, currents_A, difference_B};
   const double since_s = last_ ? (time - last_->time).seconds() : 0.0;
   if (last_ && since_s < kChange_s) return;
@@ -44,10 +45,11 @@ void CurrentMonitor::add(Time time, const Eigen::VectorXd& currents_A, const Vec
   const double kept = std::exp(-since_s / kFade_s);
   information_A2_ = kept * information_A2_ + weight * change_A * change_A.transpose();
   right_side_A_T_ = kept * right_side_A_T_ + weight * change_A * change_T.transpose();
-  // A residual before the update is larger than one after it by this factor.
-  residual_square_T2_ =
-      kept * residual_square_T2_ + weight * residual_T.squaredNorm() / 3.0 * variance_T2() / known_T2;
-  residual_weight_ = kept * residual_weight_ + weight;
+  // Residuals of changes whose coefficients are unknown yet say little about the noise.
+  const double share = weight * variance_T2() / known_T2;
+  residual_square_T2_ = kept * residual_square_T2_ + share * residual_T.squaredNorm() / 3.0;
+  residual_weight_ = kept * residual_weight_ + share;
+  white_square_T2_ = kept * white_square_T2_ + share * 2.0 * white_variance_T2;
 }
 
 Eigen::MatrixXd CurrentMonitor::inverse() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 
 #include "lodeline/magnetometer/currents/current_check.h"
@@ -21,8 +22,8 @@ class CurrentMonitor {
   CurrentMonitor(size_t channels, double sigma_T_per_A);
 
   /// Adds a frame's mean currents, and its field minus the expected one, with the calibrated fields
-  /// subtracted, T, body axes.
-  void add(Time time, const Eigen::VectorXd& currents_A, const Vec3& difference_B);
+  /// subtracted, T, body axes, with white noise of `white_variance_T2` per axis.
+  void add(Time time, const Eigen::VectorXd& currents_A, const Vec3& difference_B, double white_variance_T2);
 
   /// Whether the calibration is wrong, and by so much that it harms.
   bool isContradicted() const;
@@ -37,7 +38,8 @@ class CurrentMonitor {
     Eigen::VectorXd currents_A;
     Vec3 difference_B = Vec3::Zero();
   };
-  double variance_T2() const { return residual_square_T2_ / residual_weight_; }
+  /// Of a change per axis: that of the residuals, and at least the white noise.
+  double variance_T2() const { return std::max(residual_square_T2_, white_square_T2_) / residual_weight_; }
   /// Inverse of the information, which times the variance is the covariance of one component.
   Eigen::MatrixXd inverse() const;
 
@@ -46,7 +48,8 @@ class CurrentMonitor {
   Eigen::MatrixXd information_A2_;   ///< faded sum of changes times changes
   Eigen::MatrixXd right_side_A_T_;   ///< faded sum of changes times fields
   double residual_square_T2_ = 0.0;  ///< faded sum, per axis
-  double residual_weight_ = 0.0;     ///< faded number of changes
+  double white_square_T2_ = 0.0;     ///< the same of the white noise of changes
+  double residual_weight_ = 0.0;     ///< faded number of changes with known coefficients
 };
 
 }  // namespace lodeline

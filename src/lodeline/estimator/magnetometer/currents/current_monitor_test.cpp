@@ -32,7 +32,8 @@ CurrentMonitor after(const DiveOptions& options) {
     const Vec3 wander_B = options.wander_T * std::sin(2.0 * 3.14159 * time_s / 15.0) * Vec3(0.6, 0.8, 0.0);
     const Vec3 noise_B = options.noise_T * Vec3(normal(random), normal(random), normal(random));
     monitor.add(Time::fromNanoseconds(0) + Duration::fromSeconds(1000.0 + time_s), currents_A,
-                currents_A[0] * options.wrong_T_per_A + wander_B + noise_B);
+                currents_A[0] * options.wrong_T_per_A + wander_B + noise_B,
+                options.noise_T * options.noise_T);
   }
   return monitor;
 }
@@ -43,6 +44,9 @@ TEST(CurrentMonitor, BelievesARightCalibration) {
     options.seed = seed;
     options.wrong_T_per_A = Vec3(1.0, -1.0, 0.5) * kSigma_T_per_A;
     EXPECT_FALSE(after(options).isContradicted()) << seed;
+    DiveOptions noisy = options;
+    noisy.noise_T = 0.5e-6;
+    EXPECT_FALSE(after(noisy).isContradicted()) << seed << ", a consumer sensor";
     options.wander_T = 3e-6;
     EXPECT_FALSE(after(options).isContradicted()) << seed << ", iron";
   }
