@@ -6,7 +6,6 @@
 
 #include "apps/lodeline/tests/test_program.h"
 
-
 namespace lodeline::test {
 namespace {
 

@@ -22,7 +22,7 @@ class SimulateTest : public ::testing::Test {
 };
 
 TEST_F(SimulateTest, WritesARecordingThatEvaluatesAgainstItself) {
-  const Execution result = runProgram("simulate figure_eight --seconds 30 -o " + file("a") + " --quiet");
+  const Execution result = runProgram("simulate figure_eight --seconds 30 -o " + file("a"));
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("figure_eight: 30.0 s"));
   const std::filesystem::path truth =

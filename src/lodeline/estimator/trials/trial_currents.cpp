@@ -10,7 +10,7 @@ namespace lodeline {
 namespace {
 
 constexpr double kSpan_s = 0.5;  // in which a thruster reaches its new current
-constexpr double kLampCurrent_A = 2.0;
+constexpr double kTrialLamp_A = 2.0;
 
 /// Levels that hold for some seconds; a thruster idles for a third of the time.
 std::vector<double> thrusterNodes(double largest_A, size_t count, Random& random) {
@@ -34,9 +34,9 @@ TrialCurrents::TrialCurrents(const TrialCurrentOptions& options, double duration
     const Vec3 calibrated = (is_lamp ? 0.1e-6 : options.field_T_per_A) * random.direction();
     calibrated_.push_back(calibrated + options.calibration_sigma_T_per_A * random.normal3());
     fields_.push_back(so3::exp(options.moved_rad * random.direction()) * calibrated);
-    std::vector<double> nodes = thrusterNodes(is_lamp ? kLampCurrent_A : options.largest_A, count, random);
+    std::vector<double> nodes = thrusterNodes(is_lamp ? kTrialLamp_A : options.largest_A, count, random);
     if (is_lamp)
-      std::transform(nodes.begin(), nodes.end(), nodes.begin(), [](double) { return kLampCurrent_A; });
+      std::transform(nodes.begin(), nodes.end(), nodes.begin(), [](double) { return kTrialLamp_A; });
     // The vehicle lies still at first.
     std::fill_n(nodes.begin(), std::min<size_t>(nodes.size(), 6), 0.0);
     nodes_.push_back(std::move(nodes));

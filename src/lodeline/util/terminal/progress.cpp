@@ -11,9 +11,9 @@
 namespace lodeline {
 namespace {
 
-constexpr std::chrono::milliseconds kFirstPause(2000);
+constexpr std::chrono::milliseconds kFirstPause(2000);  // on a terminal
 constexpr std::chrono::milliseconds kTerminalPause(200);
-constexpr std::chrono::milliseconds kLogPause(5000);
+constexpr std::chrono::milliseconds kLogPause(10'000);
 
 std::string minutesText(double duration_s) {
   const auto seconds = static_cast<long>(std::ceil(duration_s));
@@ -40,7 +40,7 @@ Progress::Progress(std::string task, bool quiet)
       quiet_(quiet),
       is_terminal_(terminal::width(stderr).has_value()),
       start_(Clock::now()),
-      next_(start_ + kFirstPause) {}
+      next_(start_ + (is_terminal_ ? kFirstPause : kLogPause)) {}
 
 bool Progress::isDue() const { return !quiet_ && Clock::now() >= next_; }
 

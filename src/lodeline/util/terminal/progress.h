@@ -11,8 +11,8 @@ namespace lodeline {
 using ShareDone = std::function<void(double share)>;
 
 /// Shows on the standard error stream how much of a long task is done: per cent, remaining time and words. On
-/// a terminal it draws one line anew, no longer than the terminal is wide; elsewhere it writes a line every
-/// five seconds. A task of less than two seconds shows nothing.
+/// a terminal it draws one line anew, from the third second on, no longer than the terminal is wide;
+/// elsewhere it writes a line every ten seconds.
 class Progress {
  public:
   /// `quiet`: show nothing.
