@@ -16,7 +16,7 @@ const Groups& commandGroups() {
       {"From a recording to a trajectory", {"run", "refine", "attitude", "batch"}},
       {"Recordings and rigs",
        {"inspect", "convert", "calibrate", "allan", "convert-calibration", "rig-template"}},
-      {"Maps and surveys", {"export", "map", "survey", "report"}},
+      {"Maps and surveys", {"export", "map", "survey", "walls", "report"}},
       {"Judging results", {"evaluate", "compare", "benchmark", "simulate"}},
       {"The program", {"settings", "completion", "manual"}}};
   return groups;

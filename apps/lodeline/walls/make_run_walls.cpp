@@ -9,13 +9,13 @@
 
 #include "apps/lodeline/shared/interruption.h"
 #include "apps/lodeline/shared/place_argument.h"
-#include "apps/lodeline/walls/walls_progress.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/output/survey/formats/recording_images.h"
 #include "lodeline/pipeline/process_usage.h"
 #include "lodeline/pipeline/stop_request.h"
 #include "lodeline/util/files/folder_lock.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -106,11 +106,12 @@ void makeRunWalls(const WallsArguments& arguments) {
   createOutputFolder(folder);
   const FolderLock lock(folder);
   const StopRequest stop;
-  WallsProgress progress(arguments.quiet);
+  Progress progress("walls", arguments.verbosity.quiet);
   WallResult result = makeWalls(
       map, *source, wallCameras(arguments, source->rig(), run), arguments.walls, folder,
       [&](const char* stage, double share) {
-        progress.show(stage, share);
+        progress.begin(stage);
+        progress.show(share);
         return !stop.made();
       },
       &diagnostics);
@@ -120,8 +121,8 @@ void makeRunWalls(const WallsArguments& arguments) {
   result.files.push_back(folder / kSummary);
   writeOutput(result.files.back(), summaryOf(arguments, map, result, diagnostics).dump(2) + "\n");
   if (!arguments.keep_work) fs::remove_all(folder / "work");
-  print(result, arguments);
-  fmt::print("{}", findingsText(diagnostics));
+  if (!arguments.verbosity.quiet) print(result, arguments);
+  printFindings(diagnostics, arguments.verbosity);
 }
 
 }  // namespace lodeline

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "apps/lodeline/shared/common_options.h"
 #include "lodeline/output/walls/walls.h"
 #include "lodeline/pipeline/open_recording.h"
 
@@ -14,7 +15,8 @@ struct WallsArguments {
   std::string entrance;
   DiveMapOptions map;
   WallOptions walls;
-  bool one_camera = false, overwrite = false, keep_work = false, quiet = false;
+  bool one_camera = false, overwrite = false, keep_work = false;
+  Verbosity verbosity;
 };
 
 /// Makes the walls of a run, writes their files and walls.json, and prints a summary. Throws Interruption

@@ -61,9 +61,9 @@ void addWallsCommand(CLI::App& program) {
   addBagOptions(&arguments->bag, command);
   addSurfaceOptions(arguments.get(), command);
   addWallsPlaceOptions(arguments.get(), command);
-  command->add_flag("--overwrite", arguments->overwrite, "replace walls of another run");
+  addOverwrite(&arguments->overwrite, command);
   command->add_flag("--keep-work", arguments->keep_work, "keep depths and tiles in OUTPUT/work");
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  addVerbosity(&arguments->verbosity, command);
   command->footer(
       "An interrupted call goes on where it stopped when the same command is given again.\n"
       "Examples:\n"

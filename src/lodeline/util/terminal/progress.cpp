@@ -42,6 +42,13 @@ Progress::Progress(std::string task, bool quiet)
       start_(Clock::now()),
       next_(start_ + (is_terminal_ ? kFirstPause : kLogPause)) {}
 
+void Progress::begin(const std::string& task) {
+  if (task == task_) return;
+  task_ = task;
+  start_ = Clock::now();
+  next_ = start_ + (is_terminal_ ? kFirstPause : kLogPause);
+}
+
 bool Progress::isDue() const { return !quiet_ && Clock::now() >= next_; }
 
 void Progress::show(std::optional<double> share, const std::string& words) {

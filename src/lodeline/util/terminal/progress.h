@@ -23,6 +23,8 @@ class Progress {
 
   /// `share`: of the task, 0 to 1; nothing where the length of the task is unknown.
   void show(std::optional<double> share, const std::string& words = "");
+  /// Goes on with another task, which has its own share and time; nothing happens where it has the same name.
+  void begin(const std::string& task);
   /// Whether the next show() draws; saves the making of words.
   bool isDue() const;
   /// Removes the line from a terminal.
