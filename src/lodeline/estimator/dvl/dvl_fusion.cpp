@@ -176,6 +176,9 @@ DvlStatus DvlFusion::judge(Time time, const Window& window, DvlPing* ping) {
   for (int i = 0; !ping->is_velocity && i < rows; ++i) {
     if (innovation.agrees({i}, options_.max_sigmas)) agreeing.push_back(ping->rows[static_cast<size_t>(i)]);
   }
+  // Where most beams of a ping disagree, the others agree by chance.
+  constexpr int kFewest = 3;
+  if (rows >= kFewest && 2 * static_cast<int>(agreeing.size()) <= rows) agreeing.clear();
   const int count = static_cast<int>(agreeing.size());
   judged_ += rows;
   rejected_ += rows - count;
