@@ -15,7 +15,6 @@
 #include "lodeline/io/synchronizer/inertial_stream.h"
 #include "lodeline/magnetometer/calibration/calibration_file.h"
 #include "lodeline/magnetometer/calibration/heading/axis_checks.h"
-#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
 #include "lodeline/output/files/attitude_writer.h"
 #include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"

@@ -10,7 +10,6 @@
 #include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/common_options.h"
 #include "lodeline/cameras/camera_model.h"
-#include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/calibration/calibrate_cameras.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/terminal/progress.h"

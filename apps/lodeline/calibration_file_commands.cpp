@@ -13,7 +13,6 @@
 #include "apps/lodeline/shared/common_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_text.h"
-#include "lodeline/output/report/findings.h"
 #include "lodeline/util/files/output_file.h"
 
 namespace lodeline {

@@ -18,8 +18,6 @@
 #include "lodeline/io/rosbag/bag_kinds.h"
 #include "lodeline/io/rosbag/bag_listing.h"
 #include "lodeline/io/video/video_text.h"
-#include "lodeline/magnetometer/earth_field/world_magnetic_model.h"
-#include "lodeline/output/report/findings.h"
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/lodeline/shared/common_options.h"
 #include "apps/lodeline/shared/print_page.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/output/report/findings.h"
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/output/report/page/report_page.h"
 #include "lodeline/pipeline/page/background.h"

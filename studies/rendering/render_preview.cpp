@@ -71,8 +71,9 @@ int run(const std::string& folder, const std::string& place, const std::string& 
   if (place == "yucatan") cave.style = CaveStyle::yucatanDecorated();
   const auto started = std::chrono::steady_clock::now();
   const bool wreck = place == "wreck";
-  const auto world =
-      wreck ? buildWreckWorld({.seed = seed, .center_W = Vec3f::Zero()}) : buildCaveWorld(line, cave);
+  WreckOptions ship;
+  ship.seed = seed;
+  const auto world = wreck ? buildWreckWorld(ship) : buildCaveWorld(line, cave);
   const double build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);

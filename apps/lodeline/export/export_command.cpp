@@ -5,6 +5,7 @@
 
 #include "apps/lodeline/export/export_dives.h"
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 
 namespace lodeline {
 namespace {

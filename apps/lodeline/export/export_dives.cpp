@@ -10,7 +10,6 @@
 #include "apps/lodeline/shared/place_argument.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/colmap/colmap_database.h"
-#include "lodeline/output/report/findings.h"
 #include "lodeline/output/survey/formats/map_files.h"
 #include "lodeline/output/survey/formats/recording_images.h"
 #include "lodeline/output/survey/formats/recording_walls.h"

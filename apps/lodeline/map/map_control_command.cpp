@@ -9,7 +9,6 @@
 #include "apps/lodeline/shared/place_argument.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/store/map_file.h"
-#include "lodeline/output/report/findings.h"
 
 namespace lodeline {
 namespace {

@@ -8,12 +8,12 @@
 #include <memory>
 
 #include "apps/lodeline/map/map_dives.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "apps/lodeline/shared/place_argument.h"
 #include "apps/lodeline/survey/cave_of_map.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/session/map_merge.h"
 #include "lodeline/mapping/session/map_solution.h"
-#include "lodeline/output/report/findings.h"
 #include "lodeline/output/survey/formats/write_formats.h"
 #include "lodeline/output/survey/map/export_owner.h"
 #include "lodeline/output/survey/map/survey_name.h"

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "apps/lodeline/shared/bag_options.h"
+#include "apps/lodeline/shared/common_options.h"
 #include "apps/lodeline/walls/make_run_walls.h"
 
 namespace lodeline {
