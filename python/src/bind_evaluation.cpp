@@ -105,7 +105,8 @@ void bindEvaluationResult(py::module_& module) {
           },
           "relative pose errors: for each length a dict with length_m, translation_m (K), rotation_deg (K)")
       .def_property_readonly("findings", [](Type r) { return findingsOf(r.diagnostics); })
-      .def("__str__", [](Type r) { return printable(evaluationTable(r.evaluation) + findingsText(r.diagnostics)); });
+      .def("__str__",
+           [](Type r) { return printable(evaluationTable(r.evaluation) + findingsText(r.diagnostics)); });
 }
 
 }  // namespace
