@@ -58,7 +58,7 @@ TEST_F(ProgramHelp, HasGroupsDefaultsAndRequiredOptions) {
   const std::string text = help(100);
   EXPECT_NE(text.find("\nScreen:\n"), std::string::npos) << text;
   EXPECT_NE(text.find("times as fast (default: 2.5)"), std::string::npos) << text;
-  EXPECT_NE(text.find("lodeline run DATA -o, --output FOLDER [OPTIONS]"), std::string::npos) << text;
+  EXPECT_NE(text.find("lodeline run DATA --output FOLDER [OPTIONS]"), std::string::npos) << text;
   EXPECT_EQ(text.find("no progress (default"), std::string::npos) << "a flag has no default";
 }
 

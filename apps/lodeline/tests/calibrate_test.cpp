@@ -128,7 +128,7 @@ TEST_F(CalibrateTest, TellsWrongUseFromBadInput) {
   EXPECT_EQ(calibrate(file("rows.txt") + " --unit tesla").exit_code, 2);
   EXPECT_EQ(calibrate(file("rows.txt") + " --site 20,-87,0").exit_code, 2);
   EXPECT_EQ(calibrate(file("rows.txt") + " --site 20,-87,0 --date 2026-11-31").exit_code, 2);
-  EXPECT_EQ(calibrate(file("rows.txt") + " --site 20,-87 --date 2026-11-21").exit_code, 2);
+  EXPECT_EQ(calibrate(file("rows.txt") + " --site 20 --date 2026-11-21").exit_code, 2);
   EXPECT_EQ(calibrate(file("rows.txt")).exit_code, 3);
   EXPECT_EQ(calibrate(file("absent")).exit_code, 1);
   EXPECT_EQ(calibrate(file("rows.txt") + " --old " + file("absent.yaml")).exit_code, 1);
