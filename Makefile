@@ -33,11 +33,10 @@ test: everything check-format
 	ctest --test-dir build/release --output-on-failure -j2
 	@grep -A1 ': Skipped$$' build/release/Testing/Temporary/LastTest.log || true
 
-# Built with Clang under address and undefined-behaviour sanitizers: the fast tests of these layers, and the fuzzers of
-# all readers, each for ten seconds on its corpus. The layers are those that read what others wrote, and those that the
-# rest computes with. The layers from the estimator up take longer to build so than all of these, and the estimator's
-# tests work through whole simulated scenes: `make test-sanitized-all` adds them.
-SANITIZED = util tables streams geometry cameras magnetometer imu ahrs io rosbag frontend factors evaluation
+# Built with Clang under address and undefined-behaviour sanitizers: the fast tests of the layers that read what others
+# wrote, and the fuzzers of all readers, each for ten seconds on its corpus. `make test-sanitized-all` adds the layers
+# that compute; the estimator's tests alone work through whole simulated scenes.
+SANITIZED = util tables streams io rosbag evaluation
 test-sanitized: test-dependencies
 	cmake --preset sanitized
 	cmake --build --preset sanitized --target lodeline_fuzzers $(SANITIZED:%=%_test)
@@ -45,7 +44,7 @@ test-sanitized: test-dependencies
 	  -R "^(fuzz\.|($$(echo $(SANITIZED) | tr ' ' '|'))_test)"
 
 test-sanitized-all:
-	$(MAKE) test-sanitized SANITIZED="$(SANITIZED) estimator batch calibration survey store graph cloud recognition control"
+	$(MAKE) test-sanitized SANITIZED="$(SANITIZED) geometry cameras magnetometer imu ahrs frontend factors estimator batch calibration survey store graph cloud recognition control"
 
 # Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
 faults: build
