@@ -80,7 +80,7 @@ gnuplot::Figure severalErrorsFigure(const std::vector<NamedEvaluation>& estimate
   figure.commands +=
       "set title 'Position error after alignment'\nset xlabel 'time (s)'\nset ylabel 'error (m)'\nset grid "
       "lc "
-      "'#dddddd'\nset yrange [0:*]\nset key outside below\nplot " +
+      "'#dddddd'\nset yrange [0:*]\nset key tmargin center horizontal\nplot " +
       clauses + "\n";
   return figure;
 }
@@ -102,7 +102,8 @@ gnuplot::Figure severalPathsFigure(const std::vector<NamedEvaluation>& estimates
   figure.commands += gnuplot::dataBlock("reference", reference);
   figure.commands +=
       "set title 'Paths from above'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset size ratio -1\nset grid lc "
-      "'#dddddd'\nset key outside below\nplot $reference with lines lc '#000000' lw 1.2 title 'reference', " +
+      "'#dddddd'\nset key tmargin center horizontal\nplot $reference with lines lc '#000000' lw 1.2 title "
+      "'reference', " +
       clauses + "\n";
   return figure;
 }
