@@ -143,7 +143,8 @@ void addConvertCommand(CLI::App& program) {
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "Readings, stamps and pixels are kept; what the other format cannot hold is told. The calibration of "
+      "Readings, stamps and pixels are kept; findings name what the other format cannot hold. The "
+      "calibration of "
       "a\n"
       "folder goes into NAME.rig.yaml beside the bag, and is found there again.\n"
       "Examples:\n"

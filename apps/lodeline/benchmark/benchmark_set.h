@@ -19,7 +19,7 @@ struct SetTruth {
 };
 
 /// Describes one layout of the files of a sequence. All names are patterns of paths. {word} in a pattern
-/// stands for a word of the sequence. A pattern may begin in any folder of the set.
+/// is replaced by a word of the sequence. A pattern may begin in any folder of the set.
 struct SetLayout {
   std::vector<std::string> data;              ///< folder with mav0 or bag; none where it is made of links
   std::map<std::string, std::string> links;   ///< names in a folder with mav0 that is made, and their targets

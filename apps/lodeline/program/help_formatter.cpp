@@ -28,7 +28,7 @@ std::vector<std::string> orderedGroups(const CLI::App& command) {
   return groups;
 }
 
-/// What stands for the value of an option, without its range.
+/// Placeholder for the value of an option in help texts, such as FILE, without its range.
 std::string typeOf(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));

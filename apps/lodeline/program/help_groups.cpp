@@ -32,7 +32,7 @@ const Groups& optionGroups() {
   return groups;
 }
 
-/// What stands for the value of options that take a text.
+/// Placeholders for the values of options in help texts, by the name of the option.
 const std::map<std::string, const char*>& valueNames() {
   static const std::map<std::string, const char*> names = {
       {"output", "PATH"},   {"json", "FILE"}, {"plots", "FOLDER"},         {"config", "FILE"},
