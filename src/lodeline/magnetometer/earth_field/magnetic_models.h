@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 namespace lodeline {
 
@@ -20,24 +21,30 @@ using CoefficientTable = std::array<GaussCoefficient, 90>;
 /// Information and British Geological Survey, doi:10.25921/aqfd-sd83; public domain).
 extern const CoefficientTable kWmm2015v2Coefficients, kWmm2020Coefficients, kWmm2025Coefficients;
 
-/// International Geomagnetic Reference Field, 12th generation (IAGA; public domain), degrees up to 12. Its
-/// secular variation is the difference to the model's next epoch.
-extern const CoefficientTable kIgrf2000Coefficients, kIgrf2005Coefficients, kIgrf2010Coefficients;
+/// One coefficient of the International Geomagnetic Reference Field at each of its epochs.
+struct IgrfRow {
+  int degree;
+  int order;
+  int is_h;  ///< 0: the coefficient g of cos(order * longitude); 1: h of sin(order * longitude)
+  std::array<double, 24> value_nT;
+};
+/// Sorted by degree, then by order, g before h.
+using IgrfTable = std::array<IgrfRow, 168>;
+
+/// International Geomagnetic Reference Field, 14th generation (IAGA; doi:10.5281/zenodo.14012302; public
+/// domain) at 1900.0, 1905.0, ..., 2015.0, degrees up to 12. Between two epochs each coefficient is linear in
+/// time.
+extern const IgrfTable kIgrfCoefficients;
 
 /// A model and the five years for which it is used.
 struct MagneticModel {
   const char* name;
   double epoch;  ///< decimal year, start of the five years
-  const CoefficientTable* coefficients;
+  CoefficientTable coefficients;
 };
 constexpr double kMagneticModel_years = 5.0;
 
-inline constexpr std::array<MagneticModel, 6> kMagneticModels = {
-    {{"IGRF-12", 2000.0, &kIgrf2000Coefficients},
-     {"IGRF-12", 2005.0, &kIgrf2005Coefficients},
-     {"IGRF-12", 2010.0, &kIgrf2010Coefficients},
-     {"WMM2015v2", 2015.0, &kWmm2015v2Coefficients},
-     {"WMM2020", 2020.0, &kWmm2020Coefficients},
-     {"WMM2025", 2025.0, &kWmm2025Coefficients}}};
+/// All models in the order of their years: IGRF-14 from 1900.0 to 2015.0, then the World Magnetic Models.
+const std::vector<MagneticModel>& magneticModels();
 
 }  // namespace lodeline

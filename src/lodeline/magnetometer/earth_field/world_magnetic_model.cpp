@@ -15,11 +15,11 @@ namespace lodeline {
 namespace {
 
 void check(const GeodeticPosition& p, double year) {
-  const double first = kMagneticModels.front().epoch;
-  const double last = kMagneticModels.back().epoch + kMagneticModel_years;
+  const double first = magneticModels().front().epoch;
+  const double last = magneticModels().back().epoch + kMagneticModel_years;
   if (!(year >= first && year <= last)) {
     throw InputError(
-        fmt::format("the Earth's magnetic field is known here from {:.0f} to {:.0f} (IGRF-12, then "
+        fmt::format("the Earth's magnetic field is known here from {:.0f} to {:.0f} (IGRF-14, then "
                     "the World Magnetic Models up to 2025), not for the year {:.3f}",
                     first, last, year));
   }
@@ -37,7 +37,8 @@ void check(const GeodeticPosition& p, double year) {
 
 /// The model for a year that check() has accepted.
 const MagneticModel& modelOf(double year) {
-  const auto after = std::upper_bound(kMagneticModels.begin(), kMagneticModels.end(), year,
+  const std::vector<MagneticModel>& models = magneticModels();
+  const auto after = std::upper_bound(models.begin(), models.end(), year,
                                       [](double y, const MagneticModel& model) { return y < model.epoch; });
   return *std::prev(after);
 }
@@ -59,10 +60,10 @@ MagneticField worldMagneticField(const GeodeticPosition& p, double decimal_year)
   check(p, decimal_year);
   const MagneticModel& model = modelOf(decimal_year);
   const Vec3 geocentric_m = geocentricPosition(p);
-  const Vec3 rate = harmonicField(*model.coefficients, &GaussCoefficient::g_nT_per_year,
+  const Vec3 rate = harmonicField(model.coefficients, &GaussCoefficient::g_nT_per_year,
                                   &GaussCoefficient::h_nT_per_year, geocentric_m);
   const Vec3 at_epoch =
-      harmonicField(*model.coefficients, &GaussCoefficient::g_nT, &GaussCoefficient::h_nT, geocentric_m);
+      harmonicField(model.coefficients, &GaussCoefficient::g_nT, &GaussCoefficient::h_nT, geocentric_m);
   const Vec3 field = at_epoch + (decimal_year - model.epoch) * rate;
   const Mat3 geocentric_from_enu = geocentricFromEnu(p);
   constexpr double kTeslaPerNanotesla = 1e-9;

@@ -21,9 +21,9 @@ struct FieldElements {
 };
 FieldElements fieldElements(const Vec3& field_ENU);
 
-/// The Earth's main field from the model for the year: IGRF-12 from 2000.0, World Magnetic Model 2015
+/// The Earth's main field from the model for the year: IGRF-14 from 1900.0, World Magnetic Model 2015
 /// (version 2), 2020 and 2025, each from its year on (magnetic_models.h). Throws InputError where the year is
-/// outside 2000.0 to 2030.0. Also throws it for a latitude beyond the poles, a longitude beyond +-360, or a
+/// outside 1900.0 to 2030.0. Also throws it for a latitude beyond the poles, a longitude beyond +-360, or a
 /// height outside -10 to 850 km. The models are specified from one kilometre below to 850 km above sea level;
 /// caves and mines may be deeper.
 MagneticField worldMagneticField(const GeodeticPosition& position, double decimal_year);
