@@ -12,26 +12,38 @@
 
 namespace lodeline {
 
-/// Detects a normalized innovation squared that stays improbably large for longer than chance explains. The
-/// mean over half a second decides, with each value limited, so that no single frame can cause an alarm.
+/// Detects innovations that are improbable for longer than chance explains. Two statistics over half a second
+/// decide: the mean of the normalized innovations squared (NIS), and the NIS of the sum of the innovations.
+/// The sum finds an error that is small in each frame and has the same direction in all, as a bias has. Each
+/// innovation is limited, so that no single frame can cause an alarm.
 class InnovationWatch {
  public:
   /// Value that a correct model exceeds in less than one of 10^5 frames (chi-squared, 3 coordinates).
   static constexpr double kBeyondChance = 9.0;
 
-  void add(Time time, double nis);
+  void add(Time time, const Innovation& innovation);
+  /// Whether the last innovation or the sum of the last ones is improbable.
+  bool isBeyondChance() const { return is_beyond_chance_; }
   bool isAlarmed() const { return alarmed_since_.has_value(); }
   /// Time of the first improbable value among those that caused the alarm.
   Time alarmedSince() const { return *alarmed_since_; }
+  /// Sum of the innovations of the last half second.
+  Innovation sum() const;
+  /// Mean length of these innovations along their sum.
+  double meanLength() const { return sum().value.norm() / static_cast<double>(values_.size()); }
 
  private:
   struct Value {
     Time time;
     double nis;
+    Innovation innovation;  ///< of length zero or with a NIS up to the limit
   };
+  double meanNis() const;
+
   std::deque<Value> values_;
   std::optional<Time> alarmed_since_;
   std::optional<Time> last_beyond_chance_;
+  bool is_beyond_chance_ = false;
 };
 
 /// Compares the motion predicted by inertial readings with the motion by images in every frame
@@ -63,6 +75,9 @@ class InertialMonitor {
  private:
   bool areImagesSuspected(const MotionInnovation& innovation) const;
   void widen(const MotionInnovation& innovation, Window& window);
+  /// Enlarges the noise of the intervals in the window that caused a new alarm, and adds the sum of their
+  /// innovations to the uncertainty.
+  void widenBackwards(const InnovationWatch& watch, Window& window);
   void doubtMotion(const Vec3& position_error_W, const Vec3& rotation_error_W, const Vec3& position_W);
   void report(const MotionInnovation& innovation, Time time, const InnovationWatch& watch,
               const char* sensor);

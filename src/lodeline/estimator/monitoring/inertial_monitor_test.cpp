@@ -14,11 +14,18 @@ namespace {
 
 Time at(double time_s) { return Time::fromSeconds(100.0 + time_s); }
 
+/// Innovation with a given normalized square whose causes are new in every frame, along one of six directions
+/// in turn.
+Innovation innovation(int frame, double nis) {
+  const Vec3 direction = (frame % 2 == 0 ? 1.0 : -1.0) * Vec3::Unit(frame / 2 % 3);
+  return {std::sqrt(3.0 * nis) * direction, Mat3::Identity(), Mat3::Zero()};
+}
+
 TEST(InnovationWatch, TakesChanceForChance) {
   InnovationWatch watch;
   // Mean squares of three normal numbers, as large as one in a thousand.
   for (int i = 0; i < 1000; ++i) {
-    watch.add(at(0.05 * i), i % 4 == 0 ? 5.4 : 1.0);
+    watch.add(at(0.05 * i), innovation(i, i % 4 == 0 ? 5.4 : 1.0));
     ASSERT_FALSE(watch.isAlarmed()) << i;
   }
 }
@@ -26,7 +33,7 @@ TEST(InnovationWatch, TakesChanceForChance) {
 TEST(InnovationWatch, TakesOneWrongFrameForNoLastingContradiction) {
   InnovationWatch watch;
   for (int i = 0; i < 100; ++i) {
-    watch.add(at(0.05 * i), i == 50 ? 1e8 : 1.0);
+    watch.add(at(0.05 * i), innovation(i, i == 50 ? 1e8 : 1.0));
     ASSERT_FALSE(watch.isAlarmed()) << i;
   }
 }
@@ -35,7 +42,7 @@ TEST(InnovationWatch, RaisesAnAlarmWithinHalfASecondAndEndsItASecondAfterTheCont
   InnovationWatch watch;
   for (int i = 0; i < 200; ++i) {
     const double time_s = 0.05 * i;
-    watch.add(at(time_s), time_s >= 2.0 && time_s < 5.0 ? 20.0 : 1.0);
+    watch.add(at(time_s), innovation(i, time_s >= 2.0 && time_s < 5.0 ? 20.0 : 1.0));
     if (time_s < 2.0 || time_s > 6.0) {
       EXPECT_FALSE(watch.isAlarmed()) << time_s;
     } else if (time_s > 2.5 && time_s < 5.9) {
@@ -43,6 +50,19 @@ TEST(InnovationWatch, RaisesAnAlarmWithinHalfASecondAndEndsItASecondAfterTheCont
       EXPECT_EQ(watch.alarmedSince(), at(2.0));
     }
   }
+}
+
+// 2 sigmas in each frame are no surprise; 2 sigmas in the same direction for half a second are. Where the
+// cause is one that lasts, such as the error of a bias within its covariance, they are no surprise either.
+TEST(InnovationWatch, FindsAnErrorThatIsSmallInEachFrameAndAlwaysTheSame) {
+  InnovationWatch new_causes, lasting_causes;
+  const Vec3 value = 2.0 * Vec3(0.6, -0.8, 0.0);
+  for (int i = 0; i < 30; ++i) {
+    new_causes.add(at(0.05 * i), {value, Mat3::Identity(), Mat3::Zero()});
+    lasting_causes.add(at(0.05 * i), {value, Mat3::Zero(), Mat3::Identity()});
+  }
+  EXPECT_TRUE(new_causes.isAlarmed());
+  EXPECT_FALSE(lasting_causes.isAlarmed());
 }
 
 class InertialMonitorTest : public testing::Test {

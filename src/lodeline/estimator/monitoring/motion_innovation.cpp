@@ -29,13 +29,14 @@ ImageMotion steadyMotion(const Window& window) {
           so3::log(world_from_begin.rotation.conjugate() * world_from_end.rotation) / dt_s};
 }
 
-double normalized(const Vec3& innovation, const Mat3& covariance) {
-  return innovation.dot(covariance.ldlt().solve(innovation)) / 3.0;
-}
+/// Covariance of the predicted [dp, dtheta] relative to the frame before, world axes. `of_new`: by the noise
+/// of the readings. `of_lasting`: by the error of the state.
+struct PredictionCovariance {
+  Mat6 of_new, of_lasting;
+};
 
-/// Covariance of the predicted [dp, dtheta] relative to the frame before, world axes.
-Mat6 predictionCovariance(const Frame& before, const Preintegration& interval,
-                          const Eigen::Matrix<double, 15, 15>& known, bool is_before_placed) {
+PredictionCovariance predictionCovariance(const Frame& before, const Preintegration& interval,
+                                          const Eigen::Matrix<double, 15, 15>& known, bool is_before_placed) {
   using namespace inertial_error;
   const double dt_s = interval.dt_s();
   const Mat3 world_from_before = before.worldFromBody().rotation.toRotationMatrix();
@@ -52,11 +53,15 @@ Mat6 predictionCovariance(const Frame& before, const Preintegration& interval,
   }
   by_state.block<3, 3>(0, 6).diagonal().setConstant(dt_s);
   by_state.rightCols<6>() = by_motion * interval.biasJacobian();
-  return by_state * known * by_state.transpose() +
-         by_motion * interval.covariance().topLeftCorner<9, 9>() * by_motion.transpose();
+  return {by_motion * interval.covariance().topLeftCorner<9, 9>() * by_motion.transpose(),
+          by_state * known * by_state.transpose()};
 }
 
 }  // namespace
+
+double Innovation::nis() const {
+  return value.dot((covariance_of_new + covariance_of_lasting).ldlt().solve(value)) / 3.0;
+}
 
 std::optional<MotionInnovation> motionInnovation(Window& window, const FactorBuilder& factors,
                                                  const Eigen::Matrix<double, 15, 15>& before,
@@ -79,19 +84,20 @@ std::optional<MotionInnovation> motionInnovation(Window& window, const FactorBui
   innovation.world_from_body = seen->world_from_body;
   const auto from_prediction = perturbationBetween(predicted, seen->world_from_body);
   const auto from_steady = perturbationBetween(starts[1], seen->world_from_body);
-  innovation.position_W = from_prediction.head<3>();
-  innovation.rotation_W = from_prediction.tail<3>();
   innovation.position_from_steady_W = from_steady.head<3>();
   innovation.rotation_from_steady_W = from_steady.tail<3>();
 
   const auto step = perturbationBetween(previous.worldFromBody(), seen->world_from_body);
+  PredictionCovariance covariance = predictionCovariance(previous, interval, before, is_before_placed);
   // The frame before has a pose by an image of about the same accuracy.
-  Mat6 covariance =
-      predictionCovariance(previous, interval, before, is_before_placed) + 2.0 * seen->covariance;
-  covariance.diagonal().head<3>().array() += kWayError * kWayError * step.head<3>().squaredNorm();
-  covariance.diagonal().tail<3>().array() += kTurnError * kTurnError * step.tail<3>().squaredNorm();
-  innovation.position_nis = normalized(innovation.position_W, covariance.topLeftCorner<3, 3>());
-  innovation.rotation_nis = normalized(innovation.rotation_W, covariance.bottomRightCorner<3, 3>());
+  covariance.of_new += 2.0 * seen->covariance;
+  covariance.of_lasting.diagonal().head<3>().array() += kWayError * kWayError * step.head<3>().squaredNorm();
+  covariance.of_lasting.diagonal().tail<3>().array() +=
+      kTurnError * kTurnError * step.tail<3>().squaredNorm();
+  innovation.position_W = {from_prediction.head<3>(), covariance.of_new.topLeftCorner<3, 3>(),
+                           covariance.of_lasting.topLeftCorner<3, 3>()};
+  innovation.rotation_W = {from_prediction.tail<3>(), covariance.of_new.bottomRightCorner<3, 3>(),
+                           covariance.of_lasting.bottomRightCorner<3, 3>()};
   return innovation;
 }
 

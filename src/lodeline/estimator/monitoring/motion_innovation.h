@@ -8,12 +8,20 @@
 
 namespace lodeline {
 
-/// Difference of the newest frame's pose by images from two predictions of it, world axes.
+/// A difference of two measurements with its covariance. Some causes are new in every frame, such as the
+/// noise of an image; others last over many frames, such as the error of a bias or of the scale.
+struct Innovation {
+  Vec3 value = Vec3::Zero();
+  Mat3 covariance_of_new = Mat3::Zero(), covariance_of_lasting = Mat3::Identity();
+
+  /// Normalized innovation squared, per dimension: 1 on average where the covariances are correct.
+  double nis() const;
+};
+
+/// Difference of the newest frame's pose by images from two predictions of it.
 struct MotionInnovation {
-  /// Position (m) and rotation (rad): images minus inertial prediction.
-  Vec3 position_W = Vec3::Zero(), rotation_W = Vec3::Zero();
-  /// Normalized innovation squared, per dimension: 1 on average where both covariances are correct.
-  double position_nis = 0.0, rotation_nis = 0.0;
+  /// Images minus inertial prediction, world axes: position in m, rotation in rad.
+  Innovation position_W, rotation_W;
   /// Images minus a body that keeps the mean velocity and rate between the two frames before: the
   /// acceleration as images alone show it.
   Vec3 position_from_steady_W = Vec3::Zero(), rotation_from_steady_W = Vec3::Zero();

@@ -62,7 +62,9 @@ bool StereoMonitor::judge(const FramePacket& packet, const std::vector<cv::Mat>&
     if (packet.images[i + 1].empty()) continue;
     if (!isDoubtful(partner, counts[0], counts[i + 1])) {
       constexpr double kMemory = 20.0;
+      constexpr int kConfirms = 10;
       partner.frames += 1;
+      if (i == 0 && partner.frames >= kConfirms) is_exchange_on_trial_ = false;
       const double share = static_cast<double>(counts[i + 1]) / std::max(1, counts[0]);
       partner.usual_share += (share - partner.usual_share) / std::min<double>(partner.frames, kMemory);
       continue;
@@ -91,36 +93,48 @@ std::optional<StereoSurvey> StereoMonitor::look(const FramePacket& packet, const
   return survey;
 }
 
+bool StereoMonitor::exchange(const FramePacket& packet, const StereoSurvey& survey) {
+  Partner& partner = partners_.front();
+  is_exchanged_ = !is_exchanged_;
+  is_exchange_on_trial_ = true;
+  partner.contradictions = partner.exchanges = 0;
+  partner.usual_share = 0.0;
+  partner.frames = 0;
+  diagnostics_->report(
+      Severity::Serious, "cameras_swapped",
+      fmt::format(
+          "{} and {}: at {} (stamp {} ns) left and right are exchanged: {:.0f} % of the points that both see "
+          "contradict the calibration, {:.0f} % fit if each image is the other camera's; used so from there "
+          "on. Look at the connectors, the order of the topics or folders, and the calibration files; "
+          "`lodeline inspect` tells more",
+          rig_.cameras[0].name, partner.name, clockTime(packet.time - *first_time_),
+          packet.image_stamp.nanoseconds(), 100.0 * (1.0 - survey.agreement), 100.0 * survey.best_agreement));
+  return true;
+}
+
 bool StereoMonitor::conclude(const FramePacket& packet, const StereoSurvey& survey, size_t camera) {
   constexpr double kContradicts = 0.3, kFits = 0.7;
   constexpr int kSure = 3;
   Partner& partner = partners_[camera - 1];
   const bool contradicts = survey.agreement < kContradicts;
-  const bool can_exchange =
-      camera == 1 && std::find(survey.fitting.begin(), survey.fitting.end(),
-                               StereoHypothesis::ImagesExchanged) != survey.fitting.end();
-  if (contradicts && survey.best_agreement > kFits && can_exchange) {
+  const bool looks_exchanged = contradicts && survey.best_agreement > kFits && camera == 1 &&
+                               std::find(survey.fitting.begin(), survey.fitting.end(),
+                                         StereoHypothesis::ImagesExchanged) != survey.fitting.end();
+  partner.exchanges = looks_exchanged ? partner.exchanges + 1 : 0;
+  if (partner.exchanges >= (was_exchange_wrong_ ? kSure : 1)) return exchange(packet, survey);
+  if (contradicts && camera == 1 && is_exchange_on_trial_) {
     is_exchanged_ = !is_exchanged_;
-    partner.contradictions = 0;
-    partner.usual_share = 0.0;
-    partner.frames = 0;
-    diagnostics_->report(
-        Severity::Serious, "cameras_swapped",
-        fmt::format(
-            "{} and {}: at {} (stamp {} ns) left and right are exchanged: {:.0f} % of the points that both "
-            "see "
-            "contradict the calibration, {:.0f} % fit if each image is the other camera's; used so from "
-            "there "
-            "on. Look at the connectors, the order of the topics or folders, and the calibration files; "
-            "`lodeline inspect` tells more",
-            rig_.cameras[0].name, partner.name, clockTime(packet.time - *first_time_),
-            packet.image_stamp.nanoseconds(), 100.0 * (1.0 - survey.agreement),
-            100.0 * survey.best_agreement));
+    is_exchange_on_trial_ = false;
+    was_exchange_wrong_ = true;
+    partner.contradictions = 1;
     return true;
   }
   if (!contradicts) {
     partner.contradictions = 0;
-    if (survey.agreement > kFits) partner.is_left_out = false;
+    if (survey.agreement > kFits) {
+      partner.is_left_out = false;
+      is_exchange_on_trial_ = is_exchange_on_trial_ && camera != 1;
+    }
     partner.wait_s = std::min(kLongestWait_s, 2.0 * partner.wait_s);
     return false;
   }

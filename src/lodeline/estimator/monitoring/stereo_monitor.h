@@ -16,7 +16,9 @@ namespace lodeline {
 /// Checks whether the images of the secondary cameras match those of camera 0. Where few points are matched
 /// in a secondary camera, or many fewer than before, a pair of images is compared in detail (compareStereo).
 /// If left and right are exchanged, from the start or from some time on, the monitor reverses the exchange.
-/// If the images fit no arrangement of the pair, the camera is left out until they fit again.
+/// Images of different moments can look exchanged while the rig turns. So a reversal that the next comparison
+/// contradicts is taken back, and the next one needs three comparisons. If the images fit no arrangement of
+/// the pair, the camera is left out until they fit again.
 class StereoMonitor {
  public:
   /// `diagnostics` must outlive the monitor.
@@ -45,6 +47,7 @@ class StereoMonitor {
     int frames = 0;            ///< number of frames in that mean
     bool is_left_out = false;
     int contradictions = 0;  ///< in successive comparisons
+    int exchanges = 0;       ///< successive comparisons in which the cameras look exchanged
     std::optional<Time> last_look;
     double wait_s = 0.0;  ///< until the next comparison
     std::vector<PointPair> points;
@@ -59,12 +62,15 @@ class StereoMonitor {
   std::optional<StereoSurvey> look(const FramePacket& packet, const std::vector<cv::Mat>& images,
                                    size_t camera);
   bool conclude(const FramePacket& packet, const StereoSurvey& survey, size_t camera);
+  bool exchange(const FramePacket& packet, const StereoSurvey& survey);
   void followSpan(Time time, bool is_alone, Partner* partner);
   void close(Partner* partner);
 
   Rig rig_;
-  std::vector<Partner> partners_;  ///< camera 1, 2, ...
-  bool is_exchanged_ = false;      ///< the first two cameras
+  std::vector<Partner> partners_;      ///< camera 1, 2, ...
+  bool is_exchanged_ = false;          ///< the first two cameras
+  bool is_exchange_on_trial_ = false;  ///< no comparison has confirmed it yet
+  bool was_exchange_wrong_ = false;
   std::optional<Time> first_time_;
   double watched_s_ = 0.0;
   Diagnostics* diagnostics_;
