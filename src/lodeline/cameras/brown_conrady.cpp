@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,6 +21,25 @@ BrownConrady::BrownConrady(const std::vector<double>& parameters, size_t first) 
   max_radius_ = findMaxRadius();
 }
 
+namespace {
+
+/// Unit vectors all around. The tangential part depends on the direction only through its sine and cosine, so
+/// coarse steps suffice.
+const std::array<Vec2, 36>& directions() {
+  static const std::array<Vec2, 36> all = [] {
+    std::array<Vec2, 36> vectors;
+    for (size_t i = 0; i < vectors.size(); ++i) {
+      const double phi =
+          2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(vectors.size());
+      vectors[i] = Vec2(std::cos(phi), std::sin(phi));
+    }
+    return vectors;
+  }();
+  return all;
+}
+
+}  // namespace
+
 bool BrownConrady::isRegular(double radius) const {
   const double r2 = radius * radius;
   double slope = 0.0;
@@ -27,12 +47,9 @@ bool BrownConrady::isRegular(double radius) const {
   // A negative factor means a point beyond a pole of the rational model.
   if (!(factor > 0.0) || !(factor + 2.0 * r2 * slope > 0.0)) return false;
   if (k_[2] == 0.0 && k_[3] == 0.0) return true;
-  // The tangential part depends on the direction only through its sine and cosine, so coarse steps suffice.
-  constexpr int kDirections = 36;
-  for (int i = 0; i < kDirections; ++i) {
-    const double phi = 2.0 * std::numbers::pi * i / kDirections;
+  for (const Vec2& direction : directions()) {
     Mat2 jacobian;
-    distort(radius * Vec2(std::cos(phi), std::sin(phi)), &jacobian);
+    distort(radius * direction, &jacobian);
     if (!(jacobian.determinant() > 0.0)) return false;
   }
   return true;

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
+#include "lodeline/cameras/camera.h"
 #include "lodeline/estimator/trials/dive_consistency.h"
 #include "lodeline/estimator/trials/scene.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
@@ -100,15 +103,25 @@ CameraCalibrationOptions calibrationOfWrongFiles(bool lenses) {
   return options;
 }
 
-/// The scene's tracks as interpreted with the cameras of `files`.
-FrameTracks readWith(const Rig& files, const Rig& truth, FrameTracks tracks) {
-  for (FeatureObservation& observation : tracks.observations) {
-    const auto camera = static_cast<size_t>(observation.camera);
-    const Vec2 pixel = *makeCamera(truth.cameras[camera])->project(observation.bearing_C);
-    observation.bearing_C = *makeCamera(files.cameras[camera])->unproject(pixel);
+/// Interprets the tracks of a scene with the cameras of other files.
+class TracksReadWith {
+ public:
+  TracksReadWith(const Rig& files, const Rig& truth) {
+    for (const CameraCalibration& camera : files.cameras) files_.push_back(makeCamera(camera));
+    for (const CameraCalibration& camera : truth.cameras) truth_.push_back(makeCamera(camera));
   }
-  return tracks;
-}
+
+  FrameTracks operator()(FrameTracks tracks) const {
+    for (FeatureObservation& observation : tracks.observations) {
+      const auto camera = static_cast<size_t>(observation.camera);
+      observation.bearing_C = *files_[camera]->unproject(*truth_[camera]->project(observation.bearing_C));
+    }
+    return tracks;
+  }
+
+ private:
+  std::vector<std::shared_ptr<const Camera>> files_, truth_;
+};
 
 /// Mean squared distance from the truth over the whole scene; `last` receives the last estimate.
 double squaredPositionError_m2(bool lenses, uint64_t seed, const IntrinsicsCorrection& lens,
@@ -127,8 +140,9 @@ double squaredPositionError_m2(bool lenses, uint64_t seed, const IntrinsicsCorre
   TruthComparison truth;
   double squares = 0.0;
   int frames = 0;
+  const TracksReadWith read(files, scene.rig());
   while (const auto frame = scene.next()) {
-    *last = estimator.add(readWith(files, scene.rig(), frame->tracks), frame->imu);
+    *last = estimator.add(read(frame->tracks), frame->imu);
     const Comparison compared = truth.compare(*frame, *last, estimator);
     if (!compared.initialized()) continue;
     squares += compared.positionError() * compared.positionError();
