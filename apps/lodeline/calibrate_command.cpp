@@ -160,7 +160,7 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
                       "calibration file, for `lodeline run --mag-calibration`");
   command->add_option(
       "--unit", arguments->unit,
-      "of a file without header: T, uT, nT, mG, G or raw; told by the field's size where not given");
+      "of a file without header: T, uT, nT, mG, G or raw; found by the field's size where not given");
   addRecordingPart(&arguments->part, command);
   addSite(&arguments->site, "the scale by the Earth's field", command);
   command->add_option(

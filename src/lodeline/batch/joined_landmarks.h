@@ -26,7 +26,7 @@ struct JoinedLandmarks {
 
 /// Joins the window's tracks by links in their order, with the present poses. Two parts become one landmark
 /// where the landmark of all their observations agrees with at least half of the observations of each.
-/// Otherwise both stay as they are: a wrong link costs no observation. Two parts that are seen in one image
+/// Otherwise both stay unchanged: a wrong link costs no observation. Two parts that are seen in one image
 /// are two points. A joined landmark has the number of its oldest part; the other parts' tracks are removed.
 ///
 /// `loosening` > 1: at first the loop is open by more than the errors of images. The observations of all

@@ -98,7 +98,7 @@ class Estimator {
   LandmarkLinearizationCache linearization_cache_;
   StationaryDetector rest_;
   std::unique_ptr<InertialMonitor> monitor_;
-  Eigen::Matrix<double, 15, 15> known_;  ///< of the newest frame, before doubts that no state stands for
+  Eigen::Matrix<double, 15, 15> known_;  ///< of the newest frame, before doubts that no state represents
   bool rests_ = false;                   ///< at the newest frame
   InertialCovariancePropagation inertial_covariance_propagation_;
   CovarianceInflation covariance_inflation_;

@@ -110,7 +110,7 @@ DiagnosticStatus NodeStatus::sensorsStatus(const std::vector<SensorTraffic>& tra
     status.message = fmt::format("{} messages lost or of no use", losses - told_losses_);
     if (!problem.empty()) status.message += "; " + problem;
   } else if (!problem.empty() || !silence.empty()) {
-    // A sensor that has never been heard may be silent for a good reason; a fault in the past is told.
+    // A sensor that has never been heard may be silent for a good reason; a fault in the past is reported.
     status.message = problem.empty() ? silence : problem;
   }
   told_losses_ = losses;

@@ -28,7 +28,7 @@ class LoopLinker {
   /// Tells that an observation of a track of the record at a state belongs to a piece, in order of time.
   void add(TrackId track, TrackId piece, size_t state);
 
-  /// The links, most votes first. Each observation without a track of its own becomes a new piece in
+  /// The links, most votes first. Each observation without a track becomes a new piece in
   /// `pieces`, unless its time is not that of a state. Loop observations of unknown tracks are left out.
   /// Throws InputError where an observation has no such camera or no direction.
   std::vector<LoopLink> link(const std::vector<LoopObservation>& loops,

@@ -28,7 +28,7 @@ enum class DvlStatus {
 };
 const char* toString(DvlStatus status);
 
-/// What the DVL told of a frame.
+/// Result of the DVL for a frame.
 struct DvlEstimate {
   DvlStatus status = DvlStatus::Off;
   int beams = 0;                    ///< beams (or axes) with lock since the frame before

@@ -22,7 +22,7 @@ TEST(WaterDensityPrior, LeaveAloneWhatIsNone) {
   const ScalarPrior brackish = amongWaterDensities({1.0125, 0.001});
   EXPECT_NEAR(brackish.value, 1.0125, 4e-4);
   EXPECT_NEAR(brackish.sigma, 0.001, 1e-4);
-  EXPECT_NEAR(amongWaterDensities({0.94, 0.002}).value, 0.94, 1e-4) << "a gauge with a scale of its own";
+  EXPECT_NEAR(amongWaterDensities({0.94, 0.002}).value, 0.94, 1e-4) << "a gauge with a wrong scale";
 }
 
 TEST(WaterDensityPrior, SayNothingBetweenTwo) {
@@ -44,9 +44,10 @@ TEST(WaterDensityPrior, LikelihoodTurnsWhatWasSeenIntoWhatIsKnownAndBack) {
   const auto likelihood = likelihoodBetween(seen, known);
   ASSERT_TRUE(likelihood);
   EXPECT_LT(likelihood->value, seen.value);
-  const double seen_information = std::pow(seen.sigma, -2), told = std::pow(likelihood->sigma, -2);
-  EXPECT_NEAR(std::pow(seen_information + told, -0.5), known.sigma, 1e-12);
-  EXPECT_NEAR((seen_information * seen.value + told * likelihood->value) / (seen_information + told),
+  const double seen_information = std::pow(seen.sigma, -2), by_likelihood = std::pow(likelihood->sigma, -2);
+  EXPECT_NEAR(std::pow(seen_information + by_likelihood, -0.5), known.sigma, 1e-12);
+  EXPECT_NEAR((seen_information * seen.value + by_likelihood * likelihood->value) /
+                  (seen_information + by_likelihood),
               known.value, 1e-12);
   const auto back = without(*likelihood, known);
   ASSERT_TRUE(back);

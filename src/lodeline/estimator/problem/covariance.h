@@ -9,7 +9,7 @@
 
 namespace lodeline {
 
-/// Variance that stands for "unknown": a sigma of a million metres, radians and so on.
+/// Variance that means "unknown": a sigma of a million metres, radians and so on.
 constexpr double kUnknownVariance = 1e12;
 
 /// Whether all variances are positive, finite and known.

@@ -23,7 +23,7 @@ class FactorBuilder {
   /// Inertial term between `frame` and the frame before it.
   Factor inertial(const Window& window, Frame& before, Frame& frame) const;
   /// Priors of the axes of gyroscope and accelerometer, where they are estimated. A Cauchy loss on all nine
-  /// together stands for a calibrated sensor with heavy tails, and a second prior for the worst sensors on
+  /// together describes a calibrated sensor with heavy tails, and a second prior for the worst sensors on
   /// the market. They are not part of the marginalization prior, which could not represent their shape.
   std::vector<Factor> imuAxes(const Window& window) const;
   /// Prior of a state beside all measurements (ParameterBlock::priors), if there is one.

@@ -53,7 +53,7 @@ class SensorFusion {
   /// Adds its own kind of estimate of the newest frame.
   virtual void report(const Window& window, SensorEstimates* estimates) const = 0;
 
-  /// What files and summaries say of the newest frame; empty where they have code of their own, and without
+  /// What files and summaries say of the newest frame; empty where they have separate code, and without
   /// the sensor. The columns never change.
   virtual std::optional<SensorRow> row() const { return std::nullopt; }
 

@@ -22,7 +22,7 @@ enum class SonarStatus {
 };
 const char* toString(SonarStatus status);
 
-/// What a sonar told of a frame; each kind of sonar has a type of its own.
+/// Result of a sonar for a frame; each kind of sonar has its type.
 template <typename Sample>
 struct EchoEstimate {
   SonarStatus status = SonarStatus::Off;

@@ -215,7 +215,7 @@ TEST(InertialStates, ClaimLessOfWhatWasPerhapsNeverCalibrated) {
   EXPECT_GT(doubted.covariance(4, 4), std::pow(kUncalibrated, 2));
   EXPECT_GT(in_doubt.first_heading_variance_rad2, 1.02 * taken_for_calibrated.first_heading_variance_rad2);
   EXPECT_LT(doubted.covariance(5, 5) - in_doubt.variance_by_intrinsics_rad2, 1.02 * believed.covariance(5, 5))
-      << "turns have told by now";
+      << "turns have shown the axes by now";
   EXPECT_EQ(doubted.sensors.of<MagnetometerEstimate>().heading_sigma_rad,
             std::sqrt(doubted.covariance(5, 5)));
 }

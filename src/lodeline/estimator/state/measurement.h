@@ -66,7 +66,7 @@ class Measurement {
   virtual bool isForBatch() const { return true; }
   /// Whether it asks for a state of the batch solution before the usual interval has passed.
   virtual bool wantsBatchState() const { return false; }
-  /// The measurement that stands for `count` measurements, which the run took for independent.
+  /// The measurement that replaces `count` measurements, which the run took for independent.
   virtual std::shared_ptr<const Measurement> weighted(int count) const = 0;
 };
 

@@ -113,7 +113,7 @@ TEST_F(ParameterBlockTest, WhatItWasToldCanBeTakenBack) {
   EXPECT_LT(relativeDifference(taken_back.newest(), without.newest()), 1e-6);
   EXPECT_LT(relativeDifference(taken_back.between(vector, vector), without.between(vector, vector)), 1e-6);
   EXPECT_TRUE(taken_back.between(pose, vector).isApprox(without.between(pose, vector), 1e-6));
-  EXPECT_GT(relativeDifference(with.newest(), without.newest()), 0.01) << "it told nothing";
+  EXPECT_GT(relativeDifference(with.newest(), without.newest()), 0.01) << "it added no information";
   EXPECT_LT(relativeDifference(with.without(vector, -information).newest(), with.newest()), 1e-12);
 }
 

@@ -28,7 +28,7 @@ using FrameId = int64_t;
 using PoseBlock = std::array<double, kPoseSize>;
 using MotionBlock = std::array<double, kMotionSize>;
 
-/// Pose of a frame without a state of its own: the keyframes between which it is interpolated.
+/// Pose of a frame without a state: the keyframes between which it is interpolated.
 struct Interpolated {
   FrameId before = 0, after = 0;
   PoseInterpolation between;

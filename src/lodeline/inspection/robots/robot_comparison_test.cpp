@@ -48,7 +48,7 @@ DvlCalibration dvlCalibration() {
   return dvl;
 }
 
-/// Pings at 5 Hz; `axes`: of the velocities in body axes as they are recorded; `delay_s`: of their stamps.
+/// Pings at 5 Hz; `axes`: of the velocities in body axes as recorded; `delay_s`: of their stamps.
 std::vector<DvlSample> pings(const Mat3& axes, double delay_s, bool has_beams) {
   const DvlCalibration dvl = dvlCalibration();
   std::vector<DvlSample> result;

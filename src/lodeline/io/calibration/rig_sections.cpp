@@ -121,7 +121,7 @@ class SectionCollector {
                          fmt::format("{}: read as {}: {}", file.string(), describe(kind), sensors));
   }
 
-  /// The name (number) of a camera with a file of its own.
+  /// The name (number) of a camera with a separate file.
   std::string cameraName(const std::filesystem::path& file, const YAML::Node& root) {
     const int place = single_cameras_++;
     std::vector<std::string> hints;

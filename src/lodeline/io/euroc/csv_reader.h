@@ -73,7 +73,7 @@ class CsvReader {
             std::optional<PlausibleRate> rate = {});
   CsvReader(std::unique_ptr<ByteSource> bytes, const std::filesystem::path& file, CsvContent content,
             Diagnostics* diagnostics);
-  /// Reads a table with a header of its own; throws InputError where the header is missing.
+  /// Reads a table with its header; throws InputError where the header is missing.
   CsvReader(const std::filesystem::path& file, const CsvLayout& layout, Diagnostics* diagnostics,
             std::optional<PlausibleRate> rate = {});
   /// Reads `number_count` numbers after the stamp, in the order of the file.

@@ -159,7 +159,7 @@ std::optional<Calibration> settledOptional(const EurocLayout& layout, const char
   return calibration;
 }
 
-/// Reads the sensors whose tables have several rows for a reading, or columns with names of their own.
+/// Reads the sensors whose tables have several rows for a reading, or columns with other names.
 void settleRobotSensors(const EurocLayout& layout, const Rig& known, Rig* rig, Diagnostics* diagnostics) {
   const size_t beams = known.dvl.value_or(DvlCalibration()).beams_D.size();
   const auto dvlStart = [&](const std::filesystem::path& csv) {

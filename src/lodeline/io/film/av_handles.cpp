@@ -9,7 +9,7 @@
 namespace lodeline::av {
 namespace {
 
-/// Faults are told by findings; the libraries would print them too.
+/// Findings report the faults; the libraries would print them too.
 void silence() {
   static std::once_flag once;
   std::call_once(once, [] { av_log_set_level(AV_LOG_QUIET); });

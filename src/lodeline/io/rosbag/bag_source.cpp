@@ -235,7 +235,7 @@ std::optional<PendingImage> BagSource::nextImage(size_t camera) {
         return image;
       }
     } catch (const wire::Reader::CutOff&) {
-      // Told when the image is loaded.
+      // Reported when the image is loaded.
     }
   }
   std::optional<GreyRange>& range = grey_ranges_[camera];

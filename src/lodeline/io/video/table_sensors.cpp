@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMicrotesla = 1e-6;
 
-/// The first stamps of a sensor from a reader of its own.
+/// The first stamps of a sensor from a separate reader.
 template <typename Next>
 std::vector<Time> firstStamps(const Next& next) {
   std::vector<Time> stamps;

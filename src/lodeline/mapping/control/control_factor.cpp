@@ -8,7 +8,7 @@
 namespace lodeline {
 namespace {
 
-/// Tolerance at the ends of a dive, within which the first or last keyframe stands for the visit.
+/// Tolerance at the ends of a dive, within which the first or last keyframe represents the visit.
 constexpr double kEdge_s = 2.0;
 
 struct Neighbours {

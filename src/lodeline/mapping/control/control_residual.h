@@ -22,7 +22,7 @@ struct ControlPointResidual {
   Vec3 sigma_m = Vec3::Zero();  ///< one sigma of that by statement, observation and pose
   double chi_squared = 0.0;     ///< 3 degrees of freedom
   bool is_blunder = false;      ///< beyond kControlQuantile
-  /// Where the position is unknown: the keyframe whose observation stands for it.
+  /// Where the position is unknown: the keyframe whose observation replaces it.
   std::optional<KeyframeId> reference_keyframe;
 };
 
@@ -35,7 +35,7 @@ using SolvedPoses = std::function<std::optional<SolvedPose>(KeyframeId)>;
 ///
 /// The point of an observation is p = t + R q with the pose (R, t) and the position q in the body. Its
 /// covariance is J P J^T + R Q R^T with J = [I, -[R q]x]; that of a stated position is added. Where the
-/// position is unknown, the observation that agrees best with all others stands for it.
+/// position is unknown, the observation that agrees best with all others replaces it.
 std::vector<ControlPointResidual> controlResiduals(std::span<const ControlFactor> factors,
                                                    const SolvedPoses& poses);
 

@@ -11,7 +11,7 @@ namespace lodeline {
 ///
 /// Loops are taken in batches of falling support: the number of neighbouring loops that agree with a loop
 /// less that of those that do not (neighbouringLoops()). Each passes a gate before it is used. Its residual r
-/// at the present solution must lie within the chi-squared limit of its own covariance R and the covariance P
+/// at the present solution must lie within the chi-squared limit of its covariance R and the covariance P
 /// of the prediction: r^T (R + P)^-1 r. After a batch the graph is solved with graduated weights over what
 /// passed, and what then contradicts is taken out. Control points come last. Refused loops are tried again
 /// until none passes.

@@ -40,8 +40,8 @@ std::map<std::string, std::string> chooseLiveTopics(const RigFile& rig_file,
   }
   std::map<std::string, std::string> topics;
   for (const std::string& sensor : sensors) {
-    if (const auto told = named.find(sensor); told != named.end()) {
-      topics[sensor] = told->second;
+    if (const auto given = named.find(sensor); given != named.end()) {
+      topics[sensor] = given->second;
     } else if (const auto known = rig_file.topics.find(sensor); known != rig_file.topics.end()) {
       topics[sensor] = known->second;
     } else if (sensor == kImu || isCameraName(sensor)) {

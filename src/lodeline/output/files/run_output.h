@@ -24,7 +24,7 @@ class RunOutput {
   /// The folder must exist. Throws InputError where it cannot be written to, UsageError for a bad option.
   RunOutput(const std::filesystem::path& folder, const Estimator& estimator, const RunOutputOptions& options);
 
-  /// To be called after each packet with its results; `estimate` is null where it has no stamp of its own.
+  /// To be called after each packet with its results; `estimate` is null where it has no stamp.
   /// Returns the landmarks that left the window and were written. Throws InputError where writing fails.
   std::vector<MapPoint> write(const FramePacket& packet, const FrameEstimate* estimate,
                               const std::optional<AttitudeEstimate>& attitude, PacketOdometry* odometry);

@@ -30,7 +30,7 @@ void append(fmt::memory_buffer& line, const Vec3& v) {
 constexpr const char* kAttitudeHeader =
     ",attitude_q_w,attitude_q_x,attitude_q_y,attitude_q_z,attitude_sigma_heading [rad],attitude_status";
 
-/// Standard deviation of a variance; for an invalid variance, the sigma that stands for "unknown". nan stays
+/// Standard deviation of a variance; for an invalid variance, the sigma that means "unknown". nan stays
 /// nan.
 double sigma(double variance) { return std::sqrt(variance <= 0.0 ? kUnknownVariance : variance); }
 

@@ -99,7 +99,7 @@ void turnCovariances(const WorldTurn& turn, Time time, const Vec3& position_W, c
 
 void turnState(const WorldTurn& turn, StateRow* row) {
   const Vec3 position_W = turn.apply(row->vector(kPosition));
-  if (!position_W.allFinite()) return;  // of the attitude filter, which has a north of its own
+  if (!position_W.allFinite()) return;  // of the attitude filter, which has another north
   const Vec3 velocity_W = turn.apply(row->vector(kVelocity));
   row->setVector(kPosition, position_W);
   row->setVector(kVelocity, velocity_W);

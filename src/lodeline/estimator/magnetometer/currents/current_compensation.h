@@ -17,7 +17,7 @@ namespace lodeline {
 
 /// What is done about the currents in a frame.
 enum class CurrentStatus {
-  NoData,       ///< no current reading yet; readings of the magnetometer are used as they are
+  NoData,       ///< no current reading yet; readings of the magnetometer are used unchanged
   Missing,      ///< the currents of these readings are unknown (a gap): they are not used
   Compensated,  ///< by the calibration
   Held,         ///< the same or Learned, with the last currents before the readings, and a wider sigma

@@ -20,7 +20,7 @@ class BagWriter {
   /// 1's serialization. Throws InputError for a time that the bag cannot represent.
   virtual void write(const std::string& topic, const std::string& type, Time received,
                      wire::Bytes message) = 0;
-  /// Whether messages of a connection can be written as they are stored in another bag.
+  /// Whether messages of a connection can be written in the form in which another bag stores them.
   virtual bool takesStored(const BagConnection& connection) const = 0;
   /// Writes a message as stored, for a connection that takesStored() accepts.
   virtual void writeStored(const BagConnection& connection, Time received, wire::Bytes message) = 0;

@@ -13,7 +13,7 @@ namespace lodeline {
 /// "sensor_msgs/msg/Imu" for "sensor_msgs/Imu".
 std::string ros2TypeName(const std::string& type);
 
-/// Whether messages of a connection can be copied to a bag of ROS 2 as they are.
+/// Whether messages of a connection can be copied to a bag of ROS 2 unchanged.
 bool isStoredRos2(const BagConnection& connection);
 
 /// A topic of a bag of ROS 2 that is written.

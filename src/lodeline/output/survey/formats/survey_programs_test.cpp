@@ -171,7 +171,7 @@ TEST_F(SurveyPrograms, UseTheUtmZoneWhereTherionCannotUseTheGrid) {
   LODELINE_NEEDS_PROGRAM("therion", "therion");
   DiveMapOptions options = devilsEye();
   options.entrance = GeodeticPosition{6.5, -1.0, 200.0};
-  options.crs = "EPSG:2136";  // Ghana's grid in feet of its own
+  options.crs = "EPSG:2136";  // Ghana's grid in its national foot
   const DiveMap map = write(test::windingDive(), options);
   expectAt(cavern(map.name), map);
   options.crs = "auto";

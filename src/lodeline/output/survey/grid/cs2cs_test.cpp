@@ -40,7 +40,7 @@ const Case kCases[] = {{"EPSG:6372", 20.32, -87.39, true},  // Mexico, ITRF2008
                        {"EPSG:28354", -37.8, 140.8},        // Australia
                        {"EPSG:32755", -37.72, 142.9},       // south of the equator, UTM
                        {"EPSG:31983", -23.5, -45.2},        // Brazil
-                       {"EPSG:2136", 6.5, -1.0},            // Ghana, a foot of its own
+                       {"EPSG:2136", 6.5, -1.0},            // Ghana, a national foot
                        {"EPSG:5041", 88.0, 30.0},           // UPS north, easting first
                        {"EPSG:32661", 86.0, -70.0, true},   // UPS north, northing first
                        {"EPSG:5042", -84.5, 120.0},         // UPS south

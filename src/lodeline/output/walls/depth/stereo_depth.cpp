@@ -21,7 +21,7 @@ cv::Mat textureOf(const cv::Mat& grey) {
 
 namespace {
 
-/// A matcher keeps buffers, so each thread needs one of its own.
+/// A matcher keeps buffers, so each thread needs one.
 cv::Ptr<cv::StereoSGBM> makeMatcher(const RectifiedView& view, const DepthOptions& options) {
   constexpr int kBlock_px = 5, kSmall = 8 * kBlock_px * kBlock_px, kLarge = 4 * kSmall;
   constexpr int kSpeck_px = 150, kStep = 2, kUnique_percent = 8, kBack_px = 1, kContrast = 31;

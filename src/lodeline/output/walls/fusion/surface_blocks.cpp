@@ -55,7 +55,7 @@ std::vector<DepthKeyframe> keyframesAt(const Tile& tile, const DepthKeyframes& i
 
 std::optional<std::vector<Eigen::Vector3i>> surfaceBlocks(const Tile& tile, const DepthKeyframes& input,
                                                           const FusionOptions& options) {
-  // Single blocks of particles must not take the memory that the limit stands for.
+  // Single blocks of particles must not take the memory that the limit allows.
   const size_t most_touched = 8 * options.max_blocks;
   std::map<Block, int> views;
   for (const DepthKeyframe& keyframe : keyframesAt(tile, input, options)) {
