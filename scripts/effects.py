@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Measures what each effect of the simulator costs the estimator.
 
-Renders one dive with the effects of `clean`, the same with each further effect alone, and with all of them together, in
-stereo. Runs `lodeline run` on each with both cameras and with one, and prints a table.
+Renders dives with the effects of `clean`, the same with each further effect alone, and with all of them together, in
+stereo. Runs `lodeline run` on each with both cameras and with one, and prints a table. With several seeds, drift, scale and
+position are root mean squares, and the other figures are those of all poses together.
 
-    effects.py WORK [--program build/release/bin/lodeline] [--only EFFECT ...] [--seconds S] [--markdown FILE]
+    effects.py WORK [--program build/release/bin/lodeline] [--only EFFECT ...] [--seeds N] [--seconds S] [--markdown FILE]
 
 WORK keeps rendered dives and finished runs; a second call goes on where the first one ended. `--only clean all` measures the
 dive without further effects and with all of them.
@@ -21,7 +22,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-SCENARIO, SEED = "demo", 4001
+SCENARIO, FIRST_SEED = "demo", 4001
 COLUMNS = ["effect", "cameras", "heading drift, °/100 m", "scale error, %", "position rms, % of path",
            "position within 3 σ, %", "heading within 3 σ, %", "σ / error, position", "σ / error, heading"]
 # Effects of a vehicle or a wreck of steel, which the scenario does not have.
@@ -51,13 +52,13 @@ def cases(program):
     return found
 
 
-def render(program, folder, options, arguments):
+def render(program, folder, seed, options, arguments):
     if (folder / "finished").exists():
         return
     shutil.rmtree(folder, ignore_errors=True)
     print("rendering", folder.name, flush=True)
     call([program, "simulate", SCENARIO, "--seconds", arguments.seconds, "--width", arguments.width, "--camera-rate-hz", 10,
-          "--seed", SEED, "--imu", arguments.imu, "--quiet", "-o", folder, *options])
+          "--seed", seed, "--imu", arguments.imu, "--quiet", "-o", folder, *options])
     (folder / "finished").touch()
 
 
@@ -128,8 +129,8 @@ def median(values):
 
 
 def within(errors, sigmas):
-    """Share of the errors within three sigmas, %. The first pose has no error."""
-    held = [abs(error) <= 3 * sigma for error, sigma in zip(errors[1:], sigmas[1:])]
+    """Share of the errors within three sigmas, %."""
+    held = [abs(error) <= 3 * sigma for error, sigma in zip(errors, sigmas)]
     return 100 * sum(held) / max(1, len(held))
 
 
@@ -141,16 +142,37 @@ def row(cells):
     return "| " + " | ".join(cells) + " |"
 
 
-def measured(name, cameras, figures, errors):
-    rigid, similar = figures
-    path_m = rigid["reference"]["path_m"]
-    tenth = max(1, len(errors.heading) // 10)
-    drift_deg = math.degrees(sum(errors.heading[-tenth:]) / tenth)
-    return row([name, str(cameras), f"{abs(drift_deg) / path_m * 100:.2f}",
-                f"{similar['alignment']['scale_error_percent']:+.2f}",
-                f"{100 * rigid['absolute']['position_m']['rmse'] / path_m:.2f}",
-                f"{within(errors.position, errors.position_sigma):.0f}", f"{within(errors.heading, errors.heading_sigma):.0f}",
-                f"{ratio(errors.position_sigma, errors.position):.2f}", f"{ratio(errors.heading_sigma, errors.heading):.2f}"])
+def root_mean_square(values):
+    return math.sqrt(sum(value * value for value in values) / len(values))
+
+
+class Dive:
+    """Figures of one run of one dive."""
+
+    def __init__(self, figures, errors):
+        rigid, similar = figures
+        path_m = rigid["reference"]["path_m"]
+        tenth = max(1, len(errors.heading) // 10)
+        drift_deg = math.degrees(sum(errors.heading[-tenth:]) / tenth)
+        self.drift_deg_per_100_m = drift_deg / path_m * 100
+        self.scale_error_percent = similar["alignment"]["scale_error_percent"]
+        self.position_percent = 100 * rigid["absolute"]["position_m"]["rmse"] / path_m
+        self.errors = errors
+
+
+def measured(name, cameras, dives):
+    def together(member):
+        return sum((getattr(dive.errors, member)[1:] for dive in dives), [])
+
+    def over_dives(member):
+        return root_mean_square([getattr(dive, member) for dive in dives])
+
+    position, position_sigma = together("position"), together("position_sigma")
+    heading, heading_sigma = together("heading"), together("heading_sigma")
+    return row([name, str(cameras), f"{over_dives('drift_deg_per_100_m'):.2f}", f"{over_dives('scale_error_percent'):.2f}",
+                f"{over_dives('position_percent'):.2f}", f"{within(position, position_sigma):.1f}",
+                f"{within(heading, heading_sigma):.1f}", f"{ratio(position_sigma, position):.2f}",
+                f"{ratio(heading_sigma, heading):.2f}"])
 
 
 def main():
@@ -158,6 +180,7 @@ def main():
     parser.add_argument("work", type=Path)
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/bin/lodeline")
     parser.add_argument("--only", nargs="*", help="effects to measure; also clean, field, all")
+    parser.add_argument("--seeds", type=int, default=1, help="number of dives for each effect")
     parser.add_argument("--seconds", type=float, default=45)
     parser.add_argument("--width", type=int, default=480)
     parser.add_argument("--imu", default="gx5-25")
@@ -172,13 +195,20 @@ def main():
     for name, options in found.items():
         if arguments.only and name not in arguments.only:
             continue
-        key = f"{name.replace(', ', '_')}_{arguments.seconds:g}s_{arguments.width}px_{arguments.imu}"
-        folder = arguments.work / "dives" / key
-        render(arguments.program, folder, options, arguments)
-        for cameras in (2, 1):
-            out = arguments.work / "runs" / f"{key}_{cameras}"
-            figures = run(arguments.program, folder, out, cameras)
-            lines.append(measured(name, cameras, figures, Errors(out, folder)) if figures else
+        dives = {2: [], 1: []}
+        for seed in range(FIRST_SEED, FIRST_SEED + arguments.seeds):
+            key = f"{name.replace(', ', '_')}_{seed}_{arguments.seconds:g}s_{arguments.width}px_{arguments.imu}"
+            folder = arguments.work / "dives" / key
+            render(arguments.program, folder, seed, options, arguments)
+            for cameras in dives:
+                out = arguments.work / "runs" / f"{key}_{cameras}"
+                figures = run(arguments.program, folder, out, cameras)
+                if figures:
+                    dives[cameras].append(Dive(figures, Errors(out, folder)))
+        for cameras, measurements in dives.items():
+            if len(measurements) < arguments.seeds:
+                print(f"{name}, {cameras} cameras: {arguments.seeds - len(measurements)} runs without a result")
+            lines.append(measured(name, cameras, measurements) if measurements else
                          row([name, str(cameras), *["–"] * (len(COLUMNS) - 2)]))
             print(lines[-1], flush=True)
             if arguments.markdown:
