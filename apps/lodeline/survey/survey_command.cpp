@@ -83,7 +83,7 @@ std::string addRun(const ProjectDive& dive, const ShareDone& progress, MapFile* 
                      is_first || merged.summary.is_placed ? "" : "; no place of the map was recognized");
 }
 
-void addRuns(const SurveyProject& project, const Verbosity& verbosity, MapFile* map) {
+void addProjectRuns(const SurveyProject& project, const Verbosity& verbosity, MapFile* map) {
   Progress progress("joining dives", verbosity.quiet);
   const auto count = static_cast<double>(project.dives.size());
   double done = 0.0;
@@ -117,7 +117,7 @@ MapFile mapOf(const SurveyProject& project, const fs::path& output, const Verbos
   for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(built.string() + suffix);
   if (is_given) fs::copy_file(project.map, built);
   MapFile map = MapFile::openOrCreate(built, {});
-  if (!is_given) addRuns(project, verbosity, &map);
+  if (!is_given) addProjectRuns(project, verbosity, &map);
   ControlReadOptions options;
   options.site = map.description().site;
   if (!project.entrance.empty()) options.site = placeFromText(project.entrance, "entrance", diagnostics);

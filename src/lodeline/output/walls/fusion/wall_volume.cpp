@@ -22,7 +22,7 @@ fs::path moduleFile() {
              : (bin / LODELINE_LIB_FROM_BIN / "lodeline/lodeline_open3d.so").lexically_normal();
 }
 
-MakeWallVolume& load() {
+MakeWallVolume& loadModule() {
   const fs::path file = moduleFile();
   void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* function = module != nullptr ? ::dlsym(module, "lodelineMakeWallVolume") : nullptr;
@@ -37,7 +37,7 @@ MakeWallVolume& load() {
 }  // namespace
 
 MakeWallVolume& wallVolumeModule() {
-  static MakeWallVolume& make = load();
+  static MakeWallVolume& make = loadModule();
   return make;
 }
 
