@@ -25,6 +25,7 @@ struct ConvertArguments {
   BagArguments bag;
   std::string compression;
   std::string format;
+  RecordingPart part;
   bool overwrite = false;
   Verbosity verbosity;
 };
@@ -69,6 +70,7 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
   options.rig_files.assign(arguments.bag.rig_files.begin(), arguments.bag.rig_files.end());
   options.topics = topicsOf(arguments.bag);
   options.compression = arguments.compression;
+  options.part = {arguments.part.from_s, arguments.part.length_s()};
   const RecognizedFile source = recognizeFile(arguments.source);
   const bool from_bag = isBag(arguments.source);
   const bool from_video = !from_bag && isVideo(arguments.source);
@@ -140,6 +142,7 @@ void addConvertCommand(CLI::App& program) {
           "of the chunks of a bag that is written: none, lz4, bz2 (ROS 1), zstd (MCAP); ROS 1 bags have "
           "none without it, MCAP has zstd")
       ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
+  addRecordingPart(&arguments->part, command);
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
@@ -150,6 +153,7 @@ void addConvertCommand(CLI::App& program) {
       "Examples:\n"
       "  lodeline convert dive1 dive1.bag\n"
       "  lodeline convert dive1 dive1.mcap\n"
+      "  lodeline convert dive1.bag excerpt.bag --from 120 --to 180\n"
       "  lodeline convert dive1.bag dive1_ros2 --format db3\n"
       "  lodeline convert GX010042.MP4 dive1 --rig rig.yaml\n"
       "  lodeline convert dive1.bag dive1 --rig camchain-imucam.yaml --rig imu.yaml\n"

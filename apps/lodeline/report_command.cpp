@@ -15,6 +15,7 @@
 #include "lodeline/pipeline/page/background.h"
 #include "lodeline/pipeline/page/run_stations.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -59,14 +60,20 @@ void reportCommand(const Arguments& arguments) {
     options.reference = {arguments.reference, alignmentTypeFromString(arguments.align)};
   }
   options.background = backgroundOf(arguments);
+  Progress progress("page", arguments.verbosity.quiet);
+  options.progress = progress.function();
   const std::string page = reportPage(arguments.runs, options, &diagnostics);
+  progress.end();
   if (arguments.pdf.empty() || arguments.is_page_named) {
     writeOutput(arguments.output, page);
     printDone(arguments.output, page.size(), arguments.runs.size(), arguments.verbosity);
   }
   if (!arguments.pdf.empty()) {
     const char* path = std::getenv("PATH");
+    progress.begin("printing");
+    progress.show(std::nullopt, "by Chromium");
     printPage(page, arguments.pdf, path == nullptr ? "" : path);
+    progress.end();
     printDone(arguments.pdf, fs::file_size(arguments.pdf), arguments.runs.size(), arguments.verbosity);
   }
   printFindings(diagnostics, arguments.verbosity);

@@ -6,7 +6,8 @@ import type { Projection } from "./projections";
 import type { Track } from "./track";
 import type { View } from "./view";
 
-const kMostUnrolled = 200_000; // each has to be given to the pose nearest to it
+// The first points are spread over all of them. Unrolled, each has to be given to the pose nearest to it.
+const kMostFlat = 500_000, kMostUnrolled = 200_000;
 
 /// The walls where they are known and wanted, else the landmarks.
 export function shownPoints(view: View, track: Track): Points | null {
@@ -35,10 +36,10 @@ function splat(picture: ImageData, points: Points, track: Track, view: View, pro
   const { rgb } = pointColours(points, track, view.pointColouring.value);
   const plain = plainColour();
   const alpha = rgb ? 210 : 95;
-  const step = projection.isUnrolled ? Math.max(1, Math.ceil(xyz.length / 3 / kMostUnrolled)) : 1;
+  const count = Math.min(xyz.length / 3, projection.isUnrolled ? kMostUnrolled : kMostFlat);
   const nearest = projection.isUnrolled ? nearestOf(track, xyz) : null;
   const size = Math.max(1, Math.round(ratio));
-  for (let i = 0; 3 * i + 2 < xyz.length; i += step) {
+  for (let i = 0; i < count; ++i) {
     const pose = nearest ? nearest[i] : 0;
     if (pose < 0) continue;
     const [u, v] = projection.flat(track, [xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]], pose);
@@ -61,7 +62,7 @@ const kNearest = new WeakMap<Float32Array, { track: Track; poses: number; neares
 function nearestOf(track: Track, xyz: Float32Array): Int32Array {
   const kept = kNearest.get(xyz);
   if (kept && kept.track === track && kept.poses === track.position.length) return kept.nearest;
-  const nearest = nearestPoses(xyz, track.position);
+  const nearest = nearestPoses(xyz.subarray(0, 3 * kMostUnrolled), track.position);
   kNearest.set(xyz, { track, poses: track.position.length, nearest });
   return nearest;
 }

@@ -11,12 +11,32 @@ export interface Points {
   rgb: Uint8Array | null;
 }
 
+/// A step through `count` numbers, round and round, that meets each once and spreads the first ones over all.
+function spreadingStep(count: number): number {
+  const divisor = (a: number, b: number): number => (b === 0 ? a : divisor(b, a % b));
+  let step = Math.max(1, Math.round(0.6180339887 * count));
+  while (divisor(step, count) > 1) ++step;
+  return step;
+}
+
+/// The first points of the result are spread over all, whatever the order of the cloud.
 export function makePoints(cloud: Cloud, map: WorldMap): Points {
   const steps = new Uint16Array(decodeBytes(cloud.xyz).buffer);
-  const xyz = new Float32Array(steps.length);
-  for (let k = 0; k < 3; ++k) for (let i = k; i < steps.length; i += 3) xyz[i] = cloud.low_m[k] + cloud.step_m[k] * steps[i];
-  if (!map.isIdentity) for (let i = 0; i + 2 < xyz.length; i += 3) xyz.set(map.point([xyz[i], xyz[i + 1], xyz[i + 2]]), i);
-  return { xyz, rgb: cloud.rgb ? decodeBytes(cloud.rgb) : null };
+  const given = cloud.rgb ? decodeBytes(cloud.rgb) : null;
+  const xyz = new Float32Array(steps.length), rgb = given ? new Uint8Array(given.length) : null;
+  const count = Math.floor(steps.length / 3), step = spreadingStep(count);
+  const origin = map.point([0, 0, 0]);
+  const axes = [map.point([1, 0, 0]), map.point([0, 1, 0]), map.point([0, 0, 1])].map((p) => p.map((v, k) => v - origin[k]));
+  for (let i = 0, from = 0; i < count; ++i, from = (from + step) % count) {
+    const x = cloud.low_m[0] + cloud.step_m[0] * steps[3 * from];
+    const y = cloud.low_m[1] + cloud.step_m[1] * steps[3 * from + 1];
+    const z = cloud.low_m[2] + cloud.step_m[2] * steps[3 * from + 2];
+    for (let k = 0; k < 3; ++k) {
+      xyz[3 * i + k] = axes[0][k] * x + axes[1][k] * y + axes[2][k] * z + origin[k];
+      if (rgb && given) rgb[3 * i + k] = given[3 * from + k];
+    }
+  }
+  return { xyz, rgb };
 }
 
 export type PointColouring = "plain" | "height" | "distance" | "uncertainty" | "image";
@@ -63,7 +83,8 @@ export interface PointColours {
 }
 
 function spread(values: Float32Array): [number, number] {
-  const sorted = Float32Array.from(values.filter((v) => Number.isFinite(v))).sort();
+  // A sample is enough, since the first points are spread over all.
+  const sorted = Float32Array.from(values.subarray(0, 50_000).filter((v) => Number.isFinite(v))).sort();
   if (sorted.length === 0) return [0, 1];
   // Single points far off would leave one colour for all others.
   const low = sorted[Math.floor(0.01 * (sorted.length - 1))];

@@ -89,7 +89,7 @@ function linear(rgb: Uint8Array): Uint8Array {
   return rgb.map((v) => table[v]);
 }
 
-export function pointCloud(points: Points, track: Track, colouring: PointColouring): THREE.Object3D {
+export function pointCloud(points: Points, track: Track, colouring: PointColouring): THREE.Points {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(points.xyz, 3));
   const { rgb } = pointColours(points, track, colouring);

@@ -5,6 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { ViewHelper } from "three/addons/helpers/ViewHelper.js";
 import { whenThemeChanges } from "./colours";
 import { element, whenResized } from "./dom";
+import { GradualDrawing, hasGraphicsCard } from "./gradual_drawing";
 import { shownPoints } from "./map_points";
 import { grid, loopLines, mapLine, measureLine, otherLine, pointCloud, placeOf, PoseMarker, referenceLine, solutionLine, trajectoryLine, type Place } from "./scene";
 import { poseText, Tip } from "./tip";
@@ -27,13 +28,14 @@ export class SpaceView {
   private scaleNote = element("p", "note");
   private tip = new Tip();
   private compass: ViewHelper;
-  private pending = 0;
+  private drawing: GradualDrawing;
+  private isStale = true; // what is drawn has to be made anew
   private sized = false;
   private measured: THREE.Object3D | null = null;
 
   /// Throws where the browser has no WebGL.
   constructor(private view: View) {
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer = new THREE.WebGLRenderer({ antialias: hasGraphicsCard(), alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.place = placeOf(view.tracks);
     this.camera.up.set(0, 0, 1);
@@ -42,6 +44,7 @@ export class SpaceView {
     this.scene.add(this.content);
     this.renderer.autoClear = false; // the compass is drawn over the scene
     this.compass = new ViewHelper(this.camera, this.renderer.domElement);
+    this.drawing = new GradualDrawing(this.renderer, this.scene, this.camera, () => this.prepare(), () => this.compass.render(this.renderer));
     this.node.append(this.renderer.domElement, this.scaleNote, this.tip.node);
     this.lookFrom("oblique");
     whenResized(this.node, (width, height) => this.resize(width, height));
@@ -60,12 +63,12 @@ export class SpaceView {
     this.node.addEventListener("pointerleave", () => this.tip.hide());
     printablePicture(this.node, this.renderer.domElement, () => {
       this.rebuild();
-      this.drawNow();
+      this.drawing.drawAll();
     });
   }
 
   get canvas(): HTMLCanvasElement {
-    this.drawNow();
+    this.drawing.drawAll();
     return this.renderer.domElement;
   }
 
@@ -109,7 +112,14 @@ export class SpaceView {
     this.draw();
   }
 
+  /// Many changes at once make the content anew once, before the next picture.
   private rebuild(): void {
+    this.isStale = true;
+    this.draw();
+  }
+
+  private makeContent(): void {
+    this.isStale = false;
     const { view } = this;
     this.content.traverse((object) => {
       const drawable = object as THREE.Mesh;
@@ -123,10 +133,12 @@ export class SpaceView {
     view.tracks.forEach((other, i) => {
       if (other !== track && other.position.length > 1) this.content.add(otherLine(other, i));
     });
-    for (const each of view.tracks) {
+    const clouds = view.tracks.flatMap((each) => {
       const points = shownPoints(view, each);
-      if (points) this.content.add(pointCloud(points, each, view.pointColouring.value));
-    }
+      return points ? [pointCloud(points, each, view.pointColouring.value)] : [];
+    });
+    if (clouds.length > 0) this.content.add(...clouds);
+    this.drawing.setClouds(clouds);
     const reference = view.shown.value.reference && track.kind !== "map" ? referenceLine(track) : null;
     if (reference) this.content.add(reference);
     if (view.shown.value.others) for (const other of view.others()) if (other.position.length > 1) this.content.add(solutionLine(other));
@@ -136,7 +148,6 @@ export class SpaceView {
     this.addGround();
     this.marker = new PoseMarker(0.06 * this.place.radius);
     this.content.add(this.marker.object);
-    this.draw();
   }
 
   private addGround(): void {
@@ -178,13 +189,12 @@ export class SpaceView {
     return chosen;
   }
 
-  /// Many changes at once make one drawing.
   private draw(): void {
-    cancelAnimationFrame(this.pending);
-    this.pending = requestAnimationFrame(() => this.drawNow());
+    this.drawing.draw();
   }
 
-  private drawNow(): void {
+  private prepare(): void {
+    if (this.isStale) this.makeContent();
     const track = this.view.active.value;
     const pose = this.view.pose();
     if (this.marker) {
@@ -195,9 +205,6 @@ export class SpaceView {
       }
     }
     this.drawMeasure(track, pose);
-    this.renderer.clear();
-    this.renderer.render(this.scene, this.camera);
-    this.compass.render(this.renderer);
   }
 
   private drawMeasure(track: Track, pose: number): void {

@@ -16,6 +16,7 @@
 #include "lodeline/output/survey/map/export_owner.h"
 #include "lodeline/output/survey/map/survey_name.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -94,7 +95,8 @@ ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFor
 /// Maps of all dives on the grid of the first one, because survey programs cannot join dives on different
 /// grids.
 std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
-                                    std::vector<RunFolder> runs, Diagnostics* diagnostics) {
+                                    std::vector<RunFolder> runs, const ShareDone& progress,
+                                    Diagnostics* diagnostics) {
   DiveMapOptions options = mapOptions(arguments, diagnostics);
   std::vector<ExportedDive> dives;
   if (runs.size() == 1) {
@@ -105,6 +107,7 @@ std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std:
   for (const RunFolder& run : runs) folders.push_back(run.folder);
   const std::vector<std::string> names = surveyNames(folders);
   for (size_t i = 0; i < names.size(); ++i) {
+    progress(static_cast<double>(i) / static_cast<double>(names.size()));
     options.name = names[i];
     options.title.clear();
     dives.push_back(makeDive(arguments, formats, std::move(runs[i]), options, diagnostics));
@@ -133,9 +136,11 @@ void expectOwnFolder(const ExportArguments& arguments, const ExportedDive& dive,
 }
 
 void writeDive(const ExportedDive& dive, const std::vector<MapFormat>& formats,
-               const std::filesystem::path& folder, std::vector<std::filesystem::path>* files,
-               Diagnostics* diagnostics) {
+               const std::filesystem::path& folder, const ShareDone& progress,
+               std::vector<std::filesystem::path>* files, Diagnostics* diagnostics) {
+  double done = 0.0;
   for (MapFormat format : formats) {
+    progress(done++ / static_cast<double>(formats.size()));
     for (const auto& file : writeMap(dive.map, dive.recording.images, format, folder)) files->push_back(file);
     if (format != MapFormat::Colmap) continue;
     files->push_back(folder / kColmapDatabase);
@@ -185,19 +190,28 @@ void exportRuns(ExportArguments arguments) {
 
 void exportDives(const ExportArguments& arguments, std::vector<RunFolder> runs, Diagnostics* diagnostics) {
   const std::vector<MapFormat> formats = wantedFormats(arguments);
-  const std::vector<ExportedDive> dives = makeDives(arguments, formats, std::move(runs), diagnostics);
+  Progress progress("maps", arguments.verbosity.quiet);
+  const std::vector<ExportedDive> dives =
+      makeDives(arguments, formats, std::move(runs), progress.function(), diagnostics);
   const std::filesystem::path folder = outputFolder(arguments);
   if (!arguments.overwrite) {
     for (const ExportedDive& dive : dives) expectOwnFolder(arguments, dive, formats, folder);
   }
   std::vector<std::filesystem::path> files;
-  for (const ExportedDive& dive : dives) {
-    writeDive(dive, formats, folder, &files, diagnostics);
+  progress.begin("files");
+  const auto count = static_cast<double>(dives.size());
+  for (size_t i = 0; i < dives.size(); ++i) {
+    const ExportedDive& dive = dives[i];
+    const auto show = [&](double share) {
+      progress.show((static_cast<double>(i) + share) / count, dive.map.name);
+    };
+    writeDive(dive, formats, folder, show, &files, diagnostics);
     if (!arguments.foxglove.is_wanted) continue;
     files.push_back(folder / foxgloveFileName(dive.map.name));
     writeFoxglove(arguments.foxglove, dive.map.run_folder, files.back(), diagnostics);
   }
   if (dives.size() > 1) writeProjects(arguments, formats, dives, folder, &files);
+  progress.end();
   printFindings(*diagnostics, arguments.verbosity);
   if (arguments.verbosity.quiet) return;
   for (const ExportedDive& dive : dives) {

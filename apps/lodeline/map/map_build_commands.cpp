@@ -107,7 +107,9 @@ void addRuns(MapFile* map, const MapArguments& arguments) {
   Progress progress("joining dives", arguments.verbosity.quiet);
   for (size_t i = 0; i < arguments.runs.size(); ++i) {
     const std::string& run = arguments.runs[i];
-    progress.show(static_cast<double>(i) / static_cast<double>(arguments.runs.size()), run);
+    options.progress = [&](double share) {
+      progress.show((static_cast<double>(i) + share) / static_cast<double>(arguments.runs.size()), run);
+    };
     const MapFile source = MapFile::open(mapOfRun(run), MapFile::Access::Read);
     const bool is_first = map->dives().empty();
     const MergedDive merged = mergeDive(map, source, options);

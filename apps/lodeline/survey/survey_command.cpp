@@ -18,6 +18,7 @@
 #include "lodeline/output/survey/map/export_owner.h"
 #include "lodeline/output/survey/map/survey_name.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -64,9 +65,11 @@ SurveyProject projectOf(const SurveyArguments& arguments) {
   return project;
 }
 
-void addRun(const ProjectDive& dive, MapFile* map) {
+/// `progress`: takes the share of this run.
+std::string addRun(const ProjectDive& dive, const ShareDone& progress, MapFile* map) {
   const fs::path file = fs::is_directory(dive.run) ? dive.run / "map.db" : dive.run;
   MapMergeOptions options;
+  options.progress = progress;
   if (dive.start_ENU) {
     options.start.emplace();
     options.start->position = *dive.start_ENU;
@@ -75,8 +78,23 @@ void addRun(const ProjectDive& dive, MapFile* map) {
   }
   const bool is_first = map->dives().empty();
   const MergedDive merged = mergeDive(map, MapFile::open(file, MapFile::Access::Read), options);
-  fmt::print("{}: {} keyframes, {} loops{}\n", merged.name, merged.summary.keyframes, merged.summary.accepted,
-             is_first || merged.summary.is_placed ? "" : "; no place of the map was recognized");
+  return fmt::format("{}: {} keyframes, {} loops{}\n", merged.name, merged.summary.keyframes,
+                     merged.summary.accepted,
+                     is_first || merged.summary.is_placed ? "" : "; no place of the map was recognized");
+}
+
+void addProjectRuns(const SurveyProject& project, const Verbosity& verbosity, MapFile* map) {
+  Progress progress("joining dives", verbosity.quiet);
+  const auto count = static_cast<double>(project.dives.size());
+  double done = 0.0;
+  for (const ProjectDive& dive : project.dives) {
+    const std::string added = addRun(
+        dive, [&](double share) { progress.show((done + share) / count, dive.dive); }, map);
+    ++done;
+    if (verbosity.quiet) continue;
+    progress.end();
+    fmt::print("{}", added);
+  }
 }
 
 void reportSolution(const MapSolution& solution, Diagnostics* diagnostics) {
@@ -89,7 +107,8 @@ void reportSolution(const MapSolution& solution, Diagnostics* diagnostics) {
 }
 
 /// The common map of a project: its own, or a new one of its runs. Control points are added and solved for.
-MapFile mapOf(const SurveyProject& project, const fs::path& output, Diagnostics* diagnostics) {
+MapFile mapOf(const SurveyProject& project, const fs::path& output, const Verbosity& verbosity,
+              Diagnostics* diagnostics) {
   const bool is_given = !project.map.empty();
   if (is_given && project.control.empty()) return MapFile::open(project.map, MapFile::Access::Read);
   const fs::path built = output / (project.name + "_built.db");
@@ -98,9 +117,7 @@ MapFile mapOf(const SurveyProject& project, const fs::path& output, Diagnostics*
   for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(built.string() + suffix);
   if (is_given) fs::copy_file(project.map, built);
   MapFile map = MapFile::openOrCreate(built, {});
-  if (!is_given) {
-    for (const ProjectDive& dive : project.dives) addRun(dive, &map);
-  }
+  if (!is_given) addProjectRuns(project, verbosity, &map);
   ControlReadOptions options;
   options.site = map.description().site;
   if (!project.entrance.empty()) options.site = placeFromText(project.entrance, "entrance", diagnostics);
@@ -126,7 +143,7 @@ void makeSurvey(const SurveyArguments& arguments) {
   Diagnostics diagnostics;
   const fs::path folder = arguments.output;
   createOutputFolder(folder);
-  const MapFile map = mapOf(project, folder, &diagnostics);
+  const MapFile map = mapOf(project, folder, arguments.verbosity, &diagnostics);
   const CaveSurvey cave = caveOfMap(map, project, &diagnostics);
   const DiveMap owner = ownerOf(cave, arguments.project);
   const std::vector<std::pair<std::string, std::string>> files = {

@@ -63,6 +63,7 @@ nlohmann::ordered_json summaryOf(const WallsArguments& arguments, const DiveMap&
   nlohmann::ordered_json json;
   json["run"] = map.run_folder.string();
   json["axes"] = map.north.axes;
+  json["turn_rad"] = map.north.turn_rad;
   json["keyframes"] = result.keyframes;
   json["dive_s"] = result.dive_s;
   json["points"] = result.tiles.vertices;

@@ -172,6 +172,27 @@ TEST_F(BagTest, ExportTakesCamerasAndImagesFromABag) {
   EXPECT_EQ(model(bag, "from_bag"), from_folder);
 }
 
+TEST_F(BagTest, ConvertsAPartInAllDirections) {
+  const auto convert = [&](const std::filesystem::path& from, const char* to, const char* part) {
+    const Execution result =
+        runProgram(fmt::format("convert {} {} {}", quoted(from), quoted(path(to)), part));
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return result.output.substr(0, result.output.find("calibration:"));
+  };
+  const auto counts = [](const std::string& output) { return output.substr(output.find('\n')); };
+  convert(recording_.data, "all.bag", "");
+  const std::string from_folder = counts(convert(recording_.data, "part.bag", "--from 0.5 --to 1"));
+  EXPECT_THAT(from_folder, HasSubstr("imu0"));
+  EXPECT_LT(std::filesystem::file_size(path("part.bag")), std::filesystem::file_size(path("all.bag")) / 2);
+  EXPECT_EQ(counts(convert(path("all.bag"), "part_folder", "--from 0.5 --to 1")).substr(0, 60),
+            from_folder.substr(0, 60));
+  convert(path("all.bag"), "part.mcap", "--from 0.5 --to 1");
+  EXPECT_EQ(runProgram(
+                fmt::format("convert {} {} --from 2 --to 1", quoted(path("all.bag")), quoted(path("no.bag"))))
+                .exit_code,
+            2);
+}
+
 TEST_F(BagTest, SaysWhatToDo) {
   const std::filesystem::path bag = rosbagOfRoom("none", "compressed");
   const Execution no_rig = runProgram(fmt::format("run {} -o {}", quoted(bag), quoted(output_)));

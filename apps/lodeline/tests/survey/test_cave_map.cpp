@@ -79,7 +79,8 @@ class Diver {
       keyframe.time = dive.start + Duration::fromSeconds(3.0 * static_cast<double>(i));
       keyframe.odom_from_body = odom;
       keyframe.covariance = covariance;
-      keyframe.heading_sigma_rad = 0.01;
+      // North is known at the start, and carried on by odometry.
+      keyframe.heading_sigma_rad = std::hypot(0.01, std::sqrt(covariance(5, 5)));
       keyframe.depth_m = ScalarPrior{2.0 - truth.translation.z() + 0.03 * normal(), 0.03};
       const KeyframeId made = change_->addKeyframe(keyframe);
       // A rough pose; the common solution replaces it.

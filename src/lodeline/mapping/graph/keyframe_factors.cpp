@@ -23,7 +23,15 @@ TiltMeasurement tiltOf(const MapKeyframe& keyframe, double least_sigma_rad) {
           std::max(least_sigma_rad, std::sqrt(std::max(variance, 0.0)))};
 }
 
-void addHeading(const MapKeyframe& keyframe, double independent_share, PoseGraph* graph) {
+/// Variance of a turn about the vertical by odometry; its covariance is in axes of the first body.
+double turnVariance(const MapKeyframe& previous, const RelativePose& odometry) {
+  const Vec3 up_B = previous.odom_from_body.rotation.conjugate() * Vec3::UnitZ();
+  return up_B.dot(odometry.covariance.bottomRightCorner<3, 3>() * up_B);
+}
+
+/// `odometry`: from the previous keyframe, null for the first one of a dive.
+void addHeading(const MapKeyframe& keyframe, const MapKeyframe* previous, const RelativePose* odometry,
+                double independent_share, PoseGraph* graph) {
   const double sigma = *keyframe.heading_sigma_rad;
   checkSigma(sigma, keyframe, "heading");
   const double common_sigma = std::sqrt(1.0 - independent_share) * sigma;
@@ -32,9 +40,17 @@ void addHeading(const MapKeyframe& keyframe, double independent_share, PoseGraph
   if (!known_sigma || common_sigma < *known_sigma) {
     graph->add(AzimuthPrior{keyframe.dive, 0.0, common_sigma});
   }
+  const double common_variance = std::pow(*graph->azimuthSigma(keyframe.dive), 2);
+  double variance = sigma * sigma - common_variance;
+  if (odometry && previous->heading_sigma_rad) {
+    const double predicted =
+        std::pow(*previous->heading_sigma_rad, 2) - common_variance + turnVariance(*previous, *odometry);
+    if (variance >= predicted) return;
+    variance *= predicted / (predicted - variance);
+  }
   const Quat north_from_odom = so3::exp(keyframe.north_from_odom_rad * Vec3::UnitZ());
   graph->add(HeadingMeasurement{keyframe.id, north_from_odom * keyframe.odom_from_body.rotation,
-                                std::sqrt(independent_share) * sigma});
+                                std::sqrt(variance)});
 }
 
 void addDepth(const MapKeyframe& keyframe, double offset_sigma_m, PoseGraph* graph) {
@@ -63,15 +79,18 @@ void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseG
   if (!keyframe.covariance.allFinite()) {
     throw InputError(fmt::format("keyframe {}: the covariance of its odometry is not finite", keyframe.id));
   }
+  std::optional<RelativePose> odometry;
   if (previous) {
-    const RelativePose odometry = odometryEdge(*previous, keyframe, 0.0, options.odometry);
-    graph->addNode(keyframe.id, keyframe.dive, graph->pose(previous->id) * odometry.from_from_to);
-    graph->add(GraphEdge{previous->id, keyframe.id, odometry, false});
+    odometry = odometryEdge(*previous, keyframe, 0.0, options.odometry);
+    graph->addNode(keyframe.id, keyframe.dive, graph->pose(previous->id) * odometry->from_from_to);
+    graph->add(GraphEdge{previous->id, keyframe.id, *odometry, false});
   } else {
     graph->addNode(keyframe.id, keyframe.dive, first_world_from_odom * keyframe.odom_from_body);
   }
   graph->add(tiltOf(keyframe, options.least_tilt_sigma_rad));
-  if (keyframe.heading_sigma_rad) addHeading(keyframe, options.independent_heading_share, graph);
+  if (keyframe.heading_sigma_rad) {
+    addHeading(keyframe, previous, odometry ? &*odometry : nullptr, options.independent_heading_share, graph);
+  }
   if (keyframe.depth_m) addDepth(keyframe, options.height_offset_sigma_m, graph);
 }
 

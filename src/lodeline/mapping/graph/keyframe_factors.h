@@ -10,8 +10,8 @@ struct KeyframeFactorOptions {
   OdometryFloor odometry;
   /// Least sigma of roll and pitch, rad: 0.3 degrees, which accelerometers of small rigs hold over a dive.
   double least_tilt_sigma_rad = 0.0052;
-  /// Part of the heading error at a keyframe that is independent of other keyframes, of the whole variance.
-  /// The rest is common to the dive: hard iron, misalignment, declination.
+  /// Part of the variance of a dive's best heading that is not common to the whole dive. The rest is: hard
+  /// iron, misalignment, declination.
   double independent_heading_share = 0.1;
   /// Error of a dive's depths that is common to all of them: air pressure and water level, m.
   double height_offset_sigma_m = 0.1;
@@ -23,6 +23,13 @@ struct KeyframeFactorOptions {
 /// (null for the first one), roll and pitch, heading and depth. The first keyframe of a dive also adds the
 /// priors of the dive's azimuth and height offset where it has heading and depth. The pose of a first
 /// keyframe is `first_world_from_odom` times its odometry; later ones follow the previous node's estimate.
+///
+/// The headings of two neighbours have mostly the same error. A keyframe therefore adds only what its heading
+/// tells beyond the previous heading and the turn since: with the variances s_i^2 of the headings without
+/// their common part and q of the turn, the variance r of the added heading is
+///   1 / r = 1 / s_i^2 - 1 / (s_{i-1}^2 + q),
+/// so that all headings up to i together have the variance s_i^2. Where s_i^2 is not below s_{i-1}^2 + q,
+/// the heading was only carried on, and nothing is added.
 void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseGraph* graph,
                  const Rigid3& first_world_from_odom = {}, const KeyframeFactorOptions& options = {});
 

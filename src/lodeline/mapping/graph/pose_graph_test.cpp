@@ -333,5 +333,40 @@ TEST(AddKeyframe, AddsOdometryTiltHeadingAndDepth) {
   EXPECT_LT(std::sqrt(graph.covariance().of(39)(2, 2)), 0.15);
 }
 
+/// Sigma of the azimuth of the last keyframe relative to the first one, rad.
+double turnSigma(const PoseGraph& graph, const CircuitDive& dive) {
+  const Mat6 covariance =
+      graph.covariance().relative(dive.keyframes.front().id, dive.keyframes.back().id).covariance;
+  const Vec3 up_B = dive.truth.front().rotation.conjugate() * Vec3::UnitZ();
+  return std::sqrt(up_B.dot(covariance.bottomRightCorner<3, 3>() * up_B));
+}
+
+TEST(AddKeyframe, AHeadingThatIsOnlyCarriedOnAddsNothing) {
+  std::mt19937_64 generator(13);
+  CircuitDive dive = swumCircuit({.keyframes = 150}, &generator);
+  PoseGraph without = graphOf(dive);
+  without.solve();
+  // North is known at the start; the gyroscope carries it on.
+  for (MapKeyframe& keyframe : dive.keyframes)
+    keyframe.heading_sigma_rad = std::hypot(0.01, std::sqrt(keyframe.covariance(5, 5)));
+  PoseGraph with = graphOf(dive);
+  with.solve();
+  EXPECT_GT(turnSigma(without, dive), 0.03);
+  EXPECT_NEAR(turnSigma(with, dive), turnSigma(without, dive), 0.05 * turnSigma(without, dive));
+  EXPECT_NEAR(std::sqrt(with.covariance().of(149)(5, 5)), *dive.keyframes.back().heading_sigma_rad, 0.003);
+}
+
+TEST(AddKeyframe, AHeadingThatIsMeasuredAllTheTimeStaysKnownAsStated) {
+  std::mt19937_64 generator(14);
+  CircuitDive dive = swumCircuit({.keyframes = 150}, &generator);
+  for (MapKeyframe& keyframe : dive.keyframes) keyframe.heading_sigma_rad = 0.02;
+  PoseGraph graph = graphOf(dive);
+  graph.solve();
+  const double sigma = std::sqrt(graph.covariance().of(149)(5, 5));
+  EXPECT_GT(sigma, 0.019);
+  EXPECT_LT(sigma, 0.0205);
+  EXPECT_LT(turnSigma(graph, dive), 0.02);
+}
+
 }  // namespace
 }  // namespace lodeline

@@ -143,7 +143,9 @@ MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& op
   TemporaryMap temporary(map->path());
   DiveMapping mapping(&temporary.file(), dive, is_first ? nullptr : map, mapping_options);
   const std::map<KeyframeId, std::vector<SeenTag>> tags = tagsOf(run);
+  double done = 0.0;
   for (const KeyframeId id : ids) {
+    options.progress(done++ / static_cast<double>(ids.size()));
     MapKeyframe keyframe = run.fullKeyframe(id);
     if (const auto seen = tags.find(id); seen != tags.end()) keyframe.tags = seen->second;
     mapping.add(std::move(keyframe));

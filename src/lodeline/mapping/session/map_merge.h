@@ -6,6 +6,7 @@
 
 #include "lodeline/mapping/session/dive_mapping.h"
 #include "lodeline/mapping/store/map_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
@@ -23,6 +24,8 @@ struct MapMergeOptions {
   /// m, and turned by less than `redundant_turn_rad`. The map then grows with the cave, not with the dives.
   double redundant_distance_m = 0.5;
   double redundant_turn_rad = 0.26;
+  /// Takes the share of the run's keyframes that have been looked for.
+  ShareDone progress = [](double) {};
 };
 
 struct MergedDive {

@@ -6,6 +6,7 @@
 
 #include "lodeline/output/survey/formats/write_formats.h"
 #include "lodeline/output/walls/files/write_las.h"
+#include "lodeline/output/walls/fusion/wall_volume.h"
 #include "lodeline/output/walls/wall_work.h"
 #include "lodeline/util/files/output_file.h"
 
@@ -64,8 +65,7 @@ WallResult makeWalls(const DiveMap& map, MeasurementSource& source,
                      const std::vector<CameraCalibration>& cameras, const WallOptions& options,
                      const std::filesystem::path& folder, const WallProgress& progress,
                      Diagnostics* diagnostics) {
-  if (!hasOpen3d())
-    throw UsageError("walls: this program was built without Open3D, which fuses depths to walls");
+  wallVolumeModule();  // throws at once where depths cannot be fused
   const std::filesystem::path work = folder / "work";
   claimWork(work, wallInput(map, cameras, options));
   const DepthStore store(work);

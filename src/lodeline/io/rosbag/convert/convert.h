@@ -9,6 +9,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/rosbag/convert/bag_writer.h"
+#include "lodeline/io/rosbag/convert/part_source.h"
 #include "lodeline/recording.h"
 
 namespace lodeline {
@@ -21,6 +22,8 @@ struct ConvertOptions {
   BagFormat format = BagFormat::Ros1;
   /// Compression of the new bag; see makeBagWriter().
   std::string compression;
+  /// Readings outside of it are left out. From bag to bag, the times at which messages were recorded count.
+  PartOfRecording part;
   /// Takes the share of the recording that is converted.
   std::function<void(double share)> progress = [](double) {};
 };

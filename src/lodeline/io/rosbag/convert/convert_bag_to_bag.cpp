@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "lodeline/diagnostics.h"
@@ -45,7 +46,12 @@ std::vector<Copied> topicsToCopy(const BagFile& bag, const BagWriter& writer, Di
 void copyMessages(BagFile* bag, std::vector<Copied> topics, const ConvertOptions& options, BagWriter* writer,
                   ConvertSummary* summary) {
   size_t all = 0, done = 0;
-  for (const Copied& topic : topics) all += topic.topic->entries.size();
+  std::optional<Time> start;
+  for (const Copied& topic : topics) {
+    all += topic.topic->entries.size();
+    for (const BagEntry& entry : topic.topic->entries)
+      start = std::min(start.value_or(entry.received), entry.received);
+  }
   while (true) {
     Copied* first = nullptr;
     for (Copied& topic : topics) {
@@ -60,6 +66,7 @@ void copyMessages(BagFile* bag, std::vector<Copied> topics, const ConvertOptions
     options.progress(static_cast<double>(done++) / static_cast<double>(all));
     const BagConnection& connection = first->topic->connection;
     const BagEntry& entry = first->topic->entries[first->next++];
+    if (!options.part.isAll() && !options.part.contains(*start, entry.received)) continue;
     std::optional<wire::Bytes> message =
         first->is_stored ? bag->stored(entry) : bag->read(*first->topic, entry);
     if (!message) continue;

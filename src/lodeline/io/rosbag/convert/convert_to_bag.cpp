@@ -63,7 +63,7 @@ class RecordingConversion {
  public:
   RecordingConversion(RecordedSource* source, const std::filesystem::path& bag, const ConvertOptions& options,
                       Diagnostics* diagnostics)
-      : source_(*source),
+      : source_(source, options.part),
         diagnostics_(diagnostics),
         progress_(options.progress),
         writer_(makeBagWriter(bag, options.format, options.compression)) {}
@@ -234,7 +234,9 @@ class RecordingConversion {
 
   std::optional<Outgoing> truePose(CsvReader* reader) {
     CsvRow row;
-    if (!reader->next(&row)) return std::nullopt;
+    do {
+      if (!reader->next(&row)) return std::nullopt;
+    } while (!source_.contains(row.time));
     if (row.text.size() > 0) {
       diagnostics_->report(Severity::Notice, "convert_truth",
                            fmt::format("{}: velocities and biases are left out; a bag keeps the true poses",
@@ -248,7 +250,7 @@ class RecordingConversion {
                     }};
   }
 
-  RecordedSource& source_;
+  PartSource source_;
   Diagnostics* diagnostics_;
   std::function<void(double)> progress_;
   std::unique_ptr<BagWriter> writer_;

@@ -37,36 +37,36 @@ class FolderWriter {
  public:
   FolderWriter(RecordedSource* source, const std::filesystem::path& folder, const ConvertOptions& options,
                Diagnostics* diagnostics)
-      : source_(source), folder_(folder), options_(options), diagnostics_(diagnostics) {}
+      : source_(source, options.part), folder_(folder), options_(options), diagnostics_(diagnostics) {}
 
   ConvertSummary run() {
-    const Rig& rig = source_->rig();
+    const Rig& rig = source_.rig();
     for (size_t i = 0; i < rig.cameras.size(); ++i) writeImages(i);
     writeReadings(
-        "imu0", kImuColumns, [&] { return source_->nextRecordedImu(); },
+        "imu0", kImuColumns, [&] { return source_.nextRecordedImu(); },
         [](const ImuSample& s) {
           const Vec3& w = s.angular_velocity_B;
           const Vec3& f = s.specific_force_B;
           return fmt::format("{},{},{},{},{},{}", w.x(), w.y(), w.z(), f.x(), f.y(), f.z());
         });
     writeReadings(
-        "mag0", kMagnetometerColumns, [&] { return source_->nextMagnetometer(); },
+        "mag0", kMagnetometerColumns, [&] { return source_.nextMagnetometer(); },
         [](const MagnetometerSample& s) {
           return fmt::format("{},{},{}", s.field_M.x(), s.field_M.y(), s.field_M.z());
         });
     writeReadings(
-        "pressure0", kDepthColumns, [&] { return source_->nextDepth(); },
+        "pressure0", kDepthColumns, [&] { return source_.nextDepth(); },
         [](const DepthSample& s) { return fmt::format("{}", s.depth_m); });
     writeReadings(
-        "sonar0", kSonarColumns, [&] { return source_->nextSonar(); },
+        "sonar0", kSonarColumns, [&] { return source_.nextSonar(); },
         [](const SonarSample& s) { return fmt::format("{},{}", s.range_m, s.angle_rad); });
     writeReadings(
-        "altimeter0", kAltimeterColumns, [&] { return source_->nextAltimeter(); },
+        "altimeter0", kAltimeterColumns, [&] { return source_.nextAltimeter(); },
         [](const AltimeterSample& s) { return fmt::format("{}", s.range_m); });
     writeDvl();
     const std::vector<std::string> channels = rig.currents.value_or(CurrentCalibration()).channels;
     writeReadings(
-        "current0", currentHeader(channels).c_str(), [&] { return source_->nextCurrents(); },
+        "current0", currentHeader(channels).c_str(), [&] { return source_.nextCurrents(); },
         [](const CurrentSample& s) { return fmt::format("{}", fmt::join(s.currents_A, ",")); });
     return std::move(summary_);
   }
@@ -92,7 +92,7 @@ class FolderWriter {
   /// All pings are read first, because they decide which columns the table has.
   void writeDvl() {
     std::vector<DvlSample> pings;
-    while (std::optional<DvlSample> ping = source_->nextDvl()) pings.push_back(std::move(*ping));
+    while (std::optional<DvlSample> ping = source_.nextDvl()) pings.push_back(std::move(*ping));
     if (pings.empty()) return;
     const DvlText text(pings);
     RecordingFile file(sensor("dvl0") / "data.csv");
@@ -109,8 +109,8 @@ class FolderWriter {
     std::error_code error;
     std::filesystem::create_directories(sensor(name) / "data", error);
     std::unordered_map<int64_t, int> images_of_stamp;
-    while (const std::optional<PendingImage> pending = source_->nextImage(camera)) {
-      options_.progress(source_->shareRead().value_or(0.0));
+    while (const std::optional<PendingImage> pending = source_.nextImage(camera)) {
+      options_.progress(source_.shareRead().value_or(0.0));
       const int64_t stamp_ns = pending->time.nanoseconds();
       const int earlier = images_of_stamp[stamp_ns]++;
       const std::string stem =
@@ -138,7 +138,7 @@ class FolderWriter {
     return name;
   }
 
-  RecordedSource* source_;
+  PartSource source_;
   std::filesystem::path folder_;
   const ConvertOptions& options_;
   Diagnostics* diagnostics_;
@@ -156,6 +156,7 @@ void FolderWriter::writeTruth(BagFile* bag) {
         std::string problem;
         if (!message) continue;
         const auto pose = messages::checkedReading(*message, messages::parsePoseStamped, &problem);
+        if (pose && !source_.contains(pose->time)) continue;
         if (pose) return pose;
         diagnostics_->report(
             Severity::Warning, "bag_message",

@@ -17,7 +17,8 @@ struct ReportOptions {
   /// where it has none. Not set: the page shows no survey.
   std::function<nlohmann::ordered_json(const std::filesystem::path& run, int64_t origin_ns)> stations =
       nullptr;
-  nlohmann::ordered_json background = nullptr;  ///< as readBackground() gives it
+  nlohmann::ordered_json background = nullptr;                 ///< as readBackground() gives it
+  std::function<void(double share)> progress = [](double) {};  ///< takes the share of the page that is made
 };
 
 }  // namespace lodeline

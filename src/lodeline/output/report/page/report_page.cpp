@@ -44,7 +44,10 @@ std::string fillPage(const nlohmann::ordered_json& data) {
 std::string reportPage(const std::vector<std::filesystem::path>& runs, const ReportOptions& options,
                        Diagnostics* diagnostics) {
   nlohmann::ordered_json data = {{"live", false}, {"runs", nlohmann::ordered_json::array()}};
-  for (const auto& run : runs) data["runs"].push_back(runPageJson(run, options, diagnostics, runs.size()));
+  for (const auto& run : runs) {
+    options.progress(static_cast<double>(data["runs"].size()) / static_cast<double>(runs.size()));
+    data["runs"].push_back(runPageJson(run, options, diagnostics, runs.size()));
+  }
   data["background"] = options.background;
   return fillPage(data);
 }

@@ -55,6 +55,33 @@ TEST(RunPage, HoldsWhatTheFilesOfTheRunSay) {
   EXPECT_TRUE(run["evaluation"].is_null());
 }
 
+TEST(RunPage, TurnsTheCloudOfLodelineWallsBackToTheWorldOfTheRun) {
+  const TemporaryFolder folder;
+  const auto dive = folder.path() / "dive";
+  test::writeTestRun(dive);
+  const auto walls = [&] {
+    Diagnostics diagnostics;
+    return runPageJson(dive, {}, &diagnostics)["walls"];
+  };
+  EXPECT_TRUE(walls().is_null());
+  std::filesystem::create_directories(dive / "walls");
+  const auto writeCloud = [](const std::filesystem::path& file) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+              "property float z\nend_header\n";
+    const float values[] = {1.0F, 10.0F, -2.0F, 3.0F, 40.0F, 5.0F};
+    stream.write(reinterpret_cast<const char*>(values), sizeof(values));
+  };
+  writeCloud(dive / "walls" / "cloud.ply");
+  // A quarter turn to the right made north; a point in the north was in the west of the run's world.
+  std::ofstream(dive / "walls" / "walls.json") << R"({"turn_rad": 1.5707963267948966})";
+  EXPECT_NEAR(walls()["low_m"][0].get<double>(), -40.0, 1e-5);
+  EXPECT_NEAR(walls()["low_m"][1].get<double>(), 1.0, 1e-5);
+  EXPECT_NEAR(walls()["low_m"][2].get<double>(), -2.0, 1e-5);
+  writeCloud(dive / "walls.ply");  // goes first, as it is
+  EXPECT_NEAR(walls()["low_m"][0].get<double>(), 1.0, 1e-5);
+}
+
 TEST(RunPage, HoldsLoopsLedgerAndControl) {
   const TemporaryFolder folder;
   test::writeTestRun(folder.path() / "dive");

@@ -104,10 +104,24 @@ std::string nameOf(const fs::path& run) {
   return (absolute.has_filename() ? absolute : absolute.parent_path()).filename().string();
 }
 
-/// null where the run has no file of its walls.
-nlohmann::ordered_json wallsJson(const fs::path& file, size_t runs) {
-  if (!fs::exists(file)) return nullptr;
-  return cloudJson(readWallFile(file), kMostWallPoints / runs);
+/// Points that `lodeline walls` made in a folder, turned back from north to the world of the run.
+ColouredPoints madeWalls(const fs::path& folder) {
+  ColouredPoints points = readWallFile(folder / "cloud.ply");
+  std::ifstream summary(folder / "walls.json");
+  const auto json = nlohmann::json::parse(summary, nullptr, false);
+  const double turn_rad = json.is_object() ? json.value("turn_rad", 0.0) : 0.0;
+  const Eigen::Matrix3f world_from_north =
+      Eigen::AngleAxisf(static_cast<float>(turn_rad), Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  for (Eigen::Vector3f& position : points.positions) position = world_from_north * position;
+  return points;
+}
+
+/// The file walls.ply of a run, or what `lodeline walls` made; null where the run has neither.
+nlohmann::ordered_json wallsJson(const fs::path& run, size_t runs) {
+  if (fs::exists(run / "walls.ply"))
+    return cloudJson(readWallFile(run / "walls.ply"), kMostWallPoints / runs);
+  if (!fs::exists(run / "walls" / "cloud.ply")) return nullptr;
+  return cloudJson(madeWalls(run / "walls"), kMostWallPoints / runs);
 }
 
 }  // namespace
@@ -128,7 +142,7 @@ nlohmann::ordered_json runPageJson(const fs::path& run, const ReportOptions& opt
   json["landmarks"] =
       landmarksJson(run / (is_refined ? "landmarks_refined.ply" : "landmarks.ply"), diagnostics);
   json["others"] = otherSolutionsJson(run, is_refined, origin_ns, most_rows, diagnostics);
-  json["walls"] = wallsJson(run / "walls.ply", runs);
+  json["walls"] = wallsJson(run, runs);
   json["pictures"] = picturesJson(run / "pictures", origin_ns);
   json["timings"] = optionalTable(run / "timings.csv", origin_ns, diagnostics);
   json["magnetometer"] = magnetometerJson(run, json["summary"], origin_ns, diagnostics);

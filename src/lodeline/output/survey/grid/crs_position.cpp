@@ -17,6 +17,11 @@ GeodeticPosition roughPosition(const ProjObjects& proj, PJ* crs, const Vec2& eas
   const ProjObjects::Object plain(
       proj_create_crs_to_crs_from_pj(proj.context.get(), crs, wgs84.get(), nullptr, nullptr));
   if (plain == nullptr) return {HUGE_VAL, HUGE_VAL, 0.0};
+  if (areWestAndSouth(proj.axisDirections(crs))) {
+    const PJ_COORD found =
+        proj_trans(plain.get(), PJ_FWD, proj_coord(east_north.x(), east_north.y(), 0.0, HUGE_VAL));
+    return {found.lp.lam, found.lp.phi, 0.0};  // in the order of EPSG: the latitude first
+  }
   const ProjObjects::Object normal(proj_normalize_for_visualization(proj.context.get(), plain.get()));
   const PJ_COORD found =
       proj_trans(normal.get(), PJ_FWD, proj_coord(east_north.x(), east_north.y(), 0.0, HUGE_VAL));

@@ -78,6 +78,9 @@ std::string therionSpelling(std::string name) {
 /// PROJ's objects of one grid, with their own context.
 struct MapGrid::Proj : ProjObjects {
   Object crs, grid_from_wgs84;
+  /// Easting and northing from what the transformation gives.
+  Eigen::Matrix2d east_north_from_axes = Eigen::Matrix2d::Identity();
+  bool is_south_first = false;
 
   /// The transformation from WGS 84 to a grid that PROJ suggests at a position: among all known ones, or
   /// among those whose grid files are installed. Empty where there is none.
@@ -108,21 +111,41 @@ struct MapGrid::Proj : ProjObjects {
 
   void describeUnit(MapGridDescription* grid, const std::string& crs_name) const {
     const Object axes(proj_crs_get_coordinate_system(context.get(), crs.get()));
-    std::string directions;
-    for (int i = 0; i < 2; ++i) {
-      const char *direction = nullptr, *unit = nullptr;
-      proj_cs_get_axis_info(context.get(), axes.get(), i, nullptr, nullptr, &direction,
-                            &grid->metres_per_unit, &unit, nullptr, nullptr);
-      directions += textOf(direction) + " ";
-      grid->unit = textOf(unit);
-    }
+    const char* unit = nullptr;
+    proj_cs_get_axis_info(context.get(), axes.get(), 0, nullptr, nullptr, nullptr, &grid->metres_per_unit,
+                          &unit, nullptr, nullptr);
+    grid->unit = textOf(unit);
+    const std::string directions = axisDirections(crs.get());
+    grid->counts_west_and_south = areWestAndSouth(directions);
+    if (grid->counts_west_and_south) return;
     // About a pole, both axes point to the north or to the south, along two meridians.
-    for (const char* usual : {"east north ", "north east ", "north north ", "south south "}) {
+    for (const char* usual : {"east north", "north east", "north north", "south south"}) {
       if (directions == usual) return;
     }
-    throw UsageError(fmt::format(
-        "--crs {}: the axes of {} point {}and not to the east and north, which survey programs take them for",
-        crs_name, grid->title, directions));
+    throw UsageError(
+        fmt::format("--crs {}: the axes of {} point {} and not to the east and north, which survey programs "
+                    "take them for",
+                    crs_name, grid->title, directions));
+  }
+
+  /// For a grid that counts to the west and south. PROJ may exchange its axes, so a step to the east tells
+  /// which one is the westing.
+  void turnToEastAndNorth(const GeodeticPosition& place) {
+    constexpr double kStep_deg = 1e-3;
+    const Vec2 step =
+        transformed(grid_from_wgs84.get(), place.latitude_deg, place.longitude_deg + kStep_deg) -
+        transformed(grid_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
+    east_north_from_axes = -Eigen::Matrix2d::Identity();
+    if (std::abs(step.y()) > std::abs(step.x())) east_north_from_axes << 0, -1, -1, 0;
+    is_south_first = axisDirections(crs.get()) == "south west";
+  }
+
+  /// PROJ string of a grid without the directions of its axes, which are then east and north.
+  std::string withoutDirections(const PJ* grid) const {
+    std::string text = textOf(proj_as_proj_string(context.get(), grid, PJ_PROJ_4, nullptr));
+    const size_t at = text.find(" +axis=");
+    if (at != std::string::npos) text.erase(at, text.find(' ', at + 1) - at);
+    return text;
   }
 
   void describeArea(MapGridDescription* grid, const GeodeticPosition& place) const {
@@ -165,8 +188,9 @@ struct MapGrid::Proj : ProjObjects {
   }
 
   void describeNames(MapGridDescription* grid, const GeodeticPosition& place) const {
-    std::string code = grid->name;
-    if (std::abs(grid->metres_per_unit - 1.0) > 1e-12) code = codeInMetres(*grid, place);
+    std::string code = grid->counts_west_and_south ? "" : grid->name;
+    grid->gis_name = grid->counts_west_and_south ? withoutDirections(crs.get()) : grid->code;
+    if (!code.empty() && std::abs(grid->metres_per_unit - 1.0) > 1e-12) code = codeInMetres(*grid, place);
     grid->survex_name = code;
     if (!code.empty() && !grid->lacks_grid_file) grid->therion_name = therionSpelling(code);
     if (!code.empty()) return;
@@ -174,8 +198,7 @@ struct MapGrid::Proj : ProjObjects {
         proj_crs_alter_cs_linear_unit(context.get(), crs.get(), "metre", 1.0, nullptr, nullptr));
     const Object metric(
         proj_crs_alter_parameters_linear_unit(context.get(), axes.get(), "metre", 1.0, nullptr, nullptr, 1));
-    const std::string text = textOf(proj_as_proj_string(context.get(), metric.get(), PJ_PROJ_4, nullptr));
-    grid->survex_name = fmt::format("custom \"{}\"", text);
+    grid->survex_name = fmt::format("custom \"{}\"", withoutDirections(metric.get()));
   }
 };
 
@@ -201,6 +224,7 @@ MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(
   proj_->describeUnit(&description_, crs);
   proj_->grid_from_wgs84 = proj_->best(proj_->crs.get(), place);
   if (proj_->grid_from_wgs84 == nullptr) refuse("PROJ knows no way from WGS 84 to " + description_.title);
+  if (description_.counts_west_and_south) proj_->turnToEastAndNorth(place);
   proj_->describeArea(&description_, place);
   proj_->describeOperation(&description_, place);
 
@@ -208,13 +232,17 @@ MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(
 }
 
 Vec2 MapGrid::project(double latitude_deg, double longitude_deg) const {
-  return description_.metres_per_unit *
+  return description_.metres_per_unit * proj_->east_north_from_axes *
          transformed(proj_->grid_from_wgs84.get(), latitude_deg, longitude_deg);
 }
 
 GeodeticPosition MapGrid::locate(const Vec2& coordinates) const {
-  const PJ_COORD result = proj_trans(proj_->grid_from_wgs84.get(), PJ_INV,
-                                     proj_coord(coordinates.x(), coordinates.y(), 0.0, HUGE_VAL));
+  Vec2 east_north = coordinates;
+  if (description_.counts_west_and_south)
+    east_north = proj_->is_south_first ? Vec2(-coordinates.y(), -coordinates.x()) : Vec2(-coordinates);
+  const Vec2 axes = proj_->east_north_from_axes.transpose() * east_north;
+  const PJ_COORD result =
+      proj_trans(proj_->grid_from_wgs84.get(), PJ_INV, proj_coord(axes.x(), axes.y(), 0.0, HUGE_VAL));
   proj_errno_reset(proj_->grid_from_wgs84.get());
   return {result.lp.phi, result.lp.lam, 0.0};
 }

@@ -28,17 +28,24 @@ struct MapGridDescription {
   /// Therion's name, which must be a code; empty where the grid in metres has no code, or where Therion fails
   /// for lack of a grid file.
   std::optional<std::string> therion_name;
+  /// What GIS files state: the code, or a PROJ string where the grid counts to the west and south.
+  std::string gis_name;
+  bool counts_west_and_south = false;
 };
 
 /// A projected grid: a UTM zone, a polar or a national grid, computed by PROJ.
 ///
 /// PROJ chooses the best transformation from WGS 84 at the position among those whose grid files are
 /// installed; nothing is downloaded. All coordinates are in metres.
+///
+/// Survey programs and GIS take the first coordinate for an easting and the second for a northing. A grid
+/// that counts to the west and south is therefore used with easting = -westing and northing = -southing,
+/// under a PROJ string without the directions of its axes.
 class MapGrid {
  public:
   /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or
   /// "ESRI:102008", in any case. Throws UsageError where it is not the name of a projected grid with axes to
-  /// the east and north, or along two meridians about a pole.
+  /// the east and north, to the west and south, or along two meridians about a pole.
   MapGrid(const std::string& crs, const GeodeticPosition& place);
 
   const MapGridDescription& description() const { return description_; }
@@ -46,7 +53,8 @@ class MapGrid {
   /// Easting and northing in metres, also if the unit of the grid is feet; infinite where the position has no
   /// coordinates.
   Vec2 project(double latitude_deg, double longitude_deg) const;
-  /// WGS 84 position of easting and northing in the grid's own unit; infinite where there is none.
+  /// WGS 84 position of easting and northing in the grid's own unit, or of westing and southing in the order
+  /// of EPSG's axes where the grid counts so; infinite where there is none.
   GeodeticPosition locate(const Vec2& coordinates) const;
 
  private:

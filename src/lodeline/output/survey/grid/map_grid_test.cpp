@@ -41,7 +41,6 @@ TEST(MapGrid, RefusesWhatIsNoGridWithAxesToEastAndNorth) {
   }
   expectRefusal("EPSG:4326", "no projected grid");
   expectRefusal("EPSG:5773", "no projected grid");  // heights
-  expectRefusal("EPSG:2053", "axes");               // to the west and south
   EXPECT_THROW(MapGrid("auto", {98.0, 0.0, 0.0}), UsageError);
 }
 
@@ -56,6 +55,21 @@ TEST(MapGrid, KnowsTheSameGridInMetres) {
   EXPECT_THAT(gold_coast.survex_name, HasSubstr("custom \"+proj=tmerc"));
   EXPECT_THAT(gold_coast.survex_name, HasSubstr("+units=m"));
   EXPECT_FALSE(gold_coast.therion_name);
+}
+
+TEST(MapGrid, TurnsAxesToTheWestAndSouth) {
+  const GeodeticPosition brno = {49.2, 16.6, 0.0};
+  const MapGrid krovak("EPSG:5513", brno), east_north("EPSG:5514", brno);
+  EXPECT_LT((krovak.project(49.2, 16.6) - east_north.project(49.2, 16.6)).norm(), 1e-6);
+  EXPECT_NEAR(Georeference(brno, krovak).convergence_rad(), Georeference(brno, east_north).convergence_rad(),
+              1e-9);
+  const MapGridDescription description = krovak.description();
+  EXPECT_TRUE(description.counts_west_and_south);
+  EXPECT_THAT(description.survex_name, HasSubstr("custom \"+proj=krovak +lat_0"));
+  EXPECT_THAT(description.gis_name, HasSubstr("+proj=krovak +lat_0"));
+  EXPECT_FALSE(description.therion_name);
+  EXPECT_FALSE(east_north.description().counts_west_and_south);
+  EXPECT_EQ(east_north.description().gis_name, "EPSG:5514");
 }
 
 TEST(MapGrid, SaysHowWellItIsTied) {

@@ -34,6 +34,24 @@ struct ProjObjects {
   Object create(const std::string& definition) const {
     return Object(proj_create(context.get(), definition.c_str()));
   }
+
+  /// Directions of the first two axes of a reference system: "east north", "south west".
+  std::string axisDirections(const PJ* crs) const {
+    const Object axes(proj_crs_get_coordinate_system(context.get(), crs));
+    std::string directions;
+    for (int i = 0; i < 2; ++i) {
+      const char* direction = nullptr;
+      proj_cs_get_axis_info(context.get(), axes.get(), i, nullptr, nullptr, &direction, nullptr, nullptr,
+                            nullptr, nullptr);
+      directions += (i > 0 ? " " : "") + textOf(direction);
+    }
+    return directions;
+  }
 };
+
+/// Whether axes count to the west and south, in either order.
+inline bool areWestAndSouth(const std::string& directions) {
+  return directions == "west south" || directions == "south west";
+}
 
 }  // namespace lodeline

@@ -52,6 +52,12 @@ void addDatumNotes(const MapGridDescription& grid, std::vector<std::string>* not
     notes->push_back(fmt::format("datum: from WGS 84 by {} (PROJ), accuracy {}", grid.operation,
                                  grid.accuracy_m ? fmt::format("{:g} m", *grid.accuracy_m) : "unknown"));
   }
+  if (grid.counts_west_and_south) {
+    notes->push_back(fmt::format(
+        "axes: {} counts to the west and south; coordinates are minus its westing and minus its southing, "
+        "which count to the east and north as programs expect ({})",
+        grid.code, grid.gis_name));
+  }
   if (grid.metres_per_unit != 1.0) {
     notes->push_back(fmt::format(
         "survey programs: Survex counts in metres, so its file has this grid in metres ({}); 1 {} is "

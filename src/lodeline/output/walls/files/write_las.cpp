@@ -108,7 +108,7 @@ void writeLas(const WallTiles& tiles, const DiveMap& map, const std::filesystem:
   forEachPoint([&](const Vec3& point, const auto&, uint16_t) { box.extend(point); });
   if (box.isEmpty()) box.extend(Vec3::Zero());
   const Vec3 offset = box.min().array().floor();
-  const std::string record = gridRecord(map.place ? gridText(map.place->gridDescription().code) : "");
+  const std::string record = gridRecord(map.place ? gridText(map.place->gridDescription().gis_name) : "");
   std::ofstream stream = openOutput(file);
   stream << lasHeader(tiles, box, offset, record.size()) << record;
   std::string bytes;

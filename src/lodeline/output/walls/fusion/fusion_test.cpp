@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <filesystem>
 #include <set>
+#include <string>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
@@ -116,6 +119,17 @@ TEST(TileFile, RefusesDamage) {
   std::filesystem::resize_file(file, 40);
   EXPECT_THROW(readTileFile(file), InputError);
   EXPECT_THROW(readTileFile(folder.path() / "none"), InputError);
+}
+
+TEST(WallVolumeModule, IsNoPartOfPrograms) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  FILE* libraries = ::popen(("ldd '" + program + "'").c_str(), "r");
+  ASSERT_NE(libraries, nullptr);
+  std::string text;
+  for (int c = std::fgetc(libraries); c != EOF; c = std::fgetc(libraries)) text += static_cast<char>(c);
+  ASSERT_EQ(::pclose(libraries), 0);
+  EXPECT_NE(text.find("libopencv_core"), std::string::npos);
+  EXPECT_EQ(text.find("Open3D"), std::string::npos);
 }
 
 }  // namespace

@@ -38,8 +38,6 @@ std::vector<Block> touchedBlocks(const Tile& reach, const DepthKeyframe& keyfram
 
 }  // namespace
 
-double FusionOptions::block_m() const { return kBlockVoxels * voxel_m; }
-
 std::vector<DepthKeyframe> keyframesAt(const Tile& tile, const DepthKeyframes& input,
                                        const FusionOptions& options) {
   const Tile reach = tile.expanded(1);

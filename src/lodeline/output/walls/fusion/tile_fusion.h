@@ -9,6 +9,9 @@
 
 namespace lodeline {
 
+/// Voxels along each edge of a block.
+inline constexpr int kBlockVoxels = 8;
+
 struct FusionOptions {
   double voxel_m = 0.02;
   double truncation_voxels = 5.0;   ///< half thickness of the volume about the surface
@@ -16,12 +19,9 @@ struct FusionOptions {
   size_t max_blocks = 16'000;       ///< of one volume, which bounds the memory: about 11 kB a block
   size_t min_part_triangles = 100;  ///< smaller separate parts are left out
 
-  double block_m() const;
+  double block_m() const { return kBlockVoxels * voxel_m; }
   double truncation_m() const { return truncation_voxels * voxel_m; }
 };
-
-/// Voxels along each edge of a block.
-inline constexpr int kBlockVoxels = 8;
 
 /// A box of blocks, `low` inside and `high` outside, in blocks of FusionOptions::block_m().
 struct Tile {
@@ -48,7 +48,7 @@ struct DepthKeyframes {
   std::function<DepthImage(size_t number)> depths;
 };
 
-/// Whether the library was built with Open3D, which fuses depths.
+/// Whether the module with Open3D, which fuses depths, can be loaded.
 bool hasOpen3d();
 
 /// The surface in a tile: depths of all keyframes in a truncated signed distance volume (B. Curless, M.

@@ -77,7 +77,7 @@ void addLine(const DiveMap& map, Table* table) {
 std::unique_ptr<OGRSpatialReference> gridOf(const DiveMap& map) {
   if (!map.place) return nullptr;
   auto grid = std::make_unique<OGRSpatialReference>();
-  check(grid->SetFromUserInput(map.place->gridDescription().code.c_str()) == OGRERR_NONE, "the grid");
+  check(grid->SetFromUserInput(map.place->gridDescription().gis_name.c_str()) == OGRERR_NONE, "the grid");
   grid->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return grid;
 }
