@@ -8,6 +8,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
+#include "lodeline/imu/noise/vibration_survey.h"
 #include "lodeline/inspection/robots/current_comparison.h"
 #include "lodeline/inspection/robots/dvl_comparison.h"
 #include "lodeline/inspection/robots/dvl_image_comparison.h"
@@ -15,7 +16,6 @@
 #include "lodeline/inspection/survey/imu_survey.h"
 #include "lodeline/inspection/survey/magnetometer_survey.h"
 #include "lodeline/inspection/survey/stereo_survey.h"
-#include "lodeline/inspection/survey/vibration_survey.h"
 #include "lodeline/io/robots/dvl_screen.h"
 #include "lodeline/recording.h"
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lodeline/inspection/survey/camera_words.h"
+
 namespace lodeline {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "lodeline/inspection/survey/vibration_survey.h"
+#include "lodeline/imu/noise/vibration_survey.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,12 @@
-#include "lodeline/inspection/survey/vibration_survey.h"
+#include "lodeline/imu/noise/vibration_survey.h"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <vector>
+
+#include "lodeline/imu/noise/imu_noise_check.h"
 
 namespace lodeline {
 namespace {
@@ -15,15 +18,6 @@ struct VibrationBlock {
   double sigma;
   size_t begin, count;
 };
-
-double medianPeriod_s(std::span<const ImuSample> samples) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
-}
 
 double sigmaOf(std::span<const ImuSample> block, Vec3 ImuSample::*reading) {
   double squares = 0.0;
@@ -61,7 +55,7 @@ double strongestLine_hz(std::span<const ImuSample> block, Vec3 ImuSample::*readi
 Vibration surveyVibration(std::span<const ImuSample> samples, Vec3 ImuSample::*reading, double limit) {
   Vibration result;
   if (samples.size() < 3) return result;
-  const double step_s = medianPeriod_s(samples);
+  const double step_s = medianStep_s(samples);
   if (!(step_s > 0.0)) return result;
   const auto size = static_cast<size_t>(kVibrationBlock_s / step_s);
   if (size < 8) return result;

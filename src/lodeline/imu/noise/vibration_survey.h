@@ -1,9 +1,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "lodeline/recording.h"
+#include "lodeline/rig.h"
 
 namespace lodeline {
 
