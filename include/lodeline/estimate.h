@@ -185,8 +185,9 @@ struct ScaleInformation {
   double stereo = 0.0;
   double accelerometer = 0.0;
   double depth = 0.0;
+  double dvl = 0.0;
 
-  double sum() const { return stereo + accelerometer + depth; }
+  double sum() const { return stereo + accelerometer + depth + dvl; }
 };
 
 /// What a sensor reports about a frame, in words and numbers for files and summaries.

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -15,6 +16,7 @@
 #include "lodeline/output/survey/formats/recording_walls.h"
 #include "lodeline/output/survey/map/export_owner.h"
 #include "lodeline/output/survey/map/survey_name.h"
+#include "lodeline/output/walls/section/wall_sections.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/terminal/progress.h"
 
@@ -33,7 +35,8 @@ struct RecordingParts {
 struct ExportedDive {
   DiveMap map;
   RecordingParts recording;
-  std::string depth_comparison;  ///< text of its table; empty without a depth profile
+  std::string depth_comparison;        ///< text of its table; empty without a depth profile
+  std::vector<StationWalls> sections;  ///< by the sonar; empty where it saw no whole section
 };
 
 RecordingParts readRecording(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
@@ -89,6 +92,12 @@ ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFor
     dive.depth_comparison = applyDepthProfile(arguments.depth, &run, &options, diagnostics);
   dive.recording = readRecording(arguments, formats, run, diagnostics);
   dive.map = makeDiveMap(run, options, dive.recording.walls_W, diagnostics);
+  if (dive.map.echoes_ENU.empty()) return dive;
+  std::vector<StationWalls> sections = echoesAtStations(dive.map.echoes_ENU, dive.map.survey, {});
+  takeSizes(sections, &dive.map.survey);
+  const bool has_whole = std::any_of(sections.begin(), sections.end(),
+                                     [](const StationWalls& s) { return s.outline.area_m2.has_value(); });
+  if (has_whole) dive.sections = std::move(sections);
   return dive;
 }
 
@@ -122,11 +131,29 @@ std::filesystem::path outputFolder(const ExportArguments& arguments) {
   return std::filesystem::path(arguments.runs.front()) / "export";
 }
 
+/// Names of the files of the sections by the sonar: table, sheet, drawing.
+std::array<std::string, 3> sectionFileNames(const DiveMap& map) {
+  return {map.name + "_sections.csv", map.name + "_sections.svg", map.name + "_sections.dxf"};
+}
+
+void writeSections(const ExportedDive& dive, const std::filesystem::path& folder,
+                   std::vector<std::filesystem::path>* files) {
+  const auto [table, sheet, drawing] = sectionFileNames(dive.map);
+  const auto write = [&](const std::string& name, const std::string& text) {
+    files->push_back(folder / name);
+    writeOutput(files->back(), text);
+  };
+  write(table, sectionsCsv(dive.map, dive.sections));
+  write(sheet, sectionsSvg(dive.map, dive.sections));
+  if (hasGdal()) write(drawing, sectionsDxf(dive.map, dive.sections));
+}
+
 std::string depthTableName(const DiveMap& map) { return map.name + "_depth_profile.csv"; }
 
 void expectOwnFolder(const ExportArguments& arguments, const ExportedDive& dive,
                      const std::vector<MapFormat>& formats, const std::filesystem::path& folder) {
   std::vector<std::string> names = {depthTableName(dive.map)};
+  for (const std::string& name : sectionFileNames(dive.map)) names.push_back(name);
   if (arguments.foxglove.is_wanted) names.push_back(foxgloveFileName(dive.map.name));
   for (MapFormat format : formats) {
     for (const std::string& name : mapFileNames(dive.map.name, format)) names.push_back(name);
@@ -151,6 +178,7 @@ void writeDive(const ExportedDive& dive, const std::vector<MapFormat>& formats,
     files->push_back(folder / depthTableName(dive.map));
     writeOutput(files->back(), dive.depth_comparison);
   }
+  if (!dive.sections.empty()) writeSections(dive, folder, files);
   files->push_back(folder / notesFileName(dive.map.name));
   writeOutput(files->back(), notesText(dive.map));
 }

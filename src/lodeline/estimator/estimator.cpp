@@ -76,7 +76,7 @@ Estimator::Estimator(const Rig& rig, const EstimatorOptions& options, Diagnostic
       scale_(rig_, options_),
       linearization_cache_(options_.window.frozen_frames),
       rest_(rig_, options_.rest),
-      monitor_(std::make_unique<InertialMonitor>(options_, diagnostics)),
+      monitor_(std::make_unique<InertialMonitor>(rig_, options_, diagnostics)),
       known_(Eigen::Matrix<double, 15, 15>::Identity()),
       covariance_inflation_(options_),
       mode_(options_.window) {
@@ -97,6 +97,7 @@ FrameEstimate Estimator::add(const FrameTracks& tracks, std::span<const ImuSampl
   const Vec3 gyroscope_bias_B = carries_on ? window_.newest().gyroscopeBias() : Vec3::Zero();
   for (const auto& sensor : sensors_) sensor->take(readings, imu, gyroscope_bias_B);
   rests_ = rest_.add(tracks, imu);
+  monitor_->take(imu);
   if (carries_on) insertFrame(tracks.time, observations, imu);
   if (carries_on && rests_) window_.newest().rest_sigma_m_per_s = options_.rest.velocity_sigma_m_per_s;
   last_time_ = tracks.time;

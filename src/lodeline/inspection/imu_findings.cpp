@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
@@ -117,6 +118,34 @@ void judgeNoise(Inspection* inspection) {
   }
 }
 
+/// Vibration of motors, where it is far above the noise that the calibration states.
+void judgeVibration(Inspection* inspection) {
+  constexpr double kTimes = 5.0, kLeastForce_m_per_s2 = 0.05, kLeastRate_rad_per_s = 0.005, kOften = 0.1;
+  const ImuNoise& noise = inspection->rig.imu.noise;
+  std::vector<ImuSample> samples = inspection->imu.samples;
+  for (ImuSample& sample : samples) sample.angular_velocity_B *= inspection->rate_to_SI;
+  const auto judge = [&](Vec3 ImuSample::*reading, double density, double least, const char* sensor,
+                         const char* unit) {
+    const double stated = density * std::sqrt(std::max(inspection->imu.stream.rate_hz, 1.0));
+    const Vibration vibration = surveyVibration(samples, reading, std::max(kTimes * stated, least));
+    if (vibration.share < kOften) return vibration;
+    addImuFinding(
+        inspection, Severity::Notice, 43.0, "imu_vibration",
+        fmt::format(
+            "the {} vibrates in {:.0f} % of the time: {:.3g} {}, {:.0f} times its stated noise, strongest "
+            "at {:.0f} Hz or at a frequency that {:.0f} readings a second show there; mount the IMU softly, "
+            "or record it faster with its filter on",
+            sensor, 100.0 * vibration.share, vibration.strong, unit, vibration.strong / stated,
+            vibration.frequency_hz, vibration.rate_hz));
+    return vibration;
+  };
+  inspection->force_vibration =
+      judge(&ImuSample::specific_force_B, noise.accelerometer_density_m_per_s2_sqrtHz, kLeastForce_m_per_s2,
+            "accelerometer", "m/s^2");
+  inspection->rate_vibration = judge(&ImuSample::angular_velocity_B, noise.gyroscope_density_rad_per_s_sqrtHz,
+                                     kLeastRate_rad_per_s, "gyroscope", "rad/s");
+}
+
 /// Unit of the rates without a camera: gravity rotates far more slowly than, for example, rates in deg/s read
 /// as rad/s.
 void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
@@ -150,6 +179,7 @@ void judgeImu(Inspection* inspection) {
   judgeTurningOfGravity(imu, inspection);
   judgeScreening(imu, inspection);
   judgeNoise(inspection);
+  judgeVibration(inspection);
 }
 
 }  // namespace lodeline::findings

@@ -8,8 +8,10 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/imu/noise/imu_noise_check.h"
+#include "lodeline/imu/noise/vibration_survey.h"
 #include "lodeline/inspection/robots/current_comparison.h"
 #include "lodeline/inspection/robots/dvl_comparison.h"
+#include "lodeline/inspection/robots/dvl_image_comparison.h"
 #include "lodeline/inspection/survey/camera_survey.h"
 #include "lodeline/inspection/survey/imu_survey.h"
 #include "lodeline/inspection/survey/magnetometer_survey.h"
@@ -60,12 +62,14 @@ struct Inspection {
   ImuSurvey imu;
   double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be determined; pi/180 where it is in deg/s
   WhiteNoise shown_noise;   ///< of the IMU, estimated from its readings
+  Vibration force_vibration, rate_vibration;  ///< of accelerometer and gyroscope, SI units
   std::vector<CameraInspection> cameras;
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
   std::optional<MagnetometerSurvey> magnetometer;
   std::vector<PlainSurvey> others;
-  std::optional<DvlComparison> dvl;           ///< with the IMU
-  std::optional<CurrentComparison> currents;  ///< with the magnetometer
+  std::optional<DvlComparison> dvl;              ///< with the IMU
+  std::optional<DvlImageComparison> dvl_images;  ///< with the first camera
+  std::optional<CurrentComparison> currents;     ///< with the magnetometer
   std::optional<Vec3> site_field_W;  ///< east, north, up, T: at the site and date of the recording, if known
   std::vector<InspectionFinding> findings;  ///< most harmful first
 

@@ -39,6 +39,8 @@ Json imuJson(const Inspection& inspection) {
   json["gyroscope_spread"] = vector(imu.gyroscope.spread);
   json["gyroscope_saturated_share"] = imu.gyroscope.saturated_share;
   json["accelerometer_saturated_share"] = imu.accelerometer.saturated_share;
+  json["accelerometer_vibration_m_per_s2"] = inspection.force_vibration.strong;
+  json["gyroscope_vibration_rad_per_s"] = inspection.rate_vibration.strong;
   json["rest_s"] = imu.rest_s;
   if (imu.rest_s > 0.0) {
     json["gravity_at_rest_m_per_s2"] = imu.rest_force_m_per_s2;
@@ -141,6 +143,11 @@ nlohmann::ordered_json inspectionJson(const Inspection& inspection) {
       entry["imu_motion_m_per_s"] = inspection.dvl->motion_m_per_s;
       entry["imu_remainder_m_per_s"] = inspection.dvl->remainder_m_per_s;
       entry["imu_time_offset_s"] = inspection.dvl->time_offset_s;
+    }
+    if (other.sensor == "dvl0" && inspection.dvl_images) {
+      entry["image_pairs"] = inspection.dvl_images->pairs;
+      entry["image_angle_rad"] = inspection.dvl_images->angle_rad;
+      entry["image_time_offset_s"] = inspection.dvl_images->time_offset_s;
     }
     if (other.sensor == "current0" && inspection.currents) {
       entry["field_scatter_T"] = inspection.currents->scatter_T;

@@ -54,9 +54,12 @@ std::string imuText(const Inspection& inspection) {
     text += "; never at rest, so that biases cannot be read off";
   }
   const Vec3 spread_deg = kDegreesPerRadian * inspection.rate_to_SI * imu.gyroscope.spread;
-  return text +
-         fmt::format("\n          turns by {:.1f} {:.1f} {:.1f} deg/s (standard deviation about x y z)\n",
-                     spread_deg.x(), spread_deg.y(), spread_deg.z());
+  text += fmt::format("\n          turns by {:.1f} {:.1f} {:.1f} deg/s (standard deviation about x y z)\n",
+                      spread_deg.x(), spread_deg.y(), spread_deg.z());
+  for (const InspectionFinding& finding : inspection.findings) {
+    if (finding.kind == "imu_vibration") text += fmt::format("          {}\n", finding.message);
+  }
+  return text;
 }
 
 std::string qualityText(const CameraSurvey& survey) {
@@ -146,6 +149,12 @@ std::string dvlText(const DvlComparison& dvl) {
       dvl.pings, dvl.motion_m_per_s, dvl.remainder_m_per_s, dvl.time_offset_s);
 }
 
+std::string dvlImagesText(const DvlImageComparison& dvl) {
+  return fmt::format(
+      "          with the images over {} pairs: directions {:.0f} deg apart, least with stamps {:+.2f} s\n",
+      dvl.pairs, kDegreesPerRadian * dvl.angle_rad, dvl.time_offset_s);
+}
+
 std::string currentsText(const CurrentComparison& currents) {
   std::string text = fmt::format(
       "          with the magnetometer over {} readings: scatter {:.2f} uT, {:.2f} uT with currents, least "
@@ -175,6 +184,7 @@ std::string inspectionText(const Inspection& inspection) {
     }
     if (other.lock) text += lockText(*other.lock);
     if (other.sensor == "dvl0" && inspection.dvl) text += dvlText(*inspection.dvl);
+    if (other.sensor == "dvl0" && inspection.dvl_images) text += dvlImagesText(*inspection.dvl_images);
     if (other.sensor == "current0" && inspection.currents) text += currentsText(*inspection.currents);
   }
   return text;

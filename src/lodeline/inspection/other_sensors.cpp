@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lodeline/inspection/survey/camera_words.h"
+
 namespace lodeline {
 namespace {
 
@@ -113,6 +115,11 @@ void compareRobotSensors(const SourceFactory& open, Inspection* inspection) {
     std::vector<DvlSample> pings;
     while (std::optional<DvlSample> ping = source->nextDvl()) pings.push_back(std::move(*ping));
     inspection->dvl = compareDvl(pings, *rig.dvl, path);
+    if (!inspection->cameras.empty() && isCalibrated(rig.cameras.front())) {
+      inspection->dvl_images =
+          compareDvlWithImages(inspection->cameras.front().survey.pairs, rig.cameras.front().body_from_camera,
+                               pings, *rig.dvl, path);
+    }
   }
   if (!has_currents) return;
   std::vector<MagnetometerSample> field;

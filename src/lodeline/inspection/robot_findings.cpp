@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/survey/signed_axes.h"
+#include "lodeline/util/angles.h"
 
 namespace lodeline::findings {
 namespace {
@@ -36,6 +38,36 @@ void judgeDvl(const DvlComparison& dvl, Inspection* inspection) {
       inspection, Severity::Warning, 58.0, "dvl0", "dvl_time_offset",
       fmt::format(
           "the stamps of the DVL fit the IMU better with {:+.2f} s: write this as `timeshift` of dvl0",
+          dvl.time_offset_s + inspection->rig.dvl->time_offset_to_imu_s));
+}
+
+/// DVL against images. Their directions are good to some degrees, less where the camera looks along its way.
+void judgeDvlImages(const DvlImageComparison& dvl, Inspection* inspection) {
+  constexpr double kContradicts_rad = 40.0 * kDegree, kFits_rad = 25.0 * kDegree, kMuchBetter = 0.5;
+  const auto has = [&](const char* kind) {
+    return std::any_of(inspection->findings.begin(), inspection->findings.end(),
+                       [&](const InspectionFinding& finding) { return finding.kind == kind; });
+  };
+  if (!has("dvl_axes") && dvl.angle_rad > kContradicts_rad && dvl.best_angle_rad < kFits_rad &&
+      dvl.best_angle_rad < kMuchBetter * dvl.angle_rad) {
+    addRobotFinding(
+        inspection, Severity::Serious, 74.0, "dvl0", "dvl_axes",
+        fmt::format(
+            "the DVL moves in another direction than the images: swapped axes or beams, wrong signs or "
+            "wrong T_BS (in body axes as if {}); {:.0f} degrees apart, {:.0f} then",
+            describeSignedAxes(dvl.best_axes), kDegreesPerRadian * dvl.angle_rad,
+            kDegreesPerRadian * dvl.best_angle_rad));
+    return;
+  }
+  constexpr double kHarmful_s = 0.1, kBetter = 0.7, kNoise_rad = 3.0 * kDegree;
+  if (has("dvl_axes") || has("dvl_time_offset") || std::abs(dvl.time_offset_s) < kHarmful_s ||
+      dvl.angle_at_offset_rad > kFits_rad ||
+      dvl.angle_at_offset_rad > std::min(kBetter * dvl.angle_rad, dvl.angle_rad - kNoise_rad))
+    return;
+  addRobotFinding(
+      inspection, Severity::Warning, 58.0, "dvl0", "dvl_time_offset",
+      fmt::format(
+          "the stamps of the DVL fit the images better with {:+.2f} s: write this as `timeshift` of dvl0",
           dvl.time_offset_s + inspection->rig.dvl->time_offset_to_imu_s));
 }
 
@@ -95,6 +127,7 @@ void judgeCurrents(const CurrentComparison& comparison, Inspection* inspection) 
 
 void judgeRobotSensors(Inspection* inspection) {
   if (inspection->dvl) judgeDvl(*inspection->dvl, inspection);
+  if (inspection->dvl_images) judgeDvlImages(*inspection->dvl_images, inspection);
   if (inspection->currents) judgeCurrents(*inspection->currents, inspection);
 }
 

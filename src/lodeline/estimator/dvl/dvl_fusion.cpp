@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "lodeline/estimator/dvl/dvl_innovation.h"
 #include "lodeline/estimator/dvl/dvl_states.h"
 #include "lodeline/util/angles.h"
 
@@ -27,6 +26,8 @@ const char* toString(DvlStatus status) {
       return "water_track";
     case DvlStatus::Invalid:
       return "invalid";
+    case DvlStatus::Waiting:
+      return "waiting";
     case DvlStatus::Rejected:
       return "rejected";
     case DvlStatus::Used:
@@ -41,7 +42,8 @@ DvlFusion::DvlFusion(const Rig& rig, const EstimatorOptions& options, Diagnostic
     : options_(options.dvl),
       diagnostics_(diagnostics),
       gravity_W_(options.gravity_W),
-      integrator_(rig.imu, options.preintegration) {
+      integrator_(rig.imu, options.preintegration),
+      trust_(options.dvl.readmission_s) {
   if (!options_.use || !rig.dvl) return;
   dvl_ = rig.dvl;
   const double rate_sigma_rad_per_s = options.preintegration.noise_inflation *
@@ -154,8 +156,10 @@ void DvlFusion::addToNewest(Window& window, Marginalizer&) {
   estimate_.innovation_m_per_s = 0.0;
   std::vector<DvlPing> used;
   for (auto& [time, ping] : pingsUntil(newest.state())) {
-    estimate_.beams += static_cast<int>(ping.rows.size());
-    see(judge(time, window, &ping));
+    const int beams = static_cast<int>(ping.rows.size());
+    const DvlStatus status = judge(time, window, &ping);
+    see(status);
+    if (status != DvlStatus::Waiting) estimate_.beams += beams;
     if (ping.rows.empty()) continue;
     estimate_.used += static_cast<int>(ping.rows.size());
     used.push_back(std::move(ping));
@@ -180,26 +184,33 @@ DvlStatus DvlFusion::judge(Time time, const Window& window, DvlPing* ping) {
   constexpr int kFewest = 3;
   if (rows >= kFewest && 2 * static_cast<int>(agreeing.size()) <= rows) agreeing.clear();
   const int count = static_cast<int>(agreeing.size());
-  judged_ += rows;
-  rejected_ += rows - count;
-  if (2 * count > rows) {
-    disagrees_since_.reset();
-  } else {
-    disagrees_since_ = disagrees_since_.value_or(time);
-    reportRejections(time);
+  const bool agrees = 2 * count > rows;
+  trust_.add(time, agrees, innovation.isTest(options_.max_sigmas));
+  if (trust_.isTrusted() || !agrees) {
+    judged_ += rows;
+    rejected_ += rows - (trust_.isTrusted() ? count : 0);
   }
-  const double disagrees_s = disagrees_since_ ? (time - *disagrees_since_).seconds() : 0.0;
-  if (count == 0 && disagrees_s > options_.readmission_s) {
-    diagnostics_->report(
-        Severity::Warning, "dvl_readmitted",
-        fmt::format(
-            "DVL: at {} ns its velocities have disagreed with the prediction for {:.0f} s; used again "
-            "with the weight that the robust loss leaves them",
-            time.nanoseconds(), disagrees_s));
-    return DvlStatus::Readmitted;
-  }
+  if (!agrees) reportRejections(time);
+  if (!trust_.isTrusted()) return readmit(time, agrees, innovation, ping);
   ping->rows = std::move(agreeing);
   return count > 0 ? DvlStatus::Used : DvlStatus::Rejected;
+}
+
+DvlStatus DvlFusion::readmit(Time time, bool agrees, const DvlInnovation& innovation, DvlPing* ping) {
+  if (!trust_.isOverdue()) {
+    ping->rows.clear();
+    return agrees ? DvlStatus::Waiting : DvlStatus::Rejected;
+  }
+  diagnostics_->report(
+      Severity::Warning, "dvl_readmitted",
+      fmt::format("DVL: at {} ns its velocities have disagreed with the prediction for {:.0f} s; used again "
+                  "with the noise that their disagreement shows",
+                  time.nanoseconds(), trust_.waited_s()));
+  // A healthy prediction outweighs it then, and one that drifts in the dark follows it.
+  const double disagreement_m_per_s =
+      std::sqrt(innovation.value_m_per_s.squaredNorm() / static_cast<double>(ping->rows.size()));
+  ping->sigma_m_per_s = std::hypot(ping->sigma_m_per_s, disagreement_m_per_s);
+  return DvlStatus::Readmitted;
 }
 
 void DvlFusion::reportRejections(Time time) {

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/estimator/dvl/dvl_innovation.h"
 #include "lodeline/estimator/dvl/dvl_measurement.h"
 #include "lodeline/estimator/dvl/dvl_rows.h"
+#include "lodeline/estimator/dvl/dvl_trust.h"
 #include "lodeline/estimator/dvl/ping_integrator.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/problem/covariance.h"
@@ -22,7 +24,8 @@ enum class DvlStatus {
   NoData,      ///< no ping with lock since the frame before
   WaterTrack,  ///< velocities through the water, which are not used
   Invalid,     ///< velocities that no instrument measures
-  Rejected,    ///< all beams disagree with the prediction
+  Waiting,     ///< they agree, but the sensor has not passed enough tests yet
+  Rejected,    ///< all beams disagree with the prediction, or the sensor does not deserve trust
   Used,        ///< at least one beam
   Readmitted,  ///< used although it disagrees, because it has done so for long
 };
@@ -31,7 +34,7 @@ const char* toString(DvlStatus status);
 /// Result of the DVL for a frame.
 struct DvlEstimate {
   DvlStatus status = DvlStatus::Off;
-  int beams = 0;                    ///< beams (or axes) with lock since the frame before
+  int beams = 0;                    ///< beams (or axes) with lock since the frame before, unless waiting
   int used = 0;                     ///< of these
   double innovation_m_per_s = 0.0;  ///< root mean square of predicted minus measured velocities, of all beams
   double scale = 0.0, scale_sigma = 0.0;
@@ -41,7 +44,8 @@ struct DvlEstimate {
 
 /// Adds a Doppler velocity log to a window. Each ping is carried to the frame after it by inertial readings.
 /// Its beams are compared with the predicted velocity, and those within the gate become rows of the frame's
-/// DvlMeasurement. Scale and misalignment are states from the start.
+/// DvlMeasurement, while the record of the sensor is good (DvlTrust). Scale and misalignment are states from
+/// the start.
 class DvlFusion final : public SensorFusion {
  public:
   /// `diagnostics` must outlive it.
@@ -64,9 +68,11 @@ class DvlFusion final : public SensorFusion {
   /// The readings up to a frame, carried to it; later ones wait.
   std::vector<std::pair<Time, DvlPing>> pingsUntil(const NavigationState& frame);
   DvlMeasurement measurementOf(std::vector<DvlPing> pings) const;
-  /// Removes the rows that disagree with the prediction.
+  /// Removes the rows that disagree with the prediction, or all where the sensor is not trusted.
   DvlStatus judge(Time time, const Window& window, DvlPing* ping);
   void see(DvlStatus status) { estimate_.status = std::max(estimate_.status, status); }
+  /// What becomes of a ping without trust.
+  DvlStatus readmit(Time time, bool agrees, const DvlInnovation& innovation, DvlPing* ping);
   void reportRejections(Time time);
   void reportCalibration(Time time);
 
@@ -80,8 +86,8 @@ class DvlFusion final : public SensorFusion {
   DvlEstimate estimate_;
   DvlStatus taken_ = DvlStatus::NoData;  ///< of readings that are not used, since the frame before
   JointCovariance covariance_;
-  std::optional<Time> disagrees_since_;  ///< first ping since the last one of which most rows agreed
-  int judged_ = 0, rejected_ = 0;        ///< rows since the start
+  DvlTrust trust_;
+  int judged_ = 0, rejected_ = 0;  ///< rows since the start
   bool is_rejection_reported_ = false, is_calibration_reported_ = false;
 };
 

@@ -54,6 +54,11 @@ bool DvlInnovation::agrees(const std::vector<int>& rows, double max_sigmas) cons
          chiSquareQuantile(static_cast<int>(rows.size()), max_sigmas);
 }
 
+bool DvlInnovation::isTest(double max_sigmas) const {
+  if (covariance.size() == 0) return false;
+  return 4.0 * measured_m_per_s.squaredNorm() > max_sigmas * max_sigmas * covariance.trace();
+}
+
 DvlInnovation innovate(const DvlPing& ping, const Window& window, const JointCovariance& known,
                        double speed_sigma) {
   const DvlStates states(window);
@@ -65,6 +70,7 @@ DvlInnovation innovate(const DvlPing& ping, const Window& window, const JointCov
   RowJacobians by = RowJacobians::Zero(rows, kRowSize);
   DvlInnovation innovation;
   innovation.value_m_per_s.resize(rows);
+  innovation.measured_m_per_s.resize(rows);
   Eigen::VectorXd predicted(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const DvlRow& row = ping.rows[static_cast<size_t>(i)];
@@ -76,6 +82,7 @@ DvlInnovation innovate(const DvlPing& ping, const Window& window, const JointCov
     DvlFactor(row.direction_D, row.velocity_m_per_s, 1.0, ping.geometry)
         .Evaluate(values, &innovation.value_m_per_s[i], jacobians);
     by.row(i) << by_pose.head<kPoseTangentSize>(), by_motion, by_scale, by_misalignment;
+    innovation.measured_m_per_s[i] = row.velocity_m_per_s;
     predicted[i] = innovation.value_m_per_s[i] + row.velocity_m_per_s;
   }
   const Eigen::MatrixXd blocks =

@@ -11,11 +11,14 @@ namespace lodeline {
 /// Predicted minus measured velocities of a ping's rows, with their joint covariance.
 struct DvlInnovation {
   Eigen::VectorXd value_m_per_s;
+  Eigen::VectorXd measured_m_per_s;
   Eigen::MatrixXd covariance;  ///< (m/s)^2; empty where the covariance of the window is not known
 
   /// Whether some of the rows agree with the prediction: their Mahalanobis distance is below the quantile of
   /// the chi-square distribution that a normal variable exceeds beyond `max_sigmas` on one side.
   bool agrees(const std::vector<int>& rows, double max_sigmas) const;
+  /// Whether the same velocities with the opposite sign would have disagreed.
+  bool isTest(double max_sigmas) const;
 };
 
 /// The innovation of a ping at the newest frame of a window. `known`: covariance of the window when the frame

@@ -1,6 +1,7 @@
 #include "lodeline/estimator/dvl/dvl_measurement.h"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "lodeline/estimator/dvl/dvl_states.h"
@@ -52,6 +53,17 @@ std::vector<Factor> DvlMeasurement::factors(const MeasurementContext& context) c
     }
   }
   return factors;
+}
+
+double DvlMeasurement::speedInformation() const {
+  double information = 0.0;
+  for (const DvlPing& ping : pings) {
+    // Noise alone has a mean square of 1 for each row.
+    double squares = -static_cast<double>(ping.rows.size());
+    for (const DvlRow& row : ping.rows) squares += std::pow(row.velocity_m_per_s / ping.sigma_m_per_s, 2);
+    information += std::max(0.0, squares);
+  }
+  return information;
 }
 
 std::optional<CarriedVelocity> DvlMeasurement::velocity() const {

@@ -36,6 +36,7 @@ struct DvlMeasurement final : Measurement {
   std::string_view sensor() const override { return kSensor; }
   std::vector<Factor> factors(const MeasurementContext& context) const override;
   bool measuresVelocity() const override { return true; }
+  double speedInformation() const override;
   std::optional<CarriedVelocity> velocity() const override;
   bool wantsBatchState() const override { return true; }
   /// The noise of the pings that are left does not shrink with those that are left out.

@@ -74,6 +74,8 @@ void InnovationWatch::add(Time time, const Innovation& innovation) {
 
 void InertialMonitor::check(Window& window, const FactorBuilder& factors,
                             const Eigen::Matrix<double, 15, 15>& before) {
+  if (const InertialDoubt shaken = vibration_.doubt(); shaken.any())
+    window.newest().from_previous->setDoubt(shaken);
   const std::optional<MotionInnovation> innovation =
       motionInnovation(window, factors, before, is_before_placed_);
   is_before_placed_ = innovation.has_value();
@@ -134,7 +136,7 @@ void InertialMonitor::widen(const MotionInnovation& innovation, Window& window) 
   NavigationState state = newest.state();
   state.world_from_body = innovation.world_from_body;
   // White noise of density s causes a rotation variance of s^2 dt and a translation variance of s^2 dt^3 / 3.
-  InertialDoubt doubt;
+  InertialDoubt doubt = newest.from_previous->doubt();
   if (turn_contradicts || gyroscope_.isAlarmed()) {
     doubt.gyroscope_density_rad_per_s_sqrtHz = innovation.rotation_W.value.norm() / std::sqrt(dt_s);
     // The readings at both ends belong to the interval.

@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <deque>
 #include <optional>
+#include <span>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/monitoring/motion_innovation.h"
+#include "lodeline/estimator/monitoring/vibration_monitor.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/state/window.h"
@@ -53,11 +55,17 @@ class InnovationWatch {
 /// image that shows more acceleration than a rig can have, and more than the readings show, is left to
 /// outlier rejection. Otherwise the inertial noise of the interval is enlarged to the size of the innovation,
 /// so that images determine the frame. While the contradiction lasts, the sensor's bias may also step, so
-/// that a bias that has jumped is estimated again. The remaining uncertainty is added to the covariance.
+/// that a bias that has jumped is estimated again. The remaining uncertainty is added to the covariance. A
+/// vibration adds its noise in any case (VibrationMonitor).
 class InertialMonitor {
  public:
-  InertialMonitor(const EstimatorOptions& options, Diagnostics* diagnostics)
-      : initial_(options.initial_state), diagnostics_(diagnostics) {}
+  InertialMonitor(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
+      : vibration_(rig, options.preintegration.noise_inflation),
+        initial_(options.initial_state),
+        diagnostics_(diagnostics) {}
+
+  /// Takes the readings that lead to a frame.
+  void take(std::span<const ImuSample> imu) { vibration_.add(imu); }
 
   /// Checks the newest frame before it is optimized, and enlarges the noise of its inertial term where
   /// necessary. `before`: covariance of the frame before, see motionInnovation().
@@ -82,6 +90,7 @@ class InertialMonitor {
   void report(const MotionInnovation& innovation, Time time, const InnovationWatch& watch,
               const char* sensor);
 
+  VibrationMonitor vibration_;
   InitialStateOptions initial_;
   Diagnostics* diagnostics_;
   InnovationWatch gyroscope_, accelerometer_, images_;

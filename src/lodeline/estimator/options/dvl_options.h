@@ -13,8 +13,8 @@ struct DvlOptions {
   /// the sigma `speed_sigma` (relative) beside the covariance of the window.
   double max_sigmas = 4.0;
   double speed_sigma = 0.05;
-  /// After this time in which every reading was rejected, readings are used again, bounded by the robust
-  /// loss: a prediction that is wrong by more than its covariance says must not lock the sensor out.
+  /// After this time without trust (DvlTrust), readings are used again with the noise that their disagreement
+  /// shows: a prediction that is wrong by more than its covariance says must not lock the sensor out.
   double readmission_s = 10.0;
 
   /// Throws UsageError where a value is out of its range.

@@ -59,6 +59,9 @@ class Measurement {
   virtual std::optional<double> heightSigma_m() const { return std::nullopt; }
   /// Whether it measures the velocity of the frame, at least in part. Inertial readings are then not alone.
   virtual bool measuresVelocity() const { return false; }
+  /// Information about the factor that all its velocities share, 1 / sigma^2, without the calibration of that
+  /// factor; 0 where it measures no velocity.
+  virtual double speedInformation() const { return 0.0; }
   /// The whole velocity, for a start with one camera; empty where it does not measure all of it.
   virtual std::optional<CarriedVelocity> velocity() const { return std::nullopt; }
 

@@ -39,6 +39,7 @@ double ScaleObservability::Scatter::sum() const { return squares_; }
 
 ScaleObservability::ScaleObservability(const Rig& rig, const EstimatorOptions& options)
     : calibration_(options.camera_calibration), imu_axes_(options.imu_axes) {
+  if (rig.dvl) dvl_scale_sigma_ = rig.dvl->scale_sigma;
   if (rig.cameras.size() < 2) return;
   baseline_m_ =
       (rig.cameras[1].body_from_camera.translation - rig.cameras[0].body_from_camera.translation).norm();
@@ -50,6 +51,7 @@ ScaleInformation ScaleObservability::add(const Window& window, double density_si
     const double keep = std::exp(-(newest.time - *last_).seconds() / kMemory_s);
     accelerations_.fade(keep);
     heights_.fade(keep);
+    speeds_ *= keep;
   }
   last_ = newest.time;
   if (newest.from_previous && window.frames().size() > 1) {
@@ -60,6 +62,7 @@ ScaleInformation ScaleObservability::add(const Window& window, double density_si
     accelerations_.add(acceleration_W, elapsed_s * elapsed_s / speed_variance);
   }
   for (const auto& measurement : newest.measurements) {
+    speeds_ += measurement->speedInformation();
     if (const auto sigma_m = measurement->heightSigma_m())
       heights_.add(newest.worldFromBody().translation.z() * Vec3::UnitZ(), 1.0 / std::pow(*sigma_m, 2));
   }
@@ -68,6 +71,7 @@ ScaleInformation ScaleObservability::add(const Window& window, double density_si
   information.accelerometer =
       trusted(accelerations_.sum(), std::max(kUnstated, imu_axes_.uncalibrated_sigma));
   if (heights_.sum() > 0.0) information.depth = 1.0 / (1.0 / heights_.sum() + density_sigma * density_sigma);
+  information.dvl = trusted(speeds_, std::hypot(kUnstated, dvl_scale_sigma_));
   return information;
 }
 

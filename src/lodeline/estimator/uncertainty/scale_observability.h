@@ -19,7 +19,8 @@ namespace lodeline {
 /// - accelerometer: changes of the acceleration compared with the noise of its integral. A constant part
 ///   counts as bias and tilt. The sigma is never below the 0.1 % that files leave open, nor below
 ///   uncalibrated_sigma of an IMU that may never have been calibrated (estimator/state/inertial_states.h);
-/// - depth: changes of the height compared with the readings' sigma, and the density of the water.
+/// - depth: changes of the height compared with the readings' sigma, and the density of the water;
+/// - DVL: its velocities compared with their noise, and the calibration of its scale.
 class ScaleObservability {
  public:
   ScaleObservability(const Rig& rig, const EstimatorOptions& options);
@@ -48,7 +49,9 @@ class ScaleObservability {
   std::optional<double> baseline_m_;
   CameraCalibrationOptions calibration_;
   ImuAxesOptions imu_axes_;
+  double dvl_scale_sigma_ = 0.0;
   Scatter accelerations_, heights_;
+  double speeds_ = 0.0;  ///< Measurement::speedInformation, fading
   std::optional<Time> last_;
 };
 

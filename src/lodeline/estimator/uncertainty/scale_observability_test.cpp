@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lodeline/estimator/dvl/dvl_measurement.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/inertial_states.h"
@@ -118,6 +119,27 @@ TEST(ScaleObservability, DepthCountsWhereTheRigSinksAndNeverBeyondTheWater) {
   // 1.6 m at constant speed in 40 readings: scatter of 0.46 m compared with 0.05 m / sqrt(40).
   EXPECT_NEAR(1.0 / std::sqrt(sinking), 0.023, 0.008);
   EXPECT_LT(informationAfter(1, 0.0, 1e-4, 0.2).depth, 1.0 / (0.015 * 0.015));
+}
+
+/// Sigma of the scale by one ping with three axes at this speed.
+double dvlSigma(double speed_m_per_s, double noise_m_per_s, double scale_sigma) {
+  TestWindow test(1);
+  test.fill();
+  test.rig.dvl.emplace().scale_sigma = scale_sigma;
+  DvlPing ping;
+  for (int axis = 0; axis < 3; ++axis) ping.rows.push_back({Vec3::Unit(axis), speed_m_per_s});
+  ping.sigma_m_per_s = noise_m_per_s;
+  DvlMeasurement measurement;
+  measurement.pings = {ping};
+  test.window.newest().measurements.set(measurement);
+  return 1.0 / std::sqrt(ScaleObservability(test.rig, optionsOf(true)).add(test.window, 1.0).dvl);
+}
+
+TEST(ScaleObservability, DvlCountsByItsSpeedAndNeverBeyondItsCalibration) {
+  // Of three axes: 0.01 / (0.5 sqrt(3)).
+  EXPECT_NEAR(dvlSigma(0.5, 0.01, 0.0), 0.01155, 0.0003);
+  EXPECT_NEAR(dvlSigma(0.5, 1e-5, 0.01), std::hypot(0.01, 1e-3), 1e-5);
+  EXPECT_GT(dvlSigma(0.01, 0.01, 0.01), 1e3) << "noise alone";
 }
 
 }  // namespace

@@ -13,15 +13,6 @@ namespace {
 constexpr double kWindow_s = 0.25;
 constexpr size_t kLeastReadings = 12;
 
-double medianStep_s(std::span<const ImuSample> samples) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
-}
-
 bool isEven(std::span<const ImuSample> window, double step_s) {
   const double length_s = (window.back().time - window.front().time).seconds();
   return length_s < 1.2 * step_s * static_cast<double>(window.size() - 1);
@@ -130,6 +121,15 @@ class Judge {
 };
 
 }  // namespace
+
+double medianStep_s(std::span<const ImuSample> samples) {
+  std::vector<double> steps_s;
+  for (size_t i = 1; i < samples.size(); ++i)
+    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  return *middle;
+}
 
 WhiteNoise whiteNoiseOf(std::span<const ImuSample> samples) {
   constexpr double kWorstGyroscope = 6e-4, kWorstAccelerometer = 1e-2;

@@ -5,6 +5,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/inspection/robots/current_comparison.h"
 #include "lodeline/inspection/robots/dvl_comparison.h"
+#include "lodeline/inspection/robots/dvl_image_comparison.h"
 
 // A vehicle that turns and swims in circles: its inertial readings, pings of its DVL, field and currents.
 
@@ -108,6 +109,82 @@ TEST(DvlComparisonTest, SaysNothingOfPingsWithoutLock) {
   lost = pings(Mat3::Identity(), 0.0, false);
   for (DvlSample& ping : lost) ping.track = DvlTrack::Water;
   EXPECT_FALSE(compareDvl(lost, dvlCalibration(), path));
+}
+
+Vec3 placeAt_W(double t) {
+  return {-0.4 / 0.9 * std::cos(0.9 * t), 0.5 * std::sin(0.6 * t), -0.1 / 1.3 * std::cos(1.3 * t)};
+}
+
+Rigid3 bodyFromCamera() { return Rigid3(so3::exp(Vec3(0.4, -1.1, 0.7)), Vec3(-0.1, 0.2, 0.05)); }
+
+/// Rays of points in front of the camera, in pairs of images a tenth of a second apart; half a pixel of
+/// noise.
+std::vector<RayPairs> rayPairs() {
+  std::vector<RayPairs> result;
+  const Rigid3 body_from_camera = bodyFromCamera();
+  const auto camera = [&](double t) { return Rigid3(attitudeAt(t), placeAt_W(t)) * body_from_camera; };
+  int drawn = 0;
+  const auto noise = [&drawn] {
+    ++drawn;
+    return 1e-3 * std::sin(12.9898 * drawn * drawn);
+  };
+  for (int i = 0; i < 150; ++i) {
+    const double t = 5.0 + 0.3 * i;
+    RayPairs pair{swimTime(t), swimTime(t + 0.1), {}, {}};
+    for (int k = 0; k < 60; ++k) {
+      const double across = 0.12 * (k % 8 - 3.5), down = 0.12 * (k / 8 - 3.5);
+      const Vec3 point_W = camera(t) * Vec3((1.2 + 0.3 * std::sin(7.0 * k)) * Vec3(across, down, 1.0));
+      pair.first.push_back(Vec3(across + noise(), down + noise(), 1.0).normalized());
+      const Vec3 second = camera(t + 0.1).inverse() * point_W;
+      pair.second.push_back(
+          Vec3(second.x() / second.z() + noise(), second.y() / second.z() + noise(), 1.0).normalized());
+    }
+    result.push_back(pair);
+  }
+  return result;
+}
+
+std::optional<DvlImageComparison> compareImages(const Mat3& axes, double delay_s) {
+  return compareDvlWithImages(rayPairs(), bodyFromCamera(), pings(axes, delay_s, false), dvlCalibration(),
+                              InertialPath(imu(), Vec3::Zero()));
+}
+
+TEST(DvlImageComparisonTest, FitsTheImagesWhereEverythingIsRight) {
+  const auto result = compareImages(Mat3::Identity(), 0.0);
+  ASSERT_TRUE(result);
+  EXPECT_GT(result->pairs, 60);
+  EXPECT_LT(result->angle_rad, 0.15);
+  EXPECT_TRUE(result->best_axes.isIdentity());
+  EXPECT_NEAR(result->time_offset_s, 0.0, 0.051);
+}
+
+TEST(DvlImageComparisonTest, FindsWrongSignsAndExchangedAxes) {
+  Mat3 mirrored = Mat3::Identity(), exchanged = Mat3::Zero();
+  mirrored(0, 0) = mirrored(1, 1) = -1.0;
+  exchanged(0, 1) = exchanged(1, 0) = exchanged(2, 2) = 1.0;
+  for (const Mat3& axes : {mirrored, exchanged}) {
+    const auto result = compareImages(axes, 0.0);
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->best_axes.isApprox(axes.transpose())) << result->best_axes;
+    EXPECT_LT(result->best_angle_rad, 0.3 * result->angle_rad);
+  }
+}
+
+TEST(DvlImageComparisonTest, FindsADelay) {
+  const auto result = compareImages(Mat3::Identity(), 0.3);
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(result->time_offset_s, -0.3, 0.051);
+  EXPECT_LT(result->angle_at_offset_rad, 0.6 * result->angle_rad);
+}
+
+TEST(DvlImageComparisonTest, SaysNothingWithoutFlow) {
+  std::vector<RayPairs> still = rayPairs();
+  for (RayPairs& pair : still) pair.second = pair.first;
+  EXPECT_FALSE(travelDirection(still.front(), Quat::Identity()));
+  std::vector<RayPairs> few = rayPairs();
+  for (RayPairs& pair : few) pair.first.resize(8), pair.second.resize(8);
+  EXPECT_FALSE(compareDvlWithImages(few, bodyFromCamera(), pings(Mat3::Identity(), 0.0, false),
+                                    dvlCalibration(), InertialPath(imu(), Vec3::Zero())));
 }
 
 double currentAt(double t, size_t channel) {

@@ -127,6 +127,8 @@ class Survey {
       after.push_back(*ray_after);
     }
     const std::optional<VisualRotation> rotation = visualRotation(before, after);
+    result_->pairs.push_back(
+        {previous_->time + offset_, current.time + offset_, std::move(before), std::move(after)});
     if (!rotation) return;
     result_->turns.push_back(
         {previous_->time + offset_, current.time + offset_, Vec3(rotation->rotation_C / step_s)});

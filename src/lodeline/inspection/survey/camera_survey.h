@@ -17,6 +17,12 @@ struct SurveySpan {
   Time begin, end;
 };
 
+/// Rays of the same points in two images, in camera axes.
+struct RayPairs {
+  Time begin, end;  ///< stamps of the images, with the time offset of the calibration
+  std::vector<Vec3> first, second;
+};
+
 /// Survey of one image.
 struct FrameSurvey {
   Time time;
@@ -31,6 +37,7 @@ struct CameraSurvey {
   StreamSummary stream;
   std::vector<FrameSurvey> frames;
   std::vector<CameraTurn> turns;
+  std::vector<RayPairs> pairs;  ///< of the images that were tracked into the next
   int unreadable = 0;
   std::string first_problem;
   int identical = 0;  ///< images with the same pixels as the one before, in spans in which the rig rotates

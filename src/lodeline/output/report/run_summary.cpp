@@ -111,7 +111,8 @@ nlohmann::ordered_json toJson(const DepthEstimate::Gauge& gauge) {
 using ScaleSource = std::pair<const char*, double ScaleInformation::*>;
 constexpr ScaleSource kScaleSources[] = {{"stereo", &ScaleInformation::stereo},
                                          {"accelerometer", &ScaleInformation::accelerometer},
-                                         {"depth", &ScaleInformation::depth}};
+                                         {"depth", &ScaleInformation::depth},
+                                         {"dvl", &ScaleInformation::dvl}};
 
 std::string describe(const ScaleInformation& scale) {
   std::string text = "carried";
@@ -156,9 +157,7 @@ void RunSummary::add(const FrameEstimate& estimate) {
   const DepthStatus depth = estimate.sensors.of<DepthEstimate>().status;
   if (depth != DepthStatus::Off && depth != DepthStatus::NoData) ++depth_frames_[depth];
   sensor_frames_.add(estimate.sensor_rows);
-  scale_.stereo += estimate.scale.stereo;
-  scale_.accelerometer += estimate.scale.accelerometer;
-  scale_.depth += estimate.scale.depth;
+  for (const auto& [name, source] : kScaleSources) scale_.*source += estimate.scale.*source;
   const Vec3& position_W = estimate.state.world_from_body.translation;
   if (last_position_W_) path_m_ += (position_W - *last_position_W_).norm();
   last_position_W_ = position_W;
@@ -231,7 +230,9 @@ std::string RunSummary::depthText() const {
 
 std::optional<ScaleInformation> RunSummary::scaleInformation() const {
   if (!(scale_.sum() > 0.0)) return std::nullopt;
-  return ScaleInformation{scale_.stereo / posed_, scale_.accelerometer / posed_, scale_.depth / posed_};
+  ScaleInformation mean = scale_;
+  for (const auto& [name, source] : kScaleSources) mean.*source /= posed_;
+  return mean;
 }
 
 std::string RunSummary::completionText() const {

@@ -188,8 +188,7 @@ Vec3 endSigma(const DiveMap& map, const DiveMapOptions& options, Diagnostics* di
   return Vec3::Constant(kAssumedShare * length_m);
 }
 
-void survey(const DiveMapOptions& options, const std::vector<Vec3>& extra_walls_ENU, Diagnostics* diagnostics,
-            DiveMap* map) {
+void survey(const DiveMapOptions& options, Diagnostics* diagnostics, DiveMap* map) {
   std::vector<Vec3> positions;
   for (const StampedPose& pose : map->trajectory.poses) positions.push_back(pose.world_from_body.translation);
   for (size_t i : chooseStations(positions, options.stations)) {
@@ -200,7 +199,7 @@ void survey(const DiveMapOptions& options, const std::vector<Vec3>& extra_walls_
   }
   map->survey.is_closed = options.is_closed;
   map->survey.leg_sigma_ENU = legSigma(endSigma(*map, options, diagnostics), map->survey.legs());
-  std::vector<Vec3> walls = extra_walls_ENU;
+  std::vector<Vec3> walls = map->echoes_ENU;
   for (const MapLandmark& landmark : map->landmarks) {
     if (landmark.observations >= options.min_observations) walls.push_back(landmark.position);
   }
@@ -236,9 +235,8 @@ DiveMap makeDiveMap(const RunFolder& run, const DiveMapOptions& options,
   map.run_folder = std::filesystem::absolute(run.folder).lexically_normal();
   if (map.place) setHeights(options, diagnostics, &map);
   turn(run, &map);
-  std::vector<Vec3> extra_walls_ENU;
-  for (const Vec3& wall : extra_walls_W) extra_walls_ENU.push_back(turnedClockwise(wall, map.north.turn_rad));
-  survey(options, extra_walls_ENU, diagnostics, &map);
+  for (const Vec3& wall : extra_walls_W) map.echoes_ENU.push_back(turnedClockwise(wall, map.north.turn_rad));
+  survey(options, diagnostics, &map);
   map.notes = describe(map, run);
   map.notes.insert(map.notes.end(), options.notes.begin(), options.notes.end());
   map.title = headerText(map.title);

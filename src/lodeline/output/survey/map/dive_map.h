@@ -33,6 +33,7 @@ struct DiveMap {
   Trajectory trajectory;                           ///< body in ENU
   std::vector<PositionUncertainty> uncertainties;  ///< axes of ENU
   std::vector<MapLandmark> landmarks;              ///< ENU
+  std::vector<Vec3> echoes_ENU;                    ///< wall points of a sonar
   Survey survey;
 
   /// Below the water's surface, m.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lodeline {
 namespace {
@@ -22,10 +23,7 @@ std::vector<std::vector<double>> distancesBySector(const std::vector<SectionLine
     const int steps = std::max(1, static_cast<int>((line.to - line.from).norm() / kStep_m));
     for (int i = 0; i <= steps; ++i) {
       const Vec2 point = line.from + (line.to - line.from) * i / steps;
-      const double turn = std::atan2(point.y(), point.x()) / kTurn;
-      const auto sector =
-          static_cast<size_t>((turn < 0.0 ? turn + 1.0 : turn) * static_cast<double>(sectors));
-      distances[std::min(sector, sectors - 1)].push_back(point.norm());
+      distances[sectorOf(point, sectors)].push_back(point.norm());
     }
   }
   return distances;
@@ -99,20 +97,32 @@ std::optional<double> SectionOutline::towards(double angle_rad) const {
   return quantile(found, 0.5);
 }
 
+size_t sectorOf(const Vec2& point, size_t sectors) {
+  const double turn = std::atan2(point.y(), point.x()) / kTurn;
+  const auto sector = static_cast<size_t>((turn < 0.0 ? turn + 1.0 : turn) * static_cast<double>(sectors));
+  return std::min(sector, sectors - 1);
+}
+
 SectionOutline outlineOf(const std::vector<SectionLine>& lines, const SectionOptions& options) {
   // Walls up to this far behind the nearest point of a sector count as the same wall.
   constexpr double kSameWall_m = 0.3;
-  SectionOutline outline;
-  size_t known = 0;
+  std::vector<std::optional<double>> radii_m;
   for (std::vector<double>& distances : distancesBySector(lines, options.sectors)) {
     std::sort(distances.begin(), distances.end());
-    outline.radii_m.emplace_back();
+    radii_m.emplace_back();
     if (distances.empty()) continue;
     const auto end = std::upper_bound(distances.begin(), distances.end(), distances.front() + kSameWall_m);
-    outline.radii_m.back() = quantile({distances.begin(), end}, 0.5);
-    ++known;
+    radii_m.back() = quantile({distances.begin(), end}, 0.5);
   }
-  outline.coverage = static_cast<double>(known) / static_cast<double>(options.sectors);
+  return outlineOf(std::move(radii_m), options);
+}
+
+SectionOutline outlineOf(std::vector<std::optional<double>> radii_m, const SectionOptions& options) {
+  SectionOutline outline;
+  outline.radii_m = std::move(radii_m);
+  const auto known = std::count_if(outline.radii_m.begin(), outline.radii_m.end(),
+                                   [](const std::optional<double>& radius) { return radius.has_value(); });
+  outline.coverage = static_cast<double>(known) / static_cast<double>(outline.radii_m.size());
   if (outline.coverage < options.least_coverage) return outline;
   const auto radii = filled(outline.radii_m, options.max_gap_sectors);
   if (!radii) return outline;

@@ -51,8 +51,13 @@ struct SectionOutline {
   std::optional<double> towards(double angle_rad) const;
 };
 
-/// In each sector the nearest walls count. Gaps of up to `max_gap_sectors` are filled from both sides for the
-/// area, wider gaps leave it empty.
+/// Outline with known radii. Gaps of up to `max_gap_sectors` are filled from both sides for the area, wider
+/// gaps leave it empty.
+SectionOutline outlineOf(std::vector<std::optional<double>> radii_m, const SectionOptions& options);
+/// In each sector the nearest walls count.
 SectionOutline outlineOf(const std::vector<SectionLine>& lines, const SectionOptions& options);
+
+/// Sector of a point in the plane.
+size_t sectorOf(const Vec2& point, size_t sectors);
 
 }  // namespace lodeline

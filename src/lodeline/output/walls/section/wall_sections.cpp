@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "lodeline/output/survey/formats/gis/dxf_drawing.h"
 #include "lodeline/output/survey/map/map_times.h"
+#include "lodeline/trajectory.h"
 
 namespace lodeline {
 namespace {
@@ -36,6 +38,63 @@ bool isMeasured(const std::vector<StationWalls>& walls, const Survey& survey, si
   return false;
 }
 
+void addVolumes(const Survey& survey, std::vector<StationWalls>* walls) {
+  for (size_t i = 0; i + 1 < walls->size(); ++i) {
+    const auto &here = (*walls)[i].outline.area_m2, &next = (*walls)[i + 1].outline.area_m2;
+    if (!here || !next || isMeasured(*walls, survey, i)) continue;
+    const Vec3 leg = survey.stations[i + 1].position_ENU - survey.stations[i].position_ENU;
+    (*walls)[i].volume_to_next_m3 = 0.5 * (*here + *next) * leg.norm();
+  }
+}
+
+/// Distances of the walls by sector: the median of the points nearest to the plane.
+std::vector<std::optional<double>> echoRadii(const std::vector<Vec3>& echoes, const SectionPlane& plane,
+                                             const EchoSectionOptions& options) {
+  struct Echo {
+    double off_plane_m, radius_m;
+  };
+  std::vector<std::vector<Echo>> sectors(options.section.sectors);
+  for (const Vec3& echo : echoes) {
+    const double off_plane_m = std::abs((echo - plane.origin).dot(plane.normal()));
+    const Vec2 point = plane.inPlane(echo);
+    if (off_plane_m > options.half_slab_m || point.norm() > options.section.reach_m) continue;
+    sectors[sectorOf(point, sectors.size())].push_back({off_plane_m, point.norm()});
+  }
+  std::vector<std::optional<double>> radii_m(sectors.size());
+  for (size_t i = 0; i < sectors.size(); ++i) {
+    std::vector<Echo>& near = sectors[i];
+    if (near.empty()) continue;
+    std::stable_sort(near.begin(), near.end(),
+                     [](const Echo& a, const Echo& b) { return a.off_plane_m < b.off_plane_m; });
+    std::vector<double> distances;
+    for (size_t k = 0; k < std::min(near.size(), options.points_in_sector); ++k)
+      distances.push_back(near[k].radius_m);
+    std::sort(distances.begin(), distances.end());
+    radii_m[i] = quantile(distances, 0.5);
+  }
+  return radii_m;
+}
+
+/// Lines between the walls of neighbouring sectors, across gaps that the area fills.
+std::vector<SectionLine> linesOf(const SectionOutline& outline, const SectionOptions& options) {
+  const auto& radii_m = outline.radii_m;
+  const auto pointOf = [&](size_t sector) -> Vec2 {
+    const double angle_rad = outline.angle_rad(sector);
+    return *radii_m[sector] * Vec2(std::cos(angle_rad), std::sin(angle_rad));
+  };
+  std::vector<SectionLine> lines;
+  for (size_t i = 0; i < radii_m.size(); ++i) {
+    if (!radii_m[i]) continue;
+    for (size_t step = 1; step <= options.max_gap_sectors + 1; ++step) {
+      const size_t next = (i + step) % radii_m.size();
+      if (!radii_m[next]) continue;
+      lines.push_back({pointOf(i), pointOf(next)});
+      break;
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<StationWalls> wallsAtStations(const WallTiles& tiles, const Survey& survey,
@@ -59,13 +118,32 @@ std::vector<StationWalls> wallsAtStations(const WallTiles& tiles, const Survey& 
     walls[i].outline = outlineOf(walls[i].lines, options);
     walls[i].size = sizeOf(outlineOf(vertical[i], options));
   }
-  for (size_t i = 0; i + 1 < walls.size(); ++i) {
-    const auto &here = walls[i].outline.area_m2, &next = walls[i + 1].outline.area_m2;
-    if (!here || !next || isMeasured(walls, survey, i)) continue;
-    const Vec3 leg = survey.stations[i + 1].position_ENU - survey.stations[i].position_ENU;
-    walls[i].volume_to_next_m3 = 0.5 * (*here + *next) * leg.norm();
-  }
+  addVolumes(survey, &walls);
   return walls;
+}
+
+std::vector<StationWalls> echoesAtStations(const std::vector<Vec3>& echoes, const Survey& survey,
+                                           const EchoSectionOptions& options) {
+  std::vector<StationWalls> walls;
+  for (const PassageSection& section : passageSections(survey.stations)) {
+    StationWalls& wall = walls.emplace_back();
+    wall.across = planeAcross(section);
+    wall.outline = outlineOf(echoRadii(echoes, wall.across, options), options.section);
+    wall.lines = linesOf(wall.outline, options.section);
+    wall.size = sizeOf(outlineOf(echoRadii(echoes, verticalPlane(section), options), options.section));
+  }
+  addVolumes(survey, &walls);
+  return walls;
+}
+
+void takeSizes(const std::vector<StationWalls>& walls, Survey* survey) {
+  for (size_t i = 0; i < walls.size(); ++i) {
+    PassageSize& size = survey->stations[i].passage;
+    for (std::optional<double> PassageSize::*distance :
+         {&PassageSize::left, &PassageSize::right, &PassageSize::up, &PassageSize::down}) {
+      if (walls[i].size.*distance) size.*distance = walls[i].size.*distance;
+    }
+  }
 }
 
 PassageVolume passageVolume(const std::vector<StationWalls>& walls, const Survey& survey) {

@@ -24,6 +24,20 @@ struct StationWalls {
 std::vector<StationWalls> wallsAtStations(const WallTiles& tiles, const Survey& survey,
                                           const SectionOptions& options);
 
+/// Sections from wall points that a scanning sonar measured. In each sector of the plane the median distance
+/// of the points nearest to the plane counts, up to `half_slab_m` before and behind it. The lines join the
+/// walls of neighbouring sectors.
+struct EchoSectionOptions {
+  SectionOptions section;
+  double half_slab_m = 2.5;
+  size_t points_in_sector = 5;  ///< at most
+};
+std::vector<StationWalls> echoesAtStations(const std::vector<Vec3>& echoes, const Survey& survey,
+                                           const EchoSectionOptions& options);
+
+/// Replaces the distances left, right, up and down of the stations by those of the sections, where known.
+void takeSizes(const std::vector<StationWalls>& walls, Survey* survey);
+
 /// Sum of the known volumes and the length of their legs.
 struct PassageVolume {
   double volume_m3 = 0.0, length_m = 0.0;
