@@ -88,7 +88,9 @@ Figures run(const Study& study, uint64_t seed, Diagnostics* diagnostics) {
   options.tracks = study.tracks;
   if (study.dark.size() == 2) options.blackouts = {{study.dark[0], study.dark[1]}};
   PointSimulation simulation = dive.simulate(options);
-  Estimator estimator(calibratedRig(dive), study.estimator, diagnostics);
+  EstimatorOptions estimator_options = study.estimator;
+  estimator_options.magnetometer.site_field_W = dive.options.magnetometer->field_W;
+  Estimator estimator(calibratedRig(dive), estimator_options, diagnostics);
   TruthComparison truth;
   Figures figures;
   std::optional<Vec3> last, at_dusk;
