@@ -123,6 +123,7 @@ void MagnetometerFusion::restartChecks() {
   errors_ = MagneticNoiseEstimator(options_.magnetometer, offsetSigma());
   deviation_ = StudentTWeight(options_.magnetometer);
   step_ = MagneticStepDetector(options_.magnetometer.step);
+  anomaly_.restartAgreement();
   rejecting_ = false;
 }
 
