@@ -1,5 +1,5 @@
-// Measures what the magnetometer does to heading and position among magnetic disturbances and near steel: each
-// dive of points runs with and without it. Prints the tables of docs/lab-notes/magnetic_harm.md.
+// Measures what the magnetometer does to heading and position among magnetic disturbances and near steel:
+// each dive of points runs with and without it. Prints the tables of docs/lab-notes/magnetic_harm.md.
 
 #include <fmt/core.h>
 
@@ -17,7 +17,8 @@ using namespace lodeline;
 void printRow(const DisturbedDive& dive, const DiveErrorsOfRun& off, const DiveErrorsOfRun& on) {
   const auto degrees = [](double rad) { return rad * kDegreesPerRadian; };
   fmt::print(
-      "{:33} {:>5.0f} {:>6.3f} {:>6.3f} {:>5.2f} {:>6.3f} {:>6.3f} {:>5.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>6.1f} "
+      "{:33} {:>5.0f} {:>6.3f} {:>6.3f} {:>5.2f} {:>6.3f} {:>6.3f} {:>5.2f} {:>7.2f} {:>7.2f} {:>7.2f} "
+      "{:>6.1f} "
       "{:>6.1f} {:>5.0f} {:>5.0f}\n",
       dive.name, on.path_m, degrees(off.heading_rms_rad), degrees(on.heading_rms_rad),
       on.heading_rms_rad / off.heading_rms_rad, off.position_rms_m, on.position_rms_m,
@@ -35,7 +36,8 @@ void printEach(const DisturbedRun& run, double step_s) {
     fmt::print("  {:7.1f} s {:8.3f} deg (claimed {:.3f}) {}\n", s.time_s, s.error_rad * kDegreesPerRadian,
                s.sigma_rad * kDegreesPerRadian, toString(s.status));
   }
-  for (const Finding& finding : run.findings.ranked()) fmt::print("  {}: {}\n", finding.kind, finding.first_message);
+  for (const Finding& finding : run.findings.ranked())
+    fmt::print("  {}: {}\n", finding.kind, finding.first_message);
 }
 
 }  // namespace
@@ -60,9 +62,9 @@ int main(int argc, char** argv) {
   if (numbers.empty()) {
     for (size_t i = 1; i <= dives.size(); ++i) numbers.push_back(i);
   }
-  fmt::print("{:33} {:>5} {:>6} {:>6} {:>5} {:>6} {:>6} {:>5} {:>7} {:>7} {:>7} {:>6} {:>6} {:>5} {:>5}\n", "dive",
-             "path", "h off", "h on", "ratio", "p off", "p on", "ratio", "north", "end", "claimed", "in 3s",
-             "most s", "used%", "readm");
+  fmt::print("{:33} {:>5} {:>6} {:>6} {:>5} {:>6} {:>6} {:>5} {:>7} {:>7} {:>7} {:>6} {:>6} {:>5} {:>5}\n",
+             "dive", "path", "h off", "h on", "ratio", "p off", "p on", "ratio", "north", "end", "claimed",
+             "in 3s", "most s", "used%", "readm");
   for (const size_t number : numbers) {
     DisturbedDive dive = dives.at(number - 1);
     dive.seed += seed_shift;

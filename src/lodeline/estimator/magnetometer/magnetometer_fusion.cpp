@@ -303,8 +303,11 @@ void MagnetometerFusion::learnAnomaly(const FrameField& field, const FieldCheck&
       norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
   deviation_.add(field.mean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
                  std::max(0.0, state_variance_T2), whiteVariance(field));
-  anomaly_.add(window.newest().worldFromBody().translation, deviation_.deviation_T(),
-               deviation_.variance_T2(), status_ == MagnetometerStatus::Used);
+  const double across_T =
+      MagnetometerStates(window).field_W().head<2>().norm() * std::sin(earth.heading_error_rad);
+  anomaly_.add(window.newest().worldFromBody().translation,
+               {deviation_.deviation_T(), deviation_.variance_T2(), across_T},
+               status_ == MagnetometerStatus::Used);
 }
 
 void MagnetometerFusion::learnErrors(const FrameField& field, const MagnetometerMean& clean, Window& window) {
@@ -380,9 +383,8 @@ MagnetometerEstimate MagnetometerFusion::estimate(const Window& window) const {
   const MagnetometerStates states(window);
   if (states.field != nullptr) {
     const Vec3 field_W = states.field_W();
-    const double anomaly_T = heading_reference_ == HeadingReference::Start ? 0.0 : anomaly_.fieldSigma_T();
-    estimate.axes_sigma_rad = std::min(
-        std::numbers::pi, std::hypot(axesSigma() * field_W.norm(), anomaly_T) / field_W.head<2>().norm());
+    estimate.axes_sigma_rad =
+        std::min(std::numbers::pi, axesSigma() * field_W.norm() / field_W.head<2>().norm());
     estimate.field_W = field_W;
     estimate.offset_B = states.offset_B();
     estimate.correlated_noise_sigma_T = errors_.correlated_noise_sigma_T();

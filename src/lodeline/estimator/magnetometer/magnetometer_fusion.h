@@ -41,7 +41,8 @@ class MagnetometerFusion final : public SensorFusion {
   void start(double tilt_sigma_rad, Window* window, Prior* prior) override;
   void addToNewest(Window& window, Marginalizer& marginalizer) override;
   void remember(const JointCovariance& covariance, Window& window) override;
-  /// Converts the covariance to one relative to north, where north was found after the first pose.
+  /// Converts the covariance to one relative to north: with that of a north that was found after the first
+  /// pose, and with the anomaly that the field in force may have (AnomalyScale).
   void relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const override;
   void report(const Window& window, SensorEstimates* estimates) const override;
   /// That of the compensation of currents; empty without current sensors.

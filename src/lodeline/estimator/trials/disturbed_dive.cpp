@@ -217,9 +217,9 @@ std::vector<DisturbedDive> undisturbedDives() {
     dive.knows_site = i % 4 >= 2;
     dive.imu_grade = i >= 2 ? "consumer" : "gx5-25";
     dive.is_wreck = i >= 4;
-    dive.name = fmt::format("{}, {}, {}{}", dive.is_wreck ? "hull without steel" : "cave",
-                            dive.cameras == 2 ? "stereo" : "mono", dive.imu_grade,
-                            dive.knows_site ? ", site" : "");
+    dive.name =
+        fmt::format("{}, {}, {}{}", dive.is_wreck ? "hull without steel" : "cave",
+                    dive.cameras == 2 ? "stereo" : "mono", dive.imu_grade, dive.knows_site ? ", site" : "");
     dives.push_back(dive);
   }
   return dives;

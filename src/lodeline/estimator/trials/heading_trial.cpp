@@ -186,11 +186,10 @@ double rootMeanSquare(const std::vector<HeadingSample>& samples, double begin_s,
 }  // namespace
 
 const char* toString(FieldTrouble trouble) {
-  constexpr std::array kNames = {"none",         "hard iron",   "disturbances", "tank",
-                                 "dipole",       "calibration", "lamp",         "soft iron",
-                                 "misaligned",   "scale",       "swapped axes", "boat",
-                                 "as believed",  "beside",      "at start",     "magnetite",
-                                 "together"};
+  constexpr std::array kNames = {"none",         "hard iron", "disturbances", "tank",       "dipole",
+                                 "calibration",  "lamp",      "soft iron",    "misaligned", "scale",
+                                 "swapped axes", "boat",      "as believed",  "beside",     "at start",
+                                 "magnetite",    "together"};
   return kNames[static_cast<size_t>(trouble)];
 }
 

@@ -50,7 +50,8 @@ std::vector<LyingDipole> drawDipolesBeside(const Motion& motion, const Vec3& fie
     next_m += spacing_m * random.uniform(0.6, 1.4);
     const double aside_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
     LyingDipole dipole;
-    dipole.position_W = here_W + random.uniform(1.0, 2.0) * Vec3(std::cos(aside_rad), std::sin(aside_rad), -0.5);
+    dipole.position_W =
+        here_W + random.uniform(1.0, 2.0) * Vec3(std::cos(aside_rad), std::sin(aside_rad), -0.5);
     dipole.moment_W = (field_W.normalized() + 0.8 * random.normal3()).normalized();
     dipoles.push_back(scaledTo(random.uniform(12.0, 30.0) * kDegree, motion, field_W, dipole, half_s));
   }
@@ -77,9 +78,9 @@ std::vector<LyingDipole> drawMagnetite(const Centerline& passage, const Vec3& fi
     const PassageStation station = passage.at(random.uniform(begin_m, end_m));
     const Vec3 right_W = station.tangent_W.cross(Vec3::UnitZ()).normalized();
     const double around_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
-    const Vec3 wall_W = station.position_W +
-                        1.1 * (0.5 * station.width_m * std::cos(around_rad) * right_W +
-                               0.5 * station.height_m * std::sin(around_rad) * Vec3::UnitZ());
+    const Vec3 wall_W =
+        station.position_W + 1.1 * (0.5 * station.width_m * std::cos(around_rad) * right_W +
+                                    0.5 * station.height_m * std::sin(around_rad) * Vec3::UnitZ());
     const Vec3 moment_W = 4.0 * field_W.normalized() + 12.0 * random.normal3();
     dipoles.push_back({wall_W, moment_W});
   }

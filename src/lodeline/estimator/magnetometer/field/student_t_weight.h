@@ -35,7 +35,7 @@ class StudentTWeight {
   Vec2 mean_T_ = Vec2::Zero();      ///< over the last `deviation_s`
   double white_variance_T2_ = 0.0;  ///< of this mean
   double state_variance_T2_ = 0.0;
-  double excess_T2_ = 0.0;          ///< squared mean beyond the variance of state and noise
+  double excess_T2_ = 0.0;  ///< squared mean beyond the variance of state and noise
 };
 
 }  // namespace lodeline
