@@ -25,7 +25,12 @@ TEST(MagnetometerHarm, ADisturbedStartKeepsTheClaimWideUntilNorthIsFound) {
   EXPECT_GT(std::abs(run.samples.front().error_rad), 5.0 * kDegree) << "the start is not disturbed";
   EXPECT_GT(run.errors.within_3_sigmas, 0.985);
   EXPECT_LT(std::abs(run.errors.north_end_rad), 0.5 * kDegree) << "north was not found later";
-  EXPECT_LT(run.samples.back().sigma_rad, 1.0 * kDegree) << "nor claimed";
+  // The way back leads to the iron again.
+  const auto surest = std::min_element(
+      run.samples.begin(), run.samples.end(),
+      [](const HeadingSample& a, const HeadingSample& b) { return a.sigma_rad < b.sigma_rad; });
+  EXPECT_LT(surest->sigma_rad, 1.0 * kDegree) << "nor claimed";
+  EXPECT_LT(std::abs(surest->error_rad), 3.0 * surest->sigma_rad);
 }
 
 TEST(MagnetometerHarm, AnUndisturbedStartIsDoubtedForSomeMetresOnly) {
