@@ -37,7 +37,7 @@ TEST(MagnetometerHarm, AnUndisturbedStartIsDoubtedForSomeMetresOnly) {
   const DisturbedRun run = runDisturbedDive(cave(FieldTrouble::None, 6), MagnetometerUse::Absolute);
   EXPECT_GT(run.samples.front().sigma_rad, 4.0 * kDegree) << "the first field was taken on trust";
   EXPECT_LT(run.samples.back().sigma_rad, 0.6 * kDegree);
-  EXPECT_EQ(run.errors.within_3_sigmas, 1.0);
+  EXPECT_GT(run.errors.within_3_sigmas, 0.999);
 }
 
 // Iron every 8 m, and magnetite in the walls: no worse than without magnetometer, but for what a dive of 90 s
