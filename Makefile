@@ -54,6 +54,12 @@ faults: build
 effects: build
 	./scripts/effects.py build/effects --markdown build/effects/table.md
 
+# What the magnetometer does among magnetic disturbances and near steel, and without; a quarter of an hour.
+.PHONY: magnetic-harm
+magnetic-harm: everything
+	build/release/bin/magnetic_harm_study
+	build/release/bin/magnetic_harm_study --undisturbed
+
 # Walls of a simulated dive against the exact surface; some minutes.
 .PHONY: walls-figures
 walls-figures: everything

@@ -89,7 +89,8 @@ int main(int argc, char** argv) {
   app.add_option("--cameras", options.cameras)->capture_default_str()->check(CLI::Range(1, 2));
   app.add_option("--troubles", troubles,
                  "0 none, 1 hard iron, 2 disturbances, 3 tank, 4 dipole, 5 calibration, 6 lamp, 7 soft iron, "
-                 "8 misaligned, 9 scale, 10 swapped axes, 11 as believed")
+                 "8 misaligned, 9 scale, 10 swapped axes, 11 boat, 12 as believed, 13 beside, 14 at start, "
+                 "15 magnetite, 16 together")
       ->capture_default_str();
   app.add_option("--uses", uses)->capture_default_str()->check(CLI::IsMember(kUses));
   app.add_option("--grade", options.imu_grade, "of the IMU")

@@ -116,7 +116,7 @@ double MagnetometerFusion::offsetSigma() const {
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
-  return std::hypot(deviation_.sigma_T(errors_.correlated_noise_sigma_T()),
+  return std::hypot(std::max(deviation_.sigma_T(errors_.correlated_noise_sigma_T()), anomaly_.sigma_T()),
                     calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
 }
 
@@ -279,9 +279,10 @@ void MagnetometerFusion::judge(const FrameField& field, Window& window, Marginal
   if (decision.end_disturbance || (decision.begin_disturbance && disturbed_))
     endDisturbance(window, marginalizer);
   if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
+  learnAnomaly(field, earth, window);
   // A rejected sensor (Inconsistent) is also evaluated; otherwise it could never be accepted again.
   if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
-    learnErrors(field, mean, earth, window);
+    learnErrors(field, mean, window);
   if (!decision.use) {
     // A field that was rejected a moment ago is not independent information: its disturbance fades slowly.
     last_seen_ = mean.time;
@@ -291,21 +292,30 @@ void MagnetometerFusion::judge(const FrameField& field, Window& window, Marginal
   newest.measurements.set(measurementOf(field, decision.variance_scale, disturbed));
 }
 
-void MagnetometerFusion::learnErrors(const FrameField& field, const MagnetometerMean& clean,
-                                     const FieldCheck& earth, Window& window) {
+void MagnetometerFusion::learnAnomaly(const FrameField& field, const FieldCheck& earth,
+                                      const Window& window) {
   if (areCurrentsUncertain(field, window)) return;
-  const MagnetometerStates states(window);
-  errors_.add(clean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(field),
-              tiltError());
-  states.offset->walk_per_sqrt_s = errors_.walk_T_per_sqrt_s();
-  const double norm_T = states.field_W().norm();
+  const double norm_T = MagnetometerStates(window).field_W().norm();
   const double relative_variance =
       0.5 * (earth.norm_sigma * earth.norm_sigma + earth.dip_sigma_rad * earth.dip_sigma_rad);
   const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
   const double state_variance_T2 =
       norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
-  deviation_.add(clean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
+  deviation_.add(field.mean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
                  std::max(0.0, state_variance_T2), whiteVariance(field));
+  const double across_T =
+      MagnetometerStates(window).field_W().head<2>().norm() * std::sin(earth.heading_error_rad);
+  anomaly_.add(window.newest().worldFromBody().translation,
+               {deviation_.deviation_T(), deviation_.variance_T2(), across_T},
+               status_ == MagnetometerStatus::Used);
+}
+
+void MagnetometerFusion::learnErrors(const FrameField& field, const MagnetometerMean& clean, Window& window) {
+  if (areCurrentsUncertain(field, window)) return;
+  const MagnetometerStates states(window);
+  errors_.add(clean, window.newest().worldFromBody().rotation, states.offset_B(), whiteVariance(field),
+              tiltError());
+  states.offset->walk_per_sqrt_s = errors_.walk_T_per_sqrt_s();
 }
 
 void MagnetometerFusion::beginDisturbance(const MagnetometerMean& clean, Window& window,

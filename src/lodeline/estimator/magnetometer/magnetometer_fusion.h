@@ -9,6 +9,7 @@
 #include "lodeline/estimate.h"
 #include "lodeline/estimator/magnetometer/currents/current_compensation.h"
 #include "lodeline/estimator/magnetometer/earth_field_search.h"
+#include "lodeline/estimator/magnetometer/field/anomaly_scale.h"
 #include "lodeline/estimator/magnetometer/field/field_innovation.h"
 #include "lodeline/estimator/magnetometer/field/field_measurement.h"
 #include "lodeline/estimator/magnetometer/field/magnetic_noise_estimator.h"
@@ -40,7 +41,8 @@ class MagnetometerFusion final : public SensorFusion {
   void start(double tilt_sigma_rad, Window* window, Prior* prior) override;
   void addToNewest(Window& window, Marginalizer& marginalizer) override;
   void remember(const JointCovariance& covariance, Window& window) override;
-  /// Converts the covariance to one relative to north, where north was found after the first pose.
+  /// Converts the covariance to one relative to north: with that of a north that was found after the first
+  /// pose, and with the anomaly that the field in force may have (AnomalyScale).
   void relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const override;
   void report(const Window& window, SensorEstimates* estimates) const override;
   /// That of the compensation of currents; empty without current sensors.
@@ -105,9 +107,10 @@ class MagnetometerFusion final : public SensorFusion {
   /// Sigma of roll and pitch in the factor of a frame at `now`, rad per axis. The factor does not estimate
   /// roll and pitch, so this sigma has to account for their time-correlated error.
   double tiltSigma(Time now);
+  /// Adds the deviation of size and dip from the Earth's field; also of fields that are not used.
+  void learnAnomaly(const FrameField& field, const FieldCheck& earth, const Window& window);
   /// `clean`: the mean without the fields of currents.
-  void learnErrors(const FrameField& field, const MagnetometerMean& clean, const FieldCheck& earth,
-                   Window& window);
+  void learnErrors(const FrameField& field, const MagnetometerMean& clean, Window& window);
   void beginDisturbance(const MagnetometerMean& clean, Window& window, Marginalizer& marginalizer);
   void endDisturbance(Window& window, Marginalizer& marginalizer);
   void reportDecision(const GateDecision& decision, Time time);
@@ -123,6 +126,7 @@ class MagnetometerFusion final : public SensorFusion {
   MagnetometerGate gate_;
   MagneticNoiseEstimator errors_;
   StudentTWeight deviation_;
+  AnomalyScale anomaly_;
   MagneticStepDetector step_;
   std::map<Time, FrameField> means_;  ///< of frames that are not yet in a window
   CurrentCompensation currents_;

@@ -123,6 +123,7 @@ void MagnetometerFusion::restartChecks() {
   errors_ = MagneticNoiseEstimator(options_.magnetometer, offsetSigma());
   deviation_ = StudentTWeight(options_.magnetometer);
   step_ = MagneticStepDetector(options_.magnetometer.step);
+  anomaly_.restartAgreement();
   rejecting_ = false;
 }
 
@@ -188,8 +189,14 @@ void MagnetometerFusion::describeNorth(const Window& window, MagnetometerEstimat
 }
 
 void MagnetometerFusion::relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const {
-  if (!north_found_) return;
-  relateToNorth(window.newest().state(), azimuth(window), covariance);
+  const bool doubts_field =
+      MagnetometerStates(window).field != nullptr && heading_reference_ != HeadingReference::Start;
+  if (!north_found_ && !doubts_field) return;
+  AzimuthCovariance north;
+  if (north_found_) north = azimuth(window);
+  if (doubts_field)
+    north.variance_rad2 += std::pow(anomaly_.fieldSigma_T() / northField(window).head<2>().norm(), 2);
+  relateToNorth(window.newest().state(), north, covariance);
 }
 
 void MagnetometerFusion::report(const Window& window, SensorEstimates* estimates) const {

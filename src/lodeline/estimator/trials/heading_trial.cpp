@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lodeline/estimator/magnetometer/field/magnetic_noise_estimator.h"
+#include "lodeline/estimator/trials/trial_disturbances.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
 #include "lodeline/util/thread_clock.h"
@@ -12,9 +13,10 @@
 namespace lodeline {
 namespace {
 
-const Vec3 kField_W(0.0, 24.2e-6, -38.6e-6);  // to magnetic north, as in Florida
+const Vec3 kField_W = HeadingTrialOptions::field_W();
 
-MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Motion& motion) {
+MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const PointDive& dive) {
+  const Motion& motion = dive.motion;
   DisturbanceOptions wanted;
   wanted.seed = options.seed;
   MagneticDisturbances drawn;
@@ -46,6 +48,22 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Mo
     case FieldTrouble::Lamp:
       drawn.switched = drawLampSwitching(options.duration_s, options.seed, options.lamp_earliest_s);
       return drawn;
+    case FieldTrouble::Beside:
+      drawn.lying = drawDipolesBeside(motion, kField_W, 8.0, options.seed);
+      return drawn;
+    case FieldTrouble::AtStart:
+      drawn.lying = drawIronAtStart(motion, kField_W, options.seed);
+      return drawn;
+    case FieldTrouble::Magnetite:
+      drawn.lying = drawMagnetite(dive.passage, kField_W, options.seed);
+      return drawn;
+    case FieldTrouble::Together: {
+      drawn.lying = drawIronAtStart(motion, kField_W, options.seed);
+      drawn.steel = drawMagnetite(dive.passage, kField_W, options.seed);
+      const auto beside = drawDipolesBeside(motion, kField_W, 8.0, options.seed);
+      drawn.lying.insert(drawn.lying.end(), beside.begin(), beside.end());
+      return drawn;
+    }
     default:
       return drawn;
   }
@@ -112,6 +130,7 @@ void calibrate(const MagnetometerErrors& errors, const HeadingTrialOptions& opti
   calibration->is_calibrated = true;
   calibration->hard_iron_sigma_T = 0.01e-6;  // as stated after a calibration with a figure of eight
   spoil(options, random, calibration);
+  if (options.spoil) options.spoil(calibration);
 }
 
 PointDive diveOf(const HeadingTrialOptions& options, const ImuErrors& imu) {
@@ -167,8 +186,10 @@ double rootMeanSquare(const std::vector<HeadingSample>& samples, double begin_s,
 }  // namespace
 
 const char* toString(FieldTrouble trouble) {
-  constexpr std::array kNames = {"none", "hard iron", "disturbances", "tank",  "dipole",       "calibration",
-                                 "lamp", "soft iron", "misaligned",   "scale", "swapped axes", "as believed"};
+  constexpr std::array kNames = {"none",         "hard iron", "disturbances", "tank",       "dipole",
+                                 "calibration",  "lamp",      "soft iron",    "misaligned", "scale",
+                                 "swapped axes", "boat",      "as believed",  "beside",     "at start",
+                                 "magnetite",    "together"};
   return kNames[static_cast<size_t>(trouble)];
 }
 
@@ -220,7 +241,7 @@ double runTrialDive(const HeadingTrialOptions& options, const TrialObserver& obs
   PointMagnetometer magnetometer;
   magnetometer.field_W = kField_W;
   magnetometer.errors = drawMagnetometerErrors(options.imu_grade, {}, options.seed);
-  magnetometer.disturbances = disturbancesOf(options, dive.motion);
+  magnetometer.disturbances = disturbancesOf(options, dive);
   if (options.trouble == FieldTrouble::AsBelieved) drawAsBelieved(options, &magnetometer);
   calibrate(magnetometer.errors, options, &*dive.mounted.rig.magnetometer);
 

@@ -30,6 +30,10 @@ enum class FieldTrouble {
   SwappedAxes,   ///< two axes taken for each other
   Boat,          ///< the first 30 s beside a boat of 13 uT, from which the diver swims away within 10 s
   AsBelieved,    ///< hard iron, its walk and a wandering field, drawn from the estimator's model
+  Beside,        ///< a dipole every 8 m beside the way, 12 to 30 degrees each
+  AtStart,       ///< iron at the start, 6 to 20 degrees
+  Magnetite,     ///< in all walls, about 1 uT
+  Together,      ///< these three
 };
 const char* toString(FieldTrouble trouble);
 
@@ -46,10 +50,14 @@ struct HeadingTrialOptions {
   std::optional<TimeSpan> magnetometer_pause;   ///< nor within
   double lamp_earliest_s = 30.0;                ///< the lamp is first switched within 90 s from then on
   std::optional<TrialCurrentOptions> currents;  ///< electric currents that disturb the magnetometer
+  std::function<void(MagnetometerCalibration*)> spoil;  ///< changes the calibration that the estimator gets
   EstimatorOptions estimator;
   bool honest_imu = true;  ///< the estimator uses the IMU's true noise (noise_inflation 1)
   /// Flicker noise of the biases, which the estimator models as a random walk.
   bool bias_instability = true;
+
+  /// The Earth's field in the world of the trial, T: to magnetic north, as in Florida.
+  static Vec3 field_W() { return Vec3(0.0, 24.2e-6, -38.6e-6); }
 };
 
 struct HeadingSample {

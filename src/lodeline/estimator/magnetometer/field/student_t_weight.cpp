@@ -11,6 +11,7 @@ void StudentTWeight::add(Time time, const Vec2& deviation_T, double state_varian
   last_ = time;
   mean_T_ += gain * (deviation_T - mean_T_);
   white_variance_T2_ = (1.0 - gain) * (1.0 - gain) * white_variance_T2_ + gain * gain * white_variance_T2;
+  state_variance_T2_ = state_variance_T2;
   excess_T2_ = std::max(0.0, mean_T_.squaredNorm() - 2.0 * (white_variance_T2_ + state_variance_T2));
 }
 

@@ -25,12 +25,17 @@ class StudentTWeight {
   /// is not smaller than that.
   double sigma_T(double correlated_noise_sigma_T) const;
 
+  /// Mean deviation over the last `deviation_s`, T, and the variance of each component by state and noise.
+  const Vec2& deviation_T() const { return mean_T_; }
+  double variance_T2() const { return white_variance_T2_ + state_variance_T2_; }
+
  private:
   MagnetometerOptions options_;
   std::optional<Time> last_;
   Vec2 mean_T_ = Vec2::Zero();      ///< over the last `deviation_s`
   double white_variance_T2_ = 0.0;  ///< of this mean
-  double excess_T2_ = 0.0;          ///< squared mean beyond the variance of state and noise
+  double state_variance_T2_ = 0.0;
+  double excess_T2_ = 0.0;  ///< squared mean beyond the variance of state and noise
 };
 
 }  // namespace lodeline

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lodeline/estimator/trials/disturbed_dive.h"
+#include "lodeline/util/angles.h"
+
+// Tests of what magnetic disturbances do to the heading and to its claimed sigma. The whole set of dives is
+// measured by magnetic_harm_study.
+
+namespace lodeline {
+namespace {
+
+DisturbedDive cave(FieldTrouble trouble, uint64_t seed) {
+  DisturbedDive dive;
+  dive.trouble = trouble;
+  dive.seed = seed;
+  dive.duration_s = 90.0;
+  return dive;
+}
+
+// Iron turns the compass at the start by ten degrees and more.
+TEST(MagnetometerHarm, ADisturbedStartKeepsTheClaimWideUntilNorthIsFound) {
+  const DisturbedRun run = runDisturbedDive(cave(FieldTrouble::AtStart, 5), MagnetometerUse::Absolute);
+  EXPECT_GT(std::abs(run.samples.front().error_rad), 5.0 * kDegree) << "the start is not disturbed";
+  EXPECT_GT(run.errors.within_3_sigmas, 0.985);
+  EXPECT_LT(std::abs(run.errors.north_end_rad), 0.5 * kDegree) << "north was not found later";
+  // The way back leads to the iron again.
+  const auto surest = std::min_element(
+      run.samples.begin(), run.samples.end(),
+      [](const HeadingSample& a, const HeadingSample& b) { return a.sigma_rad < b.sigma_rad; });
+  EXPECT_LT(surest->sigma_rad, 1.0 * kDegree) << "nor claimed";
+  EXPECT_LT(std::abs(surest->error_rad), 3.0 * surest->sigma_rad);
+}
+
+TEST(MagnetometerHarm, AnUndisturbedStartIsDoubtedForSomeMetresOnly) {
+  const DisturbedRun run = runDisturbedDive(cave(FieldTrouble::None, 6), MagnetometerUse::Absolute);
+  EXPECT_GT(run.samples.front().sigma_rad, 4.0 * kDegree) << "the first field was taken on trust";
+  EXPECT_LT(run.samples.back().sigma_rad, 0.6 * kDegree);
+  EXPECT_GT(run.errors.within_3_sigmas, 0.999);
+}
+
+// Iron every 8 m, and magnetite in the walls: no worse than without magnetometer, but for what a dive of 90 s
+// lets a gyroscope of a degree an hour drift.
+TEST(MagnetometerHarm, IronBesideTheWayDoesNotBendIt) {
+  for (const FieldTrouble trouble : {FieldTrouble::Beside, FieldTrouble::Magnetite}) {
+    const DisturbedDive dive = cave(trouble, 1);
+    const DisturbedRun off = runDisturbedDive(dive, MagnetometerUse::Off);
+    const DisturbedRun on = runDisturbedDive(dive, MagnetometerUse::Absolute);
+    EXPECT_LT(on.errors.used_share, 0.98) << "nothing was rejected";
+    EXPECT_LT(on.errors.heading_rms_rad, 1.1 * off.errors.heading_rms_rad + 0.05 * kDegree);
+    EXPECT_LT(on.errors.position_rms_m, 1.1 * off.errors.position_rms_m + 0.005);
+    EXPECT_GT(on.errors.within_3_sigmas, 0.985);
+  }
+}
+
+}  // namespace
+}  // namespace lodeline
