@@ -58,6 +58,8 @@ void FieldMap::learn(const Vec3& place, const Vec3& anomaly, const Mat3& covaria
       found = tiles_.emplace(cell, Entry{FieldMapTile(basis_, centreOf(cell)), 0, 0.0, 0.0, Time(), 0}).first;
     }
     Entry& entry = found->second;
+    const double variance_T2 = entry.tile.predict(place).covariance.trace() / 3.0;
+    if (variance_T2 < options_.known_sigma_T * options_.known_sigma_T) return;
     entry.tile.add(place, anomaly, covariance);
     ++entry.readings;
     entry.heading_variance_sum += origin.heading_variance_rad2;

@@ -13,6 +13,9 @@ namespace lodeline {
 struct FieldMapOptions {
   double length_scale_m = 1.5;  ///< over which the anomaly changes
   double field_sigma_T = 6e-6;  ///< of each component of the anomaly, where nothing is known
+  /// A tile that knows a place better than this, per axis, learns nothing more there. So its last reading is
+  /// that of the first visit.
+  double known_sigma_T = 0.7e-6;
   int max_tiles = 256;  ///< the one that was not visited for the longest time makes room for a new one
 };
 

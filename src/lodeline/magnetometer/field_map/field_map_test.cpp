@@ -162,7 +162,7 @@ MapErrors errorsBesidePath(double beside_m) {
 TEST(FieldMap, PredictsTheFieldOfSteelOnThePathAndKnowsItsErrorBesideIt) {
   const MapErrors on = errorsBesidePath(0.0), beside = errorsBesidePath(0.4);
   EXPECT_GT(on.anomaly_rms_T, 3e-6);
-  EXPECT_LT(on.rms_T, 0.06 * on.anomaly_rms_T);
+  EXPECT_LT(on.rms_T, 0.08 * on.anomaly_rms_T);
   EXPECT_LT(beside.rms_T, 0.3 * beside.anomaly_rms_T);
   for (const MapErrors& errors : {on, beside}) {
     EXPECT_GT(errors.nees, 0.2);
@@ -224,7 +224,9 @@ TEST(FieldMap, ForgetsAPlaceAndTakesNothingThatIsNoNumber) {
 TEST(FieldMap, RemembersHowWellTheReadingsWerePlaced) {
   FieldMap map{FieldMapOptions()};
   map.learn(Vec3::Zero(), Vec3(1e-6, 0.0, 0.0), kNoise, {Time::fromNanoseconds(5), 1e-4, 0.01});
-  map.learn(Vec3(0.3, 0.0, 0.0), Vec3(1e-6, 0.0, 0.0), kNoise, {Time::fromNanoseconds(9), 3e-4, 0.03});
+  map.learn(Vec3(1.5, 0.0, 0.0), Vec3(1e-6, 0.0, 0.0), kNoise, {Time::fromNanoseconds(9), 3e-4, 0.03});
+  // A place that is known already.
+  map.learn(Vec3(0.05, 0.0, 0.0), Vec3(1e-6, 0.0, 0.0), kNoise, {Time::fromNanoseconds(11), 9e-4, 0.09});
   const auto predicted = map.predict(Vec3(0.1, 0.0, 0.0));
   ASSERT_TRUE(predicted);
   EXPECT_NEAR(predicted->heading_variance_rad2, 2e-4, 1e-12);
