@@ -29,7 +29,8 @@ TEST(MappedField, ChangesNothingInTheEarthsField) {
 }
 
 TEST(MappedField, BeginsAtIronInThePassageAndDoesNoHarm) {
-  const HeadingTrial with = mapTrial(FieldTrouble::Dipole, true), without = mapTrial(FieldTrouble::Dipole, false);
+  const HeadingTrial with = mapTrial(FieldTrouble::Dipole, true),
+                     without = mapTrial(FieldTrouble::Dipole, false);
   EXPECT_EQ(with.findings.count("magnetic_map_begun"), 1);
   EXPECT_EQ(without.findings.count("magnetic_map_begun"), 0);
   EXPECT_LT(with.rms(20.0), 1.05 * without.rms(20.0));
