@@ -104,6 +104,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--lamp-from", options.lamp_earliest_s, "s, the earliest that it is switched")
       ->capture_default_str();
+  app.add_option("--map", magnetometer.map, "map the field near steel")->capture_default_str();
   app.add_option("--floor", magnetometer.correlated_noise_sigma_T, "T")->capture_default_str();
   app.add_option("--floor-correlation", magnetometer.correlated_noise_time_s, "s")->capture_default_str();
   app.add_option("--student-dof", magnetometer.student_dof, "degrees of it, of the floor's distribution")

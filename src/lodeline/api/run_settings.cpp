@@ -45,6 +45,8 @@ void bindSensors(Settings* settings, RunSettings* options) {
        {"paper", MagnetometerUse::Paper},
        {"off", MagnetometerUse::Off}},
       "Use of the magnetometer. `automatic` is `absolute` with a calibrated magnetometer, else `off`.");
+  settings->bind("magnetometer.map", &options->odometry.estimator.magnetometer.map,
+                 "Map the field near steel on the first visit, and take heading from it on the next.");
   settings->bind("pressure.use", &options->odometry.estimator.depth.use, "Use the pressure sensor.");
   settings->bind("pressure.density_ratio", &options->odometry.estimator.depth.density_ratio,
                  "Density of the water over the density that the sensor assumes. It is 0.975 for a sensor "

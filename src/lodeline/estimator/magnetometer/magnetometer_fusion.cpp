@@ -66,6 +66,7 @@ MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& o
       errors_(options.magnetometer, offsetSigma()),
       deviation_(options.magnetometer),
       step_(options.magnetometer.step),
+      map_(options.magnetometer.map, diagnostics),
       currents_(rig, diagnostics) {
   if (!rig.magnetometer || calibration_.is_calibrated || options.magnetometer.use == MagnetometerUse::Off)
     return;
@@ -146,8 +147,9 @@ double MagnetometerFusion::whiteVariance(const FrameField& field) const {
   return currents_.isOnBoard() ? variance_T2 + currents_.noiseVariance_T2(field.currents) : variance_T2;
 }
 
-void MagnetometerFusion::remember(const JointCovariance& covariance, Window&) {
+void MagnetometerFusion::remember(const JointCovariance& covariance, Window& window) {
   covariance_ = covariance;
+  map_.remember(covariance, window);
   tilt_variance_rad2_ = 0.5 * covariance_.newest().diagonal().segment<2>(3).sum();
 }
 
@@ -201,6 +203,7 @@ FieldMeasurement MagnetometerFusion::measurementOf(const FrameField& field, doub
 
 void MagnetometerFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
   if (use_ == MagnetometerUse::Off) return;
+  map_.learnSettled(window);
   Frame& newest = window.newest();
   const auto found = means_.find(newest.time);
   status_ = MagnetometerStatus::NoData;
@@ -283,6 +286,7 @@ void MagnetometerFusion::judge(const FrameField& field, Window& window, Marginal
   // A rejected sensor (Inconsistent) is also evaluated; otherwise it could never be accepted again.
   if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
     learnErrors(field, mean, window);
+  if (status_ != MagnetometerStatus::Used && takeByMap(field, mean, window)) return;
   if (!decision.use) {
     // A field that was rejected a moment ago is not independent information: its disturbance fades slowly.
     last_seen_ = mean.time;
@@ -290,24 +294,6 @@ void MagnetometerFusion::judge(const FrameField& field, Window& window, Marginal
   }
   const bool disturbed = status_ == MagnetometerStatus::Readmitted;
   newest.measurements.set(measurementOf(field, decision.variance_scale, disturbed));
-}
-
-void MagnetometerFusion::learnAnomaly(const FrameField& field, const FieldCheck& earth,
-                                      const Window& window) {
-  if (areCurrentsUncertain(field, window)) return;
-  const double norm_T = MagnetometerStates(window).field_W().norm();
-  const double relative_variance =
-      0.5 * (earth.norm_sigma * earth.norm_sigma + earth.dip_sigma_rad * earth.dip_sigma_rad);
-  const double field_sigma_T = options_.magnetometer.gate.field_sigma_T;
-  const double state_variance_T2 =
-      norm_T * norm_T * relative_variance - field_sigma_T * field_sigma_T - comparison_.whiteVariance();
-  deviation_.add(field.mean.time, norm_T * Vec2(earth.norm_error, earth.dip_error_rad),
-                 std::max(0.0, state_variance_T2), whiteVariance(field));
-  const double across_T =
-      MagnetometerStates(window).field_W().head<2>().norm() * std::sin(earth.heading_error_rad);
-  anomaly_.add(window.newest().worldFromBody().translation,
-               {deviation_.deviation_T(), deviation_.variance_T2(), across_T},
-               status_ == MagnetometerStatus::Used);
 }
 
 void MagnetometerFusion::learnErrors(const FrameField& field, const MagnetometerMean& clean, Window& window) {

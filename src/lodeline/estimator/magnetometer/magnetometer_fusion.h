@@ -18,6 +18,7 @@
 #include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/estimator/magnetometer/field/student_t_weight.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
+#include "lodeline/estimator/magnetometer/map/mapped_field.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
@@ -99,6 +100,8 @@ class MagnetometerFusion final : public SensorFusion {
   /// The mean minus the steps of currents on board since the start.
   FrameField withoutSteps(const FrameField& field, Window& window);
   void judge(const FrameField& field, Window& window, Marginalizer& marginalizer);
+  /// Offers a reading that is not the Earth's field to the map. Returns true where the map uses it.
+  bool takeByMap(const FrameField& field, const MagnetometerMean& clean, Window& window);
   /// White noise of a mean, T^2 per axis, with that of its currents.
   double whiteVariance(const FrameField& field) const;
   /// Error of the window's roll and pitch, rad^2 per axis. Its correlation time is limited to the time in
@@ -128,6 +131,7 @@ class MagnetometerFusion final : public SensorFusion {
   StudentTWeight deviation_;
   AnomalyScale anomaly_;
   MagneticStepDetector step_;
+  MappedField map_;
   std::map<Time, FrameField> means_;  ///< of frames that are not yet in a window
   CurrentCompensation currents_;
   HeadingReference heading_reference_ = HeadingReference::Start;

@@ -110,6 +110,9 @@ struct MagnetometerOptions {
   double declination_sigma_rad =
       0.006;  ///< of the field model and local rock, for a heading relative to true north
 
+  /// Whether the field near steel is mapped on the first visit and used on the next (MappedField).
+  bool map = false;
+
   MagnetometerGateOptions gate;
   MagneticStepDetectorOptions step;
 
