@@ -133,8 +133,9 @@ void judgeStreams(Inspection* inspection) {
   const OverlapJudge overlap(inspection);
   for (size_t i = 0; i < inspection->cameras.size(); ++i) {
     const CameraSurvey& camera = inspection->cameras[i].survey;
-    overlap.judge(camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s,
-                  "timeshift_cam_imu (to be added to the images' stamps)");
+    overlap.judge(
+        camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s,
+        "timeshift_cam_imu (in s, to be added to the images' stamps; those above include its present value)");
   }
   if (inspection->magnetometer)
     overlap.judge("mag0", inspection->magnetometer->stream,

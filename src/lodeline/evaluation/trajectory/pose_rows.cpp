@@ -64,6 +64,7 @@ PoseRows::PoseRows(std::unique_ptr<ByteSource> bytes, std::string name, bool ign
     kept_columns_ = std::max(kept_columns_, time.column + 1);
   }
   while (table.next()) keep(table);
+  unknown_header_ = table.unknownHeader();
   if (!lines_.empty()) return;
   if (table.unknownHeader().empty()) throw InputError(fmt::format("{}: holds no data lines", name_));
   throw InputError(

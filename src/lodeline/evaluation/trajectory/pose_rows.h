@@ -23,6 +23,8 @@ class PoseRows {
   /// Columns of a header with a time, a position and a quaternion; else empty.
   const std::vector<ColumnName>& columns() const { return columns_; }
   const std::vector<std::string>& preamble() const { return preamble_; }
+  /// A header that names no pose; empty where there is none.
+  const std::string& unknownHeader() const { return unknown_header_; }
   std::size_t columnCount() const { return column_count_; }
   std::size_t size() const { return lines_.size(); }
   std::string where(std::size_t row) const;
@@ -56,6 +58,7 @@ class PoseRows {
   std::string name_;
   std::vector<ColumnName> columns_;
   std::vector<std::string> preamble_;
+  std::string unknown_header_;
   std::size_t column_count_ = 0;
   std::size_t kept_columns_ = 0;
   bool has_separators_ = false;

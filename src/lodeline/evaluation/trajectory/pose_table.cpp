@@ -9,6 +9,8 @@
 #include "lodeline/evaluation/trajectory/pose_rows.h"
 #include "lodeline/evaluation/trajectory/read_formats.h"
 #include "lodeline/io/tables/pose_columns.h"
+#include "lodeline/io/tables/text_lines.h"
+#include "lodeline/io/tables/units.h"
 
 namespace lodeline {
 namespace {
@@ -43,6 +45,10 @@ PoseLayout layoutOfHeader(const PoseRows& rows, Diagnostics& diagnostics) {
   PoseLayout layout;
   layout.time = findTimeColumns(rows.columns()).front();
   layout.columns = *findPoseColumns(rows.columns());
+  if (!layout.columns.unknown_unit.empty()) {
+    throw InputError(fmt::format("{}: unit '{}' of the columns of the position is not known; known are {}",
+                                 rows.name(), layout.columns.unknown_unit, knownUnits(Quantity::Length)));
+  }
   if (layout.columns.w_is_assumed_first) {
     diagnostics.report(Severity::Warning, "quaternion_order",
                        fmt::format("{}: the columns q0 to q3 are taken for w, x, y, z", rows.name()));
@@ -81,11 +87,16 @@ PoseLayout layoutOfNumbers(const PoseRows& rows, Diagnostics& diagnostics) {
   if (has_matrix || (count == 12 && !is_tum)) return matrixLayout(0);
   if ((count == 13 || count == 17) && rows.areMatrices(1)) return matrixLayout(1);
   if (count < 8) {
-    throw InputError(
-        fmt::format("{}: {} columns fit no known trajectory layout (a time, position and quaternion: 8 or "
-                    "more; a 3x4 matrix: 12, with a time 13); name the columns in a header such as "
-                    "`timestamp [s], x, y, z, qx, qy, qz, qw`",
-                    rows.where(0), count));
+    throw InputError(fmt::format(
+        "{}: {} columns fit no known trajectory layout (a time, position and quaternion: 8 or "
+        "more; a 3x4 matrix: 12, with a time 13); {} a header such as "
+        "`timestamp [s], x, y, z, qx, qy, qz, qw`",
+        rows.where(0), count,
+        rows.unknownHeader().empty()
+            ? "name the columns in"
+            : fmt::format("'{}' names no time, position and quaternion; a pose needs all of them, "
+                          "and",
+                          excerpt(rows.unknownHeader()))));
   }
   const bool has_nanoseconds = rows.timesAreNanoseconds();
   const bool w_first = has_nanoseconds && rows.hasSeparators();
@@ -126,7 +137,7 @@ std::optional<Rigid3> poseOf(const PoseLayout& layout, const PoseRows& rows, std
     const auto& p = layout.columns.position;
     const auto& q = layout.columns.rotation;
     const auto value = [&](std::size_t column) { return rows.number(row, column); };
-    const Vec3 position_m(value(p[0]), value(p[1]), value(p[2]));
+    const Vec3 position_m = layout.columns.position_to_m * Vec3(value(p[0]), value(p[1]), value(p[2]));
     return poseFromNumbers(where, position_m, Quat(value(q[3]), value(q[0]), value(q[1]), value(q[2])),
                            diagnostics);
   }

@@ -11,6 +11,7 @@
 namespace lodeline {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr double kStart_s = 1700000000.0;
@@ -114,6 +115,12 @@ TEST_F(PoseTableTest, ReadsTheLayoutsOfManyPrograms) {
       {"time and 3x4", rows("{s} {r0} {r1} {r2}")},
       {"time and 4x4", rows("{s} {r0} {r1} {r2} 0 0 0 1")},
       {"semicolons, decimal commas", replaced(replaced(rows("{s} " + tum), " ", ";"), ".", ",")},
+      {"maplab, frame before the axis",
+       "timestamp [ns], vertex-id, mission-id, p_G_Ix [m], p_G_Iy [m], p_G_Iz [m], q_G_Ix, q_G_Iy, q_G_Iz, "
+       "q_G_Iw\n" +
+           rows("{ns}, {i}, a1b2, " + w_last)},
+      {"millimetres", "timestamp [ns],x [mm],y [mm],z [mm],qx,qy,qz,qw\n" +
+                          rows("{ns},{x}e3,{y}e3,{z}e3,{qx},{qy},{qz},{qw}")},
       {"microseconds by name", "timestamp_us,tx,ty,tz,qx,qy,qz,qw\n" + rows("{us}," + w_last)},
       {"microseconds by size", rows("{us} " + tum)},
       {"milliseconds by size", rows("{ms} " + tum)},
@@ -156,7 +163,10 @@ TEST_F(PoseTableTest, SaysWhenItGuessesTheOrderOfTheQuaternion) {
 }
 
 TEST_F(PoseTableTest, RefusesWhatItCannotTell) {
-  EXPECT_THAT(failure("time,x,y,z,roll,pitch,yaw\n1,2,3,4,5,6,7\n"), HasSubstr("no known trajectory layout"));
+  EXPECT_THAT(
+      failure("time,x,y,z,roll,pitch,yaw\n1,2,3,4,5,6,7\n"),
+      AllOf(HasSubstr("no known trajectory layout"), HasSubstr("'time,x,y,z,roll,pitch,yaw' names no")));
+  EXPECT_THAT(failure("t [s],x [deg],y [deg],z [deg],qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n"), HasSubstr("'deg'"));
   EXPECT_THAT(failure("speed,course\n"), HasSubstr("neither a row of a trajectory"));
   EXPECT_THAT(failure("1 1 2 3 0 0 0 1 9\n2 1 2 3 0 0 0 1\n"),
               HasSubstr("poses.txt:2: 8 columns where 9 are due"));

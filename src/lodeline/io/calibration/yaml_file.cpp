@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/tables/text_lines.h"
 #include "lodeline/util/edit_distance.h"
 #include "lodeline/util/files/file_kind.h"
 
@@ -45,10 +45,11 @@ YAML::Node loadYamlFile(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: calibration file missing", file.string()));
   }
   if (!recognized.isText()) refuseFile(recognized, "a YAML file is needed here");
-  std::ifstream stream(file);
+  TextLines lines(openFile(file), file.string());
   std::string text;
   bool is_opencv = false;
-  for (std::string line; std::getline(stream, line);) {
+  for (std::string_view read; lines.next(&read);) {
+    const std::string line(read);
     // OpenCV's directive lacks the blank that YAML requires. Directives are not needed; an empty line keeps
     // the line numbers of messages.
     const bool is_directive = line.starts_with('%');

@@ -283,12 +283,29 @@ std::optional<Time> PlainCsv::timeOf(const TimeColumn& time, const Row& row) con
   return ns ? std::optional(Time::fromNanoseconds(*ns)) : std::nullopt;
 }
 
-std::string PlainCsv::parseRow(PlainReading* reading) const {
+/// The time of a counter of 32 bits, continued where it starts again.
+Time PlainCsv::continued(Time time) {
+  const bool is_counter = *time_->unit == TimeUnit::Microseconds || *time_->unit == TimeUnit::Milliseconds;
+  if (!is_counter || time_->second) return time;
+  const int64_t before = wrap_.restarts();
+  const int64_t ns_per_count = nanosecondsPer(*time_->unit) * time_->units_per_count;
+  const Time result = Time::fromNanoseconds(wrap_.continued_ns(time.nanoseconds(), ns_per_count));
+  if (wrap_.restarts() > before) {
+    diagnostics_->report(
+        Severity::Notice, "csv_counter_restart",
+        fmt::format("{}:{}: the times in '{}' start again at zero, as those of a counter of 32 "
+                    "bits do; counted on",
+                    name_, row_.line, time_->name));
+  }
+  return result;
+}
+
+std::string PlainCsv::parseRow(PlainReading* reading) {
   reading->time = Time::fromNanoseconds(kMadeUpInterval_ns * row_count_);
   if (time_) {
     const std::optional<Time> time = timeOf(*time_, row_);
     if (!time) return fmt::format("'{}' is no time", excerpt(row_.cells[time_->column]));
-    reading->time = *time;
+    reading->time = continued(*time);
   }
   const auto read = [this](const std::optional<Triad>& triad, std::optional<Vec3>* into) {
     *into = triad ? valueOf(*triad, row_) : std::nullopt;

@@ -9,6 +9,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/sensor_columns.h"
+#include "lodeline/io/tables/counter_wrap.h"
 #include "lodeline/io/tables/table_reader.h"
 #include "lodeline/rig.h"
 
@@ -96,7 +97,8 @@ class PlainCsv {
   bool nextRow();
   std::optional<Vec3> valueOf(const Triad& triad, const Row& row) const;
   std::optional<Time> timeOf(const TimeColumn& time, const Row& row) const;
-  std::string parseRow(PlainReading* reading) const;
+  Time continued(Time time);
+  std::string parseRow(PlainReading* reading);
 
   std::string name_;
   PlainCsvOptions options_;
@@ -104,6 +106,7 @@ class PlainCsv {
   TableReader table_;
   std::vector<TimeColumn> times_;  ///< time columns named in the header
   std::optional<TimeColumn> time_;
+  CounterWrap wrap_;
   std::optional<Triad> gyroscope_, accelerometer_, magnetometer_;
   bool has_relative_field_ = false;
   std::optional<std::size_t> instance_column_;

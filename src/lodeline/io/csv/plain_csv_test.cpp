@@ -56,6 +56,31 @@ TEST_F(PlainCsvTest, UnderstandsAHeaderWithUnitsInAnyOrder) {
   EXPECT_TRUE(diagnostics_.ranked().empty());
 }
 
+TEST_F(PlainCsvTest, CountsOnWhereACounterOf32BitsStartsAgain) {
+  const auto readings = read(
+      "micros,mx [uT],my [uT],mz "
+      "[uT]\n4294947296,1,2,3\n4294957296,1,2,3\n1,1,2,3\n4294967290,1,2,3\n10001,1,2,3"
+      "\n");
+  ASSERT_EQ(readings.size(), 5U);
+  EXPECT_EQ((readings[2].time - readings[1].time).nanoseconds(), 10'001'000);
+  EXPECT_EQ((readings[3].time - readings[1].time).nanoseconds(), 9'994'000);
+  EXPECT_EQ((readings[4].time - readings[1].time).nanoseconds(), 20'001'000);
+  EXPECT_EQ(diagnostics_.count("csv_counter_restart"), 2);
+}
+
+TEST_F(PlainCsvTest, ReadsDatesSecondsWithNanosecondsAndFieldsThatEndInUT) {
+  const auto dates = read(
+      "timestamp,mag_x_uT,mag_y_uT,mag_z_uT\n2026-11-21T12:00:00.000Z,20,1,2\n"
+      "2026-11-21T12:00:00.200Z,21,1,2\n");
+  ASSERT_EQ(dates.size(), 2U);
+  EXPECT_EQ(dates[1].time.nanoseconds(), 1795262400200000000);
+  EXPECT_NEAR(dates[1].field->x(), 21e-6, 1e-12);
+  const auto parts =
+      read("sec,nanosec,mx [uT],my [uT],mz [uT]\n1700000000,999999999,20,1,2\n1700000001,5,20,1,2\n");
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[1].time.nanoseconds(), 1700000001000000005);
+}
+
 TEST_F(PlainCsvTest, ReadsEurocHeadersToTheNanosecond) {
   const auto readings = read(
       "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
@@ -163,7 +188,7 @@ TEST_F(PlainCsvTest, SkipsColumnsOfTimesThatAreNone) {
       "10:00,3,0.5,1e-5,0,0\n2026-11-21 10:00,3,0.6,1e-5,0,0\n");
   ASSERT_EQ(readings.size(), 2U);
   EXPECT_EQ(readings[1].time.nanoseconds(), 600000000);
-  expectRefused("date,mx [T],my [T],mz [T]\n2026-11-21 10:00,1e-5,0,0\n", "holds no numbers");
+  expectRefused("date,mx [T],my [T],mz [T]\nnoon,1e-5,0,0\n", "holds no numbers");
 }
 
 TEST_F(PlainCsvTest, RefusesWhatItCannotUnderstand) {

@@ -9,6 +9,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/streams/stream_rate.h"
+#include "lodeline/io/tables/calendar_time.h"
 #include "lodeline/io/tables/pose_columns.h"
 
 namespace lodeline {
@@ -199,7 +200,7 @@ void CsvReader::findColumns(CsvContent content) {
       break;
     case CsvContent::TruePose:
       if (const std::optional<PoseColumns> pose = findPoseColumns(columns)) {
-        for (const std::size_t column : pose->position) found.push_back({column, 1.0});
+        for (const std::size_t column : pose->position) found.push_back({column, pose->position_to_m});
         for (const std::size_t i : {3, 0, 1, 2}) found.push_back({pose->rotation[i], 1.0});
         text_column_ = 1 + numbers_.size();
       }
@@ -224,6 +225,7 @@ void CsvReader::findTimeColumn(const SensorColumns& sensors) {
                     file_.string(), time.unknown_unit, time.name));
   }
   time_column_ = time.column;
+  if (time.second) two_columns_ = time;
   if (!time.unit || *time.unit == TimeUnit::Nanoseconds) return;
   stamp_unit_ = *time.unit;
   decimal_unit_ = time.unit;
@@ -257,7 +259,13 @@ void CsvReader::settleStampUnit(CsvReader ahead, PlausibleRate rate, Diagnostics
 std::string CsvReader::parseRow(CsvRow* row) const {
   const std::string_view stamp = stampText();
   const std::optional<TimeUnit> unit = hasDecimals(stamp) ? decimal_unit_ : std::optional(stamp_unit_);
-  const std::optional<int64_t> stamp_ns = unit ? table_.time_ns(time_column_, *unit) : std::nullopt;
+  std::optional<int64_t> stamp_ns;
+  if (two_columns_) {
+    stamp_ns = timeFrom_ns(*two_columns_, stamp_unit_, stamp, table_.cell(*two_columns_->second));
+  } else if (unit) {
+    stamp_ns = table_.time_ns(time_column_, *unit);
+  }
+  if (!stamp_ns && !two_columns_) stamp_ns = parseCalendarTime_ns(stamp);
   if (!stamp_ns) {
     return fmt::format("the time stamp '{}' is not an integer number of nanoseconds", excerpt(stamp));
   }

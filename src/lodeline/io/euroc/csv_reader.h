@@ -106,6 +106,7 @@ class CsvReader {
   std::filesystem::path file_;
   TableReader table_;
   std::size_t time_column_ = 0;
+  std::optional<TimeColumn> two_columns_;  ///< of times in two columns, such as seconds and nanoseconds
   TimeUnit stamp_unit_ = TimeUnit::Nanoseconds;
   std::optional<TimeUnit> decimal_unit_;  ///< of stamps with decimals; nothing if invalid
   std::vector<CsvColumn> numbers_;

@@ -118,8 +118,9 @@ void Synchronizer::reportApart() {
     const std::optional<std::string> words = apart(name, *span, other_name, *other, offset);
     if (words) diagnostics_->report(Severity::Serious, kClocksApart, *words);
   };
-  report("the images", images_span_.get(), "the inertial readings", imu_.span(),
-         "timeshift_cam_imu (to be added to the images' stamps)");
+  report(
+      "the images", images_span_.get(), "the inertial readings", imu_.span(),
+      "timeshift_cam_imu (in s, to be added to the images' stamps; those above include its present value)");
   if (!last_packet_time_) return;
   sensors_.reportSpans(may_read_on,
                        [&](const std::string& name, const std::optional<TimeSpan>& span, const char* offset) {

@@ -3,6 +3,8 @@
 #include <map>
 #include <string>
 
+#include "lodeline/io/tables/units.h"
+
 namespace lodeline {
 namespace {
 
@@ -20,7 +22,8 @@ struct Component {
 bool isOther(const ColumnName& column) {
   return column.hasStem(
              {"vel", "acc", "bias", "cov", "twist", "angular", "linear", "gyr", "mag", "std", "sigma"}) ||
-         column.hasWord({"v", "a", "b", "g", "m"});
+         column.hasWord({"v", "b"}) ||
+         (column.hasWord({"a", "g", "m"}) && !column.hasWord({"p", "q"}));  // "p_G_Ix": of a frame G
 }
 
 std::optional<Component> componentOf(const ColumnName& column) {
@@ -31,7 +34,9 @@ std::optional<Component> componentOf(const ColumnName& column) {
   for (std::size_t i = column.words.size(); i-- > 0 && at == column.words.size();) {
     const std::string& word = column.words[i];
     if (word.size() > 2 || kAxes.find(word.back()) == std::string_view::npos) continue;
-    if (word.size() == 2 && word[0] != 'q' && word[0] != 't' && word[0] != 'p') continue;
+    const bool is_joined = word[0] == 'q' || word[0] == 't' || word[0] == 'p';
+    // A frame before the axis: "p_G_Ix".
+    if (word.size() == 2 && !is_joined && (i == 0 || !column.hasWord({"p", "q"}))) continue;
     component.axis = kAxes.find(word.back());
     joined = word.substr(0, word.size() - 1);
     at = i;
@@ -101,6 +106,10 @@ std::optional<PoseColumns> findPoseColumns(const std::vector<ColumnName>& column
   const std::size_t shift = rotation->is_numbered ? 1 : 0;
   for (std::size_t i = 0; i < 4; ++i) result.rotation[i] = *rotation->column[(i + shift) % 4];
   result.w_is_assumed_first = rotation->is_numbered;
+  const StatedUnit unit = statedUnit(columns[result.position[0]], Quantity::Length);
+  result.position_to_m = unit.factor.value_or(1.0);
+  // "[-]" states none.
+  if (unit.text.find_first_not_of("-") != std::string::npos && !unit.factor) result.unknown_unit = unit.text;
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lodeline/io/tables/column_name.h"
@@ -13,6 +14,8 @@ namespace lodeline {
 struct PoseColumns {
   std::array<std::size_t, 3> position = {};  ///< x y z
   std::array<std::size_t, 4> rotation = {};  ///< quaternion x y z w
+  double position_to_m = 1.0;                ///< by the unit that the names state
+  std::string unknown_unit;                  ///< a stated unit of the position that is no length
   bool w_is_assumed_first = false;           ///< the names are q0 to q3, without a statement of the order
 };
 

@@ -46,6 +46,27 @@ TEST(PoseColumns, AreFoundByTheNamesOfManyPrograms) {
   EXPECT_TRUE(px4->w_is_assumed_first);
 }
 
+TEST(PoseColumns, MayHaveFramesBeforeTheAxis) {
+  const auto maplab =
+      poseOf({"timestamp [ns]", "vertex-id", "mission-id", "p_G_Ix [m]", "p_G_Iy [m]", "p_G_Iz [m]",
+              "q_G_Iw [-]", "q_G_Ix [-]", "q_G_Iy [-]", "q_G_Iz [-]", "v_G_Ix [m/s]", "b_Ax [m/s^2]"});
+  ASSERT_TRUE(maplab);
+  EXPECT_THAT(maplab->position, ElementsAre(3, 4, 5));
+  EXPECT_THAT(maplab->rotation, ElementsAre(7, 8, 9, 6));
+}
+
+TEST(PoseColumns, StateTheUnitOfThePosition) {
+  const auto unitOf = [](const char* x) {
+    const auto pose = poseOf({"t", x, "y", "z", "qx", "qy", "qz", "qw"});
+    return pose ? std::pair(pose->position_to_m, pose->unknown_unit) : std::pair(0.0, std::string("none"));
+  };
+  EXPECT_EQ(unitOf("x [mm]"), std::pair(1e-3, std::string()));
+  EXPECT_EQ(unitOf("x (ft)"), std::pair(0.3048, std::string()));
+  EXPECT_EQ(unitOf("x [-]"), std::pair(1.0, std::string()));
+  EXPECT_EQ(unitOf("x"), std::pair(1.0, std::string()));
+  EXPECT_EQ(unitOf("x [deg]"), std::pair(1.0, std::string("deg")));
+}
+
 TEST(PoseColumns, NeedPositionAndQuaternion) {
   EXPECT_FALSE(poseOf({"time", "x", "y", "z"}));
   EXPECT_FALSE(poseOf({"time", "x", "y", "z", "qx", "qy", "qz"}));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lodeline/io/tables/calendar_time.h"
 #include "lodeline/io/tables/cells.h"
 
 namespace lodeline {
@@ -9,10 +10,20 @@ namespace {
 
 constexpr int64_t kNanosecondsPerWeek = 604'800'000'000'000;
 
+/// Whether the letter t at the end is the tesla of a unit, as in "mag_x_uT", "field_y_T".
+bool endsInTesla(const ColumnName& column) {
+  constexpr std::string_view kBefore = "unmxyz";
+  const std::size_t count = column.words.size();
+  return count > 1 && column.words[count - 1] == "t" && column.words[count - 2].size() == 1 &&
+         kBefore.find(column.words[count - 2][0]) != std::string_view::npos;
+}
+
 bool isTime(const ColumnName& column) {
-  if (column.hasWord({"t",      "uptime", "tow",     "date",   "datetime", "epoch", "clock",
-                      "millis", "micros", "elapsed", "nsecs",  "nanosec",  "secs",  "tid",
-                      "tijd",   "zeit",   "temps",   "tiempo", "tempo",    "czas",  "cas"}) ||
+  if (column.hasWord({"t"}) && !endsInTesla(column)) return true;
+  if (column.words.size() == 1 && column.hasWord({"sec", "seconds"})) return true;
+  if (column.hasWord({"uptime", "tow",     "date",   "datetime", "epoch", "clock", "millis",
+                      "micros", "elapsed", "nsecs",  "nanosec",  "secs",  "tid",   "tijd",
+                      "zeit",   "temps",   "tiempo", "tempo",    "czas",  "cas"}) ||
       column.hasStem({"time", "stamp"})) {
     return true;
   }
@@ -78,6 +89,7 @@ std::optional<int64_t> timeFrom_ns(const TimeColumn& time, TimeUnit unit, std::s
                                    std::string_view second_cell) {
   const std::optional<int64_t> counts_ns = parseTime_ns(withDecimalPoint(cell), unit);
   int64_t ns = 0;
+  if (!counts_ns && !time.second) return parseCalendarTime_ns(withDecimalPoint(cell));
   if (!counts_ns || __builtin_mul_overflow(*counts_ns, time.units_per_count, &ns)) return std::nullopt;
   if (!time.second) return ns;
   const std::optional<int64_t> second = parseTime_ns(second_cell, TimeUnit::Nanoseconds);

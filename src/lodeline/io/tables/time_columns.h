@@ -27,7 +27,8 @@ struct TimeColumn {
 std::vector<TimeColumn> findTimeColumns(const std::vector<ColumnName>& columns);
 
 /// The time in a row, exact to the nanosecond, from the cell and the second part's cell where there is one.
-/// Returns nothing where they are not numbers or the time exceeds 64 bits.
+/// The cell may also be a date and time of day (see calendar_time.h). Returns nothing where they are not
+/// times or the time exceeds 64 bits.
 std::optional<int64_t> timeFrom_ns(const TimeColumn& time, TimeUnit unit, std::string_view cell,
                                    std::string_view second_cell);
 

@@ -25,7 +25,30 @@ TEST(TimeColumns, AreOrderedByWhatTheyAre) {
   EXPECT_TRUE(timesOf({"temperature", "x", "tilt"}).empty());
 }
 
+TEST(TimeColumns, AreNotTeslas) {
+  EXPECT_TRUE(timesOf({"mag_x_uT", "mag y nT", "field_z_T"}).empty());
+  EXPECT_EQ(timesOf({"imu_t", "T"}).size(), 2u);
+}
+
+TEST(TimeColumns, MayBeDatesAndTimesOfDay) {
+  const auto stamp = timesOf({"timestamp", "mag_x_uT"});
+  ASSERT_EQ(stamp.size(), 1u);
+  const auto time_ns = [&](const char* cell) {
+    return timeFrom_ns(stamp[0], TimeUnit::Nanoseconds, cell, "");
+  };
+  EXPECT_EQ(time_ns("2026-11-21T12:00:00.123456789Z"), 1795262400123456789);
+  EXPECT_EQ(time_ns("2026-11-21T12:00:00+02:00"), 1795255200000000000);
+  EXPECT_EQ(time_ns("21-Nov-2026 12:00:00.250"), 1795262400250000000);
+  EXPECT_EQ(time_ns("12:00:00,25"), 43200250000000);
+  for (const char* text : {"21-Foo-2026", "2026-13-01", "99999-01-01", "1:2:3:4", "today"}) {
+    EXPECT_EQ(time_ns(text), std::nullopt) << text;
+  }
+}
+
 TEST(TimeColumns, HaveSecondParts) {
+  const auto bare = timesOf({"sec", "nanosec", "x"});
+  ASSERT_EQ(bare.size(), 1u);
+  EXPECT_EQ(timeFrom_ns(bare[0], *bare[0].unit, "1700000000", "5"), 1700000000000000005);
   const auto secs = timesOf({"header.stamp.secs", "header.stamp.nsecs"});
   ASSERT_EQ(secs.size(), 1u);
   EXPECT_EQ(timeFrom_ns(secs[0], *secs[0].unit, "1700000000", "5"), 1700000000000000005);

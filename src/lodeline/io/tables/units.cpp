@@ -25,6 +25,7 @@ constexpr Unit kLengths[] = {{"m", 1.0},
                              {"mm", 1e-3},
                              {"ft", kFoot},
                              {"km", 1e3},
+                             {"dm", 1e-1},
                              {"metres", 1.0},
                              {"meters", 1.0},
                              {"metre", 1.0},
@@ -58,10 +59,11 @@ constexpr Unit kForces[] = {
     {"m/s/s", 1.0},   {"m/s**2", 1.0}, {"ms2", 1.0},    {"mps2", 1.0},           {"m/sec^2", 1.0},
     {"gs", kGravity}, {"m/s^-2", 1.0}, {"mss", 1.0},    {"ms^2", 1.0},           {"ug", 1e-6 * kGravity}};
 constexpr Unit kFields[] = {
-    {"t", 1.0},           {"ut", 1e-6},         {"nt", 1e-9},     {"gauss", 1e-4},      {"g", 1e-4},
-    {"mgauss", 1e-7},     {"mg", 1e-7},         {"mt", 1e-3},     {"ga", 1e-4},         {"gs", 1e-4},
-    {"mga", 1e-7},        {"mgs", 1e-7},        {"tesla", 1.0},   {"microtesla", 1e-6}, {"nanotesla", 1e-9},
-    {"millitesla", 1e-3}, {"milligauss", 1e-7}, {"ugauss", 1e-10}};
+    {"t", 1.0},           {"ut", 1e-6},         {"nt", 1e-9},      {"gauss", 1e-4},      {"g", 1e-4},
+    {"mgauss", 1e-7},     {"mg", 1e-7},         {"mt", 1e-3},      {"ga", 1e-4},         {"gs", 1e-4},
+    {"mga", 1e-7},        {"mgs", 1e-7},        {"tesla", 1.0},    {"microtesla", 1e-6}, {"nanotesla", 1e-9},
+    {"millitesla", 1e-3}, {"milligauss", 1e-7}, {"ugauss", 1e-10}, {"oe", 1e-4},         {"oersted", 1e-4},
+    {"a/m", 4e-7 * M_PI}, {"ka/m", 4e-4 * M_PI}};
 
 constexpr Unit kVelocities[] = {{"m/s", 1.0},     {"mm/s", 1e-3},    {"cm/s", 1e-2},     {"km/h", 1.0 / 3.6},
                                 {"kn", kKnot},    {"ft/s", kFoot},   {"m/sec", 1.0},     {"mps", 1.0},

@@ -26,6 +26,9 @@ TEST(Units, StandInBracketsOrAtTheEndOfTheName) {
   EXPECT_DOUBLE_EQ(factorOf("mag_x_nT", Quantity::MagneticField), 1e-9);
   EXPECT_DOUBLE_EQ(factorOf("Depth (ft)", Quantity::Length), 0.3048);
   EXPECT_DOUBLE_EQ(factorOf("depth_cm", Quantity::Length), 0.01);
+  EXPECT_DOUBLE_EQ(factorOf("depth [dm]", Quantity::Length), 0.1);
+  EXPECT_DOUBLE_EQ(factorOf("mx [Oe]", Quantity::MagneticField), 1e-4);  // in air
+  EXPECT_NEAR(factorOf("mx [A/m]", Quantity::MagneticField), 1.2566e-6, 1e-10);
 }
 
 TEST(Units, AreReadInEveryNotationOfTheirSigns) {
