@@ -31,6 +31,16 @@ void judgeBaseline(const StereoSurvey& stereo, const std::string& sensor, Inspec
                    sensor, stereo.baseline_m)});
 }
 
+void judgeCopies(const StereoSurvey& stereo, const std::string& sensor, Inspection* inspection) {
+  if (stereo.same == 0 || 2 * stereo.same < stereo.images) return;
+  inspection->findings.push_back(
+      {Severity::Serious, 88.0, sensor, "cameras_same",
+       fmt::format("images: {} of {} images of {} are copies of those of cam0: the same topic, folder or "
+                   "video twice? "
+                   "Give each camera its images, or use one camera (`--set source.cameras=[0]`)",
+                   stereo.same, stereo.images, sensor)});
+}
+
 const char* describe(StereoHypothesis hypothesis) {
   switch (hypothesis) {
     case StereoHypothesis::ImagesExchanged:
@@ -88,6 +98,7 @@ void judgeExtrinsics(Inspection* inspection) {
   if (rig.dvl) judgeLeverArm("dvl0", rig.dvl->body_from_dvl, inspection);
   if (!inspection->stereo) return;
   judgeBaseline(*inspection->stereo, rig.cameras[1].name, inspection);
+  judgeCopies(*inspection->stereo, rig.cameras[1].name, inspection);
   judgePair(*inspection->stereo, rig.cameras[1].name, inspection);
   judgeTurn(*inspection->stereo, rig.cameras[1].name, inspection);
 }

@@ -19,7 +19,7 @@ namespace lodeline {
 namespace {
 
 /// Processes all packets with the estimator until the recording or the user ends the run.
-void process(RecordingRun* run, const RunRequest& request) {
+void process(RecordingRun* run, const RunRequest& request, const StopRequest& stop) {
   RunSession* const session = &run->session();
   std::optional<LiveView> live;
   if (request.live_port) {
@@ -27,7 +27,6 @@ void process(RecordingRun* run, const RunRequest& request) {
     live.emplace(request.live_address, *request.live_port, name, request.data, run->rig());
     if (!request.quiet) fmt::print(stderr, "live at {}\n", live->url());
   }
-  const StopRequest stop;
   const auto is_stopped = [&stop] { return stop.made(); };
   if (live && request.live_wait) {
     if (!request.quiet) fmt::print(stderr, "waiting for a browser\n");
@@ -107,8 +106,9 @@ RecordingRun::RecordingRun(const RunRequest& request, Diagnostics* diagnostics) 
 }
 
 RunSummary runRecording(const RunRequest& request, Diagnostics* diagnostics) {
+  const StopRequest stop;  // also while the first seconds are checked
   RecordingRun run(request, diagnostics);
-  process(&run, request);
+  process(&run, request, stop);
   return run.session().finish();
 }
 

@@ -94,6 +94,19 @@ std::vector<PointPair> matchStereo(const cv::Mat& first, const cv::Mat& second, 
   return followPoints(first, second, corners);
 }
 
+bool areCopies(const cv::Mat& first, const cv::Mat& second, const std::vector<PointPair>& points) {
+  constexpr size_t kFewest = 20;
+  constexpr double kSamePlace_px = 0.25, kNearlyAll = 0.9;
+  constexpr double kSameBrightness_grey = 1.0;  // of a copy that was compressed anew
+  if (points.size() < kFewest || first.size() != second.size()) return false;
+  const auto at_same_place = std::count_if(points.begin(), points.end(), [&](const PointPair& point) {
+    return (point.second - point.first).norm() < kSamePlace_px;
+  });
+  const double difference_grey = cv::norm(first, second, cv::NORM_L1) / static_cast<double>(first.total());
+  return static_cast<double>(at_same_place) > kNearlyAll * static_cast<double>(points.size()) &&
+         difference_grey < kSameBrightness_grey;
+}
+
 StereoSurvey compareStereo(const CameraCalibration& first, const CameraCalibration& second,
                            const std::vector<PointPair>& points) {
   StereoSurvey survey;
@@ -131,7 +144,7 @@ std::optional<StereoSurvey> surveyStereo(MeasurementSource* source, const Stream
   const cv::Mat mask = loadMask(first);
   const int64_t every = std::max<int64_t>(1, stream.readings / kMostImages);
   std::vector<PointPair> points;
-  int images = 0;
+  int images = 0, same = 0;
   std::optional<PendingImage> other = source->nextImage(1);
   for (int64_t index = 0; const std::optional<PendingImage> image = source->nextImage(0); ++index) {
     while (other && (image->time - other->time).seconds() > kTogether_s) other = source->nextImage(1);
@@ -142,10 +155,12 @@ std::optional<StereoSurvey> surveyStereo(MeasurementSource* source, const Stream
     ++images;
     const std::vector<PointPair> found = matchStereo(left, right, mask);
     points.insert(points.end(), found.begin(), found.end());
+    same += areCopies(left, right, found) ? 1 : 0;
   }
   if (images == 0) return std::nullopt;
   StereoSurvey survey = compareStereo(first, second, points);
   survey.images = images;
+  survey.same = same;
   return survey;
 }
 

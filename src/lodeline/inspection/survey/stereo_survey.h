@@ -22,6 +22,7 @@ enum class StereoHypothesis {
 struct StereoSurvey {
   double baseline_m = 0.0;  ///< as calibrated
   int images = 0;           ///< pairs of them
+  int same = 0;             ///< of these pairs: two copies of one image
   int points = 0;           ///< in both images, and with enough parallax under every hypothesis
   /// Share of these points that are on their epipolar lines and in front of both cameras, as calibrated.
   double agreement = 0.0;
@@ -35,6 +36,10 @@ struct StereoSurvey {
 
 /// Corners of the first image outside `mask`, matched in the second one.
 std::vector<PointPair> matchStereo(const cv::Mat& first, const cv::Mat& second, const cv::Mat& mask);
+
+/// Whether two images with corners in common are copies of one: the same brightness, and every corner at the
+/// same place.
+bool areCopies(const cv::Mat& first, const cv::Mat& second, const std::vector<PointPair>& points);
 
 /// Surveys the first two cameras of the rig, which must be calibrated. `stream`: of the first; the source
 /// must be a fresh one. Empty where the images of the cameras are not taken together.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "lodeline/cameras/camera.h"
@@ -67,6 +68,25 @@ TEST_F(StereoSurveyTest, AgreesWithACalibrationThatIsHalfADegreeOff) {
   EXPECT_GT(survey.agreement, 0.9);
   // Only the part that epipolar lines show, not that which changes depths.
   EXPECT_NEAR(survey.turn_rad, std::hypot(0.008, 0.003), 0.001);
+}
+
+TEST(CopiesOfImages, AreTakenForNoPair) {
+  cv::RNG random(3);
+  cv::Mat noise(240, 320, CV_8U), image, shifted, other_exposure;
+  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(noise, image, {}, 2.0);
+  cv::normalize(image, image, 0, 255, cv::NORM_MINMAX);
+  const cv::Mat by_a_pixel = (cv::Mat_<double>(2, 3) << 1.0, 0.0, 1.0, 0.0, 1.0, 0.0);
+  cv::warpAffine(image, shifted, by_a_pixel, image.size());
+  image.convertTo(other_exposure, -1, 0.9);
+  const auto areCopiesOf = [&](const cv::Mat& second) {
+    return areCopies(image, second, matchStereo(image, second, cv::Mat()));
+  };
+  EXPECT_TRUE(areCopiesOf(image));
+  EXPECT_FALSE(areCopiesOf(shifted));
+  EXPECT_FALSE(areCopiesOf(other_exposure));
+  const cv::Mat dark = cv::Mat::zeros(240, 320, CV_8U);
+  EXPECT_FALSE(areCopies(dark, dark, matchStereo(dark, dark, cv::Mat())));
 }
 
 TEST_F(StereoSurveyTest, NamesExchangedImages) {

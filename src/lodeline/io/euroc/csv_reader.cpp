@@ -266,6 +266,11 @@ std::string CsvReader::parseRow(CsvRow* row) const {
     stamp_ns = table_.time_ns(time_column_, *unit);
   }
   if (!stamp_ns && !two_columns_) stamp_ns = parseCalendarTime_ns(stamp);
+  if (!stamp_ns && unit && *unit != TimeUnit::Nanoseconds && numberFrom(stamp)) {
+    return fmt::format(
+        "the time stamp '{}' is no time in {}, the unit that the rate of the readings suggests",
+        excerpt(stamp), nameOf(*unit));
+  }
   if (!stamp_ns) {
     return fmt::format("the time stamp '{}' is not an integer number of nanoseconds", excerpt(stamp));
   }
