@@ -117,7 +117,7 @@ double MagnetometerFusion::offsetSigma() const {
 }
 
 double MagnetometerFusion::floorSigma(const Vec3& field_B) const {
-  return std::hypot(std::max(deviation_.sigma_T(errors_.correlated_noise_sigma_T()), anomaly_.sigma_T()),
+  return std::hypot(deviation_.sigma_T(errors_.correlated_noise_sigma_T()),
                     calibration_.rotation_sigma_rad.value_or(0.0) * field_B.norm());
 }
 

@@ -195,7 +195,7 @@ void MagnetometerFusion::relate(const Window& window, Eigen::Matrix<double, 15, 
   AzimuthCovariance north;
   if (north_found_) north = azimuth(window);
   if (doubts_field)
-    north.variance_rad2 += std::pow(anomaly_.fieldSigma_T() / northField(window).head<2>().norm(), 2);
+    north.variance_rad2 += std::pow(anomaly_.sigma_T() / northField(window).head<2>().norm(), 2);
   relateToNorth(window.newest().state(), north, covariance);
 }
 

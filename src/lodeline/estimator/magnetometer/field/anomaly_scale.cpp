@@ -17,19 +17,16 @@ void AnomalyScale::add(const Vec3& position_W, const Deviation& deviation, bool 
   const double way_m = (position_W - *anchor_W_).norm();
   if (way_m >= kStride_m) {
     anchor_W_ = position_W;
-    near_T_ *= std::exp(-way_m / kLength_m);
     in_force_T_ *= std::exp(-way_m / kLength_m);
     if (agrees) agreed_m_ += way_m;
   }
   const double square_T2 = deviation.size_and_dip_T.squaredNorm();
-  if (square_T2 > kSignificant * deviation.variance_T2) {
-    near_T_ = std::min(std::max(near_T_, std::sqrt(0.5 * square_T2)), kMost_T);
-    in_force_T_ = std::max(in_force_T_, near_T_);
-  }
+  if (square_T2 > kSignificant * deviation.variance_T2)
+    in_force_T_ = std::max(in_force_T_, std::sqrt(0.5 * square_T2));
   if (!agrees) in_force_T_ = std::max(in_force_T_, std::sqrt(0.5) * std::abs(deviation.across_T));
   in_force_T_ = std::min(in_force_T_, kMost_T);
 }
 
-double AnomalyScale::fieldSigma_T() const { return in_force_T_ * std::exp(-agreed_m_ / kConfirmed_m); }
+double AnomalyScale::sigma_T() const { return in_force_T_ * std::exp(-agreed_m_ / kConfirmed_m); }
 
 }  // namespace lodeline

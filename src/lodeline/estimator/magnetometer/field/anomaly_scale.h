@@ -6,17 +6,12 @@
 
 namespace lodeline {
 
-/// Size of the anomalous field (iron, magnetic rock, steel) near the rig, and the anomaly that the field
-/// taken for the Earth's may itself contain. Both change over metres, so both are weighed by the way of the
-/// rig; a rig at rest learns nothing of them.
+/// Size of the anomaly (iron, magnetic rock, steel) that the field taken for the Earth's may contain. Such a
+/// field changes over metres, so the way of the rig counts and not the time.
 ///
-/// Near the rig: size and dip show an anomaly without a heading. Its part across the Earth's field turns the
-/// heading, is as large as the others, and is not seen. So a deviation that was seen counts for some metres,
-/// also where size and dip fit again by chance:
-///   a = max(|d| / sqrt 2 where d (T, of size and dip) is significant, a exp(-way / kLength_m)).
-///
-/// In the field in force: the first field may be that of iron nearby. Its anomaly b is kStart_T at first. It
-/// decreases as a does, increases to a deviation in any direction, and the way of agreement confirms it:
+/// The first field may be that of iron nearby: b is kStart_T. It decreases by exp(-way / kLength_m). It
+/// increases to a deviation of size and dip that is significant, and to one of the heading where the gate
+/// rejects the reading. The way of agreement confirms the field:
 ///   sigma = b exp(-way of agreement / kConfirmed_m).
 class AnomalyScale {
  public:
@@ -34,17 +29,13 @@ class AnomalyScale {
   /// Adds a reading at a place. `agrees`: the gate accepted the field as the Earth's.
   void add(const Vec3& position_W, const Deviation& deviation, bool agrees);
 
-  /// One sigma of an axis of the anomalous field at the last place, T; zero where none was seen.
-  double sigma_T() const { return near_T_; }
-
   /// One sigma of an axis of the anomaly in the field in force, T.
-  double fieldSigma_T() const;
+  double sigma_T() const;
 
   /// Another field is in force; nothing has confirmed it yet.
   void restartAgreement() { agreed_m_ = 0.0; }
 
  private:
-  double near_T_ = 0.0;
   double in_force_T_ = kStart_T;
   double agreed_m_ = 0.0;
   std::optional<Vec3> anchor_W_;  ///< place up to which the way was counted

@@ -43,7 +43,8 @@ struct ProjObjects {
       const char* direction = nullptr;
       proj_cs_get_axis_info(context.get(), axes.get(), i, nullptr, nullptr, &direction, nullptr, nullptr,
                             nullptr, nullptr);
-      directions += (i > 0 ? " " : "") + textOf(direction);
+      if (i > 0) directions += ' ';
+      directions += textOf(direction);
     }
     return directions;
   }

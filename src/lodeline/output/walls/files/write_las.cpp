@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 #include "lodeline/output/survey/formats/gis/dxf_drawing.h"
 #include "lodeline/util/files/output_file.h"
@@ -31,9 +32,10 @@ std::string gridText(const std::string& code) {
   return text == nullptr ? "" : text;
 }
 
-std::string padded(std::string text, size_t size) {
-  text.resize(size, '\0');
-  return text;
+std::string padded(std::string_view text, size_t size) {
+  std::string field(size, '\0');
+  std::copy_n(text.begin(), std::min(text.size(), size), field.begin());
+  return field;
 }
 
 template <typename Value>
