@@ -60,7 +60,7 @@ void InnovationWatch::add(Time time, const Innovation& innovation) {
   if (nis > kGreatest) limited.value *= std::sqrt(kGreatest / nis);
   values_.push_back({time, std::min(nis, kGreatest), limited});
   while (values_.size() > kFewestValues && (time - values_[1].time).seconds() >= kSpan_s) values_.pop_front();
-  const bool is_sum_beyond_chance = values_.size() >= kFewestValues && sum().nis() > kBeyondChance;
+  const bool is_sum_beyond_chance = sums_ && values_.size() >= kFewestValues && sum().nis() > kBeyondChance;
   is_beyond_chance_ = nis > kBeyondChance || is_sum_beyond_chance;
   if (is_beyond_chance_) last_beyond_chance_ = time;
   if (!alarmed_since_ && (is_sum_beyond_chance || meanNis() > kBeyondChance)) {

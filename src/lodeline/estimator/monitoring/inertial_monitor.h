@@ -23,6 +23,9 @@ class InnovationWatch {
   /// Value that a correct model exceeds in less than one of 10^5 frames (chi-squared, 3 coordinates).
   static constexpr double kBeyondChance = 9.0;
 
+  /// `sums`: the sum decides as well. It needs a covariance that is right for errors that last.
+  explicit InnovationWatch(bool sums) : sums_(sums) {}
+
   void add(Time time, const Innovation& innovation);
   /// Whether the last innovation or the sum of the last ones is improbable.
   bool isBeyondChance() const { return is_beyond_chance_; }
@@ -42,6 +45,7 @@ class InnovationWatch {
   };
   double meanNis() const;
 
+  bool sums_;
   std::deque<Value> values_;
   std::optional<Time> alarmed_since_;
   std::optional<Time> last_beyond_chance_;
@@ -93,7 +97,8 @@ class InertialMonitor {
   VibrationMonitor vibration_;
   InitialStateOptions initial_;
   Diagnostics* diagnostics_;
-  InnovationWatch gyroscope_, accelerometer_, images_;
+  // The scale of one camera can be wrong by more than its covariance says. Rotations have no scale.
+  InnovationWatch gyroscope_{true}, accelerometer_{false}, images_{false};
   bool is_before_placed_ = false;
   Mat3 position_doubt_ = Mat3::Zero();  ///< m^2
   Mat3 rotation_doubt_ = Mat3::Zero();  ///< rad^2

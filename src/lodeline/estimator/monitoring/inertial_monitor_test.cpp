@@ -22,7 +22,7 @@ Innovation innovation(int frame, double nis) {
 }
 
 TEST(InnovationWatch, TakesChanceForChance) {
-  InnovationWatch watch;
+  InnovationWatch watch(true);
   // Mean squares of three normal numbers, as large as one in a thousand.
   for (int i = 0; i < 1000; ++i) {
     watch.add(at(0.05 * i), innovation(i, i % 4 == 0 ? 5.4 : 1.0));
@@ -31,7 +31,7 @@ TEST(InnovationWatch, TakesChanceForChance) {
 }
 
 TEST(InnovationWatch, TakesOneWrongFrameForNoLastingContradiction) {
-  InnovationWatch watch;
+  InnovationWatch watch(true);
   for (int i = 0; i < 100; ++i) {
     watch.add(at(0.05 * i), innovation(i, i == 50 ? 1e8 : 1.0));
     ASSERT_FALSE(watch.isAlarmed()) << i;
@@ -39,7 +39,7 @@ TEST(InnovationWatch, TakesOneWrongFrameForNoLastingContradiction) {
 }
 
 TEST(InnovationWatch, RaisesAnAlarmWithinHalfASecondAndEndsItASecondAfterTheContradiction) {
-  InnovationWatch watch;
+  InnovationWatch watch(true);
   for (int i = 0; i < 200; ++i) {
     const double time_s = 0.05 * i;
     watch.add(at(time_s), innovation(i, time_s >= 2.0 && time_s < 5.0 ? 20.0 : 1.0));
@@ -55,14 +55,16 @@ TEST(InnovationWatch, RaisesAnAlarmWithinHalfASecondAndEndsItASecondAfterTheCont
 // 2 sigmas in each frame are no surprise; 2 sigmas in the same direction for half a second are. Where the
 // cause is one that lasts, such as the error of a bias within its covariance, they are no surprise either.
 TEST(InnovationWatch, FindsAnErrorThatIsSmallInEachFrameAndAlwaysTheSame) {
-  InnovationWatch new_causes, lasting_causes;
+  InnovationWatch new_causes(true), lasting_causes(true), without_sum(false);
   const Vec3 value = 2.0 * Vec3(0.6, -0.8, 0.0);
   for (int i = 0; i < 30; ++i) {
     new_causes.add(at(0.05 * i), {value, Mat3::Identity(), Mat3::Zero()});
     lasting_causes.add(at(0.05 * i), {value, Mat3::Zero(), Mat3::Identity()});
+    without_sum.add(at(0.05 * i), {value, Mat3::Identity(), Mat3::Zero()});
   }
   EXPECT_TRUE(new_causes.isAlarmed());
   EXPECT_FALSE(lasting_causes.isAlarmed());
+  EXPECT_FALSE(without_sum.isAlarmed());
 }
 
 class InertialMonitorTest : public testing::Test {
