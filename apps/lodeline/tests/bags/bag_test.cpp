@@ -186,7 +186,7 @@ TEST_F(BagTest, ConvertsAPartInAllDirections) {
   EXPECT_LT(std::filesystem::file_size(path("part.bag")), std::filesystem::file_size(path("all.bag")) / 2);
   EXPECT_EQ(counts(convert(path("all.bag"), "part_folder", "--from 0.5 --to 1")).substr(0, 60),
             from_folder.substr(0, 60));
-  convert(path("all.bag"), "part.mcap", "--from 0.5 --to 1");
+  convert(path("all.bag"), "other_part.mcap", "--from 0.5 --to 1");
   EXPECT_EQ(runProgram(
                 fmt::format("convert {} {} --from 2 --to 1", quoted(path("all.bag")), quoted(path("no.bag"))))
                 .exit_code,
