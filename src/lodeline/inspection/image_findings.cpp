@@ -101,7 +101,7 @@ void judgeUpright(Inspection* inspection) {
   const Vec3 down_C = calibration.body_from_camera.rotation.conjugate() * -inspection->imu.up_B;
   constexpr double kUpsideDown = -0.8;
   if (down_C.y() > kUpsideDown) return;
-  add(inspection->cameras.front().survey, Severity::Notice, 1.0, "upside_down",
+  add(inspection->cameras.front().survey, Severity::Notice, 45.0, "upside_down",
       "gravity points to the top of the images: unless the camera is mounted upside down, T_BS is wrong or "
       "the accelerometer has the wrong sign (at rest it must read +9.8 m/s^2 upwards)",
       inspection);

@@ -39,7 +39,7 @@ TEST(North, StaysAsItIsWithoutAPlace) {
 TEST(North, RefusesAPlaceWithoutANorth) {
   EXPECT_THROW(findNorth(HeadingReference::Start, kPlace, "2026-11-21", std::nullopt), UsageError);
   EXPECT_THROW(findNorth(HeadingReference::Magnetic, kPlace, "", std::nullopt), UsageError);
-  EXPECT_THROW(findNorth(HeadingReference::Magnetic, kPlace, "1994-06-24", std::nullopt), InputError);
+  EXPECT_THROW(findNorth(HeadingReference::Magnetic, kPlace, "1894-06-24", std::nullopt), InputError);
 }
 
 }  // namespace
