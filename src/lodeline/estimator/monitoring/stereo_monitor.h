@@ -13,12 +13,13 @@
 
 namespace lodeline {
 
-/// Checks whether the images of the secondary cameras match those of camera 0. Where few points are matched
-/// in a secondary camera, or many fewer than before, a pair of images is compared in detail (compareStereo).
-/// If left and right are exchanged, from the start or from some time on, the monitor reverses the exchange.
-/// Images of different moments can look exchanged while the rig turns. So a reversal that the next comparison
-/// contradicts is taken back, and the next one needs three comparisons. If the images fit no arrangement of
-/// the pair, the camera is left out until they fit again.
+/// Checks whether the images of the secondary cameras match those of camera 0. It compares a pair of images
+/// in detail (compareStereo) where few points are matched in a secondary camera, or many fewer than before.
+///
+/// If left and right are exchanged, the monitor reverses the exchange. While the rig turns, two images of
+/// different times can fit the exchanged calibration by chance. So the monitor reverts an exchange that the
+/// next comparison contradicts. Afterwards it accepts an exchange only after three comparisons in a row. If
+/// the images fit no arrangement of the pair, the monitor does not use the camera until its images fit again.
 class StereoMonitor {
  public:
   /// `diagnostics` must outlive the monitor.

@@ -55,7 +55,7 @@ TEST(AnomalyScale, RemembersADeviationOverMetres) {
   swim.go(1.0, 1.4e-6, false);
   EXPECT_NEAR(swim.scale.sigma_T(), 1.4e-6 / std::sqrt(2.0), 1e-12);
   swim.go(1.0, 0.0, false);
-  EXPECT_GT(swim.scale.sigma_T(), 0.5e-6) << "size and dip may fit by chance";
+  EXPECT_GT(swim.scale.sigma_T(), 0.5e-6) << "the anomaly can be along the heading alone at this place";
   swim.go(12.0, 0.0, false);
   EXPECT_LT(swim.scale.sigma_T(), 5e-9);
 }
