@@ -52,6 +52,18 @@ TEST_F(RunOutcome, ABadFileOfTagsIsNamedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(output_));
 }
 
+TEST_F(RunOutcome, PlaysTheRecordingAtTheRateAskedFor) {
+  ASSERT_EQ(run("--no-report").exit_code, 0);
+  const std::string trajectory = readText(output_ / "trajectory.tum");
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(run("--no-report --rate 0.5").exit_code, 0);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const double length_s =
+      1e-9 * static_cast<double>(roomImageStamp_ns(kRoomImages - 1) - roomImageStamp_ns(0));
+  EXPECT_GE(wall.count(), length_s / 0.5);
+  EXPECT_EQ(readText(output_ / "trajectory.tum"), trajectory);
+}
+
 TEST_F(RunOutcome, TakesMav0ItselfToo) {
   ASSERT_EQ(run().exit_code, 0);
   const std::string trajectory = readText(output_ / "trajectory.tum");

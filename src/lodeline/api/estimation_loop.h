@@ -37,6 +37,8 @@ class EstimationLoop {
 
   /// Whether a packet was fetched but not processed.
   bool isPending() const { return fetched_.has_value(); }
+  /// Time of the packet that fetch() read and process() has not processed yet.
+  Time fetchedTime() const { return fetched_->time; }
   /// Packet processed last, and its estimate.
   const FramePacket& packet() const { return processed_; }
   const FrameEstimate& estimate() const { return estimate_; }

@@ -35,7 +35,7 @@ void process(RecordingRun* run, const RunRequest& request, const StopRequest& st
   RunPace pace(request.rate, is_stopped);
   RunProgress progress(request.quiet, run->length_s());
   while (session->fetch() && !stop.made()) {
-    pace.await(session->packet().time);
+    pace.await(session->fetchedTime());
     session->process();
     if (live) {
       live->show(session->packet(), session->estimate(), session->summary(), session->odometry().frontEnd(),

@@ -33,6 +33,8 @@ class RunSession {
 
   /// Reads the next packet; returns false at the end of the source.
   bool fetch() { return loop_.fetch(); }
+  /// Time of the packet that fetch() read.
+  Time fetchedTime() const { return loop_.fetchedTime(); }
   /// Processes the fetched packet with front end, estimator and writers. Throws InputError.
   void process();
   /// Completes the files, including the refined ones if the request asks for them. A packet that was fetched
