@@ -41,6 +41,32 @@ def subcommands(text, is_program=False):
     return commands
 
 
+OPTION = re.compile(r"^  -\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
+
+
+def named(option):
+    """The long name of an option, such as --rig."""
+    return re.search(r"--[a-z-]+", option).group()
+
+
+def shared_options(texts):
+    """Options that at least three help texts have in the same words, in the order of the texts."""
+    options = [option.rstrip() for text in texts for option in OPTION.findall(text)]
+    return list(dict.fromkeys(option for option in options if options.count(option) >= 3))
+
+
+def without_shared(text, shared):
+    """A help text without the shared options and without titles that lose all their options, and the names of both."""
+    left_out = [option.rstrip() for option in OPTION.findall(text) if option.rstrip() in shared]
+    paragraphs = []
+    for paragraph in text.split("\n\n"):
+        rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shared else option.group(), paragraph).rstrip()
+        is_bare_title = rest != paragraph.rstrip() and rest.endswith(":") and "\n" not in rest
+        if not is_bare_title:
+            paragraphs.append(rest)
+    return "\n\n".join(paragraphs), [named(option) for option in left_out]
+
+
 def commands_page(program):
     leaves = []
     for name, summary in subcommands(help_of(program), is_program=True):
@@ -54,10 +80,15 @@ def commands_page(program):
         page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
     page += ["", "`lodeline COMMAND --help` prints the text of one command, as does `lodeline help COMMAND`. `lodeline --version` prints the version.",
              "[Exit codes](exit-codes.md) are the same for all commands."]
-    for words, _ in leaves:
-        text = help_of(program, *words)
-        lines = [line.rstrip() for line in text.splitlines()]
-        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *lines, "```"]
+    texts = [help_of(program, *words) for words, _ in leaves]
+    shared = shared_options(texts)
+    page += ["", "## Options of many commands", "", "```text", *"\n".join(shared).splitlines(), "```"]
+    for (words, _), text in zip(leaves, texts):
+        rest, names = without_shared(text, shared)
+        lines = [line.rstrip() for line in rest.splitlines()]
+        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *lines, "```", ""]
+        others = ", ".join(f"`{name}`" for name in names if name != "--help")
+        page += [*textwrap.wrap(f"Also {others} of [many commands](#options-of-many-commands).", 118)] if others else []
     return "\n".join(page) + "\n"
 
 
