@@ -41,6 +41,52 @@ def subcommands(text, is_program=False):
     return commands
 
 
+OPTION = re.compile(r"^  -\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
+
+
+def named(option):
+    """The long name of an option, such as --rig."""
+    return re.search(r"--[a-z-]+", option).group()
+
+
+def places_of_options(leaves, texts):
+    """For each option that several help texts have in the same words: the place that explains it, as a link.
+
+    Three texts or more: the section of many commands. Two: the first command whose text does not refer to the other one.
+    """
+    owners = {}
+    for (words, _), text in zip(leaves, texts):
+        for option in OPTION.findall(text):
+            owners.setdefault(option.rstrip(), []).append((words, text))
+    places = {}
+    for option, found in owners.items():
+        if len(found) >= 3:
+            places[option] = (None, "[many commands](#options-of-many-commands)")
+        elif len(found) == 2:
+            (first, text), (second, _) = found
+            words = second if f"`lodeline {' '.join(second)}`" in text else first
+            places[option] = (words, f"[{' '.join(words)}](#lodeline-{'-'.join(words)})")
+    return places
+
+
+def without_shown(text, shown):
+    """A help text without the options of `shown` and without titles that lose all their options.
+
+    `shown` has for each option the link to the place that explains it. Also returned: a sentence with the names for each place.
+    """
+    names = {}
+    for option in OPTION.findall(text):
+        if option.rstrip() in shown and named(option) != "--help":
+            names.setdefault(shown[option.rstrip()], []).append(f"`{named(option)}`")
+    paragraphs = []
+    for paragraph in text.split("\n\n"):
+        rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shown else option.group(), paragraph).rstrip()
+        is_bare_title = rest != paragraph.rstrip() and rest.endswith(":") and "\n" not in rest
+        if not is_bare_title:
+            paragraphs.append(rest)
+    return "\n\n".join(paragraphs), [f"Options of {place}: {', '.join(options)}." for place, options in names.items()]
+
+
 def commands_page(program):
     leaves = []
     for name, summary in subcommands(help_of(program), is_program=True):
@@ -54,10 +100,16 @@ def commands_page(program):
         page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
     page += ["", "`lodeline COMMAND --help` prints the text of one command, as does `lodeline help COMMAND`. `lodeline --version` prints the version.",
              "[Exit codes](exit-codes.md) are the same for all commands."]
-    for words, _ in leaves:
-        text = help_of(program, *words)
-        lines = [line.rstrip() for line in text.splitlines()]
-        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *lines, "```"]
+    texts = [help_of(program, *words) for words, _ in leaves]
+    places = places_of_options(leaves, texts)
+    shared = [option for option, (owner, _) in places.items() if owner is None]
+    page += ["", "## Options of many commands", "", "```text", *"\n".join(shared).splitlines(), "```"]
+    for (words, _), text in zip(leaves, texts):
+        elsewhere = {option: place for option, (owner, place) in places.items() if owner != words}
+        rest, sentences = without_shown(text, elsewhere)
+        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *(line.rstrip() for line in rest.splitlines()), "```"]
+        for sentence in sentences:
+            page += ["", *textwrap.wrap(sentence, 118, break_on_hyphens=False)]
     return "\n".join(page) + "\n"
 
 
