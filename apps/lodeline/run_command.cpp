@@ -69,6 +69,7 @@ void addRunOptions(RunArguments* arguments, CLI::App* command) {
   addSite(&arguments->site, "true north", command);
   command->add_option("--map", request->map,
                       "map of earlier dives (`lodeline map`): find the dive's place in it");
+  addStartOptions(&arguments->start, command)->needs("--map");
   command
       ->add_option("--live", request->live_port,
                    fmt::format("show the run in the browser while it goes on, at this port ({} where none is "

@@ -6,6 +6,7 @@
 
 #include "apps/lodeline/map/map_subcommands.h"
 #include "apps/lodeline/shared/common_options.h"
+#include "apps/lodeline/shared/start_options.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/session/loops/loop_ledger.h"
 #include "lodeline/mapping/session/map_merge.h"
@@ -20,8 +21,7 @@ namespace fs = std::filesystem;
 struct MapArguments {
   std::string map;
   std::vector<std::string> runs;
-  std::vector<double> start;  ///< east, north, up, m
-  std::vector<double> start_sigma = {3.0, 1.0};
+  StartArguments start;
   bool overwrite = false;
   Verbosity verbosity;
 };
@@ -32,17 +32,6 @@ fs::path mapOfRun(const std::string& run) {
   if (fs::exists(file)) return file;
   throw InputError(fmt::format(
       "{}: there is no map of this run; `lodeline run` writes map.db, unless loops.enabled=false", run));
-}
-
-std::optional<DiveStart> startOf(const MapArguments& arguments) {
-  if (arguments.start.empty()) return std::nullopt;
-  DiveStart start;
-  start.position = Vec3(arguments.start[0], arguments.start[1], arguments.start[2]);
-  start.horizontal_sigma_m = arguments.start_sigma[0];
-  start.vertical_sigma_m = arguments.start_sigma[1];
-  if (!start.position.allFinite() || !(start.horizontal_sigma_m > 0.0) || !(start.vertical_sigma_m > 0.0))
-    throw UsageError("--start wants three finite numbers, --start-sigma two positive ones");
-  return start;
 }
 
 void printMerged(const MergedDive& dive, bool is_first) {
@@ -103,7 +92,7 @@ void removeMap(const std::string& map) {
 
 void addRuns(MapFile* map, const MapArguments& arguments) {
   MapMergeOptions options;
-  options.start = startOf(arguments);
+  options.mapping.start = arguments.start.start();
   Progress progress("joining dives", arguments.verbosity.quiet);
   for (size_t i = 0; i < arguments.runs.size(); ++i) {
     const std::string& run = arguments.runs[i];
@@ -121,19 +110,6 @@ void addRuns(MapFile* map, const MapArguments& arguments) {
   if (arguments.verbosity.quiet) return;
   printSolution(solution);
   fmt::print("written: {}\nwritten: {}\n", map->path().string(), ledgerPath(map->path().string()).string());
-}
-
-void addStartOptions(CLI::App* command, MapArguments* arguments) {
-  command
-      ->add_option("--start", arguments->start,
-                   "EAST,NORTH,UP (m from the map's origin) at which the added dive began, as by a GPS fix")
-      ->delimiter(',')
-      ->expected(3);
-  command
-      ->add_option("--start-sigma", arguments->start_sigma, "HORIZONTAL,VERTICAL (m): how well that is known")
-      ->delimiter(',')
-      ->expected(2)
-      ->capture_default_str();
 }
 
 }  // namespace
@@ -157,7 +133,7 @@ void addMapBuildCommands(CLI::App* map) {
   CLI::App* add = map->add_subcommand("add", "Add a dive to a map and solve it again");
   add->add_option("MAP", arguments->map, "file of the map")->required();
   add->add_option("RUN", arguments->runs, "folder that `lodeline run` wrote")->required()->expected(1);
-  addStartOptions(add, arguments.get());
+  addStartOptions(&arguments->start, add);
   addVerbosity(&arguments->verbosity, add);
   add->callback([arguments] {
     MapFile file = MapFile::open(arguments->map, MapFile::Access::Change);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "lodeline/mapping/control/control_factor.h"
+#include "lodeline/mapping/session/map_north.h"
 #include "lodeline/mapping/session/map_points.h"
 #include "lodeline/mapping/store/map_change.h"
 #include "lodeline/version.h"
@@ -11,13 +12,14 @@ namespace lodeline {
 namespace {
 
 /// A dive of the map as a run whose world is the map: poses and covariances of the common solution.
-RunFolder runOfDive(const MapFile& map, const MapDive& dive, std::optional<double> depth_at_origin_m) {
+RunFolder runOfDive(const MapFile& map, const MapDive& dive, HeadingReference north,
+                    std::optional<double> depth_at_origin_m) {
   RunFolder run;
   run.folder = dive.name;
   run.trajectory_file = map.path().filename().string();
   run.program = std::string("lodeline ") + LODELINE_VERSION;
   run.recording = dive.recording;
-  run.heading_reference = dive.heading_reference;
+  run.heading_reference = north;
   run.depth_at_origin_m = depth_at_origin_m;
   map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
     if (!row.solved) return;
@@ -88,7 +90,7 @@ std::vector<RunFolder> runsOfMap(const MapFile& map) {
   std::vector<RunFolder> runs;
   const std::optional<double> depth_m = depthAtOrigin(map);
   for (const MapDive& dive : map.dives()) {
-    runs.push_back(runOfDive(map, dive, depth_m));
+    runs.push_back(runOfDive(map, dive, northOf(map), depth_m));
     if (runs.back().trajectory.poses.size() < 2) {
       throw InputError(map.path().string() + ": dive '" + dive.name +
                        "' has no solved poses; run `lodeline map solve`");

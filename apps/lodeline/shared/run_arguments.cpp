@@ -11,6 +11,7 @@ RunRequest requestOf(const RunArguments& arguments) {
   RunRequest request = arguments.request;
   request.site = arguments.site.numbers();
   request.date = arguments.site.date;
+  request.map_start = arguments.start.start();
   request.quiet = arguments.verbosity.quiet;
   request.verbose = arguments.verbosity.verbose;
   // The part of the recording is two settings, which the command line sets like any other.

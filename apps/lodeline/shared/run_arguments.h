@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "apps/lodeline/shared/common_options.h"
+#include "apps/lodeline/shared/start_options.h"
 #include "lodeline/pipeline/run_request.h"
 
 namespace lodeline {
@@ -13,6 +14,7 @@ struct RunArguments {
   RecordingPart part;
   std::vector<int> cameras;
   SiteArguments site;
+  StartArguments start;
   Verbosity verbosity;
 };
 

@@ -51,13 +51,9 @@ std::vector<DiveMap> divesOf(const MapFile& map, const SurveyProject& project, D
     options.title = row != nullptr ? row->title : "";
     options.date = row != nullptr && !row->date.empty() ? row->date : project.date;
     options.team = row != nullptr && !row->team.empty() ? row->team : project.team;
-    RunFolder run = runs[i];
     Diagnostics repeated;  // what concerns the place is the same for all dives
-    if (i > 0) {
-      run.heading_reference = runs.front().heading_reference;
-      options.turn_deg = dives.front().north.turn_rad / kDegree;
-    }
-    dives.push_back(makeDiveMap(run, options, {}, i == 0 ? diagnostics : &repeated));
+    if (i > 0) options.turn_deg = dives.front().north.turn_rad / kDegree;
+    dives.push_back(makeDiveMap(runs[i], options, {}, i == 0 ? diagnostics : &repeated));
     if (i > 0) dives.back().north = dives.front().north;
   }
   return dives;

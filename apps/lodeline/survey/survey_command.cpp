@@ -71,10 +71,10 @@ std::string addRun(const ProjectDive& dive, const ShareDone& progress, MapFile* 
   MapMergeOptions options;
   options.progress = progress;
   if (dive.start_ENU) {
-    options.start.emplace();
-    options.start->position = *dive.start_ENU;
-    options.start->horizontal_sigma_m = dive.start_sigma_m.value_or(options.start->horizontal_sigma_m);
-    options.start->vertical_sigma_m = dive.start_sigma_up_m.value_or(options.start->vertical_sigma_m);
+    DiveStart& start = options.mapping.start.emplace();
+    start.position = *dive.start_ENU;
+    start.horizontal_sigma_m = dive.start_sigma_m.value_or(start.horizontal_sigma_m);
+    start.vertical_sigma_m = dive.start_sigma_up_m.value_or(start.vertical_sigma_m);
   }
   const bool is_first = map->dives().empty();
   const MergedDive merged = mergeDive(map, MapFile::open(file, MapFile::Access::Read), options);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/mapping/session/dive_start.h"
 #include "lodeline/pipeline/open_recording.h"
 
 namespace lodeline {
@@ -30,6 +31,7 @@ struct RunRequest {
   bool verbose = false;                    ///< a summary with all values
   bool overwrite = false;                  ///< replace the results of another run in the folder
   std::string map;                         ///< map file in which the run looks for places; empty for none
+  std::optional<DiveStart> map_start;      ///< where the dive began in that map, if known
   /// Computes the batch solution after the run, with states at most this far apart (`lodeline refine`).
   std::optional<double> refine_interval_s;
 };

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/pipeline/process_usage.h"
 #include "lodeline/pipeline/refine_run.h"
 #include "lodeline/util/files/output_file.h"
@@ -66,6 +67,8 @@ RunMappingRequest mappingRequest(const RunRequest& request, const RunSettings& o
   addTags(options, &mapping, diagnostics);
   mapping.folder = request.output;
   mapping.earlier_map = request.map;
+  mapping.mapping.start = request.map_start;
+  mapping.north = wantedReference(options.odometry.estimator.magnetometer);
   mapping.name = std::filesystem::absolute(request.output).filename().string();
   mapping.recording = request.data;
   return mapping;

@@ -41,12 +41,15 @@ std::string refusalOf(const Vec3& field_W, const MagnetometerOptions& options) {
 
 }  // namespace
 
+HeadingReference wantedReference(const MagnetometerOptions& options) {
+  if (options.heading_reference != HeadingReference::Automatic) return options.heading_reference;
+  return options.site_field_W ? HeadingReference::True : HeadingReference::Magnetic;
+}
+
 HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options) {
   HeadingAlignment alignment;
   alignment.field_W = level_field_W;
-  HeadingReference wanted = options.heading_reference;
-  if (wanted == HeadingReference::Automatic)
-    wanted = options.site_field_W ? HeadingReference::True : HeadingReference::Magnetic;
+  const HeadingReference wanted = wantedReference(options);
   if (wanted == HeadingReference::Start) return alignment;
   alignment.refusal = refusalOf(level_field_W, options);
   if (wanted == HeadingReference::True && !options.site_field_W)

@@ -17,6 +17,9 @@ struct HeadingAlignment {
   Vec3 field_W = Vec3::Zero();  ///< T, in the rotated world
 };
 
+/// The reference that the options ask for, with `Automatic` decided.
+HeadingReference wantedReference(const MagnetometerOptions& options);
+
 /// Computes the yaw that turns a level world to north. `level_field_W`: mean of the fields at the start, T,
 /// in a world with a correct vertical and an arbitrary yaw. East is field x up, north is up x east; true
 /// north differs from this by the declination of the field at the site. The alignment is refused where size

@@ -31,16 +31,18 @@ double turnVariance(const MapKeyframe& previous, const RelativePose& odometry) {
 
 /// `odometry`: from the previous keyframe, null for the first one of a dive.
 void addHeading(const MapKeyframe& keyframe, const MapKeyframe* previous, const RelativePose* odometry,
-                double independent_share, PoseGraph* graph) {
+                const KeyframeFactorOptions& options, PoseGraph* graph) {
   const double sigma = *keyframe.heading_sigma_rad;
   checkSigma(sigma, keyframe, "heading");
-  const double common_sigma = std::sqrt(1.0 - independent_share) * sigma;
+  const double north_variance = std::pow(options.north_sigma_rad, 2);
+  const double azimuth_sigma =
+      std::sqrt((1.0 - options.independent_heading_share) * sigma * sigma + north_variance);
   // The azimuth of the dive is known as well as at its best keyframe.
   const std::optional<double> known_sigma = graph->azimuthSigma(keyframe.dive);
-  if (!known_sigma || common_sigma < *known_sigma) {
-    graph->add(AzimuthPrior{keyframe.dive, 0.0, common_sigma});
+  if (!known_sigma || azimuth_sigma < *known_sigma) {
+    graph->add(AzimuthPrior{keyframe.dive, 0.0, azimuth_sigma});
   }
-  const double common_variance = std::pow(*graph->azimuthSigma(keyframe.dive), 2);
+  const double common_variance = std::pow(*graph->azimuthSigma(keyframe.dive), 2) - north_variance;
   double variance = sigma * sigma - common_variance;
   if (odometry && previous->heading_sigma_rad) {
     const double predicted =
@@ -69,6 +71,7 @@ void KeyframeFactorOptions::check() const {
   if (!(independent_heading_share > 0.0 && independent_heading_share < 1.0)) {
     throw UsageError("the independent share of heading errors must lie between 0 and 1");
   }
+  if (!(north_sigma_rad >= 0.0)) throw UsageError("sigma of the north must not be negative");
   if (!(height_offset_sigma_m > 0.0)) throw UsageError("sigma of the height offset must be positive");
 }
 
@@ -89,7 +92,7 @@ void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseG
   }
   graph->add(tiltOf(keyframe, options.least_tilt_sigma_rad));
   if (keyframe.heading_sigma_rad) {
-    addHeading(keyframe, previous, odometry ? &*odometry : nullptr, options.independent_heading_share, graph);
+    addHeading(keyframe, previous, odometry ? &*odometry : nullptr, options, graph);
   }
   if (keyframe.depth_m) addDepth(keyframe, options.height_offset_sigma_m, graph);
 }

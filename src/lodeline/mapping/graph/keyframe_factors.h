@@ -13,6 +13,8 @@ struct KeyframeFactorOptions {
   /// Part of the variance of a dive's best heading that is not common to the whole dive. The rest is: hard
   /// iron, misalignment, declination.
   double independent_heading_share = 0.1;
+  /// Sigma of the angle between the north of the dive's headings and the y axis of the graph's world, rad.
+  double north_sigma_rad = 0.0;
   /// Error of a dive's depths that is common to all of them: air pressure and water level, m.
   double height_offset_sigma_m = 0.1;
 

@@ -1,10 +1,13 @@
 #include "lodeline/mapping/session/dive_mapping.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "lodeline/geometry/so3.h"
 #include "lodeline/mapping/recognition/merge_keyframes.h"
 #include "lodeline/mapping/session/loops/cloud_loops.h"
+#include "lodeline/mapping/session/map_north.h"
 #include "lodeline/util/thread_clock.h"
 
 namespace lodeline {
@@ -37,6 +40,18 @@ KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, 
   return known;
 }
 
+DivePlacement placementOf(const DiveStart& start, const MapKeyframe& first, double north_sigma_rad) {
+  DivePlacement placement;
+  placement.is_known = first.heading_sigma_rad.has_value() && north_sigma_rad < 1.0;
+  placement.azimuth_sigma_rad = std::hypot(first.heading_sigma_rad.value_or(M_PI), north_sigma_rad);
+  placement.position_sigma_m =
+      Vec3(start.horizontal_sigma_m, start.horizontal_sigma_m, start.vertical_sigma_m);
+  placement.map_from_odom.rotation = so3::exp(first.north_from_odom_rad * Vec3::UnitZ());
+  placement.map_from_odom.translation =
+      start.position - placement.map_from_odom.rotation * first.odom_from_body.translation;
+  return placement;
+}
+
 RelativePose poseOf(const Loop& loop) { return {loop.old_from_new, loop.covariance}; }
 
 std::vector<LinkedFeature> linksOf(const Loop& loop, const MapKeyframe& old_keyframe,
@@ -63,13 +78,22 @@ DiveMapping::DiveMapping(MapFile* own, MapDive dive, const MapFile* earlier, con
       tags_(options.tags) {
   change_.emplace(own_->change());
   dive_.id = change_->addDive(dive_);
-  if (earlier_ != nullptr) loadEarlier();
-  DivePlacement start = options_.start;
-  if (earlier_ == nullptr) start = DivePlacement{};
-  known_.startDive(dive_number_, start);
-  tags_.startDive(dive_number_);
-  map_from_odom_ = start.map_from_odom;
+  if (earlier_ != nullptr) {
+    loadEarlier();
+    options_.factors.north_sigma_rad = northSigma_rad(northOf(*earlier_), dive_.heading_reference);
+  }
   is_placed_ = earlier_ == nullptr;
+  DivePlacement placement;
+  placement.is_known = is_placed_;
+  known_.startDive(dive_number_, placement);
+  tags_.startDive(dive_number_);
+}
+
+void DiveMapping::place(const MapKeyframe& first) {
+  const DivePlacement placement = placementOf(*options_.start, first, options_.factors.north_sigma_rad);
+  known_.placement(dive_number_) = placement;
+  map_from_odom_ = placement.map_from_odom;
+  is_placed_ = placement.is_known;
 }
 
 void DiveMapping::loadEarlier() {
@@ -124,6 +148,7 @@ void DiveMapping::store(MapKeyframe* keyframe) {
     uncommitted_ = 0;
   }
   keyframe->dive = dive_number_;
+  if (!previous_ && earlier_ != nullptr && options_.start) place(*keyframe);
   MapKeyframe measured = *keyframe;
   measured.features.clear();
   if (keyframe->depth_m) {

@@ -8,6 +8,7 @@
 #include "lodeline/mapping/graph/keyframe_factors.h"
 #include "lodeline/mapping/graph/motion/level_motion.h"
 #include "lodeline/mapping/recognition/descriptor_index.h"
+#include "lodeline/mapping/session/dive_start.h"
 #include "lodeline/mapping/session/loops/candidate_search.h"
 #include "lodeline/mapping/session/loops/known_keyframes.h"
 #include "lodeline/mapping/session/loops/loop_acceptance.h"
@@ -22,9 +23,8 @@ struct MappingOptions {
   LoopVerifierOptions verifier;
   PoseGraphOptions graph;
   KeyframeFactorOptions factors;
-  /// Where the dive begins in an earlier map, if known: east, north, up relative to that map's origin, with
-  /// sigmas of the horizontal and the vertical position.
-  DivePlacement start;
+  /// Where the dive begins in an earlier map. With north it places the dive until places are recognized.
+  std::optional<DiveStart> start;
   ControlSet tags;  ///< names and stated positions of tags; visits are not used
 };
 
@@ -48,6 +48,9 @@ class DiveMapping {
   /// Adds a keyframe; its id and dive are set here.
   MappingStep add(MapKeyframe keyframe);
 
+  /// States the north that the dive has found at its end.
+  void setHeadingReference(HeadingReference reference) { dive_.heading_reference = reference; }
+
   /// Completes the map: final solution with covariances, ledger. `end`: time of the dive's last frame.
   MappingSummary finish(Time end);
 
@@ -61,6 +64,8 @@ class DiveMapping {
 
  private:
   void loadEarlier();
+  /// Places the dive in the earlier map by its first keyframe, if its start is stated.
+  void place(const MapKeyframe& first);
   MapKeyframe full(KeyframeId id) const;
   void store(MapKeyframe* keyframe);
   void look(const MapKeyframe& keyframe, MappingStep* step);

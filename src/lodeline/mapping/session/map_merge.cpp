@@ -8,7 +8,8 @@
 #include <set>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/session/map_north.h"
+#include "lodeline/mapping/session/map_solution.h"
 #include "lodeline/mapping/store/map_change.h"
 
 namespace lodeline {
@@ -38,18 +39,6 @@ class TemporaryMap {
   fs::path path_;
   std::optional<MapFile> file_;
 };
-
-DivePlacement placementOf(const DiveStart& start, const MapKeyframe& first) {
-  DivePlacement placement;
-  placement.is_known = first.heading_sigma_rad.has_value();
-  placement.azimuth_sigma_rad = first.heading_sigma_rad.value_or(M_PI);
-  placement.position_sigma_m =
-      Vec3(start.horizontal_sigma_m, start.horizontal_sigma_m, start.vertical_sigma_m);
-  placement.map_from_odom.rotation = so3::exp(first.north_from_odom_rad * Vec3::UnitZ());
-  placement.map_from_odom.translation =
-      start.position - placement.map_from_odom.rotation * first.odom_from_body.translation;
-  return placement;
-}
 
 /// Keyframes of a new dive that see what a keyframe of the map sees.
 std::set<KeyframeId> redundantKeyframes(const std::vector<Loop>& ledger, const KnownKeyframes& known,
@@ -135,10 +124,9 @@ MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& op
   run.forEachKeyframe(dives.front().id, [&](const StoredKeyframe& row) { ids.push_back(row.keyframe.id); });
   if (ids.empty()) throw InputError(run.path().string() + ": the dive has no keyframe");
   const bool is_first = map->dives().empty();
+  const HeadingReference north_before = northOf(*map);
   MappingOptions mapping_options = options.mapping;
-  mapping_options.start.is_known = false;
   mapping_options.tags = statedTags(run);
-  if (options.start) mapping_options.start = placementOf(*options.start, run.fullKeyframe(ids.front()));
 
   TemporaryMap temporary(map->path());
   DiveMapping mapping(&temporary.file(), dive, is_first ? nullptr : map, mapping_options);
@@ -176,8 +164,11 @@ MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& op
     if (!isTagTie(loop)) change.addLoop(loop);
   }
   copyControl(source, *map, &change);
-  if (options.start) addStart(*options.start, dive.name, rows.front().keyframe.id, &change);
+  if (options.mapping.start) addStart(*options.mapping.start, dive.name, rows.front().keyframe.id, &change);
   change.commit();
+  // Poses of later dives are compared with the y axis of the map, which must be its north.
+  if (!is_first && northOf(*map) != north_before)
+    solveMap(map, {options.mapping.graph, options.mapping.factors});
   return merged;
 }
 

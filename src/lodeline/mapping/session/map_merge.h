@@ -10,16 +10,8 @@
 
 namespace lodeline {
 
-/// Where a dive began, as stated: east, north, up relative to the origin of the map, m.
-struct DiveStart {
-  Vec3 position = Vec3::Zero();
-  double horizontal_sigma_m = 3.0;  ///< per axis, as of a GPS fix of the entrance
-  double vertical_sigma_m = 1.0;
-};
-
 struct MapMergeOptions {
   MappingOptions mapping;
-  std::optional<DiveStart> start;
   /// Features of a keyframe are left out where the map has a keyframe that sees the same: nearer than this,
   /// m, and turned by less than `redundant_turn_rad`. The map then grows with the cave, not with the dives.
   double redundant_distance_m = 0.5;

@@ -1,9 +1,12 @@
 #include "lodeline/mapping/session/map_solution.h"
 
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
 
+#include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/session/map_north.h"
 #include "lodeline/mapping/store/map_change.h"
 
 namespace lodeline {
@@ -39,9 +42,29 @@ Rigid3 startOf(const StoredKeyframe& first) {
   return mapFromOdom(first.solved->map_from_body, first.keyframe.odom_from_body);
 }
 
+/// Turn of the map as solved before that points its y axis to `north`, by the first dive that knows it. It is
+/// not the identity where the map had a worse north, or none, before that dive came.
+Rigid3 turnTo(HeadingReference north, const MapFile& map) {
+  std::optional<double> turn_rad;
+  for (const MapDive& dive : map.dives()) {
+    if (dive.heading_reference != north) continue;
+    map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
+      if (turn_rad || !row.solved || !row.keyframe.heading_sigma_rad) return;
+      const Rigid3 map_from_odom = startOf(row);
+      const Quat& rotation = map_from_odom.rotation;
+      turn_rad = row.keyframe.north_from_odom_rad - 2.0 * std::atan2(rotation.z(), rotation.w());
+    });
+  }
+  return {so3::exp(turn_rad.value_or(0.0) * Vec3::UnitZ()), Vec3::Zero()};
+}
+
 void addDives(const MapFile& map, const MapSolutionOptions& options, MapGraph* result) {
   std::optional<double> depth_datum_m;
+  const HeadingReference north = northOf(map);
+  const Rigid3 turned_from_map = turnTo(north, map);
   for (const MapDive& dive : map.dives()) {
+    KeyframeFactorOptions factors = options.factors;
+    factors.north_sigma_rad = northSigma_rad(north, dive.heading_reference);
     result->names[dive.id] = dive.name;
     result->groups.of(dive.id);
     std::optional<MapKeyframe> previous;
@@ -53,8 +76,8 @@ void addDives(const MapFile& map, const MapSolutionOptions& options, MapGraph* r
         if (!depth_datum_m) depth_datum_m = keyframe.depth_m->value + keyframe.odom_from_body.translation.z();
         keyframe.depth_m->value -= *depth_datum_m;
       }
-      addKeyframe(keyframe, previous ? &*previous : nullptr, &result->graph, startOf(rows.front()),
-                  options.factors);
+      addKeyframe(keyframe, previous ? &*previous : nullptr, &result->graph,
+                  turned_from_map * startOf(rows.front()), factors);
       result->keyframes.push_back(keyframe.id);
       result->dive_of[keyframe.id] = dive.id;
       previous = std::move(keyframe);

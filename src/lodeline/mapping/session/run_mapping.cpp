@@ -42,6 +42,7 @@ MapDive diveOf(const RunMappingRequest& request, const Rig& rig) {
   MapDive dive;
   dive.name = request.name;
   dive.recording = request.recording;
+  dive.heading_reference = request.north;
   RigFile file;
   file.rig = rig;
   file.has_imu = true;
@@ -184,6 +185,7 @@ void RunMapping::reportTags() const {
 
 MappingSummary RunMapping::finish(const MagnetometerEstimate& last) {
   for (const MappingStep& step : thread_->finish()) take(step);
+  mapping_->setHeadingReference(last.heading_reference);
   const MappingSummary summary = mapping_->finish(newest_);
   closures_ = loopClosures(accepted_, mapping_->known(), mapping_->dive(), describer_.cameras());
   writeLedger();

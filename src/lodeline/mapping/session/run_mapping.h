@@ -21,10 +21,11 @@ namespace lodeline {
 
 /// What a run tells its map beside its keyframes.
 struct RunMappingRequest {
-  std::filesystem::path folder;       ///< for map.db, loops.csv and the poses in the map
-  std::filesystem::path earlier_map;  ///< a map to start from; empty for none
-  std::string name;                   ///< of the dive
-  std::string recording;              ///< as the user gave it
+  std::filesystem::path folder;                      ///< for map.db, loops.csv and the poses in the map
+  std::filesystem::path earlier_map;                 ///< a map to start from; empty for none
+  std::string name;                                  ///< of the dive
+  std::string recording;                             ///< as the user gave it
+  HeadingReference north = HeadingReference::Start;  ///< that the headings of the keyframes count from
   KeyframeChoiceOptions keyframes;
   MappingOptions mapping;
   /// Tags on the line; none are looked for where no size is known.

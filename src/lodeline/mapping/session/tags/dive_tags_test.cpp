@@ -173,7 +173,7 @@ TEST(DiveTags, JoinDivesThatRecognizeNothingElse) {
   // Without tags, the dive lies where it is said to begin.
   const Dived untagged(taggedCircuit(8502, 1, 0), "untagged.db");
   MapMergeOptions options;
-  options.start = DiveStart{Vec3(1.0, -1.0, 0.5), 3.0, 1.0};
+  options.mapping.start = DiveStart{Vec3(1.0, -1.0, 0.5), 3.0, 1.0};
   const JoinedMap stated(twoLaps(), untagged, "stated.db", options);
   RecordProperty("with_mm", static_cast<int>(1e3 * joined.error_m));
   RecordProperty("without_mm", static_cast<int>(1e3 * stated.error_m));
