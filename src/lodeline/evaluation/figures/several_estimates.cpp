@@ -55,10 +55,10 @@ std::string severalTable(const std::vector<NamedEvaluation>& estimates) {
   size_t width = 8;
   for (const NamedEvaluation& named : estimates) width = std::max(width, named.name.size());
   std::string text =
-      fmt::format("{:<{}}{:>14}{:>15}{:>16}{:>11}{:>13}{:>15}\n", "estimate", width, "completion (%)",
+      fmt::format("{:<{}}{:>16}{:>15}{:>16}{:>11}{:>13}{:>15}\n", "estimate", width, "completion (%)",
                   "position (m)", "rotation (deg)", "yaw (deg)", "scale (%)", "end point (m)");
   for (const auto& [name, e] : estimates) {
-    text += fmt::format("{:<{}}{:>14.2f}{:>15.4f}{:>16.3f}{:>11.3f}{:>13.3f}{:>15.4f}\n", name, width,
+    text += fmt::format("{:<{}}{:>16.2f}{:>15.4f}{:>16.3f}{:>11.3f}{:>13.3f}{:>15.4f}\n", name, width,
                         100.0 * e.completion.share, e.absolute.position().rmse, e.absolute.rotation().rmse,
                         e.absolute.yaw().rmse, 100.0 * e.alignment.scaleError(), e.end_point_m);
   }

@@ -47,13 +47,23 @@ class Way {
 
 /// Index of the point that becomes the station after `station`, at most the last point.
 size_t nextStation(const Way& way, size_t station, const StationOptions& options) {
+  // Where the path comes back, its farthest point is the station, and not the point with the largest bend.
+  constexpr double kTurnsBack_rad = 2.6;
   const double ahead_m = 0.5 * options.bend_spacing_m;
+  double farthest_m = 0.0;
+  size_t farthest = station;
   for (size_t at = station + 1; at + 1 < way.size(); ++at) {
     const double distance_m = way.distance(station, at);
     if (distance_m >= options.spacing_m) return at;
+    if (distance_m > farthest_m) {
+      farthest_m = distance_m;
+      farthest = at;
+    }
+    if (farthest_m >= ahead_m && distance_m < farthest_m - ahead_m) return farthest;
     if (distance_m < options.bend_spacing_m) continue;
     const double bend = way.bendAt(station, at, ahead_m);
-    if (bend >= options.bend_rad && way.bendAt(station, at + 1, ahead_m) <= bend) return at;
+    if (bend >= options.bend_rad && bend < kTurnsBack_rad && way.bendAt(station, at + 1, ahead_m) <= bend)
+      return at;
   }
   return way.size() - 1;
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "lodeline/diagnostics.h"
 
 namespace lodeline {
@@ -53,6 +55,17 @@ TEST(Stations, LeaveBendsOfLessThanTwentyDegreesAndShortLegsAlone) {
                 .size(),
             2U);
   EXPECT_EQ(stationsOf(wayAlong({{0, 0, 0}, {1.5, 0, 0}, {1.5, 1.4, 0}})).size(), 2U);
+}
+
+TEST(Stations, StandWhereTheDiverTurnsBack) {
+  for (const double length_m : {2.2, 2.6, 4.1, 7.4, 13.3, 16.9}) {
+    // The way back is a little beside the way in.
+    const std::vector<Vec3> stations =
+        stationsOf(wayAlong({{0, 0, 0}, {length_m, 0, 0}, {length_m - 0.1, 0.3, 0}, {0.1, 0.3, 0}}));
+    double farthest_m = 0.0;
+    for (const Vec3& station : stations) farthest_m = std::max(farthest_m, station.x());
+    EXPECT_NEAR(farthest_m, length_m, 0.5) << length_m;
+  }
 }
 
 TEST(Stations, DoNotMultiplyWhileTheDiverHovers) {
