@@ -24,6 +24,9 @@ namespace lodeline {
 /// Kind of the finding that the images' time stamps have a constant offset to the gyroscope's.
 inline constexpr const char* kCameraTimeOffset = "camera_time_offset";
 
+/// Kind of the finding that the intrinsics of a camera are implausible.
+inline constexpr const char* kIntrinsicsOdd = "intrinsics_odd";
+
 /// One fault of a recording, or something worth knowing about it.
 struct InspectionFinding {
   Severity severity = Severity::Notice;
