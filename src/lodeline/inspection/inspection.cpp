@@ -1,12 +1,14 @@
 #include "lodeline/inspection/inspection.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/other_sensors.h"
+#include "lodeline/inspection/rate_unit.h"
 #include "lodeline/inspection/survey/camera_words.h"
-#include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {
@@ -40,13 +42,15 @@ void settleRateUnit(Inspection* inspection) {
   constexpr double kLikeness = 2.0, kSame = 0.6;
   for (const CameraInspection& camera : inspection->cameras) {
     if (!camera.turning || camera.turning->correlation < kSame) continue;
-    const double ratio = camera.turning->gyroscope_scale / kDegree;
-    if (ratio > kLikeness || ratio < 1.0 / kLikeness) return;
-    inspection->rate_to_SI = kDegree;
-    inspection->findings.push_back({Severity::Serious, 99.0, "imu0", "gyroscope_unit",
-                                    "the gyroscope is in deg/s, not rad/s: the images turn 57 times slower "
-                                    "than it says; multiply its readings by "
-                                    "pi/180"});
+    const double scale = camera.turning->gyroscope_scale;
+    const std::optional<RateUnit> unit = rateUnitOf(scale, kLikeness);
+    if (!unit) return;
+    inspection->rate_to_SI = unit->to_SI;
+    inspection->findings.push_back(
+        {Severity::Serious, 99.0, "imu0", "gyroscope_unit",
+         fmt::format("the gyroscope is in {}, not rad/s: the images turn {:.3g} times as fast as it says; "
+                     "multiply its readings by {:.6g}",
+                     unit->name, scale, unit->to_SI)});
     return;
   }
 }

@@ -63,8 +63,8 @@ struct CameraInspection {
 struct Inspection {
   Rig rig;
   ImuSurvey imu;
-  double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be determined; pi/180 where it is in deg/s
-  WhiteNoise shown_noise;   ///< of the IMU, estimated from its readings
+  double rate_to_SI = 1.0;                    ///< of the gyroscope, as far as it can be determined
+  WhiteNoise shown_noise;                     ///< of the IMU, estimated from its readings
   Vibration force_vibration, rate_vibration;  ///< of accelerometer and gyroscope, SI units
   std::vector<CameraInspection> cameras;
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras
