@@ -99,6 +99,16 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
                         describeSignedAxes(turning.best_axes)));
 }
 
+void judgeAlternation(const ImuSurvey& imu, Inspection* inspection) {
+  if (imu.alternation_m_per_s2 == 0.0) return;
+  addImuFinding(
+      inspection, Severity::Serious, 96.0, "imu_interleaved",
+      fmt::format("two sensors: every other reading of the accelerometer differs from those between by "
+                  "{:.2g} m/s^2, all the time; the readings of two IMUs, or of a raw and a filtered "
+                  "stream, take turns. Write each to a stream of its own",
+                  imu.alternation_m_per_s2));
+}
+
 /// Readings that a run would skip or convert.
 void judgeScreening(const ImuSurvey& imu, Inspection* inspection) {
   for (const Finding& finding : imu.screening.ranked()) {
@@ -179,6 +189,7 @@ void judgeImu(Inspection* inspection) {
   judgeSaturation("accelerometer", "accelerometer_saturated", "m/s^2", kLeastForce_m_per_s2 / imu.force_to_SI,
                   imu.accelerometer, inspection);
   judgeForceUnit(imu, inspection);
+  judgeAlternation(imu, inspection);
   judgeRateUnit(imu, inspection);
   judgeRest(imu, inspection);
   judgeTurningOfGravity(imu, inspection);

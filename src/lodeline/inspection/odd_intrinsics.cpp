@@ -1,12 +1,14 @@
 #include "lodeline/inspection/odd_intrinsics.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "lodeline/cameras/camera.h"
+#include "lodeline/cameras/camera_model.h"
 #include "lodeline/inspection/survey/camera_words.h"
 #include "lodeline/util/angles.h"
 
@@ -61,6 +63,24 @@ std::optional<double> otherSize(const Intrinsics& in, const Vec2& size_px) {
   return scale;
 }
 
+/// Tangential distortion beyond that of lenses, which are centred to a few thousandths, in words.
+std::string largeTangential(const CameraCalibration& camera) {
+  constexpr double kLargest = 0.02;
+  const CameraModel& model = makeCamera(camera)->model();
+  if (!model.tangential_at || camera.distortion.size() < *model.tangential_at + 2) return {};
+  const double p1 = camera.distortion[*model.tangential_at], p2 = camera.distortion[*model.tangential_at + 1];
+  if (std::max(std::abs(p1), std::abs(p2)) < kLargest) return {};
+  const auto count = static_cast<std::ptrdiff_t>(camera.distortion.size());
+  return fmt::format(
+      "the tangential coefficients p1 = {:g} and p2 = {:g} are larger than those of lenses: are the "
+      "coefficients in the order {}?",
+      p1, p2,
+      fmt::join(
+          model.parameters.begin(),
+          model.parameters.begin() + std::min(count, static_cast<std::ptrdiff_t>(model.parameters.size())),
+          ", "));
+}
+
 }  // namespace
 
 OddIntrinsics oddIntrinsics(const CameraCalibration& camera) {
@@ -92,6 +112,7 @@ OddIntrinsics oddIntrinsics(const CameraCalibration& camera) {
     return {fmt::format("the focal lengths {:.1f} and {:.1f} px differ by more than 10 %: pixels are square",
                         camera.fx_px, camera.fy_px)};
   }
+  if (const std::string tangential = largeTangential(camera); !tangential.empty()) return {tangential};
   const std::optional<double> angle_deg = widthAngle_deg(camera);
   if (!angle_deg) return {"the distortion is not invertible within the image"};
   if (*angle_deg < 15.0)

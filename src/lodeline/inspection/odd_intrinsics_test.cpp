@@ -49,6 +49,16 @@ TEST(OddIntrinsics, OfAnotherImageSizeAreNamedWithTheFactor) {
   EXPECT_THAT(oddIntrinsics(camera(687.9, 685.9, 550.8, 372.6)).words, HasSubstr("by 0.663"));
 }
 
+TEST(OddIntrinsics, WithRadialCoefficientsInThePlaceOfTangentialOnesAreNamed) {
+  CameraCalibration lens = camera(458.654, 457.296, 367.215, 248.375);
+  lens.model = "radial-tangential";
+  lens.distortion = {-0.2834, 0.0740, 0.0002, 0.00002, -0.01};
+  EXPECT_THAT(oddIntrinsics(lens).words, IsEmpty());
+  lens.distortion = {-0.2834, 0.0740, -0.031, 0.0002, 0.00002};  // k1, k2, k3, p1, p2
+  EXPECT_THAT(oddIntrinsics(lens).words,
+              AllOf(HasSubstr("p1 = -0.031"), HasSubstr("in the order k1, k2, p1, p2, k3?")));
+}
+
 TEST(OddIntrinsics, WithoutACauseAreNamed) {
   const OddIntrinsics odd = oddIntrinsics(camera(458.0, 457.0, 600.0, 230.0));
   EXPECT_FALSE(odd.is_explained);

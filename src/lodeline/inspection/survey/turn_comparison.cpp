@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
+/// Larger offsets are searched for where nothing correlates within the small ones.
+constexpr double kWideSearch_s = 8.0, kWideStep_s = 20e-3, kUnrelated = 0.6;
 /// A camera with a smaller rate (root mean square) does not allow a comparison.
 constexpr double kLeastRate_rad_per_s = 0.02;
 /// A direction with a smaller share of the rotation is not evaluated.
@@ -106,17 +108,11 @@ class Comparison {
   /// Offset with the largest correlation; among nearly equal ones, as with periodic motion, the smallest
   /// offset.
   double bestOffset_s() const {
-    constexpr double kNearlyEqual = 0.01;
-    double best_s = 0.0;
-    double best = correlationAt(0.0);
-    for (int i = 1; i * kSearchStep_s <= kSearch_s; ++i) {
-      for (const double offset_s : {i * kSearchStep_s, -i * kSearchStep_s}) {
-        const double correlation = correlationAt(offset_s);
-        const bool is_neighbour = std::abs(offset_s - best_s) < 1.5 * kSearchStep_s;
-        if (correlation <= best + (is_neighbour ? 0.0 : kNearlyEqual)) continue;
-        best = correlation;
-        best_s = offset_s;
-      }
+    double best_s = 0.0, best = correlationAt(0.0);
+    search(0.0, kSearch_s, kSearchStep_s, &best_s, &best);
+    if (best < kUnrelated) {
+      search(0.0, kWideSearch_s, kWideStep_s, &best_s, &best);
+      search(best_s, kWideStep_s, kSearchStep_s, &best_s, &best);
     }
     const double before = correlationAt(best_s - kSearchStep_s);
     const double after = correlationAt(best_s + kSearchStep_s);
@@ -124,6 +120,20 @@ class Comparison {
     if (!(curvature < 0.0)) return best_s;
     const double shift = std::clamp(0.5 * (before - after) / curvature, -1.0, 1.0);
     return best_s + shift * kSearchStep_s;
+  }
+
+  /// Improves the best offset and its correlation by those within `width_s` of `from_s`, from the middle out.
+  void search(double from_s, double width_s, double step_s, double* best_s, double* best) const {
+    constexpr double kNearlyEqual = 0.01;
+    for (int i = 1; i * step_s <= width_s; ++i) {
+      for (const double offset_s : {from_s + i * step_s, from_s - i * step_s}) {
+        const double correlation = correlationAt(offset_s);
+        const bool is_neighbour = std::abs(offset_s - *best_s) < 1.5 * step_s;
+        if (correlation <= *best + (is_neighbour ? 0.0 : kNearlyEqual)) continue;
+        *best = correlation;
+        *best_s = offset_s;
+      }
+    }
   }
 
   static Mat3 regression(const Moments& moments) {
