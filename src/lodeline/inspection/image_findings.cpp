@@ -4,7 +4,7 @@
 #include <map>
 
 #include "lodeline/inspection/findings.h"
-#include "lodeline/inspection/odd_intrinsics.h"
+#include "lodeline/inspection/plausibility/odd_intrinsics.h"
 #include "lodeline/inspection/survey/camera_words.h"
 
 namespace lodeline::findings {

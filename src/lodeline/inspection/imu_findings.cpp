@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
-#include "lodeline/inspection/rate_unit.h"
+#include "lodeline/inspection/plausibility/rate_unit.h"
 #include "lodeline/inspection/survey/signed_axes.h"
 #include "lodeline/util/angles.h"
 

@@ -7,7 +7,7 @@
 
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/other_sensors.h"
-#include "lodeline/inspection/rate_unit.h"
+#include "lodeline/inspection/plausibility/rate_unit.h"
 #include "lodeline/inspection/survey/camera_words.h"
 
 namespace lodeline {

@@ -1,4 +1,4 @@
-#include "lodeline/inspection/odd_intrinsics.h"
+#include "lodeline/inspection/plausibility/odd_intrinsics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

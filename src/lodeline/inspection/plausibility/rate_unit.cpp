@@ -1,4 +1,4 @@
-#include "lodeline/inspection/rate_unit.h"
+#include "lodeline/inspection/plausibility/rate_unit.h"
 
 #include <array>
 #include <cmath>
