@@ -4,21 +4,35 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {
 namespace {
 
-constexpr std::size_t kFewestPairs = 10;
-constexpr double kFarBetter = 0.2;  ///< of the error as read
+constexpr std::size_t kFewestPoses = 10;
+constexpr double kMuchLess = 0.2;  ///< of the error as read
 
-double positionRms_m(AlignmentType type, const PosePairs& pairs) {
-  const std::vector<Rigid3> aligned = applyAlignment(align(type, pairs), pairs.estimate);
+double positionRms_m(const Alignment& alignment, const PosePairs& pairs) {
+  const std::vector<Rigid3> aligned = applyAlignment(alignment, pairs.estimate);
   double squares = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     squares += (aligned[i].translation - pairs.reference[i].translation).squaredNorm();
   return std::sqrt(squares / static_cast<double>(pairs.size()));
+}
+
+double positionRms_m(const PosePairs& pairs) {
+  return positionRms_m(align(AlignmentType::SE3, pairs), pairs);
+}
+
+/// The alignment with a scale; nothing where the positions do not determine one.
+std::optional<Alignment> alignWithScale(const PosePairs& pairs) {
+  try {
+    return align(AlignmentType::Sim3, pairs);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 std::vector<Rigid3> inverted(std::vector<Rigid3> poses) {
@@ -46,15 +60,15 @@ std::string describeScale(double scale) {
 }  // namespace
 
 bool checkPoseConvention(const PosePairs& pairs, AlignmentType alignment, Diagnostics& diagnostics) {
-  if (pairs.size() < kFewestPairs) return false;
-  const double as_read_m = positionRms_m(AlignmentType::SE3, pairs);
+  if (pairs.size() < kFewestPoses) return false;
+  const double as_read_m = positionRms_m(pairs);
   if (!(as_read_m > 0.0)) return false;
   const PosePairs of_estimate = {pairs.time, inverted(pairs.estimate), pairs.reference};
   const PosePairs of_reference = {pairs.time, pairs.estimate, inverted(pairs.reference)};
-  const double estimate_m = positionRms_m(AlignmentType::SE3, of_estimate);
-  const double reference_m = positionRms_m(AlignmentType::SE3, of_reference);
+  const double estimate_m = positionRms_m(of_estimate);
+  const double reference_m = positionRms_m(of_reference);
   const double inverted_m = std::min(estimate_m, reference_m);
-  if (inverted_m < kFarBetter * as_read_m) {
+  if (inverted_m < kMuchLess * as_read_m) {
     diagnostics.report(
         Severity::Warning, "poses_inverted",
         fmt::format(
@@ -65,10 +79,11 @@ bool checkPoseConvention(const PosePairs& pairs, AlignmentType alignment, Diagno
   }
   if (alignment == AlignmentType::Sim3) return false;
   constexpr double kFar = 1.2;
-  const double scale = align(AlignmentType::Sim3, pairs).scale;
-  const double scaled_m = positionRms_m(AlignmentType::Sim3, pairs);
+  const std::optional<Alignment> scaled = alignWithScale(pairs);
+  if (!scaled) return false;
+  const double scale = scaled->scale, scaled_m = positionRms_m(*scaled, pairs);
   const bool is_far = scale > kFar || scale * kFar < 1.0;
-  if (!is_far || !(scale > 0.0) || scaled_m > kFarBetter * as_read_m) return false;
+  if (!is_far || !(scale > 0.0) || scaled_m > kMuchLess * as_read_m) return false;
   diagnostics.report(
       Severity::Warning, "position_scale",
       fmt::format(

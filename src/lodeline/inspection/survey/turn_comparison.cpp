@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
-/// Larger offsets are searched for where nothing correlates within the small ones.
-constexpr double kWideSearch_s = 8.0, kWideStep_s = 20e-3, kUnrelated = 0.6;
+/// Larger offsets are searched for where no small one correlates clearly, and used only where they do. Noise
+/// that makes the correlation vague at the true offset lowers it at all others.
+constexpr double kWideSearch_s = 8.0, kWideStep_s = 20e-3, kVague = 0.93, kClear = 0.95, kGain = 0.05;
 /// A camera with a smaller rate (root mean square) does not allow a comparison.
 constexpr double kLeastRate_rad_per_s = 0.02;
 /// A direction with a smaller share of the rotation is not evaluated.
@@ -110,9 +111,14 @@ class Comparison {
   double bestOffset_s() const {
     double best_s = 0.0, best = correlationAt(0.0);
     search(0.0, kSearch_s, kSearchStep_s, &best_s, &best);
-    if (best < kUnrelated) {
-      search(0.0, kWideSearch_s, kWideStep_s, &best_s, &best);
-      search(best_s, kWideStep_s, kSearchStep_s, &best_s, &best);
+    if (best < kVague) {
+      double wide_s = best_s, wide = best;
+      search(0.0, kWideSearch_s, kWideStep_s, &wide_s, &wide);
+      search(wide_s, kWideStep_s, kSearchStep_s, &wide_s, &wide);
+      if (wide > kClear && wide > best + kGain) {
+        best_s = wide_s;
+        best = wide;
+      }
     }
     const double before = correlationAt(best_s - kSearchStep_s);
     const double after = correlationAt(best_s + kSearchStep_s);
