@@ -70,6 +70,17 @@ TEST_F(StartCheckRealTest, CorrectsTheSecondCameraWhereItIsLateAlone) {
   EXPECT_THAT(check({0.0, 0.1}).image_offset_s, ElementsAre(0.0, DoubleNear(-0.1, 3e-3)));
 }
 
+TEST_F(StartCheckRealTest, CorrectsTheSecondCameraWhereItIsLateBySeconds) {
+  EXPECT_THAT(check({0.0, 2.5}).image_offset_s, ElementsAre(0.0, DoubleNear(-2.5, 3e-3)));
+  EXPECT_EQ(diagnostics_.count(kCameraTimeOffset), 1);
+}
+
+TEST_F(StartCheckRealTest, NamesALagOfOneFrame) {
+  check({0.0, 0.05});
+  ASSERT_EQ(diagnostics_.count(kCameraTimeOffset), 1);
+  EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr("which is 1 frame: each image carries"));
+}
+
 TEST_F(StartCheckRealTest, LeavesTheSecondCameraWhereTheFirstIsLateAlone) {
   EXPECT_THAT(check({0.1, 0.0}).image_offset_s, ElementsAre(DoubleNear(-0.1, 3e-3), 0.0));
 }
