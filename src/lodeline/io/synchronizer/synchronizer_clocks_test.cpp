@@ -225,7 +225,7 @@ TEST_F(SynchronizerClocksTest, SecondCameraWithFewPartnersIsNamed) {
   });
   ASSERT_NE(unpaired, findings.end());
   EXPECT_THAT(unpaired->first_message,
-              AllOf(HasSubstr("cam1: 5 of 21 images of cam0"), HasSubstr("comes +0.8 s after")));
+              AllOf(HasSubstr("cam1: only 5 of 21 images of cam0"), HasSubstr("comes +0.8 s after")));
 }
 
 TEST_F(SynchronizerClocksTest, SecondCameraThatPausesIsNotUnpaired) {
