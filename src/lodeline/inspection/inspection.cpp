@@ -65,9 +65,12 @@ void compareCameras(Inspection* inspection) {
     const std::vector<CameraTurn>& turns = camera.survey.turns;
     const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
     camera.turning = compareTurns(turns, gyroscope, body_from_camera);
-    constexpr TurnLimits kHalf = {12, 3.0};  // a change of the offset must be significant
-    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera, kHalf);
-    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera, kHalf);
+    // A change of the offset must be significant. An offset of seconds is that of both halves.
+    constexpr double kSeconds_s = 1.0;
+    const double offset_s = camera.turning ? camera.turning->time_offset_s : 0.0;
+    const TurnLimits half = {12, 3.0, std::abs(offset_s) > kSeconds_s ? offset_s : 0.0, false};
+    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera, half);
+    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera, half);
   }
 }
 

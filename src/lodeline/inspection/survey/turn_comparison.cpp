@@ -14,7 +14,7 @@ constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
 /// Larger offsets are searched for where no small one correlates clearly, and used only where they do. Noise
 /// that makes the correlation vague at the true offset lowers it at all others.
-constexpr double kWideSearch_s = 8.0, kWideStep_s = 20e-3, kVague = 0.93, kClear = 0.95, kGain = 0.05;
+constexpr double kWideSearch_s = 8.0, kWideStep_s = 20e-3, kVague = 0.93, kClear = 0.97, kGain = 0.04;
 /// A camera with a smaller rate (root mean square) does not allow a comparison.
 constexpr double kLeastRate_rad_per_s = 0.02;
 /// A direction with a smaller share of the rotation is not evaluated.
@@ -58,11 +58,11 @@ struct Moments {
 class Comparison {
  public:
   Comparison(const std::vector<CameraTurn>& turns, const GyroscopeIntegral& gyroscope,
-             const Quat& body_from_camera, int least_turns)
+             const Quat& body_from_camera, const TurnLimits& limits)
       : turns_(turns),
         gyroscope_(gyroscope),
         body_from_camera_(body_from_camera),
-        least_turns_(least_turns),
+        limits_(limits),
         use_(turns.size(), true) {}
 
   std::optional<TurnComparison> run() {
@@ -70,7 +70,7 @@ class Comparison {
     rejectOutliers(offset_s);
     offset_s = bestOffset_s();
     const std::vector<Pair> pairs = pairsAt(offset_s);
-    if (static_cast<int>(pairs.size()) < least_turns_) return std::nullopt;
+    if (static_cast<int>(pairs.size()) < limits_.turns) return std::nullopt;
     const Moments moments(pairs);
     TurnComparison result;
     const auto count = static_cast<double>(pairs.size());
@@ -102,18 +102,18 @@ class Comparison {
   double correlationAt(double offset_s) const {
     const std::vector<Pair> pairs = pairsAt(offset_s);
     // A smaller number of rotations within the readings correlates better by chance.
-    if (static_cast<int>(pairs.size()) < least_turns_ || 2 * pairs.size() < turns_.size()) return 0.0;
+    if (static_cast<int>(pairs.size()) < limits_.turns || 2 * pairs.size() < turns_.size()) return 0.0;
     return Moments(pairs).correlation();
   }
 
   /// Offset with the largest correlation; among nearly equal ones, as with periodic motion, the smallest
   /// offset.
   double bestOffset_s() const {
-    double best_s = 0.0, best = correlationAt(0.0);
-    search(0.0, kSearch_s, kSearchStep_s, &best_s, &best);
-    if (best < kVague) {
+    double best_s = limits_.around_s, best = correlationAt(best_s);
+    search(best_s, kSearch_s, kSearchStep_s, &best_s, &best);
+    if (best < kVague && limits_.searches_wide) {
       double wide_s = best_s, wide = best;
-      search(0.0, kWideSearch_s, kWideStep_s, &wide_s, &wide);
+      search(limits_.around_s, kWideSearch_s, kWideStep_s, &wide_s, &wide);
       search(wide_s, kWideStep_s, kSearchStep_s, &wide_s, &wide);
       if (wide > kClear && wide > best + kGain) {
         best_s = wide_s;
@@ -255,7 +255,7 @@ class Comparison {
   const std::vector<CameraTurn>& turns_;
   const GyroscopeIntegral& gyroscope_;
   Quat body_from_camera_;
-  int least_turns_;
+  TurnLimits limits_;
   std::vector<bool> use_;
 };
 
@@ -271,7 +271,7 @@ std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
     time_s += std::clamp((turns[i].begin - turns[i - 1].begin).seconds(), 0.0, kLongestPause_s);
   }
   if (time_s < limits.time_s) return std::nullopt;
-  return Comparison(turns, gyroscope, body_from_camera, limits.turns).run();
+  return Comparison(turns, gyroscope, body_from_camera, limits).run();
 }
 
 }  // namespace lodeline
