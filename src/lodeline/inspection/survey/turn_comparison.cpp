@@ -66,9 +66,14 @@ class Comparison {
         use_(turns.size(), true) {}
 
   std::optional<TurnComparison> run() {
-    double offset_s = bestOffset_s();
-    rejectOutliers(offset_s);
-    offset_s = bestOffset_s();
+    Settled settled = settle(false);
+    if (settled.correlation < kVague && limits_.searches_wide) {
+      Settled wide = settle(true);
+      if (wide.correlation > kClear && wide.correlation > settled.correlation + kGain)
+        settled = std::move(wide);
+    }
+    use_ = std::move(settled.use);
+    const double offset_s = settled.offset_s;
     const std::vector<Pair> pairs = pairsAt(offset_s);
     if (static_cast<int>(pairs.size()) < limits_.turns) return std::nullopt;
     const Moments moments(pairs);
@@ -87,6 +92,20 @@ class Comparison {
   }
 
  private:
+  /// An offset and the rotations that fit it.
+  struct Settled {
+    double offset_s = 0.0, correlation = 0.0;
+    std::vector<bool> use;
+  };
+
+  Settled settle(bool is_wide) {
+    use_.assign(turns_.size(), true);
+    double offset_s = bestOffset_s(limits_.around_s, is_wide);
+    rejectOutliers(offset_s);
+    offset_s = bestOffset_s(is_wide ? offset_s : limits_.around_s, false);
+    return {offset_s, correlationAt(offset_s), use_};
+  }
+
   std::vector<Pair> pairsAt(double offset_s) const {
     std::vector<Pair> pairs;
     for (size_t i = 0; i < turns_.size(); ++i) {
@@ -108,17 +127,13 @@ class Comparison {
 
   /// Offset with the largest correlation; among nearly equal ones, as with periodic motion, the smallest
   /// offset.
-  double bestOffset_s() const {
-    double best_s = limits_.around_s, best = correlationAt(best_s);
-    search(best_s, kSearch_s, kSearchStep_s, &best_s, &best);
-    if (best < kVague && limits_.searches_wide) {
-      double wide_s = best_s, wide = best;
-      search(limits_.around_s, kWideSearch_s, kWideStep_s, &wide_s, &wide);
-      search(wide_s, kWideStep_s, kSearchStep_s, &wide_s, &wide);
-      if (wide > kClear && wide > best + kGain) {
-        best_s = wide_s;
-        best = wide;
-      }
+  double bestOffset_s(double from_s, bool is_wide) const {
+    double best_s = from_s, best = correlationAt(from_s);
+    if (is_wide) {
+      search(from_s, kWideSearch_s, kWideStep_s, &best_s, &best);
+      search(best_s, kWideStep_s, kSearchStep_s, &best_s, &best);
+    } else {
+      search(from_s, kSearch_s, kSearchStep_s, &best_s, &best);
     }
     const double before = correlationAt(best_s - kSearchStep_s);
     const double after = correlationAt(best_s + kSearchStep_s);
