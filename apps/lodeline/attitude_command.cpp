@@ -143,6 +143,10 @@ void attitude(const AttitudeArguments& arguments) {
   AttitudeWriter writer(folder);
   AttitudeFilter filter(options, magnetometer, &diagnostics);
   filterAll(*source, arguments, screenOptions(arguments, &diagnostics), &filter, &writer, &diagnostics);
+  const bool is_dip_judged =
+      !arguments.site.position.empty() || diagnostics.count("magnetometer_reversed") > 0;
+  if (filter.referenceField() && !is_dip_judged)
+    reportNegativeDip(filter.referenceField()->dip_rad, &diagnostics);
   writer.finish();
   const std::string north = northOf(arguments, magnetometer.has_value());
   nlohmann::ordered_json json = writer.json(north);

@@ -63,6 +63,11 @@ TEST_F(AllanTest, EndsWithOneWhereThereIsNothingToAnalyse) {
   const Execution one = runProgram("allan " + file("one.csv"));
   EXPECT_EQ(one.exit_code, 1);
   EXPECT_THAT(one.output, HasSubstr("1 usable readings"));
+  std::string standing = "t [s],wx [rad/s],wy [rad/s],wz [rad/s]\n";
+  for (int i = 0; i < 300; ++i) standing += "0,0.001,0,0\n";
+  folder_.write("standing.csv", standing);
+  EXPECT_THAT(runProgram("allan " + file("standing.csv")).output,
+              HasSubstr("gyroscope: the first 50 readings all have the stamp 0 ns"));
   EXPECT_EQ(runProgram("allan " + file("one.csv") + " --from -1").exit_code, 2);
   EXPECT_EQ(runProgram("allan").exit_code, 2);
 }

@@ -112,6 +112,14 @@ TEST_F(AttitudeTest, TellsTheUnitFromTheFieldsSize) {
   }
 }
 
+TEST_F(AttitudeTest, NamesAFieldThatRisesWhereNoSiteExplainsIt) {
+  const auto good = attitudeOf([](double, const Vec3& field_uT) { return field_uT; });
+  EXPECT_EQ(findings(good, "magnetometer_reversed"), 0);
+  // Of an accelerometer with reversed signs, or of a magnetometer with them.
+  const auto risen = attitudeOf([](double, const Vec3& field_uT) { return Vec3(-field_uT); });
+  EXPECT_EQ(findings(risen, "magnetometer_reversed"), 1);
+}
+
 TEST_F(AttitudeTest, GoesOnWhereTheMagnetometerFails) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   auto json = attitudeOf(

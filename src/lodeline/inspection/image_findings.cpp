@@ -4,6 +4,7 @@
 #include <map>
 
 #include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/plausibility/odd_intrinsics.h"
 #include "lodeline/inspection/survey/camera_words.h"
 
 namespace lodeline::findings {
@@ -87,9 +88,10 @@ void judgeFiles(const CameraSurvey& camera, Inspection* inspection) {
 void judgeIntrinsics(const CameraSurvey& camera, Inspection* inspection) {
   for (const CameraCalibration& calibration : inspection->rig.cameras) {
     if (calibration.name != camera.name) continue;
-    const std::string odd = oddIntrinsics(calibration);
-    if (!odd.empty())
-      add(camera, Severity::Warning, 58.0, "intrinsics_odd", "intrinsics: " + odd, inspection);
+    const OddIntrinsics odd = oddIntrinsics(calibration);
+    if (odd.words.empty()) continue;
+    add(camera, odd.is_explained ? Severity::Serious : Severity::Warning, odd.is_explained ? 86.0 : 58.0,
+        kIntrinsicsOdd, "intrinsics: " + odd.words, inspection);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
+#include "lodeline/inspection/plausibility/rate_unit.h"
 #include "lodeline/inspection/survey/signed_axes.h"
 #include "lodeline/util/angles.h"
 
@@ -98,6 +99,16 @@ void judgeTurningOfGravity(const ImuSurvey& imu, Inspection* inspection) {
                         describeSignedAxes(turning.best_axes)));
 }
 
+void judgeAlternation(const ImuSurvey& imu, Inspection* inspection) {
+  if (imu.alternation_m_per_s2 == 0.0) return;
+  addImuFinding(
+      inspection, Severity::Serious, 96.0, "imu_interleaved",
+      fmt::format("two sensors: every other reading of the accelerometer differs from those between by "
+                  "{:.2g} m/s^2, all the time; the readings of two IMUs, or of a raw and a filtered "
+                  "stream, take turns. Write each to a stream of its own",
+                  imu.alternation_m_per_s2));
+}
+
 /// Readings that a run would skip or convert.
 void judgeScreening(const ImuSurvey& imu, Inspection* inspection) {
   for (const Finding& finding : imu.screening.ranked()) {
@@ -149,16 +160,20 @@ void judgeVibration(Inspection* inspection) {
 /// Unit of the rates without a camera: gravity rotates far more slowly than, for example, rates in deg/s read
 /// as rad/s.
 void judgeRateUnit(const ImuSurvey& imu, Inspection* inspection) {
-  if (inspection->rate_to_SI != 1.0 || !imu.turning || imu.turning->correlation < 0.4) return;
+  // Motion adds to gravity: the less clear the relation, the more vague is its scale.
+  constexpr double kVague = 0.4, kClear = 0.6, kLikeness = 2.5, kClearLikeness = 1.6;
+  if (inspection->rate_to_SI != 1.0 || !imu.turning || imu.turning->correlation < kVague) return;
   const double scale = imu.turning->scale;
-  if (scale > 2.5 / kDegreesPerRadian || scale < 0.4 / kDegreesPerRadian) return;
-  inspection->rate_to_SI = 1.0 / kDegreesPerRadian;
+  const bool is_clear = imu.turning->correlation > kClear;
+  std::optional<RateUnit> unit = rateUnitOf(scale, kLikeness);
+  if (unit && unit->to_SI != kDegree) unit = is_clear ? rateUnitOf(scale, kClearLikeness) : std::nullopt;
+  if (!unit) return;
+  inspection->rate_to_SI = unit->to_SI;
   addImuFinding(
       inspection, Severity::Serious, 99.0, "gyroscope_unit",
-      fmt::format(
-          "the gyroscope is in deg/s, not rad/s: gravity turns {:.3g} times as fast as it says; multiply its "
-          "readings by pi/180",
-          scale));
+      fmt::format("the gyroscope is in {}, not rad/s: gravity turns {:.3g} times as fast as it says; "
+                  "multiply its readings by {:.6g}",
+                  unit->name, scale, unit->to_SI));
 }
 
 }  // namespace
@@ -174,6 +189,7 @@ void judgeImu(Inspection* inspection) {
   judgeSaturation("accelerometer", "accelerometer_saturated", "m/s^2", kLeastForce_m_per_s2 / imu.force_to_SI,
                   imu.accelerometer, inspection);
   judgeForceUnit(imu, inspection);
+  judgeAlternation(imu, inspection);
   judgeRateUnit(imu, inspection);
   judgeRest(imu, inspection);
   judgeTurningOfGravity(imu, inspection);

@@ -1,12 +1,14 @@
 #include "lodeline/inspection/inspection.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "lodeline/inspection/findings.h"
 #include "lodeline/inspection/other_sensors.h"
+#include "lodeline/inspection/plausibility/rate_unit.h"
 #include "lodeline/inspection/survey/camera_words.h"
-#include "lodeline/util/angles.h"
 
 namespace lodeline {
 namespace {
@@ -40,13 +42,15 @@ void settleRateUnit(Inspection* inspection) {
   constexpr double kLikeness = 2.0, kSame = 0.6;
   for (const CameraInspection& camera : inspection->cameras) {
     if (!camera.turning || camera.turning->correlation < kSame) continue;
-    const double ratio = camera.turning->gyroscope_scale / kDegree;
-    if (ratio > kLikeness || ratio < 1.0 / kLikeness) return;
-    inspection->rate_to_SI = kDegree;
-    inspection->findings.push_back({Severity::Serious, 99.0, "imu0", "gyroscope_unit",
-                                    "the gyroscope is in deg/s, not rad/s: the images turn 57 times slower "
-                                    "than it says; multiply its readings by "
-                                    "pi/180"});
+    const double scale = camera.turning->gyroscope_scale;
+    const std::optional<RateUnit> unit = rateUnitOf(scale, kLikeness);
+    if (!unit) return;
+    inspection->rate_to_SI = unit->to_SI;
+    inspection->findings.push_back(
+        {Severity::Serious, 99.0, "imu0", "gyroscope_unit",
+         fmt::format("the gyroscope is in {}, not rad/s: the images turn {:.3g} times as fast as it says; "
+                     "multiply its readings by {:.6g}",
+                     unit->name, scale, unit->to_SI)});
     return;
   }
 }
@@ -61,9 +65,12 @@ void compareCameras(Inspection* inspection) {
     const std::vector<CameraTurn>& turns = camera.survey.turns;
     const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
     camera.turning = compareTurns(turns, gyroscope, body_from_camera);
-    constexpr TurnLimits kHalf = {12, 3.0};  // a change of the offset must be significant
-    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera, kHalf);
-    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera, kHalf);
+    // A change of the offset must be significant. An offset of seconds is that of both halves.
+    constexpr double kSeconds_s = 1.0;
+    const double offset_s = camera.turning ? camera.turning->time_offset_s : 0.0;
+    const TurnLimits half = {12, 3.0, std::abs(offset_s) > kSeconds_s ? offset_s : 0.0, false};
+    camera.turning_early = compareTurns({turns.begin(), middle}, gyroscope, body_from_camera, half);
+    camera.turning_late = compareTurns({middle, turns.end()}, gyroscope, body_from_camera, half);
   }
 }
 

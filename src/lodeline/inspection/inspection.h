@@ -24,6 +24,9 @@ namespace lodeline {
 /// Kind of the finding that the images' time stamps have a constant offset to the gyroscope's.
 inline constexpr const char* kCameraTimeOffset = "camera_time_offset";
 
+/// Kind of the finding that the intrinsics of a camera are implausible.
+inline constexpr const char* kIntrinsicsOdd = "intrinsics_odd";
+
 /// One fault of a recording, or something worth knowing about it.
 struct InspectionFinding {
   Severity severity = Severity::Notice;
@@ -60,8 +63,8 @@ struct CameraInspection {
 struct Inspection {
   Rig rig;
   ImuSurvey imu;
-  double rate_to_SI = 1.0;  ///< of the gyroscope, as far as it can be determined; pi/180 where it is in deg/s
-  WhiteNoise shown_noise;   ///< of the IMU, estimated from its readings
+  double rate_to_SI = 1.0;                    ///< of the gyroscope, as far as it can be determined
+  WhiteNoise shown_noise;                     ///< of the IMU, estimated from its readings
   Vibration force_vibration, rate_vibration;  ///< of accelerometer and gyroscope, SI units
   std::vector<CameraInspection> cameras;
   std::optional<StereoSurvey> stereo;  ///< of the first two cameras

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "lodeline/inspection/inspection.h"
@@ -12,9 +13,10 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// An IMU at 200 Hz and a camera at 20 Hz with blank images, for the given seconds from 100 s on.
+/// An IMU at 200 Hz and a camera at 20 Hz with blank images, for the given seconds from 100 s on. A second
+/// camera where it has images.
 struct Stamps {
-  std::vector<Time> imu, images;
+  std::vector<Time> imu, images, second_images;
   explicit Stamps(double seconds = 10.0) {
     for (int i = 0; i < static_cast<int>(200 * seconds); ++i) imu.push_back(at(0.005 * i));
     for (int i = 0; i < static_cast<int>(20 * seconds); ++i) images.push_back(at(0.05 * i));
@@ -31,6 +33,10 @@ class StampSource : public MeasurementSource {
     rig_.cameras.front().height_px = 32;
     rig_.cameras.front().fx_px = rig_.cameras.front().fy_px = 40.0;
     rig_.cameras.front().cx_px = rig_.cameras.front().cy_px = 15.5;
+    if (stamps_.second_images.empty()) return;
+    rig_.cameras.push_back(rig_.cameras.front());
+    rig_.cameras.back().name = "cam1";
+    rig_.cameras.back().body_from_camera.translation.x() = 0.1;
   }
   const Rig& rig() const override { return rig_; }
   std::optional<ImuSample> nextImu() override {
@@ -40,10 +46,12 @@ class StampSource : public MeasurementSource {
                            Vec3(0.1 * std::sin(1.3 * k), 0.1 * std::sin(0.7 * k), 9.8)};
     return sample;
   }
-  std::optional<PendingImage> nextImage(size_t) override {
-    if (image_ == stamps_.images.size()) return std::nullopt;
-    const Time time = stamps_.images[image_];
-    return PendingImage{time, "image " + std::to_string(image_++), [] {
+  std::optional<PendingImage> nextImage(size_t camera) override {
+    const std::vector<Time>& images = camera == 0 ? stamps_.images : stamps_.second_images;
+    size_t& image = image_[camera];
+    if (image == images.size()) return std::nullopt;
+    const Time time = images[image];
+    return PendingImage{time, "image " + std::to_string(image++), [] {
                           return LoadedImage{cv::Mat(32, 32, CV_8UC1, cv::Scalar(90)), ""};
                         }};
   }
@@ -51,7 +59,8 @@ class StampSource : public MeasurementSource {
  private:
   Stamps stamps_;
   Rig rig_;
-  size_t imu_ = 0, image_ = 0;
+  size_t imu_ = 0;
+  std::array<size_t, 2> image_ = {0, 0};
 };
 
 Inspection inspected(const Stamps& stamps) {
@@ -82,6 +91,18 @@ TEST(StampFindings, ClocksThatDoNotMeetComeFirst) {
   EXPECT_THAT(inspection.findings.front().message,
               AllOf(HasSubstr("cam0 and imu0 have no time in common"), HasSubstr("from 100000000000 to"),
                     HasSubstr("from 10000000000 to"), HasSubstr("80.005 s earlier")));
+}
+
+TEST(StampFindings, ASecondCameraByAnotherClockIsComparedWithTheFirst) {
+  Stamps stamps;
+  stamps.second_images = stamps.images;
+  EXPECT_EQ(find(inspected(stamps), "clocks_apart"), nullptr);
+  for (Time& time : stamps.second_images) time = time + Duration::fromSeconds(3600.0);
+  const Inspection inspection = inspected(stamps);
+  ASSERT_NE(find(inspection, "clocks_apart"), nullptr);
+  EXPECT_THAT(find(inspection, "clocks_apart")->message,
+              AllOf(HasSubstr("cam1 and cam0 have no time in common"),
+                    HasSubstr("(3600 s from first to first)"), HasSubstr("timeshift_cam_imu")));
 }
 
 TEST(StampFindings, BurstsAreNamedWithTheirMeanRate) {

@@ -87,6 +87,12 @@ void report(const InspectionFinding& finding, const Inspection& inspection, cons
                                   finding.sensor, finding.kind, hint));
 }
 
+bool isSecondary(const std::string& sensor, const Rig& rig) {
+  return std::any_of(rig.cameras.begin(), rig.cameras.end(), [&](const CameraCalibration& camera) {
+    return camera.name == sensor && &camera != &rig.cameras.front();
+  });
+}
+
 /// Whether both halves of a camera's rotations have the same offset to the gyroscope. If a clock jumps
 /// between them, the mean is wrong for both.
 bool isSteady(const CameraInspection& camera) {
@@ -138,9 +144,11 @@ StartCheck checkStart(const SourceFactory& open, const std::string& data, const 
   const std::string hint =
       fmt::format("found in the first {:g} s; `lodeline inspect {}` says more", options.length_s, data);
   for (const InspectionFinding& finding : inspection.findings) {
-    // The run screens its readings by itself.
+    // The run screens its readings by itself, and compares the times of all images.
     if (inspection.imu.screening.count(finding.kind) > 0) continue;
-    if (finding.severity == Severity::Serious) report(finding, inspection, hint, diagnostics);
+    if (finding.kind == "stream_empty" && isSecondary(finding.sensor, inspection.rig)) continue;
+    if (finding.severity == Severity::Serious || finding.kind == kIntrinsicsOdd)
+      report(finding, inspection, hint, diagnostics);
   }
   return {imageOffsets_s(inspection), inspection.rate_to_SI, inspection.shown_noise};
 }

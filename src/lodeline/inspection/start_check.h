@@ -27,10 +27,10 @@ struct StartCheck {
 };
 
 /// Fast check before a run: inspects the first seconds of a recording with a few dozen of its images, and
-/// reports every serious finding of inspect() to `diagnostics` under its kind. If axes, units or extrinsics
-/// are so wrong that no estimate can be correct, it also reports kSensorsContradict. A rig at rest gives no
-/// findings. `data`: name of the recording for the messages. Readings in another unit, which the run
-/// converts, are reported as "gyroscope_unit" and "accelerometer_unit".
+/// reports every serious finding of inspect(), and odd intrinsics, to `diagnostics` under its kind. If axes,
+/// units or extrinsics are so wrong that no estimate can be correct, it also reports kSensorsContradict. A
+/// rig at rest gives no findings. `data`: name of the recording for the messages. Readings in another unit,
+/// which the run converts, are reported as "gyroscope_unit" and "accelerometer_unit".
 StartCheck checkStart(const SourceFactory& open, const std::string& data, const StartCheckOptions& options,
                       Diagnostics* diagnostics);
 

@@ -10,6 +10,7 @@
 namespace lodeline {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -68,6 +69,19 @@ TEST_F(StartCheckRealTest, CorrectsCamerasThatAreLateTogether) {
 
 TEST_F(StartCheckRealTest, CorrectsTheSecondCameraWhereItIsLateAlone) {
   EXPECT_THAT(check({0.0, 0.1}).image_offset_s, ElementsAre(0.0, DoubleNear(-0.1, 3e-3)));
+}
+
+TEST_F(StartCheckRealTest, NamesASecondCameraThatIsLateBySeconds) {
+  check({0.0, 2.5});
+  ASSERT_EQ(diagnostics_.count(kCameraTimeOffset), 1);
+  EXPECT_THAT(diagnostics_.ranked().front().first_message,
+              ContainsRegex("cam1: .* lag behind the gyroscope's by (249[789]|250[0123]) ms"));
+}
+
+TEST_F(StartCheckRealTest, NamesALagOfOneFrame) {
+  check({0.0, 0.05});
+  ASSERT_EQ(diagnostics_.count(kCameraTimeOffset), 1);
+  EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr("which is 1 frame: each image carries"));
 }
 
 TEST_F(StartCheckRealTest, LeavesTheSecondCameraWhereTheFirstIsLateAlone) {

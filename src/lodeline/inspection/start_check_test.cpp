@@ -87,6 +87,20 @@ TEST_F(StartCheckTest, FindsTheGyroscopesUnitByTheTurningOfGravity) {
   EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr("this run converts them"));
 }
 
+TEST_F(StartCheckTest, FindsTheOtherUnitsOfGyroscopes) {
+  for (const auto& [name, to_SI] : {std::pair{"rpm", 6.0 * kDegree}, {"mrad/s", 1e-3}}) {
+    diagnostics_ = {};
+    const StartCheck result = check([&, unit = to_SI](double time_s) {
+      ImuSample sample = tumbling(time_s, &random_);
+      sample.angular_velocity_B /= unit;
+      return sample;
+    });
+    EXPECT_NEAR(result.rate_to_SI, to_SI, 1e-12) << name;
+    ASSERT_EQ(diagnostics_.count("gyroscope_unit"), 1) << name;
+    EXPECT_THAT(diagnostics_.ranked().front().first_message, HasSubstr(std::string("is in ") + name));
+  }
+}
+
 TEST_F(StartCheckTest, DistrustsAGyroscopeInOtherAxesThanTheAccelerometer) {
   check([this](double time_s) {
     ImuSample sample = tumbling(time_s, &random_);

@@ -98,16 +98,38 @@ class OverlapJudge {
 
   void judge(const std::string& sensor, const StreamSummary& stream, double time_offset_to_imu_s,
              const char* offset) const {
-    const StreamSummary& imu = inspection_->imu.stream;
-    if (!imu.first || !imu.last || !stream.first || !stream.last) return;
-    const Duration to_imu = Duration::fromSeconds(time_offset_to_imu_s);
-    const std::optional<std::string> words =
-        apart(sensor, {moved(*stream.first, to_imu), moved(*stream.last, to_imu)}, "imu0",
-              {*imu.first, *imu.last}, offset);
-    if (words) inspection_->findings.push_back({Severity::Serious, 100.0, "recording", kClocksApart, *words});
+    judge(sensor, spanOf(stream, time_offset_to_imu_s), "imu0", spanOf(inspection_->imu.stream, 0.0), offset);
+  }
+
+  /// A camera by the clock of the first one is compared with the IMU, any other with the first one.
+  void judgeCamera(size_t i) const {
+    const auto spanOfCamera = [&](size_t camera) {
+      return spanOf(inspection_->cameras[camera].survey.stream,
+                    inspection_->rig.cameras[camera].time_offset_to_imu_s);
+    };
+    constexpr const char* kOffset =
+        "timeshift_cam_imu (in s, to be added to the images' stamps; those above include its present value)";
+    const std::string& name = inspection_->cameras[i].survey.name;
+    const bool is_apart =
+        i > 0 && judge(name, spanOfCamera(i), inspection_->cameras[0].survey.name, spanOfCamera(0), kOffset);
+    if (!is_apart) judge(name, spanOfCamera(i), "imu0", spanOf(inspection_->imu.stream, 0.0), kOffset);
   }
 
  private:
+  static std::optional<TimeSpan> spanOf(const StreamSummary& stream, double offset_s) {
+    if (!stream.first || !stream.last) return std::nullopt;
+    const Duration by = Duration::fromSeconds(offset_s);
+    return TimeSpan{moved(*stream.first, by), moved(*stream.last, by)};
+  }
+
+  bool judge(const std::string& name, const std::optional<TimeSpan>& span, const std::string& other_name,
+             const std::optional<TimeSpan>& other, const char* offset) const {
+    if (!span || !other) return false;
+    const std::optional<std::string> words = apart(name, *span, other_name, *other, offset);
+    if (words) inspection_->findings.push_back({Severity::Serious, 100.0, "recording", kClocksApart, *words});
+    return words.has_value();
+  }
+
   Inspection* inspection_;
 };
 
@@ -131,12 +153,7 @@ void judgeAbsence(Inspection* inspection) {
 void judgeStreams(Inspection* inspection) {
   judgeAbsence(inspection);
   const OverlapJudge overlap(inspection);
-  for (size_t i = 0; i < inspection->cameras.size(); ++i) {
-    const CameraSurvey& camera = inspection->cameras[i].survey;
-    overlap.judge(
-        camera.name, camera.stream, inspection->rig.cameras[i].time_offset_to_imu_s,
-        "timeshift_cam_imu (in s, to be added to the images' stamps; those above include its present value)");
-  }
+  for (size_t i = 0; i < inspection->cameras.size(); ++i) overlap.judgeCamera(i);
   if (inspection->magnetometer)
     overlap.judge("mag0", inspection->magnetometer->stream,
                   inspection->rig.magnetometer->time_offset_to_imu_s,

@@ -36,12 +36,13 @@ class TurningJudge {
       add(Severity::Warning, 80.0, "camera_unrelated",
           fmt::format("images and gyroscope do not turn together (correlation {:.2f}): recorded at other "
                       "times, clocks "
-                      "more than 1 s apart, dead axes of the gyroscope, or images without texture",
+                      "more than 8 s apart, dead axes of the gyroscope, or images without texture",
                       turning_.correlation));
       return;
     }
     if (isGyroscopeDead()) return;
     if (turning_.correlation < kJudgeable) {
+      if (judgeLag()) return;
       add(Severity::Notice, 0.0, "turns_too_vague",
           fmt::format("images and gyroscope agree too loosely (correlation {:.2f}) to judge extrinsics, "
                       "focal length and "
@@ -98,16 +99,49 @@ class TurningJudge {
     return true;
   }
 
+  /// Lag behind the first camera where the rotations are too vague for the offset of each to the gyroscope.
+  /// Their errors are mostly common to both. Returns true where there is a lag.
+  bool judgeLag() {
+    const CameraInspection& first = inspection_->cameras.front();
+    if (&first == &camera_ || !first.turning || first.turning->correlation < kSame) return false;
+    const double lag_s = first.turning->time_offset_s - turning_.time_offset_s;
+    const double sigma_s = std::hypot(turning_.time_offset_sigma_s, first.turning->time_offset_sigma_s);
+    if (std::abs(lag_s) < kHarmfulChange_s || std::abs(lag_s) < kSignificant_sigmas * sigma_s) return false;
+    add(Severity::Serious, 82.5, "cameras_apart",
+        fmt::format(
+            "time offset: its images are {:.0f} ms (+-{:.1f}) {} those of {} by the rotations of both{}; "
+            "pair the images that belong together, or set timeshift_cam_imu to {:.4f} s",
+            1e3 * std::abs(lag_s), 1e3 * sigma_s, lag_s > 0.0 ? "behind" : "ahead of", first.survey.name,
+            wholeFrames(lag_s), calibration_.time_offset_to_imu_s - lag_s));
+    return true;
+  }
+
+  /// A lag of whole frames behind the first camera in words; empty for another lag.
+  std::string wholeFrames(double lag_s) const {
+    constexpr double kSame_frames = 0.15;
+    const double frames = lag_s * camera_.survey.stream.rate_hz;
+    const double whole = std::round(frames);
+    if (whole == 0.0 || std::abs(frames - whole) > kSame_frames) return {};
+    return fmt::format(", which is {:.0f} frame{}: each image carries the stamp of {}", std::abs(whole),
+                       std::abs(whole) == 1.0 ? "" : "s", whole > 0.0 ? "a later one" : "an earlier one");
+  }
+
+  std::string framesBehindFirst() const {
+    const CameraInspection& first = inspection_->cameras.front();
+    if (&first == &camera_ || !first.turning) return {};
+    return wholeFrames(first.turning->time_offset_s - turning_.time_offset_s);
+  }
+
   void judgeOffset() {
     const double offset_s = turning_.time_offset_s;
     const double sigma_s = turning_.time_offset_sigma_s;
     if (std::abs(offset_s) < kHarmfulOffset_s || std::abs(offset_s) < kSignificant_sigmas * sigma_s) return;
     add(Severity::Serious, 83.0, kCameraTimeOffset,
-        fmt::format("time offset: the images' stamps {} the gyroscope's by {:.0f} ms (+-{:.1f}); set "
+        fmt::format("time offset: the images' stamps {} the gyroscope's by {:.0f} ms (+-{:.1f}){}; set "
                     "timeshift_cam_imu to "
                     "{:.4f} s or fix the clock",
                     offset_s < 0.0 ? "lag behind" : "run ahead of", 1e3 * std::abs(offset_s), 1e3 * sigma_s,
-                    calibration_.time_offset_to_imu_s + offset_s));
+                    framesBehindFirst(), calibration_.time_offset_to_imu_s + offset_s));
   }
 
   /// Returns true where the axes are so wrong that focal lengths cannot be evaluated.

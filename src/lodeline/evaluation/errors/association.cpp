@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/evaluation/errors/pose_convention.h"
 
 namespace lodeline {
 namespace {
@@ -93,11 +94,10 @@ PosePairs pairInterpolated(const Poses& estimate, const Poses& reference, Durati
 [[noreturn]] void failNothingMatches(const Trajectory& estimate, const Trajectory& reference,
                                      double tolerance_s) {
   throw InputError(fmt::format(
-      "no pose of {} ({:.3f} s to {:.3f} s) has a partner within {} s in {} ({:.3f} s to {:.3f} s); check "
-      "the "
-      "clocks, --time-offset-s and --time-tolerance-s",
+      "no pose of {} ({:.3f} s to {:.3f} s) has a partner within {} s in {} ({:.3f} s to {:.3f} s); {}",
       estimate.name, estimate.poses.front().time.seconds(), estimate.poses.back().time.seconds(), tolerance_s,
-      reference.name, reference.poses.front().time.seconds(), reference.poses.back().time.seconds()));
+      reference.name, reference.poses.front().time.seconds(), reference.poses.back().time.seconds(),
+      differenceOfClocks(estimate, reference)));
 }
 
 }  // namespace

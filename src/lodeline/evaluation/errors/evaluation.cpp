@@ -6,6 +6,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/errors/orientation_order.h"
+#include "lodeline/evaluation/errors/pose_convention.h"
 
 namespace lodeline {
 namespace {
@@ -92,7 +93,8 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& reference, con
   e.estimate = withZUp(estimate);
   e.reference = withZUp(reference);
   e.pairs = associate(e.estimate, e.reference, options.association);
-  checkOrientationOrder(e.pairs, diagnostics);
+  if (!checkPoseConvention(e.pairs, options.alignment, diagnostics))
+    checkOrientationOrder(e.pairs, diagnostics);
   e.alignment = align(options.alignment, firstPairs(e.pairs, options.alignment_pairs));
   reportAlignment(e, diagnostics);
   e.aligned_estimate = applyAlignment(e.alignment, e.pairs.estimate);

@@ -28,8 +28,9 @@ TableOptions poseTableOptions() {
 }
 
 /// Unit in which a number of this size is a Unix time between 1973 and 5138; seconds for a clock that starts
-/// at zero.
+/// at zero, and ticks of 100 ns where these are a current time.
 TimeUnit unitBySizeOf(double stamp) {
+  if (isCurrentTimeInTicks(stamp)) return TimeUnit::Ticks;
   const double size = std::abs(stamp);
   return size >= 1e17   ? TimeUnit::Nanoseconds
          : size >= 1e14 ? TimeUnit::Microseconds
@@ -143,9 +144,8 @@ bool PoseRows::timesHaveDecimals() const {
 
 TimeUnit PoseRows::timeUnit(const TimeColumn& column, Diagnostics& diagnostics) const {
   if (!column.unknown_unit.empty()) {
-    throw InputError(
-        fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are ns, us, ms, s", name_,
-                    column.unknown_unit, column.name));
+    throw InputError(fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are {}", name_,
+                                 column.unknown_unit, column.name, knownStampUnits()));
   }
   std::vector<double> stamps;
   for (std::size_t row = 0; row < size(); ++row) stamps.push_back(value(row, column.column));
@@ -156,7 +156,7 @@ TimeUnit PoseRows::timeUnit(const TimeColumn& column, Diagnostics& diagnostics) 
   const double rate_hz =
       static_cast<double>(column.units_per_count) * stampsPerUnit(stamps) / secondsPer(usual);
   if (rate_hz == 0.0 || column.second || (rate_hz > 1e-3 && rate_hz < 1e5)) {
-    if (!column.unit && (usual == TimeUnit::Milliseconds || usual == TimeUnit::Microseconds)) {
+    if (!column.unit && usual != TimeUnit::Nanoseconds && usual != TimeUnit::Seconds) {
       diagnostics.report(
           Severity::Notice, "time_unit",
           fmt::format("{}: no unit stated for the times; by their size they are {}", name_, nameOf(usual)));

@@ -147,6 +147,13 @@ TEST_F(PoseTableTest, TakesTheUnitThatThePosesRateAllows) {
   const Trajectory poses = read(uptime_ms);  // in seconds the interval of the poses would be 14 hours
   EXPECT_EQ((poses.poses[1].time - poses.poses[0].time).nanoseconds(), 50'000'000);
   EXPECT_EQ(diagnostics_.count("time_unit"), 1);
+  for (const int64_t first : {134'247'456'000'000'000, 639'158'688'000'000'000, 17'802'720'000'000'000}) {
+    std::string ticks;
+    for (int i = 0; i < 50; ++i) ticks += fmt::format("{} {} 0 0 0 0 0 1\n", first + i * 500000, i);
+    const Trajectory since_1970 = read(ticks);
+    EXPECT_EQ(since_1970.poses[1].time.nanoseconds(), 1'780'272'000'050'000'000) << first;
+    EXPECT_EQ(diagnostics_.count("time_unit"), 1) << first;
+  }
   // A header that states nanoseconds, with times in seconds.
   const Trajectory stated = read(
       "timestamp [ns],x,y,z,qw,qx,qy,qz\n1403636579.70,0,0,0,1,0,0,0\n1403636579.75,1,0,0,1,0,0,0\n"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -37,7 +38,9 @@ void SensorNoiseAnalysis::add(Time time, const Vec3& reading) {
         fmt::format("{}: reading at {} ns is not finite; passed over", sensor_.name, time.nanoseconds()));
     return;
   }
+  if (stamps_.size() < kStampsForRate) stamps_.push_back(time);
   if (begin_ && time <= last_time_) {
+    ++disordered_;
     diagnostics_->report(Severity::Warning, sensor_.name + "_disorder",
                          fmt::format("{}: stamp {} ns does not follow on {} ns; reading passed over",
                                      sensor_.name, time.nanoseconds(), last_time_.nanoseconds()));
@@ -187,10 +190,18 @@ SensorNoise SensorNoiseAnalysis::finish() {
 
 void SensorNoiseAnalysis::requireAnalysable(const SensorNoise& noise) const {
   if (readings_ < kFewestReadings) {
-    throw InputError(fmt::format(
-        "{}: {} usable readings, at least {} are needed, and hours for bias "
-        "instability; record the rig lying still",
-        sensor_.name, std::max<int64_t>(readings_, static_cast<int64_t>(first_.size())), kFewestReadings));
+    const int64_t usable = std::max<int64_t>(readings_, static_cast<int64_t>(first_.size()));
+    if (disordered_ > usable) {
+      refuseBadClock(sensor_.name, stamps_);
+      throw InputError(
+          fmt::format("{}: {} of {} readings have no later time than one before them; check the "
+                      "column of the times and sort the record by it",
+                      sensor_.name, disordered_, disordered_ + usable));
+    }
+    throw InputError(
+        fmt::format("{}: {} usable readings, at least {} are needed, and hours for bias "
+                    "instability; record the rig lying still",
+                    sensor_.name, usable, kFewestReadings));
   }
   if (noise.readings - noise.repeated < kFewestReadings) {
     throw InputError(fmt::format("{}: frozen: {} of {} readings only repeat the one before", sensor_.name,

@@ -55,8 +55,8 @@ class SensorNoiseAnalysis {
   void add(Time time, const Vec3& reading);
 
   /// Returns the result and reports its limitations: a record that is short, not stationary, repeated,
-  /// filtered or drifting. Throws InputError where no result is possible: too few readings, a frozen sensor,
-  /// or a sensor that moved for more than half of the record.
+  /// filtered or drifting. Throws InputError where no result is possible: too few readings, times that stand
+  /// still or run backwards, a frozen sensor, or a sensor that moved for more than half of the record.
   SensorNoise finish();
 
  private:
@@ -75,6 +75,8 @@ class SensorNoiseAnalysis {
   std::vector<std::pair<Time, Vec3>> first_;  ///< readings held until the period is known
   double period_s_ = 0.0;
   double gap_limit_s_ = 0.0;
+  std::vector<Time> stamps_;  ///< the first ones, in stored order
+  int64_t disordered_ = 0;    ///< readings that were not later than the one before
   std::optional<Time> begin_;
   Time last_time_;      ///< of all added readings
   Time previous_time_;  ///< of the accepted readings

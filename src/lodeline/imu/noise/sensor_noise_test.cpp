@@ -175,6 +175,24 @@ TEST_F(SensorNoiseTest, RefusesWhatSaysNothing) {
   expectRefused([](int i, Time*, Vec3*) { return i == 0; }, "1 usable readings");
   expectRefused(asItIs, "100 usable readings", 100);
   expectRefused(
+      [](int, Time* time, Vec3*) {
+        *time = Time();
+        return true;
+      },
+      "all have the stamp 0 ns");
+  expectRefused(
+      [](int i, Time* time, Vec3*) {
+        *time = Time::fromSeconds(1000.0 - 0.01 * i);
+        return true;
+      },
+      "stored in reverse order");
+  expectRefused(
+      [](int i, Time* time, Vec3*) {
+        *time = Time::fromSeconds(0.01 * (i % 20));
+        return true;
+      },
+      "have no later time than one before them");
+  expectRefused(
       [](int, Time*, Vec3* reading) {
         *reading = Vec3(0.01, 0.02, 0.03);
         return true;

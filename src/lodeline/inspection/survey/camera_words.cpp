@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/cameras/camera.h"
-#include "lodeline/diagnostics.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline {
@@ -19,16 +17,6 @@ std::string nearestAxis(const Vec3& direction) {
   const double angle_deg = kDegreesPerRadian * std::acos(std::min(1.0, std::abs(direction[axis])));
   const std::string name = fmt::format("{}{}", direction[axis] < 0.0 ? '-' : '+', "xyz"[axis]);
   return angle_deg < 5.0 ? name : fmt::format("{} ({:.0f} deg off)", name, angle_deg);
-}
-
-/// Full angle between the centres of the left and right edges.
-std::optional<double> widthAngle_deg(const CameraCalibration& calibration) {
-  const std::shared_ptr<const Camera> camera = makeCamera(calibration);
-  const double row = 0.5 * calibration.height_px;
-  const auto left = camera->unproject(Vec2(0.0, row));
-  const auto right = camera->unproject(Vec2(calibration.width_px - 1.0, row));
-  if (!left || !right) return std::nullopt;
-  return kDegreesPerRadian * std::acos(std::clamp(left->dot(*right), -1.0, 1.0));
 }
 
 }  // namespace
@@ -56,25 +44,6 @@ std::string describeGravity(const CameraCalibration& camera, const Vec3& up_B) {
   return fmt::format(
       "{} on average (gravity {:.0f} deg off the image's downward direction, {:.0f} deg {} its plane)", word,
       std::abs(roll_deg), std::abs(pitch_deg), pitch_deg > 0.0 ? "in front of" : "behind");
-}
-
-std::string oddIntrinsics(const CameraCalibration& camera) {
-  if (!isCalibrated(camera)) return {};
-  const double off_x = std::abs(camera.cx_px - 0.5 * camera.width_px) / camera.width_px;
-  const double off_y = std::abs(camera.cy_px - 0.5 * camera.height_px) / camera.height_px;
-  if (off_x > 0.2 || off_y > 0.2) {
-    return fmt::format("the principal point ({:.0f}, {:.0f}) px lies far from the centre of {} x {} px",
-                       camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
-  }
-  if (std::max(camera.fx_px, camera.fy_px) > 1.1 * std::min(camera.fx_px, camera.fy_px)) {
-    return fmt::format("the focal lengths {:.1f} and {:.1f} px differ by more than 10 %: pixels are square",
-                       camera.fx_px, camera.fy_px);
-  }
-  const std::optional<double> angle_deg = widthAngle_deg(camera);
-  if (!angle_deg) return "the distortion is not invertible within the image";
-  if (*angle_deg < 15.0)
-    return fmt::format("the view is only {:.0f} deg wide; is the focal length right?", *angle_deg);
-  return {};
 }
 
 }  // namespace lodeline

@@ -16,7 +16,4 @@ std::string describeAxes(const CameraCalibration& camera);
 /// unit vector.
 std::string describeGravity(const CameraCalibration& camera, const Vec3& up_B);
 
-/// Implausible intrinsics of a camera in words; empty where there are none.
-std::string oddIntrinsics(const CameraCalibration& camera);
-
 }  // namespace lodeline

@@ -162,6 +162,31 @@ std::optional<GravityTurning> compareWithGravity(const std::vector<Block>& block
   return turning;
 }
 
+/// See ImuSurvey::alternation_m_per_s2. A vibration at half the rate of the readings alternates as well, but
+/// its phase drifts within a window.
+double alternation_m_per_s2(const std::vector<ImuSample>& samples) {
+  constexpr size_t kBlock = 50, kBlocksOfWindow = 8, kFewestWindows = 2;
+  constexpr double kSteady = 0.9, kNearlyAll = 0.9, kLeast_m_per_s2 = 0.3;
+  size_t windows = 0, steady = 0;
+  double sum = 0.0;
+  for (size_t first = 0; first + kBlock * kBlocksOfWindow <= samples.size(); ++windows) {
+    Vec3 of_window = Vec3::Zero();
+    double sizes = 0.0;
+    for (size_t block = 0; block < kBlocksOfWindow; ++block, first += kBlock) {
+      Vec3 difference = Vec3::Zero();
+      for (size_t i = 0; i < kBlock; ++i)
+        difference += (i % 2 == 0 ? 2.0 : -2.0) / kBlock * samples[first + i].specific_force_B;
+      of_window += difference / kBlocksOfWindow;
+      sizes += difference.norm() / kBlocksOfWindow;
+    }
+    sum += of_window.norm();
+    steady += of_window.norm() > std::max(kLeast_m_per_s2, kSteady * sizes) ? 1 : 0;
+  }
+  if (windows < kFewestWindows || static_cast<double>(steady) < kNearlyAll * static_cast<double>(windows))
+    return 0.0;
+  return sum / static_cast<double>(windows);
+}
+
 }  // namespace
 
 ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics) {
@@ -193,6 +218,7 @@ ImuSurvey surveyImu(MeasurementSource* source, Diagnostics* diagnostics) {
   survey.median_force = median(forces);
   survey.force_to_SI = forceToSI(survey.median_force);
   for (ImuSample& sample : samples) sample.specific_force_B *= survey.force_to_SI;
+  survey.alternation_m_per_s2 = alternation_m_per_s2(samples);
   InertialScreenOptions options;
   options.knows_rate_unit = false;
   samples = screened(samples, options, &survey.screening);

@@ -45,6 +45,9 @@ struct ImuSurvey {
   double rest_force_m_per_s2 = 0.0;  ///< mean size of the specific force at rest
   Vec3 up_B = Vec3::UnitZ();         ///< direction of the mean specific force
   std::optional<GravityTurning> turning;  ///< where the rig rotated enough
+  /// Mean difference of every other accelerometer reading from those between, m/s^2, where it is the same in
+  /// nearly all seconds: readings of two sensors by turns. Otherwise 0.
+  double alternation_m_per_s2 = 0.0;
 };
 
 /// Reports errors in the order of the time stamps, as OrderedStream does.

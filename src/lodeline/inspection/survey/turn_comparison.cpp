@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kSearch_s = 1.0;
 constexpr double kSearchStep_s = 4e-3;
+/// Larger offsets are searched for where no small one correlates clearly, and used only where they do. Noise
+/// that makes the correlation vague at the true offset lowers it at all others.
+constexpr double kWideSearch_s = 8.0, kWideStep_s = 20e-3, kVague = 0.93, kClear = 0.97, kGain = 0.04;
 /// A camera with a smaller rate (root mean square) does not allow a comparison.
 constexpr double kLeastRate_rad_per_s = 0.02;
 /// A direction with a smaller share of the rotation is not evaluated.
@@ -55,19 +58,24 @@ struct Moments {
 class Comparison {
  public:
   Comparison(const std::vector<CameraTurn>& turns, const GyroscopeIntegral& gyroscope,
-             const Quat& body_from_camera, int least_turns)
+             const Quat& body_from_camera, const TurnLimits& limits)
       : turns_(turns),
         gyroscope_(gyroscope),
         body_from_camera_(body_from_camera),
-        least_turns_(least_turns),
+        limits_(limits),
         use_(turns.size(), true) {}
 
   std::optional<TurnComparison> run() {
-    double offset_s = bestOffset_s();
-    rejectOutliers(offset_s);
-    offset_s = bestOffset_s();
+    Settled settled = settle(false);
+    if (settled.correlation < kVague && limits_.searches_wide) {
+      Settled wide = settle(true);
+      if (wide.correlation > kClear && wide.correlation > settled.correlation + kGain)
+        settled = std::move(wide);
+    }
+    use_ = std::move(settled.use);
+    const double offset_s = settled.offset_s;
     const std::vector<Pair> pairs = pairsAt(offset_s);
-    if (static_cast<int>(pairs.size()) < least_turns_) return std::nullopt;
+    if (static_cast<int>(pairs.size()) < limits_.turns) return std::nullopt;
     const Moments moments(pairs);
     TurnComparison result;
     const auto count = static_cast<double>(pairs.size());
@@ -84,6 +92,20 @@ class Comparison {
   }
 
  private:
+  /// An offset and the rotations that fit it.
+  struct Settled {
+    double offset_s = 0.0, correlation = 0.0;
+    std::vector<bool> use;
+  };
+
+  Settled settle(bool is_wide) {
+    use_.assign(turns_.size(), true);
+    double offset_s = bestOffset_s(limits_.around_s, is_wide);
+    rejectOutliers(offset_s);
+    offset_s = bestOffset_s(is_wide ? offset_s : limits_.around_s, false);
+    return {offset_s, correlationAt(offset_s), use_};
+  }
+
   std::vector<Pair> pairsAt(double offset_s) const {
     std::vector<Pair> pairs;
     for (size_t i = 0; i < turns_.size(); ++i) {
@@ -99,24 +121,19 @@ class Comparison {
   double correlationAt(double offset_s) const {
     const std::vector<Pair> pairs = pairsAt(offset_s);
     // A smaller number of rotations within the readings correlates better by chance.
-    if (static_cast<int>(pairs.size()) < least_turns_ || 2 * pairs.size() < turns_.size()) return 0.0;
+    if (static_cast<int>(pairs.size()) < limits_.turns || 2 * pairs.size() < turns_.size()) return 0.0;
     return Moments(pairs).correlation();
   }
 
   /// Offset with the largest correlation; among nearly equal ones, as with periodic motion, the smallest
   /// offset.
-  double bestOffset_s() const {
-    constexpr double kNearlyEqual = 0.01;
-    double best_s = 0.0;
-    double best = correlationAt(0.0);
-    for (int i = 1; i * kSearchStep_s <= kSearch_s; ++i) {
-      for (const double offset_s : {i * kSearchStep_s, -i * kSearchStep_s}) {
-        const double correlation = correlationAt(offset_s);
-        const bool is_neighbour = std::abs(offset_s - best_s) < 1.5 * kSearchStep_s;
-        if (correlation <= best + (is_neighbour ? 0.0 : kNearlyEqual)) continue;
-        best = correlation;
-        best_s = offset_s;
-      }
+  double bestOffset_s(double from_s, bool is_wide) const {
+    double best_s = from_s, best = correlationAt(from_s);
+    if (is_wide) {
+      search(from_s, kWideSearch_s, kWideStep_s, &best_s, &best);
+      search(best_s, kWideStep_s, kSearchStep_s, &best_s, &best);
+    } else {
+      search(from_s, kSearch_s, kSearchStep_s, &best_s, &best);
     }
     const double before = correlationAt(best_s - kSearchStep_s);
     const double after = correlationAt(best_s + kSearchStep_s);
@@ -124,6 +141,20 @@ class Comparison {
     if (!(curvature < 0.0)) return best_s;
     const double shift = std::clamp(0.5 * (before - after) / curvature, -1.0, 1.0);
     return best_s + shift * kSearchStep_s;
+  }
+
+  /// Improves the best offset and its correlation by those within `width_s` of `from_s`, from the middle out.
+  void search(double from_s, double width_s, double step_s, double* best_s, double* best) const {
+    constexpr double kNearlyEqual = 0.01;
+    for (int i = 1; i * step_s <= width_s; ++i) {
+      for (const double offset_s : {from_s + i * step_s, from_s - i * step_s}) {
+        const double correlation = correlationAt(offset_s);
+        const bool is_neighbour = std::abs(offset_s - *best_s) < 1.5 * step_s;
+        if (correlation <= *best + (is_neighbour ? 0.0 : kNearlyEqual)) continue;
+        *best = correlation;
+        *best_s = offset_s;
+      }
+    }
   }
 
   static Mat3 regression(const Moments& moments) {
@@ -239,7 +270,7 @@ class Comparison {
   const std::vector<CameraTurn>& turns_;
   const GyroscopeIntegral& gyroscope_;
   Quat body_from_camera_;
-  int least_turns_;
+  TurnLimits limits_;
   std::vector<bool> use_;
 };
 
@@ -255,7 +286,7 @@ std::optional<TurnComparison> compareTurns(const std::vector<CameraTurn>& turns,
     time_s += std::clamp((turns[i].begin - turns[i - 1].begin).seconds(), 0.0, kLongestPause_s);
   }
   if (time_s < limits.time_s) return std::nullopt;
-  return Comparison(turns, gyroscope, body_from_camera, limits.turns).run();
+  return Comparison(turns, gyroscope, body_from_camera, limits).run();
 }
 
 }  // namespace lodeline

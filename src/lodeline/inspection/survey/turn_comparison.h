@@ -47,6 +47,8 @@ struct TurnComparison {
 struct TurnLimits {
   int turns = 25;
   double time_s = 4.0;
+  double around_s = 0.0;      ///< middle of the offsets that are searched for
+  bool searches_wide = true;  ///< for offsets of seconds, where no small one fits
 };
 
 /// Compares the rotations. Empty where too few of them are within the gyroscope's readings, their total time

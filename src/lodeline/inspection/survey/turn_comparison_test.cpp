@@ -66,6 +66,26 @@ TEST(TurnComparison, FindsTheTimeOffset) {
   }
 }
 
+TEST(TurnComparison, FindsATimeOffsetOfSeconds) {
+  std::vector<ImuSample> samples;
+  for (int i = -1000; i < 3000; ++i) {
+    const double t = 0.005 * i;
+    // Without a period, so that no other offset fits.
+    samples.push_back({Time::fromSeconds(t), rateAt(t + 0.02 * t * t), Vec3::UnitZ()});
+  }
+  for (const double delay_s : {-2.5, 1.25, 4.2}) {
+    std::vector<CameraTurn> late = turns(delay_s);
+    for (CameraTurn& turn : late) {
+      const double t = (turn.begin - Time::fromSeconds(delay_s)).seconds() + 0.025;
+      turn.rate_C = kBodyFromCamera.conjugate() * rateAt(t + 0.02 * t * t);
+    }
+    const auto comparison = compareTurns(late, GyroscopeIntegral(samples), kBodyFromCamera);
+    ASSERT_TRUE(comparison);
+    EXPECT_GT(comparison->correlation, 0.99);
+    EXPECT_NEAR(comparison->time_offset_s, -delay_s, 3e-3);
+  }
+}
+
 TEST(TurnComparison, FindsTheRotation) {
   const Vec3 error_B(0.1, -0.05, 0.12);
   const auto comparison = compareTurns(turns(0.0, so3::exp(error_B) * kBodyFromCamera),

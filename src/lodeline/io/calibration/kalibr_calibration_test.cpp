@@ -205,5 +205,24 @@ TEST_F(KalibrTest, RefusesWhatIsNoCamchain) {
   EXPECT_THAT([&] { read(); }, ThrowsMessage<InputError>(HasSubstr("holds no sensors")));
 }
 
+TEST_F(KalibrTest, NamesATimeShiftThatMayBeInMilliseconds) {
+  recording_.write("imu.yaml", kImuOfKalibr);
+  const auto findings = [&](const std::string& shift) {
+    std::string chain = kCamchain;
+    chain.replace(chain.find("0.0125"), 6, shift);
+    recording_.write("../camchain-imucam.yaml", chain);
+    diagnostics_ = {};
+    read();
+    return diagnostics_.count("time_offset_unit");
+  };
+  EXPECT_EQ(findings("4.2"), 1);
+  EXPECT_EQ(diagnostics_.ranked().front().severity, Severity::Serious);
+  EXPECT_THAT(diagnostics_.ranked().front().first_message,
+              testing::AllOf(HasSubstr("timeshift_cam_imu' is 4.2 s"), HasSubstr("Seconds are due: 0.0042")));
+  EXPECT_EQ(findings("-12.5"), 1);
+  EXPECT_EQ(findings("-0.2"), 0);   // a slow link
+  EXPECT_EQ(findings("1.4e9"), 0);  // the time of day and the time since a start
+}
+
 }  // namespace
 }  // namespace lodeline

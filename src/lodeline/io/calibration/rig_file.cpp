@@ -51,9 +51,13 @@ class RigReader {
     });
     visit("dvl0", [&](CalibrationMap* map, SectionKeys) {
       rig.dvl = readDvl(map);
+      judgeDelay("timeshift", rig.dvl->time_offset_to_imu_s, *map);
       moveToBody(&rig.dvl->body_from_dvl);
     });
-    visit("current0", [&](CalibrationMap* map, SectionKeys) { rig.currents = readCurrents(map); });
+    visit("current0", [&](CalibrationMap* map, SectionKeys) {
+      rig.currents = readCurrents(map);
+      judgeDelay("timeshift", rig.currents->time_offset_to_imu_s, *map);
+    });
   }
 
  private:
@@ -99,6 +103,19 @@ class RigReader {
     return true;
   }
 
+  /// Reports a delay to the IMU that no trigger, exposure or cable has. Differences between two clocks are
+  /// mostly larger.
+  void judgeDelay(const char* key, double delay_s, const CalibrationMap& map) const {
+    constexpr double kLongest_s = 0.5, kClocks_s = 1000.0;
+    if (std::abs(delay_s) < kLongest_s || std::abs(delay_s) >= kClocks_s) return;
+    diagnostics_->report(
+        Severity::Serious, "time_offset_unit",
+        fmt::format(
+            "{} is {:g} s, which no sensor is late; is it in milliseconds? Seconds are due: {:g}. Only "
+            "where the clocks of the two sensors differ that much it may stay",
+            map.atLine(key), delay_s, 1e-3 * delay_s));
+  }
+
   void readImu(CalibrationMap* map, SectionKeys keys) {
     ImuCalibration& imu = result_->rig.imu;
     if (keys == SectionKeys::Kalibr) {
@@ -139,10 +156,12 @@ class RigReader {
       camera.body_from_camera = body_from_kalibr_body_ * camera.body_from_camera;
       camera.rate_hz = extras.rate_hz;
       camera.mask_file = extras.mask_file;
+      judgeDelay("timeshift_cam_imu", camera.time_offset_to_imu_s, *map);
       cameras.push_back(std::move(camera));
       return;
     }
     cameras.push_back(readEurocCamera(name, map));
+    judgeDelay("timeshift_cam_imu", cameras.back().time_offset_to_imu_s, *map);
     moveToBody(&cameras.back().body_from_camera);
   }
 

@@ -196,9 +196,8 @@ void PlainCsv::settleTime() {
                     name_, times_.front().name));
   }
   if (!time_->unknown_unit.empty()) {
-    throw InputError(
-        fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are ns, us, ms, s", name_,
-                    time_->unknown_unit, time_->name));
+    throw InputError(fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are {}", name_,
+                                 time_->unknown_unit, time_->name, knownStampUnits()));
   }
   settleTimeUnit();
 }
@@ -219,11 +218,15 @@ void PlainCsv::settleTimeUnit() {
   const bool is_stated = time_->unit.has_value();
   time_->unit = usual;
   const PlausibleRate rate = gyroscope_ || accelerometer_ ? kInertialRate : kMagnetometerRate;
-  const std::optional<TimeUnit> by_rate = timeUnitOfStamps(stamps, rate);
+  const bool are_ticks = usual == TimeUnit::Nanoseconds && areTicks(stamps, rate);
+  const std::optional<TimeUnit> by_rate =
+      are_ticks ? std::optional(TimeUnit::Ticks) : timeUnitOfStamps(stamps, rate);
   const double usual_hz = stampsPerUnit(stamps) / secondsPer(usual);
   // Low rates are accepted where the unit is stated.
   const double least_hz = is_stated ? 1e-3 : 0.8 * rate.least_hz;
-  if (!by_rate || time_->second || (usual_hz > least_hz && usual_hz < 1.25 * rate.most_hz)) return;
+  if (!is_stated && !are_ticks && usual == TimeUnit::Nanoseconds) refuseUnclearUnit(stamps, rate);
+  const bool is_usual = !are_ticks && usual_hz > least_hz && usual_hz < 1.25 * rate.most_hz;
+  if (!by_rate || time_->second || is_usual) return;
   time_->unit = by_rate;
   diagnostics_->report(
       Severity::Warning, "time_unit",
@@ -232,6 +235,20 @@ void PlainCsv::settleTimeUnit() {
                   "write `t [{}]` into the header if so",
                   name_, is_stated ? nameOf(usual) : "the usual unit", time_->name, usual_hz,
                   nameOf(*by_rate), stampsPerUnit(stamps) / secondsPer(*by_rate), toString(*by_rate)));
+}
+
+/// Throws for counts of an unknown unit that as nanoseconds are of an unusually fast sensor, and as another
+/// unit of a usual one.
+void PlainCsv::refuseUnclearUnit(const std::vector<double>& stamps, PlausibleRate rate) const {
+  constexpr double kUnusual = 0.4, kLeastUnixTime_ns = 1e18;
+  const auto rateIn_hz = [&](TimeUnit unit) { return stampsPerUnit(stamps) / secondsPer(unit); };
+  const double hz = rateIn_hz(TimeUnit::Nanoseconds);
+  if (hz < kUnusual * rate.most_hz || hz > 1.25 * rate.most_hz || stamps.front() > kLeastUnixTime_ns) return;
+  throw InputError(fmt::format(
+      "{}: the times in '{}' are whole numbers without a unit: as nanoseconds they mean {:.4g} readings a "
+      "second, as steps of 100 ns {:.4g}, as microseconds {:.4g}; state the unit in the header, as in `t "
+      "[us]` or `t [100 ns]`",
+      name_, time_->name, hz, rateIn_hz(TimeUnit::Ticks), rateIn_hz(TimeUnit::Microseconds)));
 }
 
 void PlainCsv::settleUnits() {

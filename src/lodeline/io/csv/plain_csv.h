@@ -43,9 +43,10 @@ struct PlainCsvOptions {
 /// magnetometer is used.
 ///
 /// Without a unit, a time with a decimal point is in seconds and a whole number in nanoseconds, unless only
-/// another unit gives a plausible sensor rate. The gyroscope is in rad/s. Accelerometer and magnetometer have
-/// the unit for which the median of the first readings is plausible on Earth. Units other than SI are
-/// reported.
+/// another unit gives a plausible sensor rate, or the numbers are the current time in steps of 100 ns. Whole
+/// numbers are refused where nanoseconds would mean an unusually fast sensor. The gyroscope is in rad/s.
+/// Accelerometer and magnetometer have the unit for which the median of the first readings is plausible on
+/// Earth. Units other than SI are reported.
 class PlainCsv {
  public:
   /// Throws InputError where the file cannot be opened, has no usable row, or has a header that cannot be
@@ -92,6 +93,7 @@ class PlainCsv {
   void readFirstRows();
   void settleTime();
   void settleTimeUnit();
+  void refuseUnclearUnit(const std::vector<double>& stamps, PlausibleRate rate) const;
   void settleUnits();
   void guessUnit(std::span<const UnitGuess> guesses, const char* what, Triad* triad);
   bool nextRow();

@@ -56,6 +56,27 @@ TEST_F(PlainCsvTest, UnderstandsAHeaderWithUnitsInAnyOrder) {
   EXPECT_TRUE(diagnostics_.ranked().empty());
 }
 
+TEST_F(PlainCsvTest, ReadsWindowsTicksAsTimesOfTheCalendar) {
+  std::string text = "timestamp,wx,wy,wz,ax,ay,az\n", stated = "time [100 ns],wx,wy,wz,ax,ay,az\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{},0,0,0,0,0,9.8\n", 134247456000000000 + i * 100000);
+    stated += fmt::format("{},0,0,0,0,0,9.8\n", 5 + i * 100000);
+  }
+  const auto readings = read(text);
+  ASSERT_EQ(readings.size(), 60U);
+  EXPECT_EQ(readings[0].time.nanoseconds(), 1780272000000000000);
+  EXPECT_EQ(readings[59].time.nanoseconds(), 1780272000590000000);
+  ASSERT_EQ(diagnostics_.count("time_unit"), 1);
+  EXPECT_THAT(diagnostics_.ranked()[0].first_message, HasSubstr("steps of 100 ns (100 Hz)"));
+  EXPECT_EQ(read(stated)[59].time.nanoseconds(), 590000500);
+}
+
+TEST_F(PlainCsvTest, RefusesCountsThatMayBeOfSeveralUnits) {
+  std::string text = "time,wx,wy,wz,ax,ay,az\n";
+  for (int i = 0; i < 60; ++i) text += fmt::format("{},0,0,0,0,0,9.8\n", 123 + i * 100000);
+  expectRefused(text, "as nanoseconds they mean 1e+04 readings a second, as steps of 100 ns 100");
+}
+
 TEST_F(PlainCsvTest, CountsOnWhereACounterOf32BitsStartsAgain) {
   const auto readings = read(
       "micros,mx [uT],my [uT],mz "

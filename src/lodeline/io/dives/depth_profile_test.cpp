@@ -75,6 +75,7 @@ TEST_F(DepthProfileTest, PassesOverWhatItCannotUse) {
 TEST_F(DepthProfileTest, RefusesWhatIsNoProfile) {
   expectRefusal("", "no columns of time and depth");
   expectRefusal(rows("time,pressure\n", "{0},{0}\n"), "'depth [m]'");
+  expectRefusal(rows("time,pressure [mbar]\n", "{0},{0}\n"), "1 bar is 10.2 m of fresh");
   expectRefusal("time,depth\n1,2\n2,3\n", "only 2 usable readings");
   EXPECT_THROW(readDepthProfiles("/nowhere.csv", &diagnostics_), InputError);
 }
@@ -259,7 +260,9 @@ TEST(ProfileTime, IsReadInTheUsualNotations) {
   EXPECT_EQ(parseProfileTime("21/11/2026 12:00:00"), 1795262400.0);
   EXPECT_EQ(parseProfileTime("2026-11-21T12:00:00.25+02:00"), 1795255200.25);
   EXPECT_EQ(parseProfileTime("2026-11-21T12:00-0430"), 1795262400.0 + 4.5 * 3600.0);
-  for (const char* text : {"", "x", "75.5", "1:75", "1:2:3:4", "2026-13-21T12:00:00Z",
+  EXPECT_EQ(parseProfileTime("2026-11-21 12:00:00 CEST"), 1795262400.0);
+  EXPECT_EQ(parseProfileTime("10:00:05 EST"), 36005.0);
+  for (const char* text : {"", "x", "UTC", "12 UTC", "75.5", "1:75", "1:2:3:4", "2026-13-21T12:00:00Z",
                            "2026-11-21T12:00:00+x", "nan", "-1:10", "32.1.2026"}) {
     EXPECT_FALSE(parseProfileTime(text)) << text;
   }

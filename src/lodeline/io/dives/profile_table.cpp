@@ -52,9 +52,16 @@ ProfileColumns columnsOf(const TableReader& table, const std::string& file) {
   if (table.hasHeader()) return profileColumns(table.columns()).value();
   const bool is_named = !table.unknownHeader().empty();
   if (!is_named && table.columnCount() != 1) return firstTwo();
+  const std::string header = lowerCase(table.unknownHeader());
+  const bool is_pressure =
+      header.find("press") != std::string::npos || header.find("druck") != std::string::npos;
   throw InputError(fmt::format(
-      "{}: {} columns of time and depth; call them 'time [s]' and 'depth [m]'", file,
-      is_named ? fmt::format("the header '{}' names no", excerpt(table.unknownHeader())) : "there are no"));
+      "{}: {} columns of time and depth; call them 'time [s]' and 'depth [m]'{}", file,
+      is_named ? fmt::format("the header '{}' names no", excerpt(table.unknownHeader())) : "there are no",
+      is_pressure
+          ? ". A pressure becomes a depth less that at the surface: 1 bar is 10.2 m of fresh and 9.95 m "
+            "of sea water"
+          : ""));
 }
 
 /// Metres per unit from lines before the header: a column "Imperial Units" with
@@ -221,7 +228,9 @@ ProfileRows readProfileTable(const std::filesystem::path& file, Diagnostics* dia
     const std::optional<double> time = times.of(table, profile.rows.size(), &is_number);
     const std::optional<double> depth = depthFrom(table.cell(columns.depth), &profile.metres_per_unit);
     if (!time || !depth || !std::isfinite(*time) || !std::isfinite(*depth)) {
-      table.passOver("no time with a depth");
+      const std::string_view time_cell = columns.time ? table.cell(*columns.time) : std::string_view();
+      table.passOver(fmt::format("no time with a depth: '{}' and '{}'", excerpt(time_cell),
+                                 excerpt(table.cell(columns.depth))));
       continue;
     }
     if (columns.dive && table.cell(*columns.dive) != dive_name) {

@@ -2,14 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "lodeline/io/tables/calendar_time.h"
 
 namespace lodeline {
 
+namespace {
+
+/// `text` without the name of a time zone at its end, such as " CEST".
+std::string_view withoutZoneName(std::string_view text) {
+  constexpr size_t kLongest = 5;
+  const size_t blank = text.find_last_of(' ');
+  if (blank == std::string_view::npos || text.size() - blank - 1 > kLongest) return text;
+  const std::string_view name = text.substr(blank + 1);
+  const bool is_name = std::all_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+  return is_name ? text.substr(0, blank) : text;
+}
+
+}  // namespace
+
 std::optional<double> parseProfileTime(std::string_view text) {
-  const std::optional<int64_t> ns = parseCalendarTime_ns(text);
+  std::optional<int64_t> ns = parseCalendarTime_ns(text);
+  if (!ns) ns = parseCalendarTime_ns(withoutZoneName(text));
   if (!ns) return std::nullopt;
   // In two parts, so that whole seconds stay exact.
   return static_cast<double>(*ns / 1'000'000'000) + 1e-9 * static_cast<double>(*ns % 1'000'000'000);

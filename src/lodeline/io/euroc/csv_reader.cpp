@@ -220,9 +220,8 @@ void CsvReader::findTimeColumn(const SensorColumns& sensors) {
   if (sensors.times.empty()) return;
   const TimeColumn& time = sensors.times.front();
   if (!time.unknown_unit.empty()) {
-    throw InputError(
-        fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are ns, us, ms, s",
-                    file_.string(), time.unknown_unit, time.name));
+    throw InputError(fmt::format("{}: unit '{}' of the column '{}' is no unit of time; known are {}",
+                                 file_.string(), time.unknown_unit, time.name, knownStampUnits()));
   }
   time_column_ = time.column;
   if (time.second) two_columns_ = time;
@@ -251,9 +250,10 @@ void CsvReader::settleStampUnit(CsvReader ahead, PlausibleRate rate, Diagnostics
       Severity::Warning, "stamp_unit",
       fmt::format(
           "{}: the stamps count {}, not nanoseconds: as nanoseconds the readings would come at {:.3g} Hz, "
-          "as {} they come at {:.4g} Hz. Read as such; multiply the column by {} to make it clear",
+          "as {} they come at {:.4g} Hz. Read as such; state the unit in the header, `t [{}]`, to make it "
+          "clear",
           file_.string(), nameOf(stamp_unit_), stampsPerUnit(stamps) * 1e9, nameOf(stamp_unit_),
-          stampsPerUnit(stamps) / secondsPer(stamp_unit_), nanosecondsPer(stamp_unit_)));
+          stampsPerUnit(stamps) / secondsPer(stamp_unit_), toString(stamp_unit_)));
 }
 
 std::string CsvReader::parseRow(CsvRow* row) const {

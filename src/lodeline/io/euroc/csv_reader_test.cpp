@@ -190,6 +190,13 @@ TEST_F(StampUnitTest, IsFoundByTheRateThatASensorCanHave) {
   EXPECT_EQ(diagnostics_.count("stamp_unit"), 2);
 }
 
+TEST_F(StampUnitTest, IsStepsOf100nsWhereTheyAreACurrentTime) {
+  EXPECT_NEAR(seconds(rowsEvery(639'158'688e9, 1e5, "{:.0f}")), 0.59, 1e-4);
+  ASSERT_EQ(diagnostics_.count("stamp_unit"), 1);
+  EXPECT_THAT(diagnostics_.ranked()[0].first_message,
+              testing::AllOf(HasSubstr("steps of 100 ns"), HasSubstr("100 Hz")));
+}
+
 TEST_F(StampUnitTest, OfDecimalsIsSecondsUnlessTheyAreTooLarge) {
   EXPECT_NEAR(seconds(rowsEvery(1.4e9, 0.005, "{:.6f}")), 0.295, 1e-6);
   EXPECT_NEAR(seconds(rowsEvery(1.4e18, 5e6, "{:.18e}")), 0.295, 1e-6);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/io/streams/stream_rate.h"
 
 namespace lodeline {
 namespace {
@@ -118,10 +119,7 @@ void StampMonitor::reportBursts(Duration period, Time first) const {
 }
 
 void StampMonitor::refuseReversal(Time former, Time latter) const {
-  throw InputError(
-      fmt::format("{}: the readings are stored in reverse order: time goes backwards from stamp {} "
-                  "ns to {} ns and on; sort them by their stamps",
-                  expectation_.name, former.nanoseconds(), latter.nanoseconds()));
+  throw InputError(storedInReverse(expectation_.name, former, latter));
 }
 
 }  // namespace lodeline

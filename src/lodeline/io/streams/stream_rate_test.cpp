@@ -41,6 +41,31 @@ TEST(StreamRate, StampsThatStandStillAreRefusedWithAdvice) {
                                  testing::HasSubstr("give --x"))));
 }
 
+TEST(StreamRate, StampsThatDescendAreRefused) {
+  Diagnostics diagnostics;
+  std::vector<Time> stamps = everySoMany_ns(-5'000'000);
+  EXPECT_THAT([&] { refuseBadClock("gyroscope", stamps); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("gyroscope: the readings are stored in "
+                                                                    "reverse order")));
+  stamps[20] = stamps[19] + Duration::fromNanoseconds(1);
+  EXPECT_NO_THROW(refuseBadClock("gyroscope", stamps));
+  EXPECT_NO_THROW(refuseBadClock("gyroscope", everySoMany_ns(5'000'000)));
+  EXPECT_NO_THROW(refuseBadClock("gyroscope", everySoMany_ns(-5'000'000, 9)));
+}
+
+TEST(StreamRate, AHundredTimesTheStatedOneIsAnotherUnit) {
+  Diagnostics diagnostics;
+  EXPECT_THAT([&] { settleRate("IMU", everySoMany_ns(50'000), 200.0, &diagnostics); },
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(testing::HasSubstr("steps of 100 ns"), testing::HasSubstr("`t [100 ns]`"))));
+  EXPECT_THAT([&] { settleRate("IMU", everySoMany_ns(5'000), 200.0, &diagnostics); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("count microseconds")));
+  // A rate in the file that nobody filled in, and a fast sensor with a wrong rate.
+  EXPECT_NEAR(settleRate("IMU", everySoMany_ns(5'000'000), 2.0, &diagnostics), 200.0, 1e-9);
+  EXPECT_NEAR(settleRate("IMU", everySoMany_ns(250'000), 200.0, &diagnostics), 4000.0, 1e-9);
+  EXPECT_EQ(diagnostics.count("rate"), 2);
+}
+
 std::vector<double> numbers(double first, double step) {
   std::vector<double> stamps;
   for (int i = 0; i < 50; ++i) stamps.push_back(first + step * i);
@@ -52,6 +77,8 @@ TEST(StreamRate, StampsCountNanosecondsUnlessNoSensorIsThatFast) {
   EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e15, 5e3), kInertialRate), TimeUnit::Microseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e12, 5.0), kInertialRate), TimeUnit::Milliseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(1.4e15, 5e4), kCameraRate), TimeUnit::Microseconds);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(134'247'456e9, 1e5), kInertialRate), TimeUnit::Ticks);
+  EXPECT_EQ(unitOfNanosecondStamps(numbers(639'158'688e9, 5e5), kCameraRate), TimeUnit::Ticks);
   // Slow, fast and unknown streams of nanoseconds keep their unit.
   EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 1e9), kInertialRate), TimeUnit::Nanoseconds);
   EXPECT_EQ(unitOfNanosecondStamps(numbers(0.0, 1e5), kInertialRate), TimeUnit::Nanoseconds);

@@ -102,7 +102,10 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     if (!first_image_time_) first_image_time_ = reference.time;
     const double since_start_s = span(reference.time, *first_image_time_).seconds();
     if (since_start_s < options_.skip_s) continue;
-    if (options_.duration_s > 0.0 && since_start_s > options_.skip_s + options_.duration_s) return {};
+    if (options_.duration_s > 0.0 && since_start_s > options_.skip_s + options_.duration_s) {
+      reportApart(false);
+      return {};
+    }
     ++recorded_images_;
     if (last_packet_time_) followClocks(&reference);
     if (last_packet_time_ && reference.time <= *last_packet_time_) continue;
@@ -131,7 +134,7 @@ std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
     draft.pending.insert(draft.pending.begin(), std::move(reference));
     return draft;
   }
-  reportApart();
+  reportApart(!source_->isLive());
   return std::nullopt;
 }
 
@@ -165,13 +168,18 @@ std::optional<PendingImage> Synchronizer::partnerOf(const PendingImage& referenc
         stream.following() != nullptr && distance(*stream.following()) <= distance(*stream.peek());
     if (stream.peek()->time >= reference.time - tolerance && !is_next_nearer) break;
     const PendingImage orphan = stream.pop();
+    histories_[camera].span.add(orphan.time);
     // Images from before the used part of the recording cannot have a partner.
     if (!last_packet_time_) continue;
     diagnostics_->report(Severity::Notice, "image_without_partner",
                          fmt::format("{}: no image of {} within {:g} ms has it as the nearest; passed over",
                                      orphan.name, source_->rig().cameras[0].name, tolerance.seconds() * 1e3));
   }
-  if (stream.peek() != nullptr && stream.peek()->time <= reference.time + tolerance) return stream.pop();
+  if (stream.peek() != nullptr && stream.peek()->time <= reference.time + tolerance) {
+    ++histories_[camera].partners;
+    histories_[camera].span.add(stream.peek()->time);
+    return stream.pop();
+  }
   diagnostics_->report(
       Severity::Warning, "image_missing",
       fmt::format("{}: no image within {:g} ms of stamp {} ns", source_->rig().cameras[camera].name,

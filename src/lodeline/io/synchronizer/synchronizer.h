@@ -84,7 +84,8 @@ class Synchronizer {
   bool followImageClock(Duration step, PendingImage* reference);
   bool followCommonClock(const ImuIntervals::Gap& gap, Duration step, PendingImage* reference);
   bool followImuClock(const ImuIntervals::Gap& gap, const PendingImage& reference);
-  void reportApart();
+  void reportApart(bool may_read_on);
+  void reportUnpaired(size_t camera, bool may_read_on);
   bool coveredByImu(const PendingImage& image);
   std::optional<PendingImage> partnerOf(const PendingImage& reference, size_t camera);
   double delay_s(const PendingImage& reference, const PendingImage& partner, size_t camera);
@@ -94,10 +95,13 @@ class Synchronizer {
   void storeImage(size_t camera, const PendingImage& pending, LoadedImage loaded, FramePacket* packet);
   void checkSizes() const;
 
-  /// Per camera: counts of images by size, and recent delays relative to the first camera.
+  /// Per camera: counts of images by size, the times of its images, how many are partners of the first
+  /// camera's, and recent delays relative to these.
   struct CameraHistory {
     int right_size = 0, other_size = 0;
     std::string size_problem;
+    SpanOfStream span;
+    int64_t partners = 0;
     std::deque<double> delays_s;
   };
 

@@ -107,10 +107,43 @@ bool Synchronizer::followImuClock(const ImuIntervals::Gap& gap, const PendingIma
   return true;
 }
 
-/// Reports sensors whose readings do not overlap in time with those of the others.
-void Synchronizer::reportApart() {
-  const bool may_read_on = !source_->isLive();
+/// Reports a secondary camera of whose images few belong to images of the first one.
+void Synchronizer::reportUnpaired(size_t camera, bool may_read_on) {
+  constexpr double kFew = 0.5;
+  CameraHistory& history = histories_[camera];
+  const double images = static_cast<double>(recorded_images_);
+  if (static_cast<double>(history.partners) >= kFew * images) return;
+  OrderedStream<PendingImage>& stream = cameras_[camera];
+  if (!history.span.get() && stream.peek() != nullptr) history.span.add(stream.peek()->time);
+  while (may_read_on && stream.peek() != nullptr) history.span.add(stream.pop().time);
+  const std::optional<TimeSpan>& span_of = history.span.get();
+  if (!span_of || !images_span_.get()) return;
+  const std::string& name = source_->rig().cameras[camera].name;
+  const std::string& first = source_->rig().cameras[0].name;
+  const std::optional<std::string> words =
+      apart("the images of " + name, *span_of, "those of " + first, *images_span_.get(),
+            "timeshift_cam_imu of " + name + " (in s, to be added to its stamps)");
+  if (words) {
+    diagnostics_->report(Severity::Serious, kClocksApart,
+                         *words + fmt::format("; without it this run is one of {} alone", first));
+    return;
+  }
+  diagnostics_->report(
+      Severity::Warning, "cameras_unpaired",
+      fmt::format(
+          "{}: only {} of {} images of {} have one of {} at their time; its first image comes {:+.6g} s "
+          "after that of {}, its last one {:+.6g} s: it ran for a part of the time or at another rate, "
+          "or its clock is another one. Trigger both cameras together and stamp them by one clock",
+          name, history.partners, recorded_images_, first, name,
+          span(span_of->first, images_span_.get()->first).seconds(), first,
+          span(span_of->last, images_span_.get()->last).seconds()));
+}
+
+/// Reports sensors whose readings do not overlap in time with those of the others. `may_read_on`: whether the
+/// streams may be read to their ends.
+void Synchronizer::reportApart(bool may_read_on) {
   if (may_read_on) imu_.drain();
+  for (size_t i = 1; i < cameras_.size(); ++i) reportUnpaired(i, may_read_on);
   const auto report = [this](const std::string& name, const std::optional<TimeSpan>& span,
                              const char* other_name, const std::optional<TimeSpan>& other,
                              const char* offset) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "lodeline/diagnostics.h"
@@ -198,6 +199,40 @@ TEST_F(SynchronizerClocksTest, MicrosecondsInAllFilesAreReadAsSuch) {
   const std::vector<FramePacket> packets = readAll();
   expectHealthy(packets);
   EXPECT_EQ(diagnostics_.count("stamp_unit"), 4);
+}
+
+TEST_F(SynchronizerClocksTest, SecondCameraByAnotherClockIsNamedWithTheOffset) {
+  for (const double by_s : {3600.0, -3600.0}) {
+    const TestRecording fresh;
+    recording_.write("cam1/data.csv", fresh.read("cam1/data.csv"));
+    shift("cam1", 0.0, by_s);
+    diagnostics_ = {};
+    EXPECT_EQ(readAll().size(), 21u);
+    ASSERT_EQ(diagnostics_.count(kClocksApart), 1) << by_s;
+    EXPECT_THAT(diagnostics_.ranked().front().first_message,
+                AllOf(HasSubstr("the images of cam1 and those of cam0 have no time in common"),
+                      HasSubstr("(3600 s from first to first)"), HasSubstr("timeshift_cam_imu of cam1"),
+                      HasSubstr("one of cam0 alone")));
+  }
+}
+
+TEST_F(SynchronizerClocksTest, SecondCameraWithFewPartnersIsNamed) {
+  shift("cam1", 0.0, 0.8);
+  EXPECT_EQ(readAll().size(), 21u);
+  const std::vector<Finding> findings = diagnostics_.ranked();
+  const auto unpaired = std::find_if(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.kind == "cameras_unpaired";
+  });
+  ASSERT_NE(unpaired, findings.end());
+  EXPECT_THAT(unpaired->first_message,
+              AllOf(HasSubstr("cam1: only 5 of 21 images of cam0"), HasSubstr("comes +0.8 s after")));
+}
+
+TEST_F(SynchronizerClocksTest, SecondCameraThatPausesIsNotUnpaired) {
+  shift("cam1", 1.7, 100.0);
+  readAll();
+  EXPECT_EQ(diagnostics_.count("cameras_unpaired"), 0);
+  EXPECT_EQ(diagnostics_.count(kClocksApart), 0);
 }
 
 }  // namespace

@@ -21,9 +21,9 @@ bool endsInTesla(const ColumnName& column) {
 bool isTime(const ColumnName& column) {
   if (column.hasWord({"t"}) && !endsInTesla(column)) return true;
   if (column.words.size() == 1 && column.hasWord({"sec", "seconds"})) return true;
-  if (column.hasWord({"uptime", "tow",     "date",   "datetime", "epoch", "clock", "millis",
-                      "micros", "elapsed", "nsecs",  "nanosec",  "secs",  "tid",   "tijd",
-                      "zeit",   "temps",   "tiempo", "tempo",    "czas",  "cas"}) ||
+  if (column.hasWord({"uptime", "tow",   "date",    "datetime", "epoch",   "clock", "millis",
+                      "micros", "ticks", "elapsed", "nsecs",    "nanosec", "secs",  "tid",
+                      "tijd",   "zeit",  "temps",   "tiempo",   "tempo",   "czas",  "cas"}) ||
       column.hasStem({"time", "stamp"})) {
     return true;
   }

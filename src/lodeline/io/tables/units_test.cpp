@@ -14,6 +14,7 @@ double factorOf(const char* column, Quantity quantity) {
 TEST(Units, StandInBracketsOrAtTheEndOfTheName) {
   EXPECT_DOUBLE_EQ(factorOf("wx [deg/s]", Quantity::AngularRate), kDegree);
   EXPECT_DOUBLE_EQ(factorOf("GYROSCOPE X (rad/s)", Quantity::AngularRate), 1.0);
+  EXPECT_DOUBLE_EQ(factorOf("wx [rpm]", Quantity::AngularRate), 6.0 * kDegree);
   EXPECT_DOUBLE_EQ(factorOf("gyro_rad[0]", Quantity::AngularRate), 1.0);
   EXPECT_DOUBLE_EQ(factorOf("w_RS_S_x [rad s^-1]", Quantity::AngularRate), 1.0);
   EXPECT_DOUBLE_EQ(factorOf("a_RS_S_x [m s^-2]", Quantity::SpecificForce), 1.0);

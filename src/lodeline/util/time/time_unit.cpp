@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include "lodeline/util/csv_fields.h"
 
@@ -56,7 +56,23 @@ constexpr std::array kWords = {Word{"ns", TimeUnit::Nanoseconds},
                                Word{"hr", TimeUnit::Hours},
                                Word{"hrs", TimeUnit::Hours},
                                Word{"hour", TimeUnit::Hours},
-                               Word{"hours", TimeUnit::Hours}};
+                               Word{"hours", TimeUnit::Hours},
+                               Word{"100ns", TimeUnit::Ticks},
+                               Word{"100 ns", TimeUnit::Ticks},
+                               Word{"0.1us", TimeUnit::Ticks},
+                               Word{"0.1 us", TimeUnit::Ticks}};
+
+/// Ticks from this number on count from 1601, and from the second one on from the year 1. A Time in ticks
+/// since 1970 ends before the first.
+constexpr double kFirstFileTime = 9.3e16, kFirstDotNetTicks = 5e17;
+/// Seconds from these epochs to 1970 (Microsoft, FILETIME structure and DateTime.Ticks).
+constexpr int64_t kSecondsSince1601 = 11'644'473'600, kSecondsSinceYear1 = 62'135'596'800;
+
+/// Seconds from the epoch of a number of ticks to 1970.
+int64_t epochOfTicks_s(double ticks) {
+  if (ticks >= kFirstDotNetTicks) return kSecondsSinceYear1;
+  return ticks >= kFirstFileTime ? kSecondsSince1601 : 0;
+}
 
 bool isLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool isUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
@@ -101,21 +117,34 @@ std::optional<TimeUnit> unitWithin(std::string word) {
 
 /// Whether `stamp` in `unit` is a Unix time between 2001 and 2065.
 bool isUnixTime(double stamp, TimeUnit unit) {
-  const double seconds = std::abs(stamp) * secondsPer(unit);
+  double seconds = std::abs(stamp) * secondsPer(unit);
+  if (unit == TimeUnit::Ticks) seconds -= static_cast<double>(epochOfTicks_s(stamp));
   return seconds > 1e9 && seconds < 3e9;
+}
+
+/// Whether readings of that rate can be of a sensor. The tolerance is for real rates, which differ from
+/// nominal ones: a 10 Hz sensor often has 9.9 Hz.
+bool isPlausible(double rate_hz, PlausibleRate rate) {
+  return rate_hz >= 0.8 * rate.least_hz && rate_hz <= 1.25 * rate.most_hz;
 }
 
 }  // namespace
 
 const char* toString(TimeUnit unit) {
-  constexpr const char* kTexts[] = {"ns", "us", "ms", "s", "min", "h"};
+  constexpr const char* kTexts[] = {"ns", "us", "ms", "s", "min", "h", "100 ns"};
   return kTexts[static_cast<size_t>(unit)];
 }
 
 const char* nameOf(TimeUnit unit) {
-  constexpr const char* kTexts[] = {"nanoseconds", "microseconds", "milliseconds",
-                                    "seconds",     "minutes",      "hours"};
+  constexpr const char* kTexts[] = {"nanoseconds", "microseconds", "milliseconds",   "seconds",
+                                    "minutes",     "hours",        "steps of 100 ns"};
   return kTexts[static_cast<size_t>(unit)];
+}
+
+std::string knownStampUnits() {
+  std::string names;
+  for (const TimeUnit unit : kStampUnits) names += (names.empty() ? "" : ", ") + std::string(toString(unit));
+  return names;
 }
 
 std::optional<TimeUnit> timeUnitOfWord(std::string_view word) {
@@ -135,6 +164,8 @@ std::optional<TimeUnit> timeUnitOfName(std::string_view column) {
         column.substr(open + 1, close == std::string_view::npos ? close : close - open - 1));
   }
   const std::string name = withLatinMicro(column);
+  if (name.find("100ns") != std::string::npos || name.find("100_ns") != std::string::npos)
+    return TimeUnit::Ticks;
   if (const size_t stroke = name.find_last_of('/'); stroke != std::string::npos) {
     if (const auto unit = timeUnitOfWord(std::string_view(name).substr(stroke + 1))) return unit;
   }
@@ -161,18 +192,31 @@ std::optional<TimeUnit> timeUnitOfStamps(const std::vector<double>& stamps, Plau
   if (!(per_unit > 0.0)) return std::nullopt;
   const double middle = 0.5 * std::log(rate.least_hz * rate.most_hz);
   std::optional<TimeUnit> best;
-  auto best_rank = std::pair(true, 0.0);
+  auto best_rank = std::tuple(true, true, 0.0);
   for (const TimeUnit unit : kStampUnits) {
     const double rate_hz = per_unit / secondsPer(unit);
-    // Tolerance on the rate range, because real rates differ from nominal ones: a 10 Hz sensor often has 9.9
-    // Hz.
-    if (rate_hz < 0.8 * rate.least_hz || rate_hz > 1.25 * rate.most_hz) continue;
-    const auto rank = std::pair(!isUnixTime(stamps.front(), unit), std::abs(std::log(rate_hz) - middle));
+    if (!isPlausible(rate_hz, rate)) continue;
+    const auto rank = std::tuple(!isUnixTime(stamps.front(), unit), unit == TimeUnit::Ticks,
+                                 std::abs(std::log(rate_hz) - middle));
     if (best && !(rank < best_rank)) continue;
     best = unit;
     best_rank = rank;
   }
   return best;
+}
+
+bool isCurrentTimeInTicks(double stamp) {
+  return isUnixTime(stamp, TimeUnit::Ticks) && !isUnixTime(stamp, TimeUnit::Nanoseconds);
+}
+
+bool areTicks(const std::vector<double>& stamps, PlausibleRate rate) {
+  const double per_unit = stampsPerUnit(stamps);
+  if (!(per_unit > 0.0) || !std::all_of(stamps.begin(), stamps.end(), isCurrentTimeInTicks)) return false;
+  if (!isPlausible(per_unit / secondsPer(TimeUnit::Ticks), rate)) return false;
+  // Ticks since 1970 or 1980 are also nanoseconds since a device was switched on some months ago.
+  constexpr double kUnusual = 0.4;
+  return epochOfTicks_s(stamps.front()) != 0 ||
+         per_unit / secondsPer(TimeUnit::Nanoseconds) > kUnusual * rate.most_hz;
 }
 
 std::optional<int64_t> parseTime_ns(std::string_view text, TimeUnit unit) {
@@ -189,8 +233,10 @@ std::optional<int64_t> parseTime_ns(std::string_view text, TimeUnit unit) {
     if (text.starts_with('-') || !csv::parse(text, &number)) return std::nullopt;
     // A double resolves current Unix times to 0.2 us only; a long double resolves less than a nanosecond.
     const std::string digits_of_text(text);
-    const long double ns =
-        std::strtold(digits_of_text.c_str(), nullptr) * static_cast<long double>(nanosecondsPer(unit));
+    const long double count = std::strtold(digits_of_text.c_str(), nullptr);
+    long double ns = count * static_cast<long double>(nanosecondsPer(unit));
+    if (unit == TimeUnit::Ticks)
+      ns -= 1e9L * static_cast<long double>(epochOfTicks_s(static_cast<double>(count)));
     if (!(std::abs(ns) < 9.2e18L)) return std::nullopt;
     return (is_negative ? -1 : 1) * std::llround(ns);
   }
@@ -202,7 +248,8 @@ std::optional<int64_t> parseTime_ns(std::string_view text, TimeUnit unit) {
     value = 10 * value + (digit - '0');
     if (value > kMost) return std::nullopt;
   }
-  value *= nanosecondsPer(unit);
+  const Wide epoch_s = unit == TimeUnit::Ticks ? epochOfTicks_s(static_cast<double>(value)) : 0;
+  value = value * nanosecondsPer(unit) - epoch_s * nanosecondsPer(TimeUnit::Seconds);
   Wide place = nanosecondsPer(unit);
   Wide scaled = 0;  // the first kMostDecimals decimals as an integer
   constexpr size_t kMostDecimals = 15;

@@ -53,6 +53,40 @@ TEST(TimeUnit, OfTwoThatPassTakesTheSizeOfAUnixTime) {
   EXPECT_EQ(timeUnitOfStamps(steps(1.7e15, 100.0), kInertialRate), TimeUnit::Microseconds);
 }
 
+// 2026-06-01 0:00 UTC in steps of 100 ns.
+constexpr double kSince1601 = 134'247'456e9, kSinceYear1 = 639'158'688e9, kSince1970 = 17'802'720e9,
+                 kSince1980 = 14'643'073e9;
+
+TEST(TimeUnit, IsTicksWhereTheyAreACurrentTime) {
+  for (const double first : {kSince1601, kSinceYear1, kSince1970, kSince1980}) {
+    EXPECT_EQ(timeUnitOfStamps(steps(first, 50'000), kInertialRate), TimeUnit::Ticks) << first;
+    EXPECT_TRUE(areTicks(steps(first, 50'000), kInertialRate)) << first;
+    EXPECT_EQ(timeUnitOfStamps(steps(first, 500'000), kCameraRate), TimeUnit::Ticks) << first;
+    EXPECT_TRUE(areTicks(steps(first, 500'000), kCameraRate)) << first;
+  }
+  EXPECT_TRUE(areTicks(steps(kSinceYear1, 10'000'000), kDepthRate));
+  // No current time, and no sensor's rate.
+  EXPECT_FALSE(areTicks(steps(987654, 50'000), kInertialRate));
+  EXPECT_FALSE(areTicks(steps(kSince1601, 5e6), kInertialRate));
+  EXPECT_FALSE(areTicks(steps(1.7e18, 5e6), kInertialRate));
+  EXPECT_FALSE(areTicks({kSince1601}, kInertialRate));
+  // Nanoseconds of a computer that runs for half a year.
+  EXPECT_FALSE(areTicks(steps(1.6e16, 5e6), kInertialRate));
+  EXPECT_FALSE(areTicks(steps(1.6e16, 1e6), kInertialRate));
+}
+
+TEST(TimeUnit, OfTicksHasTheEpochThatItsSizeTells) {
+  EXPECT_EQ(parseTime_ns("134247456000000001", TimeUnit::Ticks), 1'780'272'000'000'000'100);
+  EXPECT_EQ(parseTime_ns("639158688000000001", TimeUnit::Ticks), 1'780'272'000'000'000'100);
+  EXPECT_EQ(parseTime_ns("17802720000000001", TimeUnit::Ticks), 1'780'272'000'000'000'100);
+  EXPECT_EQ(parseTime_ns("-15", TimeUnit::Ticks), -1500);
+  EXPECT_EQ(parseTime_ns("1.5e1", TimeUnit::Ticks), 1500);
+  EXPECT_EQ(parseTime_ns("1.34247456e17", TimeUnit::Ticks), 1'780'272'000'000'000'000);
+  EXPECT_EQ(parseTime_ns("92900000000000000", TimeUnit::Ticks), std::nullopt);  // beyond 64 bits
+  for (const char* name : {"t [100 ns]", "time (100ns)", "timestamp_100ns", "GpsTime_100_ns"})
+    EXPECT_EQ(timeUnitOfName(name), TimeUnit::Ticks) << name;
+}
+
 TEST(TimeUnit, IsUnknownWhereNoRateIsPlausible) {
   EXPECT_EQ(timeUnitOfStamps(steps(0.0, 0.0), kInertialRate), std::nullopt);
   EXPECT_EQ(timeUnitOfStamps(steps(0.0, 3600.0), kInertialRate), TimeUnit::Microseconds);

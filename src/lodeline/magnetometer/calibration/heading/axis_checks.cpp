@@ -76,7 +76,7 @@ void reportNegativeDip(double dip_rad, Diagnostics* diagnostics) {
   diagnostics->report(
       Severity::Warning, "magnetometer_reversed",
       fmt::format(
-          "the field of the calibration dips by {:.1f} degrees, as it does south of the magnetic equator. "
+          "the measured field dips by {:.1f} degrees, as it does south of the magnetic equator. "
           "North of it the magnetometer's axes are left-handed or of reversed sign (or the "
           "accelerometer's are), and headings are off by up to 180 degrees; --site and --date tell",
           dip_rad / kDegree));
