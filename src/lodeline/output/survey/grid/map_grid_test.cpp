@@ -69,8 +69,8 @@ TEST(MapGrid, TurnsAxesToTheWestAndSouth) {
   EXPECT_EQ(description.gis_name, "EPSG:5514");
   EXPECT_FALSE(description.therion_name);
   // Without a counterpart in EPSG.
-  const MapGridDescription cape = MapGrid("EPSG:22275", {-29.0, 17.2, 0.0}).description();
-  EXPECT_THAT(cape.survex_name, HasSubstr("custom \"+proj=tmerc +lat_0=0 +lon_0=15 "));
+  const MapGridDescription cape = MapGrid("EPSG:22279", {-33.5, 19.2, 0.0}).description();
+  EXPECT_THAT(cape.survex_name, HasSubstr("custom \"+proj=tmerc +lat_0=0 +lon_0=19 "));
   EXPECT_THAT(cape.survex_name, HasSubstr("+towgs84="));
   EXPECT_THAT(cape.gis_name, HasSubstr("Transverse Mercator"));
   EXPECT_THAT(cape.gis_name, HasSubstr("BASEGEOGCRS[\"Cape\""));
