@@ -98,6 +98,11 @@ fleet-test: build
 bench: everything
 	./scripts/benchmark.sh
 
+# Decoding of films and a run of one, 1080p at 30 images a second: FILM=/path/to/film-with-telemetry. Some minutes.
+.PHONY: bench-film
+bench-film: everything
+	./scripts/film_benchmark.sh
+
 # How long after its image a pose comes over DDS, at the pace of a recording: RECORDING=/path/to/folder-with-mav0.
 .PHONY: bench-dds
 bench-dds: RECORDING ?= ../shared/data/euroc_mh01_stereo_14s
@@ -110,9 +115,11 @@ bench-dds: everything
 install: build
 	cmake --install build/release --prefix $(PREFIX)
 
-# A Debian package in build/release.
+# Debian packages of the program and of the Python module in build/release, unpacked and used for a check.
 package: build
+	rm -f build/release/*.deb
 	cd build/release && cpack
+	./scripts/check_packages.sh build/release
 
 # The documentation as a site in build/docs, with the reference of the library in build/docs/api. Debian's package
 # libjs-katex draws its equations.

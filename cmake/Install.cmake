@@ -36,6 +36,7 @@ if(TARGET lodeline AND NOT CMAKE_CROSSCOMPILING)
     COMMAND lodeline completion fish > ${fish_completion}
     DEPENDS lodeline VERBATIM)
   add_custom_target(lodeline_manual ALL DEPENDS ${manual}/lodeline.1)
+  add_dependencies(lodeline_product lodeline_manual)
   install(DIRECTORY ${manual}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
   install(FILES ${bash_completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${fish_completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

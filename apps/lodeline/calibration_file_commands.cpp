@@ -18,14 +18,15 @@
 namespace lodeline {
 namespace {
 
-/// To the file that -o names, or to standard output. Throws InputError for one that is there already.
-void writeText(const std::string& text, const std::string& output) {
+/// To the file that -o names, or to standard output. Throws InputError for one that is there already and may
+/// not be overwritten.
+void writeText(const std::string& text, const std::string& output, bool overwrite) {
   if (output.empty()) {
     fmt::print("{}", text);
     return;
   }
-  if (std::filesystem::exists(output)) {
-    throw InputError(output + ": is there already; choose another name or delete it");
+  if (!overwrite && std::filesystem::exists(output)) {
+    throw InputError(output + ": is there already; choose another name, or say --overwrite");
   }
   writeOutput(output, text);
 }
@@ -43,13 +44,13 @@ void reportMissing(const RigFile& rig, Diagnostics* diagnostics) {
   if (rig.rig.cameras.empty()) report("no file describes a camera");
 }
 
-void convertCalibration(const std::vector<std::string>& files, const std::string& output,
+void convertCalibration(const std::vector<std::string>& files, const std::string& output, bool overwrite,
                         const Verbosity& verbosity) {
   Diagnostics diagnostics;
   const RigSections sections = collectRigSections({files.begin(), files.end()}, &diagnostics);
   const RigFile rig = readRig(sections, {.needs_extrinsics = false}, &diagnostics);
   reportMissing(rig, &diagnostics);
-  writeText(rigText(rig), output);
+  writeText(rigText(rig), output, overwrite);
   // Standard output may hold the rig file.
   if (!output.empty() && !verbosity.quiet) fmt::print("{}\n", output);
   printFindings(diagnostics, verbosity, stderr);
@@ -61,6 +62,7 @@ void addConvertCalibrationCommand(CLI::App& program) {
   struct Arguments {
     std::vector<std::string> files;
     std::string output;
+    bool overwrite = false;
     Verbosity verbosity;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -69,6 +71,7 @@ void addConvertCalibrationCommand(CLI::App& program) {
   command->add_option("FILES", arguments->files, "calibrations that together describe a rig")->required();
   command->add_option("-o,--output", arguments->output, "the rig file; without it standard output")
       ->type_name("FILE");
+  addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Files are known by their keys: Kalibr, OpenVINS, VINS-Fusion, VINS-Mono, ORB-SLAM3, OKVIS, Basalt, "
@@ -78,16 +81,22 @@ void addConvertCalibrationCommand(CLI::App& program) {
       "  lodeline convert-calibration euroc_stereo_imu_config.yaml -o rig.yaml\n"
       "  lodeline convert-calibration kalibr_imucam_chain.yaml kalibr_imu_chain.yaml -o rig.yaml\n"
       "  lodeline convert-calibration left.yaml right.yaml extrinsics_and_imu.yaml -o rig.yaml");
-  command->callback(
-      [arguments] { convertCalibration(arguments->files, arguments->output, arguments->verbosity); });
+  command->callback([arguments] {
+    convertCalibration(arguments->files, arguments->output, arguments->overwrite, arguments->verbosity);
+  });
 }
 
 void addRigTemplateCommand(CLI::App& program) {
-  const auto output = std::make_shared<std::string>();
+  struct Arguments {
+    std::string output;
+    bool overwrite = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = program.add_subcommand("rig-template", "Print a rig file to fill in");
-  command->add_option("-o,--output", *output, "write it to this file")->type_name("FILE");
+  command->add_option("-o,--output", arguments->output, "write it to this file")->type_name("FILE");
+  addOverwrite(&arguments->overwrite, command);
   command->footer("Example:\n  lodeline rig-template -o rig.yaml");
-  command->callback([output] { writeText(rigTemplate(), *output); });
+  command->callback([arguments] { writeText(rigTemplate(), arguments->output, arguments->overwrite); });
 }
 
 }  // namespace lodeline

@@ -26,6 +26,7 @@ struct ConvertArguments {
   std::string compression;
   std::string format;
   RecordingPart part;
+  std::vector<int> cameras;
   bool overwrite = false;
   Verbosity verbosity;
 };
@@ -45,8 +46,12 @@ std::optional<BagFormat> targetFormat(const ConvertArguments& arguments) {
 void removeTarget(const std::filesystem::path& source, const std::filesystem::path& target) {
   namespace fs = std::filesystem;
   if (!fs::exists(target)) return;
-  if (fs::exists(source) && fs::equivalent(source, target))
-    throw UsageError(target.string() + ": is the recording to convert; name another DST");
+  // Removing a folder around the recording, such as dive for dive/mav0, would remove the recording.
+  for (fs::path within = fs::weakly_canonical(source); within.has_relative_path();
+       within = within.parent_path()) {
+    if (fs::exists(within) && fs::equivalent(within, target))
+      throw UsageError(target.string() + ": is or holds the recording to convert; name another DST");
+  }
   if (!fs::is_directory(target)) {
     if (!isBag(target)) throw UsageError(target.string() + ": is no recording; --overwrite keeps it");
     fs::remove(rigFileBeside(target));
@@ -70,6 +75,7 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
   options.rig_files.assign(arguments.bag.rig_files.begin(), arguments.bag.rig_files.end());
   options.topics = topicsOf(arguments.bag);
   options.compression = arguments.compression;
+  options.cameras = arguments.cameras;
   options.part = {arguments.part.from_s, arguments.part.length_s()};
   const RecognizedFile source = recognizeFile(arguments.source);
   const bool from_bag = isBag(arguments.source);
@@ -82,19 +88,19 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
     refuseBagOptions(arguments.source, arguments.bag);
     EurocOptions everything;
     everything.needs_calibration = false;
+    everything.camera_indices = arguments.cameras;
     const std::unique_ptr<VideoSource> film =
         openVideo(arguments.source, everything, arguments.bag, diagnostics);
     return format ? convertToBag(film.get(), film->rigFile(), arguments.target, options, diagnostics)
                   : convertToFolder(film.get(), film->rigFile(), arguments.target, options, diagnostics);
   }
-  if (!from_bag && !format) {
-    throw UsageError("a folder becomes a bag: name DST NAME.bag, NAME.mcap or NAME.db3, or give --format");
+  if (from_bag) {
+    return format ? convertBagToBag(arguments.source, arguments.target, options, diagnostics)
+                  : convertBagToFolder(arguments.source, arguments.target, options, diagnostics);
   }
-  if (from_bag && !format)
-    return convertBagToFolder(arguments.source, arguments.target, options, diagnostics);
-  if (from_bag) return convertBagToBag(arguments.source, arguments.target, options, diagnostics);
-  if (!options.topics.empty()) throw UsageError("--topic is for reading a bag; here one is written");
-  return convertFolderToBag(arguments.source, arguments.target, options, diagnostics);
+  if (!options.topics.empty()) throw UsageError("--topic is for reading a bag; here a folder is read");
+  return format ? convertFolderToBag(arguments.source, arguments.target, options, diagnostics)
+                : convertFolderToFolder(arguments.source, arguments.target, options, diagnostics);
 }
 
 void convert(const ConvertArguments& arguments) {
@@ -143,17 +149,21 @@ void addConvertCommand(CLI::App& program) {
           "none without it, MCAP has zstd")
       ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
   addRecordingPart(&arguments->part, command);
+  addCameras(&arguments->cameras, command);
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Readings, stamps and pixels are kept; findings name what the other format cannot hold. The "
-      "calibration of "
-      "a\n"
-      "folder goes into NAME.rig.yaml beside the bag, and is found there again.\n"
+      "calibration of a\n"
+      "folder goes into NAME.rig.yaml beside the bag, and is found there again. --from and --to count from "
+      "the "
+      "first\n"
+      "reading; --cameras 1 makes a recording whose cam0 is camera 1.\n"
       "Examples:\n"
       "  lodeline convert dive1 dive1.bag\n"
       "  lodeline convert dive1 dive1.mcap\n"
       "  lodeline convert dive1.bag excerpt.bag --from 120 --to 180\n"
+      "  lodeline convert dive1 excerpt --from 120 --to 180 --cameras 0\n"
       "  lodeline convert dive1.bag dive1_ros2 --format db3\n"
       "  lodeline convert GX010042.MP4 dive1 --rig rig.yaml\n"
       "  lodeline convert dive1.bag dive1 --rig camchain-imucam.yaml --rig imu.yaml\n"

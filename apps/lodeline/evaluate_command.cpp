@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "apps/lodeline/evaluation_page.h"
 #include "apps/lodeline/shared/common_options.h"
@@ -35,6 +37,7 @@ const char* const kEvaluateFooter = R"(Examples:
       several estimates in one table, with plots and a page that show all of them
   lodeline evaluate KITTI_00_ORB.txt KITTI_00_gt.txt --stretches-m 100,200,300,400
 
+--from and --to count from the first pose of the estimates. The reported uncertainty is checked for all poses.
 Layouts (found by themselves, or named with --format): TUM, KITTI, EuRoC ground truth, COLMAP images.txt and
 images.bin, the output folder of `lodeline run`; text files may be compressed with gzip. docs/reference/error-measures.md
 defines every figure.)";
@@ -52,6 +55,7 @@ struct Arguments {
   std::string plots;
   std::string html;
   EvaluationOptions options;
+  RecordingPart part;
   Verbosity verbosity;
 
   const std::string& reference() const { return trajectories.back(); }
@@ -139,6 +143,28 @@ nlohmann::ordered_json jsonOf(const std::vector<NamedEvaluation>& estimates,
   return json;
 }
 
+/// Keeps the poses of a part of all estimates, in seconds from their first pose. Throws InputError where an
+/// estimate has none there.
+void keepPart(const RecordingPart& part, const std::vector<std::string>& paths,
+              std::vector<Trajectory>* estimates) {
+  if (part.isAll()) return;
+  const double length_s = part.length_s().value_or(HUGE_VAL);
+  std::optional<Time> start;
+  for (const Trajectory& estimate : *estimates) {
+    if (!estimate.poses.empty())
+      start = std::min(start.value_or(estimate.poses.front().time), estimate.poses.front().time);
+  }
+  for (size_t i = 0; i < estimates->size(); ++i) {
+    std::vector<StampedPose>& poses = (*estimates)[i].poses;
+    std::erase_if(poses, [&](const StampedPose& pose) {
+      const double since_s = (pose.time - *start).seconds();
+      return since_s < part.from_s || since_s > part.from_s + length_s;
+    });
+    if (poses.empty())
+      throw InputError(fmt::format("{}: has no pose in the part that --from and --to choose", paths[i]));
+  }
+}
+
 void evaluateCommand(const Arguments& arguments) {
   const EvaluationOptions options = optionsOf(arguments);
   const TrajectoryReadOptions estimate_options = readOptions(arguments, arguments.estimate_format);
@@ -148,10 +174,13 @@ void evaluateCommand(const Arguments& arguments) {
   const std::vector<std::string> names = namesOf(paths);
   std::vector<Diagnostics> findings(paths.size());
   std::vector<NamedEvaluation> estimates;
+  std::vector<Trajectory> trajectories;
+  for (size_t i = 0; i < paths.size(); ++i)
+    trajectories.push_back(readTrajectory(paths[i], estimate_options, findings[i]));
+  keepPart(arguments.part, paths, &trajectories);
   for (size_t i = 0; i < paths.size(); ++i) {
-    const Trajectory estimate = readTrajectory(paths[i], estimate_options, findings[i]);
     const Trajectory reference = readTrajectory(arguments.reference(), reference_options, findings[i]);
-    estimates.push_back({names[i], evaluate(estimate, reference, options, findings[i])});
+    estimates.push_back({names[i], evaluate(trajectories[i], reference, options, findings[i])});
     estimates.back().evaluation.claims =
         checkReported(paths[i], reference, options.association, &findings[i]);
   }
@@ -227,6 +256,7 @@ void addEvaluateCommand(CLI::App& program) {
                       "Write plots as SVG and PNG to this folder (needs gnuplot)");
   command->add_option("--html", arguments->html, "Write a page for the browser, with paths coloured by error")
       ->type_name("FILE");
+  addRecordingPart(&arguments->part, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(kEvaluateFooter);
   command->callback([arguments] { evaluateCommand(*arguments); });

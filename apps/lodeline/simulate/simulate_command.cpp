@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -21,8 +22,14 @@ struct SimulateArguments {
   ScenarioChanges changes;
   int threads = 0;
   Verbosity verbosity;
-  bool list_effects = false;
+  bool list_effects = false, overwrite = false;
 };
+
+/// Removes an earlier recording of the simulator, and nothing else, from the folder to write to.
+void removeRecording(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "truth" / "scenario.yaml")) return;
+  for (const char* part : {"mav0", "board.yaml", "truth"}) std::filesystem::remove_all(folder / part);
+}
 
 std::string footer() {
   std::string text = "Scenarios:\n";
@@ -53,6 +60,7 @@ void simulate(const SimulateArguments& arguments) {
   if (arguments.scenario.empty()) throw UsageError("name a scenario; `lodeline simulate --help` lists them");
   if (arguments.output.empty()) throw UsageError("name the folder to write to with -o");
   const Scenario scenario = makeScenario(arguments.scenario, arguments.changes);
+  if (arguments.overwrite) removeRecording(arguments.output);
   const RecordingSummary summary = simulateRecording(
       scenario, arguments.output, {.threads = arguments.threads, .quiet = arguments.verbosity.quiet});
   if (!summary.complete) {
@@ -110,6 +118,7 @@ void addSimulateCommand(CLI::App& program) {
                     "of a vehicle: another day, on which its currents disturb the magnetometer otherwise");
   command->add_flag("--no-images", c.no_images, "write everything but the images");
   command->add_option("--threads", arguments->threads, "for rendering (all cores)");
+  addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->add_flag("--list-effects", arguments->list_effects, "print all effects and end");
   command->footer(footer());

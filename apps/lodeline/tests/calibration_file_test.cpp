@@ -47,6 +47,11 @@ TEST_F(CalibrationFileTest, ConvertedCalibrationIsARigFile) {
   const std::string command = fmt::format("convert-calibration {} -o {}", quoted(rig), quoted(converted));
   ASSERT_EQ(runProgram(command).exit_code, 0);
   EXPECT_THAT(runProgram(command).output, HasSubstr("is there already"));
+  EXPECT_EQ(runProgram(command + " --overwrite").exit_code, 0);
+  const std::string rig_template = "rig-template -o " + quoted(path("template.yaml"));
+  EXPECT_EQ(runProgram(rig_template).exit_code, 0);
+  EXPECT_EQ(runProgram(rig_template).exit_code, 1);
+  EXPECT_EQ(runProgram(rig_template + " --overwrite").exit_code, 0);
   expectGoodResult(run(fmt::format("-q --rig {}", quoted(converted))));
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 #include "apps/lodeline/tests/test_program.h"
@@ -50,6 +51,31 @@ TEST_F(Evaluate, SeveralEstimatesAreInOneTableWithDistinctNames) {
   const double far_m = both["other_close"]["absolute"]["position_m"]["rmse"];
   EXPECT_NEAR(close_m, 0.02 / std::sqrt(2.0), 0.003);
   EXPECT_NEAR(far_m, 0.5 / std::sqrt(2.0), 0.08);
+}
+
+TEST_F(Evaluate, APartIsJudgedAlone) {
+  // The estimate is exact up to 10 s, and 1 m off from there on.
+  std::istringstream truth(readText(folder_ / "truth.tum"));
+  std::ofstream estimate(folder_ / "jump.txt");
+  for (std::string line; std::getline(truth, line);) {
+    double t = 0.0, x = 0.0, y = 0.0, z = 0.0;
+    std::istringstream(line) >> t >> x >> y >> z;
+    estimate << t << ' ' << x << ' ' << y << ' ' << (t > 10.01 ? z + 1.0 : z) << " 0 0 0 1\n";
+  }
+  estimate.close();
+  const auto rmse = [&](const std::string& part) {
+    const Execution run = runProgram("evaluate " + file("jump.txt") + " " + file("truth.tum") +
+                                     " -q --align none --json " + file("part.json") + part);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return readJson(folder_ / "part.json")["absolute"]["position_m"]["rmse"].get<double>();
+  };
+  EXPECT_NEAR(rmse(""), std::sqrt(0.5), 0.01);
+  EXPECT_NEAR(rmse(" --to 10"), 0.0, 1e-6);
+  EXPECT_NEAR(rmse(" --from 11 --to 15"), 1.0, 1e-6);
+  const Execution outside =
+      runProgram("evaluate " + file("jump.txt") + " " + file("truth.tum") + " --from 100");
+  EXPECT_EQ(outside.exit_code, 1);
+  EXPECT_NE(outside.output.find("has no pose in the part"), std::string::npos) << outside.output;
 }
 
 TEST_F(Evaluate, ThePageShowsTrajectoriesOfOtherPrograms) {

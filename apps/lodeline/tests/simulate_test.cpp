@@ -31,6 +31,21 @@ TEST_F(SimulateTest, WritesARecordingThatEvaluatesAgainstItself) {
   EXPECT_EQ(evaluation.exit_code, 0) << evaluation.output;
 }
 
+TEST_F(SimulateTest, ReplacesAnotherRecordingOnlyWhenTold) {
+  const std::string command = "simulate figure_eight --seconds 10 --no-images -q -o " + file("a");
+  const std::filesystem::path imu = folder_.path() / "a" / "mav0" / "imu0" / "data.csv";
+  ASSERT_EQ(runProgram(command).exit_code, 0);
+  const std::string first = test::readText(imu);
+  EXPECT_EQ(runProgram(command + " --seed 7").exit_code, 1);
+  EXPECT_TRUE(test::readText(imu) == first);
+  EXPECT_EQ(runProgram(command + " --seed 7 --overwrite").exit_code, 0);
+  EXPECT_FALSE(test::readText(imu) == first);
+  // Nothing but a recording of the simulator is removed.
+  std::filesystem::remove(folder_.path() / "a" / "truth" / "scenario.yaml");
+  EXPECT_EQ(runProgram(command + " --overwrite").exit_code, 1);
+  EXPECT_TRUE(std::filesystem::exists(imu));
+}
+
 TEST_F(SimulateTest, SaysWhatItCanSimulate) {
   const Execution help = runProgram("simulate --help");
   EXPECT_EQ(help.exit_code, 0);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -40,6 +41,22 @@ void expectOwnWalls(const fs::path& folder, const DiveMap& map) {
   if (other == map.run_folder.string()) return;
   throw UsageError(fmt::format("{}: has walls of {}; choose another folder with -o, or say --overwrite",
                                folder.string(), other.empty() ? "another run" : other));
+}
+
+/// Keeps the poses of a part of the run. Throws UsageError where fewer than two are left.
+void keepPart(const RecordingPart& part, RunFolder* run) {
+  if (part.isAll() || run->trajectory.poses.empty()) return;
+  const Time start = run->trajectory.poses.front().time;
+  const double end_s = part.from_s + part.length_s().value_or(HUGE_VAL);
+  const auto isOutside = [&](const auto& stamped) {
+    const double since_s = (stamped.time - start).seconds();
+    return since_s < part.from_s || since_s > end_s;
+  };
+  std::erase_if(run->trajectory.poses, isOutside);
+  std::erase_if(run->uncertainties, isOutside);
+  if (run->trajectory.poses.size() < 2)
+    throw UsageError(fmt::format("{}: fewer than two poses lie in the part that --from and --to choose",
+                                 run->folder.string()));
 }
 
 DiveMapOptions mapOptionsOf(const WallsArguments& arguments, Diagnostics* diagnostics) {
@@ -97,7 +114,8 @@ void print(const WallResult& result, const WallsArguments& arguments) {
 void makeRunWalls(const WallsArguments& arguments) {
   cv::setNumThreads(1);  // keyframes and blocks are what runs side by side
   Diagnostics diagnostics;
-  const RunFolder run = readRunFolder(arguments.run, &diagnostics);
+  RunFolder run = readRunFolder(arguments.run, &diagnostics);
+  keepPart(arguments.part, &run);
   const DiveMap map = makeDiveMap(run, mapOptionsOf(arguments, &diagnostics), {}, &diagnostics);
   const fs::path folder =
       arguments.output.empty() ? fs::path(arguments.run) / "walls" : fs::path(arguments.output);

@@ -15,6 +15,7 @@ struct WallsArguments {
   std::string entrance;
   DiveMapOptions map;
   WallOptions walls;
+  RecordingPart part;  ///< from the first pose
   bool one_camera = false, overwrite = false, keep_work = false;
   Verbosity verbosity;
 };

@@ -62,14 +62,18 @@ void addWallsCommand(CLI::App& program) {
   addBagOptions(&arguments->bag, command);
   addSurfaceOptions(arguments.get(), command);
   addWallsPlaceOptions(arguments.get(), command);
+  addRecordingPart(&arguments->part, command);
   addOverwrite(&arguments->overwrite, command);
   command->add_flag("--keep-work", arguments->keep_work, "keep depths and tiles in OUTPUT/work");
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "An interrupted call goes on where it stopped when the same command is given again.\n"
+      "An interrupted call goes on where it stopped when the same command is given again. --from and --to "
+      "count\n"
+      "from the first pose of the run.\n"
       "Examples:\n"
       "  lodeline walls result -o walls\n"
       "  lodeline walls result -o walls --voxel 0.03 --spacing 2\n"
+      "  lodeline walls result -o chamber --from 600 --to 720\n"
       "  lodeline walls result -o walls --recording /data/dive1 --entrance 29.83,-82.60,10");
   command->callback([arguments] { makeRunWalls(*arguments); });
 }

@@ -1,3 +1,5 @@
+#include <yaml-cpp/yaml.h>
+
 #include "apps/lodeline/tests/test_room.h"
 #include "lodeline/io/euroc/csv_reader.h"
 #include "lodeline/io/rosbag/test_bag.h"
@@ -191,6 +193,104 @@ TEST_F(BagTest, ConvertsAPartInAllDirections) {
                 fmt::format("convert {} {} --from 2 --to 1", quoted(path("all.bag")), quoted(path("no.bag"))))
                 .exit_code,
             2);
+}
+
+TEST_F(BagTest, ConvertsAFolderToAFolderWithoutLoss) {
+  addSmallSensors();
+  folder_.write("room/mav0/leica0/data.csv", "#timestamp, x\r\n1000000000000, 1.50\r\n1000700000000,2e0\r\n");
+  folder_.write("room/mav0/leica0/sensor.yaml", "sensor_type: position\n");
+  folder_.write("room/mav0/words0/data.csv", "#word\nfirst\nsecond\n");
+  const Execution whole =
+      runProgram(fmt::format("convert {} {}", quoted(recording_.data), quoted(path("whole"))));
+  ASSERT_EQ(whole.exit_code, 0) << whole.output;
+  EXPECT_THAT(whole.output, AllOf(HasSubstr("words0"), HasSubstr("the table is left out")));
+  expectSameReadings(recording_.data, path("whole"));
+  for (const std::string& name : recording_.image_names) {
+    const std::filesystem::path below = "mav0/cam1/data/" + name;
+    EXPECT_EQ(readText(path("whole") / below), readText(recording_.data / below));
+  }
+  for (const char* file : {"leica0/data.csv", "leica0/sensor.yaml", "state_groundtruth_estimate0/data.csv"})
+    EXPECT_EQ(readText(path("whole/mav0") / file), readText(recording_.data / "mav0" / file)) << file;
+  EXPECT_TRUE(trajectory(quoted(path("whole")), "from_whole") ==
+              trajectory(quoted(recording_.data), "folder"));
+}
+
+TEST_F(BagTest, ConvertsAPartOfAFolderToAFolder) {
+  addSmallSensors();
+  const Execution part = runProgram(
+      fmt::format("convert {} {} --from 0.6 --to 1", quoted(recording_.data), quoted(path("part"))));
+  ASSERT_EQ(part.exit_code, 0) << part.output;
+  const auto rowsOf = [](const std::filesystem::path& table) {
+    std::vector<std::string> rows;
+    std::istringstream text(readText(table));
+    for (std::string line; std::getline(text, line);) {
+      if (line.front() != '#') rows.push_back(line.substr(0, line.find(',')));
+    }
+    return rows;
+  };
+  // The first reading is an inertial one, or one of the small sensors.
+  const int64_t start_ns =
+      std::min<int64_t>(std::stoll(rowsOf(recording_.csv("imu0")).front()), 1'000'000'000'000);
+  for (const char* sensor : {"cam0", "cam1", "imu0", "pressure0", "sonar0"}) {
+    std::vector<std::string> expected = rowsOf(recording_.data / "mav0" / sensor / "data.csv");
+    std::erase_if(expected, [&](const std::string& stamp) {
+      const int64_t since_start_ns = std::stoll(stamp) - start_ns;
+      return since_start_ns < 600'000'000 || since_start_ns > 1'000'000'000;
+    });
+    EXPECT_FALSE(expected.empty());
+    EXPECT_EQ(rowsOf(path("part") / "mav0" / sensor / "data.csv"), expected) << sensor;
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("part/mav0/mag0/data.csv")));
+  EXPECT_THAT(part.output, HasSubstr("no row lies in the part"));  // the true state at 0 s
+}
+
+TEST_F(BagTest, ConvertsOneCameraOfTwo) {
+  const auto convert = [&](const std::filesystem::path& from, const char* to) {
+    const Execution result =
+        runProgram(fmt::format("convert {} {} --cameras 1", quoted(from), quoted(path(to))));
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+  };
+  ASSERT_EQ(
+      runProgram(fmt::format("convert {} {}", quoted(recording_.data), quoted(path("all.bag")))).exit_code,
+      0);
+  convert(recording_.data, "from_folder");
+  convert(recording_.data, "from_folder.mcap");
+  convert(path("all.bag"), "from_bag");
+  convert(path("all.bag"), "bag_to_bag.mcap");
+  for (const char* bag : {"from_folder.mcap", "bag_to_bag.mcap"}) {
+    const std::string folder = std::string(bag) + "_folder";
+    ASSERT_EQ(runProgram(fmt::format("convert {} {}", quoted(path(bag)), quoted(path(folder)))).exit_code, 0);
+  }
+  const auto calibration = [](const std::filesystem::path& sensor) {
+    return YAML::Load(readText(sensor / "sensor.yaml"));
+  };
+  const YAML::Node expected = calibration(recording_.sensor("cam1"));
+  for (const char* folder :
+       {"from_folder", "from_bag", "from_folder.mcap_folder", "bag_to_bag.mcap_folder"}) {
+    SCOPED_TRACE(folder);
+    const std::filesystem::path mav0 = path(folder) / "mav0";
+    EXPECT_FALSE(std::filesystem::exists(mav0 / "cam1"));
+    EXPECT_EQ(YAML::Dump(calibration(mav0 / "cam0")["T_BS"]), YAML::Dump(expected["T_BS"]));
+    const std::string name = recording_.image_names.back();
+    const cv::Mat image = cv::imread((mav0 / "cam0" / "data" / name).string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat right =
+        cv::imread((recording_.sensor("cam1") / "data" / name).string(), cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(image.size(), right.size());
+    EXPECT_EQ(cv::norm(image, right, cv::NORM_INF), 0.0);
+  }
+  EXPECT_EQ(
+      runProgram(fmt::format("convert {} {} --cameras 2", quoted(path("all.bag")), quoted(path("no.bag"))))
+          .exit_code,
+      1);
+}
+
+TEST_F(BagTest, NeverOverwritesTheRecordingThatItConverts) {
+  for (const std::string& target : {quoted(recording_.data), quoted(recording_.data / "mav0")}) {
+    const Execution result =
+        runProgram(fmt::format("convert {} {} --overwrite", quoted(recording_.data / "mav0"), target));
+    EXPECT_EQ(result.exit_code, 2) << result.output;
+  }
+  EXPECT_TRUE(std::filesystem::exists(recording_.data / "mav0/imu0/data.csv"));
 }
 
 TEST_F(BagTest, SaysWhatToDo) {

@@ -77,6 +77,14 @@ TEST_F(WallsTest, ComeFromOneCameraToo) {
   EXPECT_GT(shareOnWalls(), 0.7);
 }
 
+TEST_F(WallsTest, AreOfAPartOfTheRun) {
+  ASSERT_EQ(walls("--from 0.4 --to 0.9").exit_code, 0);
+  const nlohmann::json summary = readJson(walls_ / "walls.json");
+  EXPECT_NEAR(summary["dive_s"].get<double>(), 0.5, 0.11);
+  EXPECT_GT(summary["points"], 500);
+  EXPECT_EQ(walls("--from 100").exit_code, 2);
+}
+
 TEST_F(WallsTest, GoOnFromUnfinishedWork) {
   ASSERT_EQ(walls("--keep-work").exit_code, 0);
   const std::string cloud = readText(walls_ / "cloud.ply");

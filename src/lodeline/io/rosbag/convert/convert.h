@@ -22,6 +22,8 @@ struct ConvertOptions {
   BagFormat format = BagFormat::Ros1;
   /// Compression of the new bag; see makeBagWriter().
   std::string compression;
+  /// Numbers of the cameras to convert; empty for all. The new recording numbers them from 0 on.
+  std::vector<int> cameras;
   /// Readings outside of it are left out. From bag to bag, the times at which messages were recorded count.
   PartOfRecording part;
   /// Takes the share of the recording that is converted.
@@ -49,11 +51,17 @@ ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std
 ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::filesystem::path& folder,
                                   const ConvertOptions& options, Diagnostics* diagnostics);
 
+/// Converts a recording in the EuRoC ASL layout to another folder, such as a part of it. Images and
+/// calibration are copied, and so are the rows of other tables in mav0, such as true states. Throws
+/// InputError where the target exists and is not empty, or the recording cannot be read.
+ConvertSummary convertFolderToFolder(const std::filesystem::path& folder, const std::filesystem::path& target,
+                                     const ConvertOptions& options, Diagnostics* diagnostics);
+
 /// Converts a bag to a bag of any format. Topics, stamps and times of recording are kept. Between bags of ROS
 /// 2, the messages of all types keep their bytes. Between ROS 1 and ROS 2, types that Lodeline reads are
 /// converted, and other topics are left out (`convert_left_out`); sequence numbers of headers, which ROS 2
 /// does not have, become 0. The rig files are written as one beside the new bag. Throws InputError where the
-/// target exists or the bag cannot be read.
+/// target exists or the bag cannot be read. Where cameras are chosen, topics of other images are left out.
 ConvertSummary convertBagToBag(const std::filesystem::path& bag, const std::filesystem::path& target,
                                const ConvertOptions& options, Diagnostics* diagnostics);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_file.h"
@@ -11,6 +12,7 @@
 #include "lodeline/io/rosbag/convert/convert.h"
 #include "lodeline/io/rosbag/convert/rig_conversion.h"
 #include "lodeline/io/rosbag/definitions/known_definitions.h"
+#include "lodeline/io/rosbag/topic_choice.h"
 
 namespace lodeline {
 namespace {
@@ -22,9 +24,35 @@ struct Copied {
   size_t next = 0;
 };
 
-std::vector<Copied> topicsToCopy(const BagFile& bag, const BagWriter& writer, Diagnostics* diagnostics) {
+/// Topics of images that do not belong to the chosen cameras; none where all cameras are converted.
+std::set<const BagTopic*> topicsOfOtherImages(BagFile* bag, const std::optional<RigFile>& rig,
+                                              const ConvertOptions& options) {
+  if (options.cameras.empty()) return {};
+  TopicWish wish;
+  if (rig) wish.named = rig->topics;
+  for (const auto& [sensor, topic] : options.topics) wish.named[sensor] = topic;
+  std::erase_if(wish.named, [](const auto& entry) { return !entry.first.starts_with("cam"); });
+  const bool has_cameras = rig && !rig->rig.cameras.empty();
+  const size_t count = has_cameras ? rig->rig.cameras.size() : imageTopics(*bag).size();
+  for (size_t i = 0; i < count; ++i) wish.rig_cameras.push_back(fmt::format("cam{}", i));
+  for (const int camera : options.cameras) {
+    if (static_cast<size_t>(camera) >= count)
+      throw InputError(fmt::format("{}: has no camera {}; it has {}", bag->file().string(), camera, count));
+    wish.cameras.push_back(fmt::format("cam{}", camera));
+  }
+  Diagnostics of_the_choice;  // other sensors are copied without being chosen
+  const TopicChoice choice = chooseTopics(bag, wish, &of_the_choice);
+  const std::vector<const BagTopic*> images = topicsFor(*bag, "cam0");
+  std::set<const BagTopic*> others(images.begin(), images.end());
+  for (const std::string& camera : wish.cameras) others.erase(choice.of(camera));
+  return others;
+}
+
+std::vector<Copied> topicsToCopy(const BagFile& bag, const BagWriter& writer,
+                                 const std::set<const BagTopic*>& left_out, Diagnostics* diagnostics) {
   std::vector<Copied> copied;
   for (const BagTopic& topic : bag.topics()) {
+    if (left_out.contains(&topic)) continue;
     const BagConnection& connection = topic.connection;
     const bool is_stored = writer.takesStored(connection);
     const bool is_known =
@@ -97,13 +125,16 @@ ConvertSummary convertBagToBag(const std::filesystem::path& bag, const std::file
   std::optional<RigFile> rig;
   if (!rig_files.empty()) rig = readRigFiles(rig_files, diagnostics);
   const std::unique_ptr<BagFile> source = openBagFile(bag, diagnostics);
+  const std::set<const BagTopic*> left_out = topicsOfOtherImages(source.get(), rig, options);
   const std::unique_ptr<BagWriter> writer = makeBagWriter(target, options.format, options.compression);
   ConvertSummary summary;
-  copyMessages(source.get(), topicsToCopy(*source, *writer, diagnostics), options, writer.get(), &summary);
+  copyMessages(source.get(), topicsToCopy(*source, *writer, left_out, diagnostics), options, writer.get(),
+               &summary);
   writer->close();
   if (rig) {
     summary.rig_file = rigFileBeside(target);
-    writeRigFile(*rig, options.topics, summary.rig_file);
+    for (const auto& [sensor, topic] : options.topics) rig->topics[sensor] = topic;
+    writeRigFile(numberedRig(*rig, options.cameras), {}, summary.rig_file);
   } else {
     diagnostics->report(Severity::Warning, "calibration_missing",
                         fmt::format("{}: written without calibration, which `lodeline run` needs; describe "

@@ -12,6 +12,7 @@
 #include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/io/rosbag/convert/bag_writer.h"
 #include "lodeline/io/rosbag/convert/convert.h"
+#include "lodeline/io/rosbag/convert/folder_parts.h"
 #include "lodeline/io/rosbag/convert/rig_conversion.h"
 #include "lodeline/io/rosbag/definitions/message_fields.h"
 #include "lodeline/io/rosbag/image_messages.h"
@@ -43,19 +44,6 @@ void merge(const std::vector<Pull>& streams, const std::function<void()>& writte
     written();
     heads[*first] = streams[*first]();
   }
-}
-
-/// Options for all parts of a folder; a recording may have only inertial and magnetic readings.
-EurocOptions optionsFor(const std::filesystem::path& folder,
-                        const std::vector<std::filesystem::path>& rig_files) {
-  EurocOptions options;
-  options.rig_files = rig_files;
-  options.with_cameras = false;
-  const EurocLayout layout = findEurocLayout(folder, options);
-  for (const auto& entry : std::filesystem::directory_iterator(layout.mav0)) {
-    if (entry.path().filename().string().starts_with("cam")) options.with_cameras = true;
-  }
-  return options;
 }
 
 /// Writes a recording as a bag.
@@ -274,7 +262,7 @@ ConvertSummary convertFolderToBag(const std::filesystem::path& folder, const std
                                   const ConvertOptions& options, Diagnostics* diagnostics) {
   requireAbsent(bag);
   const std::filesystem::path rig_file = rigFileBeside(bag);
-  const EurocOptions folder_options = optionsFor(folder, options.rig_files);
+  const EurocOptions folder_options = everythingIn(folder, options);
   const EurocLayout layout = findEurocLayout(folder, folder_options);
   EurocSource source(folder, folder_options, diagnostics);
   RecordingConversion conversion(&source, bag, options, diagnostics);

@@ -1,17 +1,22 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <string_view>
 #include <unordered_map>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/euroc/current_table.h"
+#include "lodeline/io/euroc/euroc_source.h"
+#include "lodeline/io/euroc/folder_calibration.h"
 #include "lodeline/io/images/image_loader.h"
 #include "lodeline/io/robots/dvl_text.h"
 #include "lodeline/io/rosbag/bag_source.h"
 #include "lodeline/io/rosbag/checked_reading.h"
 #include "lodeline/io/rosbag/convert/convert.h"
+#include "lodeline/io/rosbag/convert/folder_parts.h"
 #include "lodeline/io/rosbag/convert/rig_conversion.h"
 #include "lodeline/io/rosbag/messages.h"
 #include "lodeline/io/synchronizer/recording_file.h"
@@ -22,7 +27,14 @@ namespace {
 /// File name extension of an image file, determined from its first bytes.
 std::string extensionOf(const std::vector<uint8_t>& file) {
   if (isPng(file)) return "png";
-  if (file.size() > 2 && file[0] == 0xff && file[1] == 0xd8) return "jpg";
+  const auto beginsWith = [&](std::string_view signature) {
+    return file.size() > signature.size() && std::equal(signature.begin(), signature.end(), file.begin(),
+                                                        [](char a, uint8_t b) { return a == char(b); });
+  };
+  if (beginsWith("\xff\xd8")) return "jpg";
+  if (beginsWith("P5") || beginsWith("P2")) return "pgm";
+  if (beginsWith("II*") || beginsWith("MM")) return "tif";
+  if (beginsWith("BM")) return "bmp";
   return "img";
 }
 
@@ -72,6 +84,11 @@ class FolderWriter {
   }
 
   void writeTruth(BagFile* bag);
+  void copyTables(const std::filesystem::path& mav0) {
+    copyOtherTables(
+        mav0, folder_ / "mav0", [&](Time time) { return source_.contains(time); }, &summary_.readings,
+        diagnostics_);
+  }
 
  private:
   std::filesystem::path sensor(const std::string& name) const { return folder_ / "mav0" / name; }
@@ -212,12 +229,29 @@ ConvertSummary convertBagToFolder(const std::filesystem::path& bag, const std::f
   BagOptions bag_options;
   bag_options.rig_files = options.rig_files;
   bag_options.topics = options.topics;
+  bag_options.camera_indices = options.cameras;
   bag_options.needs_calibration = false;
   BagSource source(bag, bag_options, diagnostics);
   FolderWriter writer(&source, folder, options, diagnostics);
   writer.writeTruth(&source.bag());
   ConvertSummary summary = writer.run();
-  writeCalibration(source.rigFile(), folder, diagnostics);
+  writeCalibration(numberedRig(source.rigFile(), options.cameras), folder, diagnostics);
+  return summary;
+}
+
+ConvertSummary convertFolderToFolder(const std::filesystem::path& folder, const std::filesystem::path& target,
+                                     const ConvertOptions& options, Diagnostics* diagnostics) {
+  requireEmpty(target);
+  EurocOptions folder_options = everythingIn(folder, options);
+  folder_options.needs_imu = folder_options.needs_calibration = false;
+  const EurocLayout layout = findEurocLayout(folder, folder_options);
+  EurocSource source(folder, folder_options, diagnostics);
+  FolderWriter writer(&source, target, options, diagnostics);
+  writer.copyTables(layout.mav0);
+  ConvertSummary summary = writer.run();
+  Diagnostics reported_when_opened;
+  const RigFile rig = readFolderCalibration(layout, &reported_when_opened);
+  writeCalibration(numberedRig(rig, layout.camera_indices), target, diagnostics);
   return summary;
 }
 

@@ -67,19 +67,31 @@ void markKalibr(const RigFile& rig, YAML::Node* root) {
 
 }  // namespace
 
+RigFile numberedRig(RigFile rig, const std::vector<int>& cameras) {
+  if (cameras.empty()) return rig;
+  const auto renumber = [&](auto entries) {
+    auto numbered = entries;
+    std::erase_if(numbered, [](const auto& entry) { return entry.first.starts_with("cam"); });
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      const auto entry = entries.find(fmt::format("cam{}", cameras[i]));
+      if (entry != entries.end()) numbered[fmt::format("cam{}", i)] = entry->second;
+    }
+    return numbered;
+  };
+  rig.sections = renumber(rig.sections);
+  rig.topics = renumber(rig.topics);
+  return rig;
+}
+
 void writeRigFile(const EurocLayout& layout, const std::map<std::string, std::string>& topics,
                   const std::filesystem::path& file) {
   Diagnostics reported_when_read_in_earnest;
-  const RigFile rig = readFolderCalibration(layout, &reported_when_read_in_earnest);
+  const RigFile rig =
+      numberedRig(readFolderCalibration(layout, &reported_when_read_in_earnest), layout.camera_indices);
   YAML::Node root;
-  const auto add = [&](const std::string& in_folder, const std::string& sensor) {
-    addSection(rig.sections.at(in_folder), sensor, topics, file, &root);
-  };
-  for (size_t i = 0; i < layout.camera_indices.size(); ++i) {
-    add(fmt::format("cam{}", layout.camera_indices[i]), fmt::format("cam{}", i));
-  }
-  for (const char* sensor : kSingleSensors) {
-    if (topics.contains(sensor) && rig.sections.contains(sensor)) add(sensor, sensor);
+  for (const auto& [sensor, section] : rig.sections) {
+    if (sensor.starts_with("cam") || topics.contains(sensor))
+      addSection(section, sensor, topics, file, &root);
   }
   markKalibr(rig, &root);
   writeYaml(root, file);

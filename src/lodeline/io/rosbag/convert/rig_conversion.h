@@ -3,12 +3,17 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/calibration/rig_file.h"
 #include "lodeline/io/euroc/euroc_rig.h"
 
 namespace lodeline {
+
+/// The rig with its cameras numbered from 0 on in the order of `cameras`, their numbers so far. Other cameras
+/// are left out; with an empty list nothing changes.
+RigFile numberedRig(RigFile rig, const std::vector<int>& cameras);
 
 /// Writes the calibration of a recording in the EuRoC ASL layout (sensor.yaml or Kalibr files) as one rig
 /// file. Numbers are copied digit by digit. `topics`: by sensor. Masks are copied to the folder of the rig

@@ -1,6 +1,7 @@
 #include "lodeline/output/survey/grid/map_grid.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <proj_experimental.h>
 
 #include <GeographicLib/UTMUPS.hpp>
@@ -16,6 +17,8 @@ namespace lodeline {
 namespace {
 
 using GeographicLib::UTMUPS;
+
+constexpr double kSame_m = 1e-3;  ///< difference of coordinates of one position on equal grids
 
 /// PROJ's code of a grid's name: "EPSG:32617" for "utm17n" or "17N"; other names in upper case.
 std::string codeOf(const std::string& crs, const GeodeticPosition& place) {
@@ -82,9 +85,10 @@ struct MapGrid::Proj : ProjObjects {
   Eigen::Matrix2d east_north_from_axes = Eigen::Matrix2d::Identity();
   bool is_south_first = false;
 
-  /// The transformation from WGS 84 to a grid that PROJ suggests at a position: among all known ones, or
-  /// among those whose grid files are installed. Empty where there is none.
-  Object suggested(PJ* grid, const GeodeticPosition& place, bool with_missing_files) const {
+  /// The transformation that PROJ suggests at a position: among all known ones, or among those whose grid
+  /// files are installed. Empty where there is none.
+  Object suggested(const PJ* from, const PJ* to, const GeodeticPosition& place,
+                   bool with_missing_files) const {
     const std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, Destroy> factory(
         proj_create_operation_factory_context(context.get(), nullptr));
     proj_operation_factory_context_set_spatial_criterion(context.get(), factory.get(),
@@ -93,8 +97,7 @@ struct MapGrid::Proj : ProjObjects {
         context.get(), factory.get(),
         with_missing_files ? PROJ_GRID_AVAILABILITY_IGNORED
                            : PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID);
-    const ObjectList list(
-        proj_create_operations(context.get(), create("EPSG:4326").get(), grid, factory.get()));
+    const ObjectList list(proj_create_operations(context.get(), from, to, factory.get()));
     if (list == nullptr || proj_list_get_count(list.get()) == 0) return nullptr;
     const int index =
         proj_get_suggested_operation(context.get(), list.get(), PJ_FWD,
@@ -103,8 +106,8 @@ struct MapGrid::Proj : ProjObjects {
   }
 
   /// The best transformation to a grid, from degrees of longitude and latitude to easting and northing.
-  Object best(PJ* grid, const GeodeticPosition& place) const {
-    const Object operation = suggested(grid, place, false);
+  Object best(const PJ* grid, const GeodeticPosition& place) const {
+    const Object operation = suggested(create("EPSG:4326").get(), grid, place, false);
     if (operation == nullptr) return nullptr;
     return Object(proj_normalize_for_visualization(context.get(), operation.get()));
   }
@@ -166,7 +169,7 @@ struct MapGrid::Proj : ProjObjects {
     const bool is_guess =
         proj_coordoperation_has_ballpark_transformation(context.get(), grid_from_wgs84.get()) != 0;
     if (accuracy_m >= 0.0 && !is_guess) grid->accuracy_m = accuracy_m;
-    const Object first = suggested(crs.get(), place, true);
+    const Object first = suggested(create("EPSG:4326").get(), crs.get(), place, true);
     grid->lacks_grid_file =
         first != nullptr && proj_coordoperation_is_instantiable(context.get(), first.get()) == 0;
   }
@@ -182,23 +185,107 @@ struct MapGrid::Proj : ProjObjects {
     const Object twin_from_wgs84 = best(twin.get(), place);
     if (twin_from_wgs84 == nullptr) return "";
     const Vec2 in_metres = transformed(twin_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
-    const Vec2 in_units = transformed(grid_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
-    if (!((in_metres - grid.metres_per_unit * in_units).norm() < 1e-3)) return "";
+    if (!((in_metres - grid.metres_per_unit * coordinates(place)).norm() < kSame_m)) return "";
     return fmt::format("EPSG:{}", textOf(proj_get_id_code(twin.get(), 0)));
   }
 
-  void describeNames(MapGridDescription* grid, const GeodeticPosition& place) const {
-    std::string code = grid->counts_west_and_south ? "" : grid->name;
-    grid->gis_name = grid->counts_west_and_south ? withoutDirections(crs.get()) : grid->code;
-    if (!code.empty() && std::abs(grid->metres_per_unit - 1.0) > 1e-12) code = codeInMetres(*grid, place);
-    grid->survex_name = code;
-    if (!code.empty() && !grid->lacks_grid_file) grid->therion_name = therionSpelling(code);
-    if (!code.empty()) return;
+  /// Easting and northing in the grid's own unit.
+  Vec2 coordinates(const GeodeticPosition& place) const {
+    return east_north_from_axes * transformed(grid_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
+  }
+
+  /// Whether another grid has the coordinates of this one, counted to the east and north, at a position.
+  bool isTurned(const PJ* other, const GeodeticPosition& place) const {
+    const Object plain(proj_create_crs_to_crs_from_pj(context.get(), crs.get(), other, nullptr, nullptr));
+    if (plain == nullptr) return false;
+    const Object other_from_axes(proj_normalize_for_visualization(context.get(), plain.get()));
+    if (other_from_axes == nullptr) return false;
+    const Vec2 axes = transformed(grid_from_wgs84.get(), place.latitude_deg, place.longitude_deg);
+    const PJ_COORD found =
+        proj_trans(other_from_axes.get(), PJ_FWD, proj_coord(axes.x(), axes.y(), 0.0, HUGE_VAL));
+    return (Vec2(found.xy.x, found.xy.y) - coordinates(place)).norm() < kSame_m;
+  }
+
+  /// Whether Therion 6.1 computes with a grid as PROJ does. It takes longitudes from Greenwich for the
+  /// convergence of the meridians. For Krovak's projection it has transformations of its own, which need a
+  /// grid file.
+  bool isUsedByTherion() const {
+    const Object meridian(proj_get_prime_meridian(context.get(), crs.get()));
+    double longitude = 0.0;
+    if (meridian != nullptr) {
+      proj_prime_meridian_get_parameters(context.get(), meridian.get(), &longitude, nullptr, nullptr);
+    }
+    return longitude == 0.0 && withoutDirections(crs.get()).find("+proj=krovak") == std::string::npos;
+  }
+
+  /// A grid that counts to the west and south as one that counts to the east and north, with the same datum
+  /// and parameters. A method of EPSG includes the directions, so the conversion is that of the PROJ string
+  /// without them.
+  Object turned(const MapGridDescription& grid) const {
+    Object plain = create(withoutDirections(crs.get()));
+    if (plain != nullptr && proj_get_type(plain.get()) == PJ_TYPE_BOUND_CRS)
+      plain = Object(proj_get_source_crs(context.get(), plain.get()));
+    const Object conversion(plain == nullptr ? nullptr
+                                             : proj_crs_get_coordoperation(context.get(), plain.get()));
+    if (conversion == nullptr) return nullptr;
+    const Object datum(proj_crs_get_geodetic_crs(context.get(), crs.get()));
+    const Object axes(proj_create_cartesian_2D_cs(context.get(), PJ_CART2D_EASTING_NORTHING,
+                                                  grid.unit.c_str(), grid.metres_per_unit));
+    const std::string name = grid.title + ", counted to the east and north";
+    return Object(
+        proj_create_projected_crs(context.get(), name.c_str(), datum.get(), conversion.get(), axes.get()));
+  }
+
+  /// Names a grid that counts to the west and south for programs, as turned().
+  void describeTurned(MapGridDescription* grid, const GeodeticPosition& place) const {
+    const Object east_north = turned(*grid);
+    if (east_north == nullptr || !isTurned(east_north.get(), place))
+      throw UsageError(fmt::format("--crs {}: {} counts to the west and south, and PROJ cannot turn its axes",
+                                   grid->name, grid->title));
+    const ObjectList equal(proj_identify(context.get(), east_north.get(), "EPSG", nullptr, nullptr));
+    const int count = equal == nullptr ? 0 : proj_list_get_count(equal.get());
+    for (int i = 0; i < count && grid->turned_code.empty(); ++i) {
+      const Object candidate(proj_list_get(context.get(), equal.get(), i));
+      if (!areWestAndSouth(axisDirections(candidate.get())) && isTurned(candidate.get(), place))
+        grid->turned_code = fmt::format("EPSG:{}", textOf(proj_get_id_code(candidate.get(), 0)));
+    }
+    const char* const options[] = {"MULTILINE=NO", nullptr};
+    grid->gis_name = grid->turned_code.empty()
+                         ? textOf(proj_as_wkt(context.get(), east_north.get(), PJ_WKT2_2019, options))
+                         : grid->turned_code;
+  }
+
+  /// PROJ string of the grid in metres, counted to the east and north. It states the datum by the shift to
+  /// WGS 84 at a position where PROJ knows one of three or seven parameters.
+  std::string projString(const GeodeticPosition& place) const {
     const Object axes(
         proj_crs_alter_cs_linear_unit(context.get(), crs.get(), "metre", 1.0, nullptr, nullptr));
     const Object metric(
         proj_crs_alter_parameters_linear_unit(context.get(), axes.get(), "metre", 1.0, nullptr, nullptr, 1));
-    grid->survex_name = fmt::format("custom \"{}\"", withoutDirections(metric.get()));
+    std::string text = withoutDirections(metric.get());
+    if (text.find("+towgs84") != std::string::npos || text.find("+datum") != std::string::npos) return text;
+    const Object datum(proj_crs_get_geodetic_crs(context.get(), crs.get()));
+    const Object shift = suggested(datum.get(), create("EPSG:4326").get(), place, false);
+    std::array<double, 7> values{};
+    const bool is_known = shift != nullptr && proj_coordoperation_get_towgs84_values(
+                                                  context.get(), shift.get(), values.data(), 7, 0) != 0;
+    const size_t at = text.find(" +units");
+    if (is_known && at != std::string::npos)
+      text.insert(at, fmt::format(" +towgs84={:g}", fmt::join(values, ",")));
+    return text;
+  }
+
+  void describeNames(MapGridDescription* grid, const GeodeticPosition& place) const {
+    std::string code = grid->name;
+    grid->gis_name = grid->code;
+    if (grid->counts_west_and_south) {
+      describeTurned(grid, place);
+      code = grid->turned_code;
+    }
+    if (!code.empty() && std::abs(grid->metres_per_unit - 1.0) > 1e-12) code = codeInMetres(*grid, place);
+    grid->survex_name = code.empty() ? fmt::format("custom \"{}\"", projString(place)) : code;
+    if (!code.empty() && !grid->lacks_grid_file && isUsedByTherion())
+      grid->therion_name = therionSpelling(code);
   }
 };
 
@@ -232,8 +319,7 @@ MapGrid::MapGrid(const std::string& crs, const GeodeticPosition& place) : proj_(
 }
 
 Vec2 MapGrid::project(double latitude_deg, double longitude_deg) const {
-  return description_.metres_per_unit * proj_->east_north_from_axes *
-         transformed(proj_->grid_from_wgs84.get(), latitude_deg, longitude_deg);
+  return description_.metres_per_unit * proj_->coordinates({latitude_deg, longitude_deg, 0.0});
 }
 
 GeodeticPosition MapGrid::locate(const Vec2& coordinates) const {

@@ -25,12 +25,14 @@ struct MapGridDescription {
 
   /// Survex's name of the grid in metres, its only unit: a code, or a PROJ string.
   std::string survex_name;
-  /// Therion's name, which must be a code; empty where the grid in metres has no code, or where Therion fails
-  /// for lack of a grid file.
+  /// Therion's name, which must be a code; empty where the grid in metres has no code, where Therion lacks a
+  /// grid file, or where it would turn the grid wrongly.
   std::optional<std::string> therion_name;
-  /// What GIS files state: the code, or a PROJ string where the grid counts to the west and south.
+  /// What GIS files state: a code, or well-known text.
   std::string gis_name;
   bool counts_west_and_south = false;
+  /// EPSG's code of the same grid counted to the east and north; empty without one, and for other grids.
+  std::string turned_code;
 };
 
 /// A projected grid: a UTM zone, a polar or a national grid, computed by PROJ.
@@ -39,8 +41,8 @@ struct MapGridDescription {
 /// installed; nothing is downloaded. All coordinates are in metres.
 ///
 /// Survey programs and GIS take the first coordinate for an easting and the second for a northing. A grid
-/// that counts to the west and south is therefore used with easting = -westing and northing = -southing,
-/// under a PROJ string without the directions of its axes.
+/// that counts to the west and south is therefore used with easting = -westing and northing = -southing, and
+/// named as the grid with these axes: by EPSG's code of it, or by its definition.
 class MapGrid {
  public:
   /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or

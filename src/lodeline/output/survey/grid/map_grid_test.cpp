@@ -65,9 +65,17 @@ TEST(MapGrid, TurnsAxesToTheWestAndSouth) {
               1e-9);
   const MapGridDescription description = krovak.description();
   EXPECT_TRUE(description.counts_west_and_south);
-  EXPECT_THAT(description.survex_name, HasSubstr("custom \"+proj=krovak +lat_0"));
-  EXPECT_THAT(description.gis_name, HasSubstr("+proj=krovak +lat_0"));
+  EXPECT_EQ(description.survex_name, "EPSG:5514");
+  EXPECT_EQ(description.gis_name, "EPSG:5514");
   EXPECT_FALSE(description.therion_name);
+  // Without a counterpart in EPSG.
+  const MapGridDescription cape = MapGrid("EPSG:22279", {-33.5, 19.2, 0.0}).description();
+  EXPECT_THAT(cape.survex_name, HasSubstr("custom \"+proj=tmerc +lat_0=0 +lon_0=19 "));
+  EXPECT_THAT(cape.survex_name, HasSubstr("+towgs84="));
+  EXPECT_THAT(cape.gis_name, HasSubstr("Transverse Mercator"));
+  EXPECT_THAT(cape.gis_name, HasSubstr("BASEGEOGCRS[\"Cape\""));
+  EXPECT_EQ(cape.turned_code, "");
+  EXPECT_FALSE(cape.therion_name);
   EXPECT_FALSE(east_north.description().counts_west_and_south);
   EXPECT_EQ(east_north.description().gis_name, "EPSG:5514");
 }

@@ -55,8 +55,8 @@ void addDatumNotes(const MapGridDescription& grid, std::vector<std::string>* not
   if (grid.counts_west_and_south) {
     notes->push_back(fmt::format(
         "axes: {} counts to the west and south; coordinates are minus its westing and minus its southing, "
-        "which count to the east and north as programs expect ({})",
-        grid.code, grid.gis_name));
+        "which count to the east and north as programs expect{}",
+        grid.code, grid.turned_code.empty() ? "" : fmt::format(" ({})", grid.turned_code)));
   }
   if (grid.metres_per_unit != 1.0) {
     notes->push_back(fmt::format(
