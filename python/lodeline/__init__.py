@@ -11,6 +11,8 @@ Poses are (4, 4) matrices world_from_body. Errors are InputError, UsageError and
 from ._feed import feed
 from ._lodeline import (
     Camera,
+    CurrentSensor,
+    Dvl,
     Error,
     Estimate,
     Estimates,
@@ -30,6 +32,7 @@ from ._lodeline import (
     Run,
     RunFolder,
     SensorNoise,
+    Sonar,
     Trajectory,
     UsageError,
     __version__,

@@ -1,4 +1,4 @@
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,4 +15,9 @@ def feed(
     images: Sequence[Iterable[tuple[int, NDArray[np.uint8] | None]]],
     magnetometer: tuple[_Times, _Floats] | None = None,
     depth: tuple[_Times, _Floats] | None = None,
+    sonar: tuple[_Times, _Floats, _Floats] | None = None,
+    altimeter: tuple[_Times, _Floats] | None = None,
+    dvl: tuple[_Times, _Floats, _Floats, NDArray[np.bool_]] | None = None,
+    dvl_beams: tuple[_Times, NDArray[np.int32], _Floats, _Floats] | None = None,
+    currents: tuple[_Times, Mapping[str, _Floats]] | None = None,
 ) -> Estimates: ...

@@ -85,6 +85,10 @@ Rigid3 rigidFrom(const Doubles& matrix, const char* what) {
                             what);
 }
 
+Rigid3 rigidOr(const std::optional<Doubles>& matrix, const char* what) {
+  return matrix ? rigidFrom(*matrix, what) : Rigid3();
+}
+
 py::array_t<double> arrayOf(const Rigid3& transformation) {
   py::array_t<double> array({4, 4});
   Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(array.mutable_data()) = transformation.matrix();

@@ -55,6 +55,8 @@ std::vector<Vec3> vectorsFrom(const Doubles& array, size_t count, const char* wh
 std::vector<double> numbersFrom(const Doubles& array, size_t count, const char* what);
 /// A pose from an array (4, 4).
 Rigid3 rigidFrom(const Doubles& matrix, const char* what);
+/// The same; without an array, the identity.
+Rigid3 rigidOr(const std::optional<Doubles>& matrix, const char* what);
 
 py::array_t<double> arrayOf(const Rigid3& transformation);
 /// [w, x, y, z] with w >= 0.

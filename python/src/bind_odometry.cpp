@@ -6,6 +6,7 @@
 #include "python/src/arrays.h"
 #include "python/src/bindings.h"
 #include "python/src/feed.h"
+#include "python/src/robot_readings.h"
 
 namespace lodeline::python {
 namespace {
@@ -61,6 +62,41 @@ void pushPressure(Feed& feed, py::handle times_ns, const Doubles& pressure_Pa, d
   });
 }
 
+void pushSonar(Feed& feed, py::handle times_ns, const Doubles& range_m, const Doubles& angle_rad) {
+  const std::vector<Time> times = timesFrom(times_ns);
+  const std::vector<double> ranges = numbersFrom(range_m, times.size(), "range_m");
+  const std::vector<double> angles = numbersFrom(angle_rad, times.size(), "angle_rad");
+  withoutGil([&] {
+    for (size_t i = 0; i < times.size(); ++i) feed.push(SonarSample{times[i], ranges[i], angles[i]});
+  });
+}
+
+void pushAltimeter(Feed& feed, py::handle times_ns, const Doubles& range_m) {
+  const std::vector<Time> times = timesFrom(times_ns);
+  const std::vector<double> ranges = numbersFrom(range_m, times.size(), "range_m");
+  withoutGil([&] {
+    for (size_t i = 0; i < times.size(); ++i) feed.push(AltimeterSample{times[i], ranges[i]});
+  });
+}
+
+void pushDvl(Feed& feed, py::handle times_ns, const OptionalDoubles& velocity, const OptionalDoubles& sigma,
+             py::handle is_water_track, const OptionalDoubles& beam_velocity,
+             const OptionalDoubles& beam_range) {
+  const std::vector<DvlSample> pings =
+      pingsFrom(timesFrom(times_ns), velocity, sigma, is_water_track, beam_velocity, beam_range);
+  withoutGil([&] {
+    for (const DvlSample& ping : pings) feed.push(ping);
+  });
+}
+
+void pushCurrents(Feed& feed, py::handle times_ns, const py::dict& currents) {
+  const std::vector<CurrentSample> samples =
+      currentsFrom(timesFrom(times_ns), currents, feed.currentChannels());
+  withoutGil([&] {
+    for (const CurrentSample& sample : samples) feed.push(sample);
+  });
+}
+
 void pushImage(Feed& feed, size_t camera, py::handle time_ns, const py::array& image) {
   const std::vector<Time> times = timesFrom(time_ns);
   if (times.size() != 1) throw py::value_error("time_ns: one integer is wanted");
@@ -104,6 +140,24 @@ void bindOdometry(py::module_& module) {
            py::arg("density_kg_per_m3") = WaterColumn().density_kg_per_m3,
            py::arg("surface_pressure_Pa") = WaterColumn().surface_pressure_Pa,
            "pressure_Pa: number or (N), absolute, Pa.")
+      .def("push_sonar", &pushSonar, py::arg("times_ns"), py::arg("range_m"), py::arg("angle_rad"),
+           "range_m: number or (N), m. angle_rad: the same, rad, of the beam about the z axis of the sonar's "
+           "head,\n"
+           "0 along x.")
+      .def("push_altimeter", &pushAltimeter, py::arg("times_ns"), py::arg("range_m"),
+           "range_m: number or (N), m, along the altimeter's x axis.")
+      .def("push_dvl", &pushDvl, py::arg("times_ns"), py::arg("velocity") = py::none(),
+           py::arg("sigma") = py::none(), py::arg("is_water_track") = py::none(), py::kw_only(),
+           py::arg("beam_velocity") = py::none(), py::arg("beam_range") = py::none(),
+           "velocity: (3) or (N, 3), m/s, of the instrument, axes of the DVL. sigma: number or (N), m/s, of "
+           "each\n"
+           "axis. is_water_track: bool or (N), False by default. beam_velocity: (K) or (N, K), m/s, along "
+           "the K\n"
+           "beams in the order of the rig, positive from the instrument outwards. beam_range: the same, m. "
+           "NaN where\n"
+           "there is no lock. Where a ping has velocities of beams, these count and its velocity does not.")
+      .def("push_currents", &pushCurrents, py::arg("times_ns"), py::arg("currents"),
+           "currents: dict of number or (N), A, by the names of all channels of the rig.")
       .def("push_image", &pushImage, py::arg("camera"), py::arg("time_ns"), py::arg("image"),
            "camera: index. time_ns: mid-exposure, ns. image: (height, width) uint8, grey.")
       .def(

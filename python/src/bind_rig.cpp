@@ -11,10 +11,6 @@ namespace {
 
 using Matrix = std::optional<Doubles>;
 
-Rigid3 rigidOr(const Matrix& matrix, const char* what) {
-  return matrix ? rigidFrom(*matrix, what) : Rigid3();
-}
-
 void bindImu(py::module_& module) {
   py::class_<ImuCalibration>(module, "Imu",
                              "The IMU, which defines the body frame B. Densities are two-sided.")
@@ -142,10 +138,15 @@ void bindRig(py::module_& module) {
   bindImu(module);
   bindCamera(module);
   bindOtherSensors(module);
+  bindRobotSensors(module);
   py::class_<DescribedRig>(module, "Rig", "All rigidly connected sensors with their extrinsics.")
       .def(py::init([](std::vector<CameraCalibration> cameras, const ImuCalibration& imu,
                        const std::optional<MagnetometerCalibration>& magnetometer,
-                       const std::optional<PressureCalibration>& pressure) {
+                       const std::optional<PressureCalibration>& pressure,
+                       const std::optional<SonarCalibration>& sonar,
+                       const std::optional<SonarCalibration>& altimeter,
+                       const std::optional<DvlCalibration>& dvl,
+                       const std::optional<CurrentCalibration>& currents) {
              for (size_t i = 0; i < cameras.size(); ++i) {
                if (cameras[i].name.empty()) cameras[i].name = "cam" + std::to_string(i);
              }
@@ -154,15 +155,27 @@ void bindRig(py::module_& module) {
              described.rig.cameras = std::move(cameras);
              described.rig.magnetometer = magnetometer;
              described.rig.pressure = pressure;
+             described.rig.sonar = sonar;
+             described.rig.altimeter = altimeter;
+             described.rig.dvl = dvl;
+             described.rig.currents = currents;
              return described;
            }),
            py::kw_only(), py::arg("cameras"), py::arg_v("imu", ImuCalibration{0.0, {}}, "Imu()"),
-           py::arg("magnetometer") = py::none(), py::arg("pressure") = py::none())
+           py::arg("magnetometer") = py::none(), py::arg("pressure") = py::none(),
+           py::arg("sonar") = py::none(), py::arg("altimeter") = py::none(), py::arg("dvl") = py::none(),
+           py::arg("currents") = py::none())
       .def_property_readonly("cameras",
                              [](const DescribedRig& d) { return py::tuple(py::cast(d.rig.cameras)); })
       .def_property_readonly("imu", [](const DescribedRig& d) { return d.rig.imu; })
       .def_property_readonly("magnetometer", [](const DescribedRig& d) { return d.rig.magnetometer; })
       .def_property_readonly("pressure", [](const DescribedRig& d) { return d.rig.pressure; })
+      .def_property_readonly("sonar", [](const DescribedRig& d) { return d.rig.sonar; })
+      .def_property_readonly(
+          "altimeter", [](const DescribedRig& d) { return d.rig.altimeter; },
+          "a Sonar whose beam points along x")
+      .def_property_readonly("dvl", [](const DescribedRig& d) { return d.rig.dvl; })
+      .def_property_readonly("currents", [](const DescribedRig& d) { return d.rig.currents; })
       .def_property_readonly("has_sonar", [](const DescribedRig& d) { return d.rig.sonar.has_value(); })
       .def_property_readonly("has_altimeter",
                              [](const DescribedRig& d) { return d.rig.altimeter.has_value(); })

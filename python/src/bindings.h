@@ -7,6 +7,7 @@ namespace lodeline::python {
 // Each function adds one subject to the module. Classes come before the functions that take or return them.
 void bindErrors(pybind11::module_& module);
 void bindRig(pybind11::module_& module);
+void bindRobotSensors(pybind11::module_& module);  // by bindRig()
 void bindTrajectory(pybind11::module_& module);
 void bindEstimates(pybind11::module_& module);
 void bindRecording(pybind11::module_& module);

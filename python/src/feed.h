@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -25,11 +26,21 @@ class Feed {
   Feed& operator=(const Feed&) = delete;
 
   void push(const ImuSample& sample);
-  void push(const MagnetometerSample& sample) { pushOpen(sample); }
-  void push(const DepthSample& sample) { pushOpen(sample); }
+  /// Throws UsageError where the rig does not have the sensor, here and below.
+  void push(const MagnetometerSample& sample) { pushTo(rig_.rig.magnetometer, "magnetometer", sample); }
+  void push(const DepthSample& sample) { pushTo(rig_.rig.pressure, "pressure sensor", sample); }
+  void push(const SonarSample& sample) { pushTo(rig_.rig.sonar, "sonar", sample); }
+  void push(const AltimeterSample& sample) { pushTo(rig_.rig.altimeter, "altimeter", sample); }
+  void push(const DvlSample& sample) { pushTo(rig_.rig.dvl, "DVL", sample); }
+  void push(const CurrentSample& sample) { pushTo(rig_.rig.currents, "current sensor", sample); }
   /// Returns false after a short wait where the queue is full; the caller then tries again. Throws UsageError
   /// where the queue cannot empty, because inertial readings of the oldest images are missing.
   bool push(size_t camera, Time time, const cv::Mat& pixels);
+
+  /// Names of the channels of the current sensor; empty without one.
+  std::vector<std::string> currentChannels() const {
+    return rig_.rig.currents.value_or(CurrentCalibration()).channels;
+  }
 
   /// Ends the readings; the estimates of all of them follow.
   void close();
@@ -47,6 +58,11 @@ class Feed {
   void pushOpen(const Sample& sample) {
     requireOpen();
     source_.push(sample);
+  }
+  template <typename Calibration, typename Sample>
+  void pushTo(const std::optional<Calibration>& calibration, const char* name, const Sample& sample) {
+    if (!calibration) throw UsageError(std::string("odometry: the rig has no ") + name);
+    pushOpen(sample);
   }
   void requireOpen();
   void rethrow() const;

@@ -4,7 +4,7 @@ import lodeline
 import numpy as np
 from support import SAMPLE, FolderTest
 
-# Readings of the sonar cannot be pushed.
+# Readings of the sonar are not pushed here.
 SETTINGS = {"source.duration_s": 5, "sonar.use": False}
 
 

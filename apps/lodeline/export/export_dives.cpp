@@ -94,7 +94,7 @@ ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFor
   dive.map = makeDiveMap(run, options, dive.recording.walls_W, diagnostics);
   if (dive.map.echoes_ENU.empty()) return dive;
   std::vector<StationWalls> sections = echoesAtStations(dive.map.echoes_ENU, dive.map.survey, {});
-  takeSizes(sections, &dive.map.survey);
+  takeSections(sections, options.passage.splay_sectors, &dive.map.survey);
   const bool has_whole = std::any_of(sections.begin(), sections.end(),
                                      [](const StationWalls& s) { return s.outline.area_m2.has_value(); });
   if (has_whole) dive.sections = std::move(sections);

@@ -8,7 +8,11 @@
 
 #include "apps/lodeline/map/map_dives.h"
 #include "apps/lodeline/shared/place_argument.h"
+#include "lodeline/output/survey/formats/recording_walls.h"
+#include "lodeline/output/survey/map/carried_trajectory.h"
 #include "lodeline/output/survey/map/survey_name.h"
+#include "lodeline/output/walls/section/wall_sections.h"
+#include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/angles.h"
 
 namespace lodeline {
@@ -39,6 +43,23 @@ std::vector<std::string> namesOf(const std::vector<RunFolder>& runs, const Surve
   return surveyNames(names);
 }
 
+/// Wall points by the sonar of a dive's recording, in the frame of the map; empty where the project names
+/// none. The motion between the keyframes of the map is that of the dive's run.
+std::vector<Vec3> echoesOf(const ProjectDive* row, const RunFolder& in_map, Diagnostics* diagnostics) {
+  if (row == nullptr || row->recording.empty()) return {};
+  EurocOptions options;
+  options.with_cameras = options.needs_cameras = false;
+  BagArguments bag;
+  bag.rig_files = row->rig;
+  const std::unique_ptr<RecordedSource> source = openRecording(row->recording, options, bag, diagnostics);
+  if (!source->rig().sonar) {
+    throw InputError(fmt::format("{}: has no sonar, and the survey reads nothing else of a recording",
+                                 row->recording.string()));
+  }
+  const RunFolder run = readRunFolder(row->run, diagnostics);
+  return sonarWalls(*source, carriedTrajectory(run.trajectory, in_map.trajectory), diagnostics);
+}
+
 /// The dives in the frame of the map, all turned by the north of the first one.
 std::vector<DiveMap> divesOf(const MapFile& map, const SurveyProject& project, Diagnostics* diagnostics) {
   const std::vector<RunFolder> runs = runsOfMap(map);
@@ -51,9 +72,10 @@ std::vector<DiveMap> divesOf(const MapFile& map, const SurveyProject& project, D
     options.title = row != nullptr ? row->title : "";
     options.date = row != nullptr && !row->date.empty() ? row->date : project.date;
     options.team = row != nullptr && !row->team.empty() ? row->team : project.team;
+    const std::vector<Vec3> echoes = echoesOf(row, runs[i], diagnostics);
     Diagnostics repeated;  // what concerns the place is the same for all dives
     if (i > 0) options.turn_deg = dives.front().north.turn_rad / kDegree;
-    dives.push_back(makeDiveMap(runs[i], options, {}, i == 0 ? diagnostics : &repeated));
+    dives.push_back(makeDiveMap(runs[i], options, echoes, i == 0 ? diagnostics : &repeated));
     if (i > 0) dives.back().north = dives.front().north;
   }
   return dives;
@@ -131,7 +153,9 @@ CaveSurvey caveOfMap(const MapFile& map, const SurveyProject& project, Diagnosti
   options.stations.spacing_m = project.spacing_m;
   options.blind = blindTimes(map, project);
   const std::vector<CaveControl> control = controlOf(map, dives.front().north.turn_rad);
-  return makeCaveSurvey(std::move(dives), control, options, diagnostics);
+  CaveSurvey cave = makeCaveSurvey(std::move(dives), control, options, diagnostics);
+  takeEchoSections({}, options.passage.splay_sectors, &cave);
+  return cave;
 }
 
 }  // namespace lodeline

@@ -92,6 +92,11 @@ ProjectDive readDive(const fs::path& file, const YAML::Node& node) {
   ProjectDive dive;
   Keys keys(file);
   keys.path("run", &dive.run);
+  keys.path("recording", &dive.recording);
+  keys.on("rig", [&](const YAML::Node& value) {
+    if (value.IsScalar()) dive.rig.push_back(keys.pathOf(value).string());
+    for (const YAML::Node& one : value) dive.rig.push_back(keys.pathOf(one).string());
+  });
   keys.text("dive", &dive.dive);
   keys.text("name", &dive.name);
   keys.text("title", &dive.title);
@@ -104,6 +109,8 @@ ProjectDive readDive(const fs::path& file, const YAML::Node& node) {
   });
   keys.read(node);
   if (dive.run.empty() && dive.dive.empty()) keys.fail(node.Mark(), "a dive wants 'run' or 'dive'");
+  if (!dive.recording.empty() && dive.run.empty())
+    keys.fail(node.Mark(), "the 'recording' of a dive wants its 'run', whose poses place the echoes");
   if (dive.dive.empty()) {
     const fs::path folder = dive.run.has_filename() ? dive.run : dive.run.parent_path();
     dive.dive = folder.filename().string();

@@ -11,8 +11,10 @@ namespace lodeline {
 
 /// One dive of a project.
 struct ProjectDive {
-  std::filesystem::path run;  ///< folder of `lodeline run`; empty for a dive that the map has already
-  std::string dive;           ///< name in the map; without it, that of the run's folder
+  std::filesystem::path run;        ///< folder of `lodeline run`; empty for a dive that the map has already
+  std::filesystem::path recording;  ///< with a scanning sonar, of the run; empty for none
+  std::vector<std::string> rig;     ///< files that describe its rig
+  std::string dive;                 ///< name in the map; without it, that of the run's folder
   std::string name, title, date;
   std::vector<std::string> team;
   std::optional<Vec3> start_ENU;  ///< m, from the origin of the map

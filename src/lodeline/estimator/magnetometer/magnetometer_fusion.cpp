@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lodeline/estimator/magnetometer/field/field_reading.h"
 #include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/uncertainty/time_correlated_error.h"
 #include "lodeline/geometry/so3.h"
@@ -283,6 +284,12 @@ void MagnetometerFusion::judge(const FrameField& field, Window& window, Marginal
     endDisturbance(window, marginalizer);
   if (decision.begin_disturbance) beginDisturbance(mean, window, marginalizer);
   learnAnomaly(field, earth, window);
+  if (!areCurrentsUncertain(field, window)) {
+    FieldReading reading;
+    reading.field_B = mean.field_B - mean.carried * MagnetometerStates(window).offset_B();
+    reading.sigma_T = std::hypot(std::sqrt(whiteVariance(field)), errors_.correlated_noise_sigma_T());
+    newest.measurements.set(reading);
+  }
   // A rejected sensor (Inconsistent) is also evaluated; otherwise it could never be accepted again.
   if (status_ == MagnetometerStatus::Used || status_ == MagnetometerStatus::Inconsistent)
     learnErrors(field, mean, window);

@@ -40,6 +40,12 @@ struct SeenTag {
   Mat3 covariance = Mat3::Identity();  ///< of that position, m^2
 };
 
+/// The magnetic field at a keyframe, used by the estimator or not.
+struct KeyframeField {
+  Vec3 field_B = Vec3::Zero();  ///< body axes, without hard iron and fields of currents, T
+  double sigma_T = 0.0;         ///< of its independent noise, per axis
+};
+
 /// What a map keeps of one moment of a dive.
 struct MapKeyframe {
   KeyframeId id = -1;
@@ -56,7 +62,8 @@ struct MapKeyframe {
   /// Depth of the body below the surface by the pressure sensor and one sigma, m.
   std::optional<ScalarPrior> depth_m;
   std::vector<MapFeature> features;
-  std::vector<SeenTag> tags;  ///< a map keeps them as observations of control points
+  std::vector<SeenTag> tags;           ///< a map keeps them as observations of control points
+  std::optional<KeyframeField> field;  ///< during the run alone; the map's file does not keep it
 };
 
 /// A feature of an old keyframe and one of a new keyframe that show the same point: indices.
@@ -75,6 +82,14 @@ enum class LoopStatus {
 };
 const char* toString(LoopStatus status);
 
+/// Agreement of the magnetic fields along both ways of a loop, given its pose.
+struct FieldAgreement {
+  double chi_squared = 0.0;  ///< of the new way's readings, predicted from those of the old way
+  int values = 0;            ///< its degrees of freedom
+  /// Natural logarithm of the likelihood of these readings at this place over that at any other place.
+  double log_ratio = 0.0;
+};
+
 /// A pair of keyframes that may show the same place, and what became of it: one row of the ledger.
 struct Loop {
   KeyframeId old_keyframe = -1;
@@ -92,6 +107,7 @@ struct Loop {
   Rigid3 old_from_new;
   Mat6 covariance = Mat6::Identity();
   std::vector<FeatureMatch> inlier_matches;
+  std::optional<FieldAgreement> field;  ///< where the field varies; the map's file does not keep it
 };
 
 }  // namespace lodeline

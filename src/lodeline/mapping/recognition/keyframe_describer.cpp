@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/estimator/magnetometer/field/field_reading.h"
 #include "lodeline/frontend/detection/mask.h"
 #include "lodeline/mapping/recognition/keypoints/blob_detector.h"
 #include "lodeline/mapping/recognition/keypoints/scene_distance.h"
@@ -155,6 +156,14 @@ MapKeyframe keyframeOf(const FrameEstimate& estimate) {
   return keyframe;
 }
 
+/// The magnetic field at the estimator's newest frame.
+std::optional<KeyframeField> fieldOf(const Estimator& estimator) {
+  if (!estimator.initialized()) return std::nullopt;
+  const auto* reading = estimator.window().newest().measurements.find<FieldReading>();
+  if (reading == nullptr) return std::nullopt;
+  return KeyframeField{reading->field_B, reading->sigma_T};
+}
+
 }  // namespace
 
 void KeyframeDescriberOptions::check() const {
@@ -172,7 +181,10 @@ KeyframeDescriber::KeyframeDescriber(const Rig& rig, const KeyframeDescriberOpti
 MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks,
                                         const FrameEstimate& estimate, const Estimator& estimator,
                                         const cv::Mat& visible) const {
-  return describe(images, tracks, estimate, frameGeometry(estimator, cameras_, tracks), visible);
+  MapKeyframe keyframe =
+      describe(images, tracks, estimate, frameGeometry(estimator, cameras_, tracks), visible);
+  keyframe.field = fieldOf(estimator);
+  return keyframe;
 }
 
 MapKeyframe KeyframeDescriber::describe(const std::vector<cv::Mat>& images, const FrameTracks& tracks,

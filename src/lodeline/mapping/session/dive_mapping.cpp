@@ -7,6 +7,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/mapping/recognition/merge_keyframes.h"
 #include "lodeline/mapping/session/loops/cloud_loops.h"
+#include "lodeline/mapping/session/loops/field_support.h"
 #include "lodeline/mapping/session/map_north.h"
 #include "lodeline/util/thread_clock.h"
 
@@ -37,6 +38,7 @@ KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, 
   known.view_B = viewOf(keyframe);
   known.path_m = path_m;
   if (keyframe.depth_m) known.depth_m = keyframe.depth_m->value;
+  known.field = keyframe.field;
   return known;
 }
 
@@ -175,17 +177,24 @@ void DiveMapping::look(const MapKeyframe& keyframe, MappingStep* step) {
     loop.new_keyframe = keyframe.id;
     loop.source = candidate.source;
     ++summary_.candidates;
-    if (loop.status != LoopStatus::Verified) {
-      record(loop);
-      continue;
-    }
-    ++summary_.verified;
+    if (!isVerified(&loop)) continue;
     VerifiedLoop verified{loop, {}};
     if (!by_clip) verified.links = linksOf(loop, old_keyframe, keyframe);
     verified.loop.inlier_matches.clear();
     use(acceptance_.add(std::move(verified), candidate.prediction.has_value(), known_), step);
   }
   use(acceptance_.expire(keyframe.id, known_), step);
+}
+
+bool DiveMapping::isVerified(Loop* loop) {
+  if (loop->status == LoopStatus::Verified) {
+    ++summary_.verified;
+    judgeByField(known_, loop);
+    if (loop->status == LoopStatus::Verified) return true;
+    ++summary_.refused;
+  }
+  record(*loop);
+  return false;
 }
 
 void DiveMapping::record(const Loop& loop) {
@@ -346,13 +355,9 @@ void DiveMapping::registerClouds() {
   const auto features = [this](KeyframeId id) { return own_->features(id); };
   LoopAcceptance acceptance;
   MappingStep step;
-  for (const Loop& loop : cloudLoops(keyframes, features, view_B.normalized())) {
+  for (Loop& loop : cloudLoops(keyframes, features, view_B.normalized())) {
     ++summary_.candidates;
-    if (loop.status != LoopStatus::Verified) {
-      record(loop);
-      continue;
-    }
-    ++summary_.verified;
+    if (!isVerified(&loop)) continue;
     use(acceptance.add({loop, {}}, true, known_), &step);
   }
   use(acceptance.expire(previous_->id, known_, true), &step);

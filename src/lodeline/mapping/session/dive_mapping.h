@@ -79,6 +79,9 @@ class DiveMapping {
   void updatePoses();
   /// Joins the way in and the way out by the shape of the passage.
   void registerClouds();
+  /// Counts a loop that an aligning step has verified, and lets the magnetic field contradict it. Others are
+  /// recorded.
+  bool isVerified(Loop* loop);
   void record(const Loop& loop);
   /// Marks the loops that the solution refuses in the ledger, which has them in the same order.
   void recordRefused(const GraphSummary& solution);

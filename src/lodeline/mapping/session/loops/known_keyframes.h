@@ -20,6 +20,7 @@ struct KnownKeyframe {
   Vec3 view_B = Vec3::UnitX();    ///< mean viewing direction of its features, unit
   double path_m = 0.0;            ///< along its dive, from the first keyframe
   std::optional<double> depth_m;  ///< below the surface
+  std::optional<KeyframeField> field;
 };
 
 /// Uncertain position of one dive's odometry world in the map: rotation about the vertical, and translation.

@@ -10,7 +10,8 @@ namespace {
 
 constexpr const char* kHeader =
     "#new_time [ns],old_time [ns],new_dive,old_dive,source,status,reason,matches,inliers,covered_share,"
-    "rms [sigma],mahalanobis_squared,dx [m],dy [m],dz [m],turn [deg],sigma_dx [m],sigma_dy [m],sigma_dz [m]";
+    "rms [sigma],mahalanobis_squared,dx [m],dy [m],dz [m],turn [deg],sigma_dx [m],sigma_dy [m],sigma_dz [m],"
+    "field_chi_squared,field_values,field_log_ratio";
 
 }  // namespace
 
@@ -41,10 +42,16 @@ void LoopLedger::write(const Loop& loop, const LoopPlaces& places) {
                          loop.inliers, loop.covered_share, loop.rms_sigmas, loop.mahalanobis_squared);
   // A candidate that was never aligned has no pose.
   if (loop.inliers > 0) {
-    stream_ << fmt::format(",{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f}\n", moved.x(), moved.y(),
+    stream_ << fmt::format(",{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f}", moved.x(), moved.y(),
                            moved.z(), turn_deg, sigma.x(), sigma.y(), sigma.z());
   } else {
-    stream_ << ",nan,nan,nan,nan,nan,nan,nan\n";
+    stream_ << ",nan,nan,nan,nan,nan,nan,nan";
+  }
+  if (loop.field) {
+    stream_ << fmt::format(",{:.2f},{},{:.2f}\n", loop.field->chi_squared, loop.field->values,
+                           loop.field->log_ratio);
+  } else {
+    stream_ << ",nan,0,nan\n";
   }
   flush();
 }

@@ -138,6 +138,7 @@ class SurveyMaker {
 void measureWalls(const CaveSurveyOptions& options, CaveSurvey* cave) {
   std::vector<Vec3> walls;
   for (const DiveMap& dive : cave->dives) {
+    walls.insert(walls.end(), dive.echoes_ENU.begin(), dive.echoes_ENU.end());
     for (const MapLandmark& landmark : dive.landmarks) {
       if (landmark.observations >= options.min_observations) walls.push_back(landmark.position);
     }

@@ -19,7 +19,8 @@ struct SonarDive {
   std::vector<Vec3> echoes;
   Survey survey;
 
-  explicit SonarDive(const SonarErrors& errors) : dive(makeDive(scenario())), world(buildWorld(dive)) {
+  explicit SonarDive(const SonarErrors& errors, const Scenario& of = scenario())
+      : dive(makeDive(of)), world(buildWorld(dive)) {
     const RangeFunction range = [this](const Vec3& origin, const Vec3& direction) {
       return world->scene.range(origin, direction);
     };
@@ -97,7 +98,7 @@ TEST(EchoSections, EqualThePassageOfTheSimulator) {
 TEST(EchoSections, GiveTheSurveyItsDistances) {
   const SonarDive& dive = sonarDive();
   Survey survey = dive.survey;
-  takeSizes(echoesAtStations(dive.echoes, survey, {}), &survey);
+  takeSections(echoesAtStations(dive.echoes, survey, {}), 16, &survey);
   std::vector<double> errors_m;
   const std::vector<PassageSection> sections = passageSections(survey.stations);
   for (size_t i = 0; i < sections.size(); ++i) {
@@ -112,6 +113,44 @@ TEST(EchoSections, GiveTheSurveyItsDistances) {
   RecordProperty("median_error_m", std::to_string(medianOf(errors_m)));
   EXPECT_GE(errors_m.size(), 3 * sections.size());
   EXPECT_LT(medianOf(errors_m), 0.2);
+}
+
+TEST(EchoSections, GiveTheSurveyItsSplays) {
+  const SonarDive& dive = sonarDive();
+  Survey survey = dive.survey;
+  takeSections(echoesAtStations(dive.echoes, survey, {}), 16, &survey);
+  std::vector<double> errors_m;
+  for (const SurveyStation& station : survey.stations) {
+    EXPECT_LE(station.splays_ENU.size(), 16u);
+    for (const Vec3& splay : station.splays_ENU) {
+      const Vec3 way = splay - station.position_ENU;
+      const std::optional<double> range_m = dive.world->scene.range(station.position_ENU, way.normalized());
+      if (range_m) errors_m.push_back(std::abs(way.norm() - *range_m));
+    }
+  }
+  RecordProperty("median_error_m", std::to_string(medianOf(errors_m)));
+  EXPECT_GE(errors_m.size(), 8 * survey.stations.size());
+  EXPECT_LT(medianOf(errors_m), 0.2);
+}
+
+// A vehicle above an open sea floor: the floor has a distance, and nothing else has one.
+TEST(EchoSections, MeasureNoPassageAboveAnOpenFloor) {
+  ScenarioChanges changes;
+  changes.metres = 15.0;
+  changes.no_images = true;
+  const SonarDive dive(goodSonar(), makeScenario("auv", changes));
+  ASSERT_FALSE(dive.echoes.empty());
+  const std::vector<StationWalls> walls = echoesAtStations(dive.echoes, dive.survey, {});
+  const std::vector<PassageSection> sections = passageSections(dive.survey.stations);
+  for (size_t i = 0; i < walls.size(); ++i) {
+    EXPECT_FALSE(walls[i].outline.area_m2) << i;
+    EXPECT_FALSE(walls[i].size.up) << i;
+    const std::optional<double> below_m =
+        dive.trueRadius(verticalPlane(sections[i]), -0.5 * std::numbers::pi);
+    if (walls[i].size.down && below_m) {
+      EXPECT_NEAR(*walls[i].size.down, *below_m, 0.4) << i;
+    }
+  }
 }
 
 /// A ring of echoes about the origin, in the plane across x.
@@ -163,7 +202,14 @@ TEST(EchoSections, LeaveAWideGapOpen) {
   EXPECT_FALSE(walls[0].outline.area_m2);
   EXPECT_FALSE(walls[0].size.right);
   EXPECT_NEAR(walls[0].size.left.value(), 2.0, 0.02);
-  takeSizes(walls, &survey);
+  const Vec3 seen_before(0.0, 1.9, 0.1), not_seen(0.0, -7.0, 0.1);
+  survey.stations[0].splays_ENU = {seen_before, not_seen};
+  takeSections(walls, 16, &survey);
+  EXPECT_EQ(survey.stations[0].splays_ENU.size(), 9u) << "eight of the sonar, and one where it saw nothing";
+  EXPECT_EQ(survey.stations[0].splays_ENU.front(), not_seen);
+  Survey without_splays = alongX();
+  takeSections(walls, 0, &without_splays);
+  EXPECT_TRUE(without_splays.stations[0].splays_ENU.empty());
   EXPECT_EQ(survey.stations[0].passage.right, 7.0) << "what is not known stays";
   EXPECT_NEAR(survey.stations[0].passage.left.value(), 2.0, 0.02);
 }

@@ -136,16 +136,6 @@ std::vector<StationWalls> echoesAtStations(const std::vector<Vec3>& echoes, cons
   return walls;
 }
 
-void takeSizes(const std::vector<StationWalls>& walls, Survey* survey) {
-  for (size_t i = 0; i < walls.size(); ++i) {
-    PassageSize& size = survey->stations[i].passage;
-    for (std::optional<double> PassageSize::*distance :
-         {&PassageSize::left, &PassageSize::right, &PassageSize::up, &PassageSize::down}) {
-      if (walls[i].size.*distance) size.*distance = walls[i].size.*distance;
-    }
-  }
-}
-
 PassageVolume passageVolume(const std::vector<StationWalls>& walls, const Survey& survey) {
   PassageVolume sum;
   for (size_t i = 0; i + 1 < walls.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/output/survey/cave/cave_survey.h"
 #include "lodeline/output/survey/map/dive_map.h"
 #include "lodeline/output/walls/files/wall_tiles.h"
 #include "lodeline/output/walls/section/cross_section.h"
@@ -35,8 +36,14 @@ struct EchoSectionOptions {
 std::vector<StationWalls> echoesAtStations(const std::vector<Vec3>& echoes, const Survey& survey,
                                            const EchoSectionOptions& options);
 
-/// Replaces the distances left, right, up and down of the stations by those of the sections, where known.
-void takeSizes(const std::vector<StationWalls>& walls, Survey* survey);
+/// Replaces the distances left, right, up and down of the stations by those of the sections, where known. In
+/// each of `splay_sectors` sectors of the plane where a section knows the wall, it also replaces the splays:
+/// one to the wall in the middle of the sector.
+void takeSections(const std::vector<StationWalls>& walls, size_t splay_sectors, Survey* survey);
+
+/// Takes the sections of all echoes of the dives of a cave, in the same way. A station of several passages
+/// has those of the first passage in which the sonar saw walls there.
+void takeEchoSections(const EchoSectionOptions& options, size_t splay_sectors, CaveSurvey* cave);
 
 /// Sum of the known volumes and the length of their legs.
 struct PassageVolume {
