@@ -104,6 +104,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--lamp-from", options.lamp_earliest_s, "s, the earliest that it is switched")
       ->capture_default_str();
+  app.add_option("--lamp-switchings", options.lamp_switchings, "of one lamp, at even intervals; 0: drawn")
+      ->capture_default_str();
   app.add_option("--map", magnetometer.map, "map the field near steel")->capture_default_str();
   app.add_option("--floor", magnetometer.correlated_noise_sigma_T, "T")->capture_default_str();
   app.add_option("--floor-correlation", magnetometer.correlated_noise_time_s, "s")->capture_default_str();

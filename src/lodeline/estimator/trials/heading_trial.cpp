@@ -15,6 +15,15 @@ namespace {
 
 const Vec3 kField_W = HeadingTrialOptions::field_W();
 
+/// A lamp that burns for half of each interval; the first one begins at 6 % of the dive.
+std::vector<SwitchedCurrent> switchedEvenly(const Vec3& field_B, const HeadingTrialOptions& options) {
+  const double interval_s = 0.93 * options.duration_s / options.lamp_switchings;
+  std::vector<SwitchedCurrent> switched;
+  for (int i = 0; i < options.lamp_switchings; ++i)
+    switched.push_back({0.06 * options.duration_s + interval_s * i, 0.5 * interval_s, field_B});
+  return switched;
+}
+
 MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const PointDive& dive) {
   const Motion& motion = dive.motion;
   DisturbanceOptions wanted;
@@ -47,6 +56,8 @@ MagneticDisturbances disturbancesOf(const HeadingTrialOptions& options, const Po
     }
     case FieldTrouble::Lamp:
       drawn.switched = drawLampSwitching(options.duration_s, options.seed, options.lamp_earliest_s);
+      if (options.lamp_switchings > 0 && !drawn.switched.empty())
+        drawn.switched = switchedEvenly(drawn.switched.front().field_B, options);
       return drawn;
     case FieldTrouble::Beside:
       drawn.lying = drawDipolesBeside(motion, kField_W, 8.0, options.seed);

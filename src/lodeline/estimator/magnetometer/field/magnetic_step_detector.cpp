@@ -9,6 +9,9 @@ namespace {
 
 constexpr int kSegments = 4;
 constexpr int kFewestReadings = 2;  // in a segment
+// A channel is recognized by its step within 3.4 sigma, where that is larger than so many sigma of the noise.
+constexpr double kMaxChannelChiSquared = 16.3, kMinKnownSigmas = 4.0;
+constexpr size_t kMostChannels = 4;
 
 struct Segment {
   Vec3 sum_B = Vec3::Zero();
@@ -64,6 +67,39 @@ bool MagneticStepDetector::isStep(const Candidate& candidate) const {
          size_T <= options_.max_step_T && candidate.besides_heading_T >= least_besides_T;
 }
 
+bool MagneticStepDetector::isStepOf(const Candidate& candidate, const Channel& channel,
+                                    const Vec3& expected_B) const {
+  const double variance_T2 = channel.variance_T2 + measuredVariance_T2(candidate);
+  return (candidate.step_B - expected_B).squaredNorm() <= kMaxChannelChiSquared * variance_T2;
+}
+
+MagneticStepDetector::Channel* MagneticStepDetector::find(const Candidate& candidate) {
+  Channel* best = nullptr;
+  const auto off_T = [&](const Channel& channel) { return (candidate.step_B - channel.nextStep_B()).norm(); };
+  for (Channel& channel : channels_) {
+    if (!isStepOf(candidate, channel, channel.nextStep_B())) continue;
+    if (best == nullptr || off_T(channel) < off_T(*best)) best = &channel;
+  }
+  return best;
+}
+
+bool MagneticStepDetector::endsMissedStart(const Candidate& candidate) const {
+  return std::any_of(channels_.begin(), channels_.end(), [&](const Channel& channel) {
+    return !channel.is_on && isStepOf(candidate, channel, -channel.field_B);
+  });
+}
+
+bool MagneticStepDetector::isKnownStep(const Candidate& candidate) {
+  const double least_T =
+      std::max(kMinKnownSigmas * std::sqrt(candidate.variance_T2), 2.0 * std::sqrt(usual_square_T2_));
+  return candidate.is_sharp && candidate.step_B.norm() >= least_T &&
+         candidate.besides_heading_T >= 0.5 * least_T && find(candidate) != nullptr;
+}
+
+double MagneticStepDetector::measuredVariance_T2(const Candidate& step) const {
+  return std::pow(options_.relative_sigma * step.step_B.norm(), 2) + step.variance_T2;
+}
+
 std::optional<MagneticStepDetector::Change> MagneticStepDetector::add(const Reading& reading) {
   const Time time = reading.time;
   const double since_s = readings_.empty() ? 0.0 : (time - readings_.back().time).seconds();
@@ -77,7 +113,7 @@ std::optional<MagneticStepDetector::Change> MagneticStepDetector::add(const Read
   }
   // The middle of the segments passes over a step in several frames; the step is where the difference is
   // largest.
-  const bool is_step = isStep(*now);
+  const bool is_step = isStep(*now) || isKnownStep(*now);
   if (is_step && (!best_ || now->step_B.norm() > best_->step_B.norm())) {
     best_ = now;
     best_time_ = time;
@@ -100,15 +136,41 @@ void MagneticStepDetector::learnUsual(const Candidate& candidate, double since_s
 }
 
 std::optional<MagneticStepDetector::Change> MagneticStepDetector::settle(const Candidate& step) {
-  const Vec3 before_B = step_B_;
-  step_B_ += step.step_B;
-  if (step_B_.norm() < options_.returned_share * step.step_B.norm()) step_B_.setZero();
   best_.reset();
   readings_.clear();  // so that the same step is not detected again
   returned_since_.reset();
-  const double sigma_T =
-      std::hypot(options_.relative_sigma * step.step_B.norm(), std::sqrt(step.variance_T2));
-  return Change{step_B_ - before_B, sigma_T};
+  const double measured_T2 = measuredVariance_T2(step);
+  if (Channel* channel = find(step)) {
+    const double gain = channel->variance_T2 / (channel->variance_T2 + measured_T2);
+    const double sigma_T = std::sqrt(channel->variance_T2);
+    const Vec3 field_B = channel->is_on ? Vec3(-step.step_B) : step.step_B;
+    channel->field_B += gain * (field_B - channel->field_B);
+    channel->variance_T2 *= 1.0 - gain;
+    channel->is_on = !channel->is_on;
+    return sum(sigma_T);
+  }
+  if (endsMissedStart(step)) return std::nullopt;
+  const bool ends_all = (step_B_ + step.step_B).norm() < options_.returned_share * step.step_B.norm();
+  if (ends_all) {
+    for (Channel& channel : channels_) channel.is_on = false;
+    return sum(std::sqrt(measured_T2));
+  }
+  if (channels_.size() == kMostChannels) {
+    const auto off =
+        std::find_if(channels_.begin(), channels_.end(), [](const Channel& c) { return !c.is_on; });
+    channels_.erase(off == channels_.end() ? channels_.begin() : off);
+  }
+  channels_.push_back({step.step_B, measured_T2, true});
+  return sum(std::sqrt(measured_T2));
+}
+
+MagneticStepDetector::Change MagneticStepDetector::sum(double sigma_T) {
+  const Vec3 before_B = step_B_;
+  step_B_.setZero();
+  for (const Channel& channel : channels_) {
+    if (channel.is_on) step_B_ += channel.field_B;
+  }
+  return {step_B_ - before_B, sigma_T};
 }
 
 std::optional<MagneticStepDetector::Change> MagneticStepDetector::dropIfReturned(Time time) {
@@ -127,10 +189,10 @@ std::optional<MagneticStepDetector::Change> MagneticStepDetector::dropIfReturned
   }
   if (!returned_since_) returned_since_ = time;
   if ((time - *returned_since_).seconds() < options_.return_s) return std::nullopt;
-  const Change change{-step_B_, options_.relative_sigma * step_B_.norm()};
-  step_B_.setZero();
+  const double sigma_T = options_.relative_sigma * step_B_.norm();
+  for (Channel& channel : channels_) channel.is_on = false;
   returned_since_.reset();
-  return change;
+  return sum(sigma_T);
 }
 
 }  // namespace lodeline

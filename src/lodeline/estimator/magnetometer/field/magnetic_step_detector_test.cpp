@@ -109,6 +109,82 @@ TEST_F(MagneticStepDetectorTest, DropsAStepWhoseEndWasMissed) {
   EXPECT_TRUE(step_.step_B().isZero());
 }
 
+// The start of a known lamp comes in slowly and is missed; its end is no current in the other direction.
+TEST_F(MagneticStepDetectorTest, KnowsTheEndOfAMissedStart) {
+  run(60.0, Vec3::Zero());
+  run(30.0, 2.0 * kLamp_B);
+  run(30.0, Vec3::Zero());
+  ASSERT_EQ(changes_, 2);
+  follow(20.0, [](double t_s) { return Vec3(std::min(1.0, (t_s - 120.0) / 15.0) * 2.0 * kLamp_B); });
+  run(60.0, 2.0 * kLamp_B);
+  ASSERT_EQ(changes_, 2);
+  run(30.0, Vec3::Zero());
+  EXPECT_EQ(changes_, 2);
+  EXPECT_TRUE(step_.step_B().isZero());
+}
+
+// One lamp, switched six times: one channel, whose field becomes better known each time.
+TEST_F(MagneticStepDetectorTest, LearnsALampThatIsSwitchedAgain) {
+  run(60.0, Vec3::Zero());
+  double first_sigma_T = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    run(30.0, 2.0 * kLamp_B);
+    EXPECT_EQ(changes_, 2 * i + 1);
+    if (i == 0) first_sigma_T = sigma_T_;
+    EXPECT_LT((step_.step_B() - 2.0 * kLamp_B).norm(), 3.0 * first_sigma_T);
+    run(30.0, Vec3::Zero());
+    EXPECT_EQ(changes_, 2 * i + 2);
+    EXPECT_TRUE(step_.step_B().isZero());
+  }
+  EXPECT_EQ(step_.channels(), 1u);
+  EXPECT_LT(sigma_T_, 0.5 * first_sigma_T);
+  run(30.0, 2.0 * kLamp_B);
+  EXPECT_LT((step_.step_B() - 2.0 * kLamp_B).norm(), 0.1 * kLamp_B.norm());
+}
+
+TEST_F(MagneticStepDetectorTest, KeepsTwoLampsApart) {
+  const Vec3 other_B(0.2e-6, 0.1e-6, 0.05e-6);
+  run(60.0, Vec3::Zero());
+  for (int i = 0; i < 2; ++i) {
+    run(20.0, 2.0 * kLamp_B);
+    run(20.0, 2.0 * kLamp_B + other_B);
+    EXPECT_LT((step_.step_B() - 2.0 * kLamp_B - other_B).norm(), 0.1e-6);
+    run(20.0, other_B);  // the first one is switched off first
+    EXPECT_LT((step_.step_B() - other_B).norm(), 0.06e-6);
+    run(20.0, Vec3::Zero());
+    EXPECT_TRUE(step_.step_B().isZero());
+  }
+  EXPECT_EQ(step_.channels(), 2u);
+  EXPECT_EQ(changes_, 8);
+}
+
+// A known lamp is found where a new one is not: where its field shows along the heading for the most part.
+TEST_F(MagneticStepDetectorTest, KnowsALampAlsoWhereItShowsInHeading) {
+  run(60.0, Vec3::Zero());
+  reading_.heading_B = (Vec3(-0.15, -0.06, 0.0)).normalized();
+  run(30.0, 4.0 * kLamp_B);
+  run(30.0, Vec3::Zero());
+  ASSERT_EQ(changes_, 2);
+  reading_.heading_B = (kLamp_B + 0.2 * kLamp_B.norm() * reading_.heading_B).normalized();
+  run(30.0, 4.0 * kLamp_B);
+  EXPECT_EQ(changes_, 3);
+  MagneticStepDetector unknowing{MagneticStepDetectorOptions()};
+  std::swap(step_, unknowing);
+  run(60.0, Vec3::Zero());
+  changes_ = 0;
+  run(30.0, 4.0 * kLamp_B);
+  EXPECT_EQ(changes_, 0) << "it may be a correction of the heading";
+}
+
+TEST_F(MagneticStepDetectorTest, FindsNoLampInNoiseAfterOneWasLearnt) {
+  run(60.0, Vec3::Zero());
+  run(30.0, kLamp_B);
+  run(30.0, Vec3::Zero());
+  ASSERT_EQ(changes_, 2);
+  run(3600.0, Vec3::Zero());
+  EXPECT_EQ(changes_, 2);
+}
+
 TEST_F(MagneticStepDetectorTest, WaitsUntilTheStartHasSettled) {
   run(5.0, Vec3::Zero());
   run(10.0, kLamp_B);
