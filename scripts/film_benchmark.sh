@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Measures films: decoding alone, and a whole run, of 1080p at 30 images a second in H.264 on two cores.
 #
-#   FILM=FILE   a film with inertial readings, from which the measured ones are made (karma.mp4 of the test data)
+#   FILM=FILE        a film with inertial readings, from which the measured ones are made (karma.mp4 of the test data)
+#   SECONDS_USED=N   only its first N seconds (12)
 #
 # Two films are made of it by ffmpeg, larger and with grain: one of key and predicted images as cameras write them, and one
 # with images that depend on later ones. Every second image is used. `x real time` compares with the length of the film.
@@ -20,7 +21,7 @@ two_cores=(taskset --cpu-list "0,1")
 make_film() {
   local name=$1
   shift
-  ffmpeg -v error -y -i "$film" -map 0:v:0 -map '0:d:1?' -c:d copy -copy_unknown -tag:d gpmd \
+  ffmpeg -v error -y -i "$film" -map 0:v:0 -map '0:d:1?' -c:d copy -copy_unknown -tag:d gpmd -t "${SECONDS_USED:-12}" \
     -vf 'scale=1920:1080:flags=lanczos,noise=alls=6:allf=t' -c:v libx264 -preset veryfast -b:v 45M -maxrate 60M -bufsize 30M "$@" \
     "$output/$name.mp4"
 }
