@@ -75,11 +75,10 @@ void reportNegativeDip(double dip_rad, Diagnostics* diagnostics) {
   if (dip_rad > -kTellingDip_rad) return;
   diagnostics->report(
       Severity::Warning, "magnetometer_reversed",
-      fmt::format(
-          "the measured field dips by {:.1f} degrees, as it does south of the magnetic equator. "
-          "North of it the magnetometer's axes are left-handed or of reversed sign (or the "
-          "accelerometer's are), and headings are off by up to 180 degrees; --site and --date tell",
-          dip_rad / kDegree));
+      fmt::format("the measured field dips by {:.1f} degrees, as it does south of the magnetic equator. "
+                  "North of it the magnetometer's axes are left-handed or of reversed sign (or the "
+                  "accelerometer's are), and headings are off by up to 180 degrees; --site and --date tell",
+                  dip_rad / kDegree));
 }
 
 void checkAxes(const MagnetometerFit& fit, const std::optional<Vec3>& site_field_ENU,
