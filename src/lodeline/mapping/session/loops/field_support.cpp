@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/graph/robust/robust_weights.h"
 
 namespace lodeline {
 namespace {
@@ -179,13 +180,6 @@ class WayPrediction {
   Eigen::VectorXd weights_;
 };
 
-/// Chi-squared that a variable of `freedom` degrees exceeds as rarely as a normal variable does `sigmas`
-/// (Wilson and Hilferty, 1931).
-double chiSquaredAt(double sigmas, double freedom) {
-  const double spread = 2.0 / (9.0 * freedom);
-  return freedom * std::pow(1.0 - spread + sigmas * std::sqrt(spread), 3);
-}
-
 }  // namespace
 
 std::optional<FieldAgreement> fieldSupport(const KnownKeyframes& known, const Loop& loop,
@@ -222,7 +216,7 @@ void judgeByField(const KnownKeyframes& known, Loop* loop, const FieldSupportOpt
   if (so3::log(loop->old_from_new.rotation).norm() > options.most_turn_rad) return;
   const FieldAgreement& field = *loop->field;
   if (field.log_ratio >= options.least_log_ratio) return;
-  if (field.chi_squared <= chiSquaredAt(options.contradiction_sigmas, field.values)) return;
+  if (field.chi_squared <= chiSquaredQuantile(options.contradiction_probability, field.values)) return;
   loop->status = LoopStatus::Refused;
   loop->reason = fmt::format("the magnetic fields of both ways differ: chi-squared {:.0f} of {} values",
                              field.chi_squared, field.values);

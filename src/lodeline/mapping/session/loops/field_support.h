@@ -19,7 +19,7 @@ struct FieldSupportOptions {
   double earth_sigma_T = 60e-6;       ///< of the Earth's field, the same in all readings
   double most_turn_rad = 1.05;        ///< 60 degrees; beyond, errors of the calibration may contradict a loop
   double least_log_ratio = -4.6;      ///< a loop below is contradicted: 1 to 100
-  double contradiction_sigmas = 3.7;  ///< of a normal variable, whose probability chi-squared must have
+  double contradiction_probability = 0.9999;  ///< that chi-squared of a true loop is smaller
 };
 
 /// The agreement of the fields, given the pose of a loop. Empty where the field says nothing: few readings,
