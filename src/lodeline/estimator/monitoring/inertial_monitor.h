@@ -66,8 +66,7 @@ class InertialMonitor {
   InertialMonitor(const Rig& rig, const EstimatorOptions& options, Diagnostics* diagnostics)
       : vibration_(rig, options.preintegration.noise_inflation),
         initial_(options.initial_state),
-        diagnostics_(diagnostics),
-        accelerometer_(rig.cameras.size() > 1) {}
+        diagnostics_(diagnostics) {}
 
   /// Takes the readings that lead to a frame.
   void take(std::span<const ImuSample> imu) { vibration_.add(imu); }
@@ -98,9 +97,8 @@ class InertialMonitor {
   VibrationMonitor vibration_;
   InitialStateOptions initial_;
   Diagnostics* diagnostics_;
-  // The scale of one camera can be wrong by more than its covariance says. Positions therefore add up only if
-  // there are two cameras. Rotations have no scale.
-  InnovationWatch gyroscope_{true}, accelerometer_, images_{false};
+  // The scale of one camera can be wrong by more than its covariance says. Rotations have no scale.
+  InnovationWatch gyroscope_{true}, accelerometer_{false}, images_{false};
   bool is_before_placed_ = false;
   Mat3 position_doubt_ = Mat3::Zero();  ///< m^2
   Mat3 rotation_doubt_ = Mat3::Zero();  ///< rad^2
