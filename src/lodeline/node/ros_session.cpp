@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Messages that may wait until the transport's thread takes them; that thread never waits.
-constexpr int kImagesWaiting = 20;
+constexpr int kImagesWaiting = 60;
 constexpr int kReadingsWaiting = 2000;
 
 std::string inWords(const std::vector<SensorTopic>& topics) {
