@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/graph/motion/level_motion.h"
 #include "lodeline/mapping/session/map_north.h"
 #include "lodeline/mapping/store/map_change.h"
 
