@@ -17,7 +17,7 @@ namespace lodeline {
 /// in detail (compareStereo) where few points are matched in a secondary camera, or many fewer than before.
 ///
 /// If left and right are exchanged, the monitor reverses the exchange. While the rig turns, two images of
-/// different times can fit the exchanged calibration by chance. So the monitor reverts an exchange that the
+/// different times sometimes fit the exchanged calibration. So the monitor reverts an exchange that the
 /// next comparison contradicts. Afterwards it accepts an exchange only after three comparisons in a row. If
 /// the images fit no arrangement of the pair, the monitor does not use the camera until its images fit again.
 class StereoMonitor {
