@@ -10,8 +10,8 @@ namespace lodeline {
 /// counts one up, a ping that agrees one down, between 0 and 2 kDoubt. An agreement counts only where a wrong
 /// ping would have been noticed, because a prediction that knows nothing agrees with everything. The sensor
 /// is trusted from count 0 until count kDoubt. It begins at kFirst, so that it passes some tests before it is
-/// used. A sensor that is not trusted gives no measurement. A single ping of it
-/// may agree with the prediction although the sensor is wrong.
+/// used. A sensor that is not trusted gives no measurement. A single ping of it may agree with the prediction
+/// although the sensor is wrong.
 class DvlTrust {
  public:
   /// `longest_wait_s`: after this time without trust, the prediction may be what is wrong.
