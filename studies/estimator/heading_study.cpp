@@ -111,6 +111,9 @@ int main(int argc, char** argv) {
   app.add_option("--floor-correlation", magnetometer.correlated_noise_time_s, "s")->capture_default_str();
   app.add_option("--student-dof", magnetometer.student_dof, "degrees of it, of the floor's distribution")
       ->capture_default_str();
+  app.add_option("--gate-sigmas", magnetometer.gate.max_sigmas,
+                 "limit of size, dip and heading; 1e9: no gate")
+      ->capture_default_str();
   app.add_option("--offset-sigma", magnetometer.offset_sigma_T, "T")->capture_default_str();
   app.add_option("--offset-walk", magnetometer.offset_walk_T_per_sqrt_s, "T/sqrt(s)")->capture_default_str();
   app.add_option("--each", each_s, "list every dive every so many seconds");

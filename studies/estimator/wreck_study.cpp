@@ -17,7 +17,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/thread_clock.h"
 #include "simulation/dive/point_dive.h"
-#include "simulation/shared/random.h"
+#include "simulation/sensors/landmarks_along.h"
 
 namespace {
 
@@ -41,21 +41,6 @@ struct WreckRun {
   /// The same about the mean of the first third, in which a map is learnt.
   double drift_deg(size_t third) const { return rms_deg(third, sums[0] / counts[0]); }
 };
-
-/// Points 2 to 6 m from the path, seen from there: the odometry then has enough of them along the whole
-/// route.
-LandmarkField pointsAlong(const Motion& motion, uint64_t seed) {
-  Random random(seed, "wreck study/points");
-  std::vector<LandmarkPoint> points;
-  for (double t = 0.0; t <= motion.duration_s(); t += 0.5) {
-    const Vec3 here_W = motion.at(t).world_from_body.translation;
-    for (int i = 0; i < 40; ++i) {
-      const Vec3 direction = random.direction();
-      points.push_back({here_W + random.uniform(2.0, 6.0) * direction, -direction});
-    }
-  }
-  return LandmarkField(std::move(points));
-}
 
 /// The rig of the files with a right calibration of the magnetometer.
 Rig calibratedRig(const VehicleDive& vehicle) {
@@ -148,7 +133,7 @@ int main(int argc, char** argv) {
     changes.seed = first_seed + static_cast<uint64_t>(i);
     changes.laps = laps;
     VehicleDive vehicle = makeVehicleDive(makeScenario("wreck", changes));
-    vehicle.landmarks = pointsAlong(vehicle.dive.motion, *changes.seed);
+    vehicle.landmarks = landmarksAlong(vehicle.dive.motion, *changes.seed);
     PointSimulationOptions points = vehicle.options;
     points.frame_rate_hz = rate_hz;
     points.tracks = tracks;

@@ -1,10 +1,11 @@
 #include "lodeline/ahrs/field_unit.h"
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <string_view>
 #include <vector>
+
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -22,13 +23,6 @@ constexpr std::array<Unit, 6> kUnits = {{{FieldUnit::Tesla, "T", 1.0},
                                          {FieldUnit::Raw, "raw", 1.0}}};
 constexpr double kLeastField_T = 15e-6;
 constexpr double kGreatestField_T = 100e-6;
-
-double quantile(std::vector<double>* values, double share) {
-  const auto at =
-      values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size() - 1));
-  std::nth_element(values->begin(), at, values->end());
-  return *at;
-}
 
 std::string lowered(const std::string& text) {
   std::string result;
@@ -73,12 +67,12 @@ double fieldSize(std::span<const Vec3> readings) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const Vec3& reading : readings) values.push_back(reading[axis]);
-    extents[axis] = quantile(&values, 0.99) - quantile(&values, 0.01);
+    extents[axis] = orderStatistic(values, 0.99) - orderStatistic(values, 0.01);
   }
   if (extents.minCoeff() > 0.5 * extents.maxCoeff()) return extents.maxCoeff() / 2.0;
   std::vector<double> sizes;
   for (const Vec3& reading : readings) sizes.push_back(reading.norm());
-  return quantile(&sizes, 0.5);
+  return median(std::move(sizes));
 }
 
 FieldUnit unitBySize(double field_size) {

@@ -1,7 +1,8 @@
 #include "lodeline/ahrs/reading_unit.h"
 
-#include <algorithm>
 #include <array>
+
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -14,9 +15,7 @@ template <typename Size>
 double medianSize(const std::vector<Vec3>& readings, const Size& size) {
   std::vector<double> sizes;
   for (const Vec3& reading : readings) sizes.push_back(size(reading));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return median(std::move(sizes));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "lodeline/board/corner_refinement.h"
 #include "lodeline/board/tag_detector.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -38,11 +39,6 @@ std::vector<double> homographyErrors(const CalibrationBoard& board, const std::v
   return errors;
 }
 
-double medianOf(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 /// Removes tags that do not fit the others, and returns how the tags are turned on the board.
 int keepFittingTags(const CalibrationBoard& board, std::vector<FoundTag>* tags) {
   constexpr double kMostError = 0.5;  // edges; a wide lens bends the board
@@ -50,7 +46,7 @@ int keepFittingTags(const CalibrationBoard& board, std::vector<FoundTag>* tags) 
   std::vector<double> best;
   for (int turn = 0; turn < 4; ++turn) {
     const std::vector<double> errors = homographyErrors(board, *tags, turn);
-    if (best.empty() || medianOf(errors) < medianOf(best)) {
+    if (best.empty() || median(errors) < median(best)) {
       best = errors;
       best_turn = turn;
     }

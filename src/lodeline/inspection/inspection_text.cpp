@@ -5,8 +5,8 @@
 
 #include "lodeline/inspection/inspection_report.h"
 #include "lodeline/inspection/survey/camera_words.h"
-#include "lodeline/inspection/survey/median.h"
 #include "lodeline/util/angles.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {

@@ -7,6 +7,8 @@
 #include "simulation/rendering/optics/water_index.h"
 #include "simulation/shared/random.h"
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -115,9 +117,8 @@ void addHalocline(Dive& dive) {
   const double fresh_g_per_kg = random.uniform(0.5, 3.0), salt_g_per_kg = random.uniform(30.0, 35.0);
   std::vector<double> heights;
   for (int i = 0; i < stepsOf(dive); ++i) heights.push_back(diverAt(dive, i * kStep_s).translation.z());
-  std::nth_element(heights.begin(), heights.begin() + static_cast<long>(heights.size() / 4), heights.end());
   Halocline halocline;
-  halocline.height_W = heights[heights.size() / 4];
+  halocline.height_W = orderStatistic(std::move(heights), 0.25);
   halocline.thickness_m = random.uniform(0.12, 0.3);
   halocline.index_step = waterIndexAt(salt_g_per_kg, 25.0, kMiddleWavelength_nm) -
                          waterIndexAt(fresh_g_per_kg, 25.0, kMiddleWavelength_nm);

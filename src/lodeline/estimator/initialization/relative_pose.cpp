@@ -6,6 +6,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 
 double parallaxAfterBestRotation(const std::vector<BearingPair>& pairs) {
@@ -20,9 +22,7 @@ double parallaxAfterBestRotation(const std::vector<BearingPair>& pairs) {
     const Vec3 turned = b_from_a * pair.bearing_a;
     angles.push_back(std::atan2(turned.cross(pair.bearing_b).norm(), turned.dot(pair.bearing_b)));
   }
-  const auto middle = angles.begin() + static_cast<long>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
+  return median(std::move(angles));
 }
 
 std::optional<Rigid3> estimateRelativePose(const std::vector<BearingPair>& pairs, double max_error_rad,

@@ -9,6 +9,7 @@
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -68,10 +69,7 @@ class Resection {
   /// median norm.
   double scaleAt(const Rigid3& world_from_body) {
     constexpr double kMedianOfRayleigh = 1.1774;
-    std::vector<double> sorted = errorsAt(world_from_body);
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    return *middle / kMedianOfRayleigh;
+    return median(errorsAt(world_from_body)) / kMedianOfRayleigh;
   }
 
   int agreeing(const Rigid3& world_from_body, double within_sigmas) {

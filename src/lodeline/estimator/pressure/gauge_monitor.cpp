@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -46,9 +48,8 @@ double GaugeMonitor::readingSigma() const {
   // The scatter comes from differences of successive innovations, so that constant errors do not count. It
   // uses their median, so that spikes do not count.
   constexpr double kMedianOfNormal = 0.6745;
-  std::vector<double> sorted(differences_m_.begin(), differences_m_.end());
-  std::nth_element(sorted.begin(), sorted.begin() + kScatterReadings / 2, sorted.end());
-  return std::max(stated_sigma_m_, sorted[kScatterReadings / 2] / (kMedianOfNormal * std::sqrt(2.0)));
+  const double usual_m = median(std::vector<double>(differences_m_.begin(), differences_m_.end()));
+  return std::max(stated_sigma_m_, usual_m / (kMedianOfNormal * std::sqrt(2.0)));
 }
 
 }  // namespace lodeline

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -45,9 +47,7 @@ void GaugeScaleCheck::add(Time time, double depth, double rise_m) {
 
 std::optional<double> GaugeScaleCheck::slope() const {
   if (slopes_.size() < kEnough) return std::nullopt;
-  std::vector<double> sorted(slopes_.begin(), slopes_.end());
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  return sorted[sorted.size() / 2];
+  return median(std::vector<double>(slopes_.begin(), slopes_.end()));
 }
 
 std::string explainSlope(double slope) {

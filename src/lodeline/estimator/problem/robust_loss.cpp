@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 
 namespace {
@@ -13,12 +15,6 @@ constexpr double kLn2 = std::numbers::ln2, kLn10 = std::numbers::ln10;
 // Range of 2 / nu. Lighter tails count as normal, heavier ones as the limit: a narrower loss finds wrong
 // minima where many points slide (robust_loss_test.cpp).
 constexpr double kNormalTail = 2.0 / 9.3, kHeaviestTail = 2.0 / 4.0;
-
-double quantile(double share, std::vector<double>* values) {
-  const auto at = values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size()));
-  std::nth_element(values->begin(), at, values->end());
-  return *at;
-}
 
 /// 2 / nu of the t distribution whose 90 % quantile is `ratio` medians.
 double tailOf(double ratio) {
@@ -63,8 +59,8 @@ std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const 
   // Lower limit for images without noise, for which the loss would reject everything.
   constexpr double kLeast_sigmas = 0.02;
   if (errors_sigmas.size() < kEnough) return std::nullopt;
-  const double median = std::max(quantile(0.5, &errors_sigmas), kLeast_sigmas);
-  const double ratio = quantile(0.9, &errors_sigmas) / median;
+  const double median = std::max(lodeline::median(errors_sigmas), kLeast_sigmas);
+  const double ratio = orderStatistic(errors_sigmas, 0.9) / median;
   const double narrowing = std::sqrt(std::expm1(kNormalTail * kLn2) / std::expm1(tailOf(ratio) * kLn2));
   const double sigma = median / std::sqrt(2.0 * kLn2);  // by the median of a Rayleigh distribution
   return FrameErrors{
@@ -77,8 +73,8 @@ double differenceOfTracks(const ErrorsByTrack& by_track) {
   if (by_track.size() < kEnough) return 0.0;
   std::vector<double> deviations;
   for (const auto& [id, of_track] : by_track) deviations.push_back(deviation(of_track));
-  const double median = quantile(0.5, &deviations);
-  const double spread = (quantile(0.9, &deviations) - median) / kNormalQuantile;
+  const double median = lodeline::median(deviations);
+  const double spread = (orderStatistic(deviations, 0.9) - median) / kNormalQuantile;
   return spread > 1.0 ? 1.0 - 1.0 / (spread * spread) : 0.0;
 }
 

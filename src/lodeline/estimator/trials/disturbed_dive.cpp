@@ -11,6 +11,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
 #include "simulation/dive/point_dive.h"
+#include "simulation/sensors/landmarks_along.h"
 #include "simulation/shared/random.h"
 
 namespace lodeline {
@@ -133,7 +134,9 @@ void runWreck(const DisturbedDive& dive, const EstimatorOptions& wanted, Disturb
   changes.imu_grade = dive.imu_grade;
   changes.laps = 1;
   changes.effects = {"steel=" + std::string(dive.trouble == FieldTrouble::None ? "off" : "on")};
-  const VehicleDive vehicle = makeVehicleDive(makeScenario("wreck", changes));
+  VehicleDive vehicle = makeVehicleDive(makeScenario("wreck", changes));
+  // Most of the way has no part of the hull in view, and no DVL helps here.
+  vehicle.landmarks = landmarksAlong(vehicle.dive.motion, dive.seed);
   Rig rig = vehicle.givenRig();
   rig.dvl.reset();
   rig.altimeter.reset();
@@ -146,7 +149,6 @@ void runWreck(const DisturbedDive& dive, const EstimatorOptions& wanted, Disturb
   PointSimulationOptions points = vehicle.options;
   points.frame_rate_hz = kFrameRate_hz;
   points.tracks = tracksOf(dive);
-  points.farthest_m = 40.0;  // the way begins and ends in the Earth's field, far from the hull
   points.vehicle.reset();
   PointSimulation simulation = vehicle.simulate(points);
   Estimator estimator(rig, options, &run->findings);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "lodeline/geometry/so3.h"
 
@@ -31,50 +30,16 @@ void CovarianceInflation::follow(const Rigid3& world_from_body, std::optional<do
   newest_ = world_from_body;
 }
 
-Mat3 CovarianceInflation::byTheWay() const {
-  Mat3 covariance = Mat3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    covariance += kWayPerWaySigma * kWayPerWaySigma * by_way_[k] * by_way_[k].transpose();
-    covariance += kWayPerTurnSigma * kWayPerTurnSigma * by_turn_[k] * by_turn_[k].transpose();
-  }
-  return covariance;
-}
-
 void CovarianceInflation::Bend::follow(const Vec3& cause_B, const Mat3& world_from_body, const Vec3& step_W) {
   x -= step_W.y() * heading;
   y += step_W.x() * heading;
   heading += world_from_body.row(2).transpose() * cause_B.transpose();
 }
 
-void CovarianceInflation::Bend::addTo(double sigma, Eigen::Matrix<double, 15, 15>* covariance) const {
-  const std::array<std::pair<int, const Mat3*>, 3> moved{{{0, &x}, {1, &y}, {5, &heading}}};
-  for (const auto& [row, by_row] : moved) {
-    for (const auto& [column, by_column] : moved)
-      (*covariance)(row, column) += sigma * sigma * by_row->cwiseProduct(*by_column).sum();
-  }
-}
-
 void CovarianceInflation::addTo(const EstimateSources& sources,
                                 Eigen::Matrix<double, 15, 15>* covariance) const {
-  if (!options_.camera_calibration.enabled || !newest_) return;
-  const Vec3& position_W = newest_->translation;
-  Mat3 added = byTheWay();
-  if (!sources.is_scale_given) {
-    const Vec3 by_scale = kOneCameraScaleSigma * position_W;
-    added += by_scale * by_scale.transpose();
-  }
-  if (sources.density_sigma) {
-    const double held = std::min(1.0, kHeldHeightSigma_m / std::sqrt(std::max(added(2, 2), 1e-12)));
-    added.row(2) *= held;
-    added.col(2) *= held;
-    const double height_sigma_m = *sources.density_sigma * position_W.z();
-    added(2, 2) += height_sigma_m * height_sigma_m;
-  }
-  covariance->topLeftCorner<3, 3>() += added;
-  if (sources.has_magnetometer) return;
-  bent_by_turns_.addTo(sources.are_gyroscope_axes_known ? kHeldTurnPerTurnSigma : kTurnPerTurnSigma,
-                       covariance);
-  if (!sources.is_scale_given) bent_by_the_way_.addTo(kTurnPerWaySigma_rad_per_m, covariance);
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> of_pose = root(sources);
+  covariance->topLeftCorner<6, 6>() += of_pose * of_pose.transpose();
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> CovarianceInflation::root(const EstimateSources& sources) const {

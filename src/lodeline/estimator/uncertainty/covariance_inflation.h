@@ -79,12 +79,7 @@ class CovarianceInflation {
     Mat3 heading = Mat3::Zero(), x = Mat3::Zero(), y = Mat3::Zero();
 
     void follow(const Vec3& cause_B, const Mat3& world_from_body, const Vec3& step_W);
-    /// Adds the covariance for the given sigma of each entry of E.
-    void addTo(double sigma, Eigen::Matrix<double, 15, 15>* covariance) const;
   };
-
-  /// Covariance of p_W from the entries of C and D.
-  Mat3 byTheWay() const;
 
   EstimatorOptions options_;
   std::optional<Rigid3> newest_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 
 std::optional<double> medianParallax(const Window& window, const Frame& a, const Frame& b,
@@ -20,9 +22,7 @@ std::optional<double> medianParallax(const Window& window, const Frame& a, const
                                 turned.dot(in_b->measurement.bearing_C)));
   }
   if (angles.empty()) return std::nullopt;
-  const auto middle = angles.begin() + static_cast<long>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
+  return median(std::move(angles));
 }
 
 std::optional<KeyframesAbout> keyframesAbout(const Window& window, const Frame& frame,

@@ -7,6 +7,7 @@
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/visual/reprojection_system.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -108,9 +109,7 @@ std::optional<double> usualInverseDistance(const Window& window) {
   }
   std::vector<double>& known = in_view.size() >= kEnough ? in_view : all;
   if (known.size() < kEnough) return std::nullopt;
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  return *middle;
+  return median(std::move(known));
 }
 
 /// Whether the inverse distance is accurate enough for a landmark. The decision must not depend on the effect

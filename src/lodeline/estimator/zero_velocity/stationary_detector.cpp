@@ -1,6 +1,7 @@
 #include "lodeline/estimator/zero_velocity/stationary_detector.h"
 
 #include "lodeline/cameras/camera_model.h"
+#include "lodeline/util/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +21,6 @@ RestDetectorOptions detectorOptions(const ImuCalibration& imu, const RestOptions
   detector.force_deviation_m_per_s2 =
       options.force_deviation_m_per_s2 + per_density * imu.noise.accelerometer_density_m_per_s2_sqrtHz;
   return detector;
-}
-
-double median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
 }
 
 }  // namespace
@@ -117,8 +112,8 @@ std::optional<double> StationaryDetector::shiftAtRest() const {
   if (static_cast<int>(shifts.size()) < options_.min_tracks) return std::nullopt;
   // Noise gives a shift of sqrt(2) sigma and a second difference of sqrt(6) sigma; a steady motion gives only
   // a shift.
-  const double noise_shift = std::sqrt(2.0 / 6.0) * median(&bends);
-  const double shift = median(&shifts);
+  const double noise_shift = std::sqrt(2.0 / 6.0) * median(std::move(bends));
+  const double shift = median(std::move(shifts));
   if (shift >= std::max(options_.shift_px / focal_length_px_, 1.4 * noise_shift)) return std::nullopt;
   // The common shift of all tracks, after subtraction of the noise, plus the uncertainty of the median by
   // noise.

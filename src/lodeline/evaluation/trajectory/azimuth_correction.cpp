@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -51,9 +52,7 @@ double medianAngle(std::vector<Correction>::const_iterator begin,
   const double mean_rad = std::atan2(sine, cosine);
   std::vector<double> differences;
   for (auto i = begin; i != end; ++i) differences.push_back(wrapped(i->angle_rad - mean_rad));
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return mean_rad + *middle;
+  return mean_rad + median(std::move(differences));
 }
 
 /// The running median at every pose.

@@ -1,4 +1,5 @@
 #include "lodeline/trajectory.h"
+#include "lodeline/util/median.h"
 
 #include <fmt/format.h>
 
@@ -71,9 +72,7 @@ Duration medianInterval(const Trajectory& trajectory) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     intervals_ns.push_back((trajectory.poses[i].time - trajectory.poses[i - 1].time).nanoseconds());
   }
-  const auto middle = intervals_ns.begin() + static_cast<std::ptrdiff_t>(intervals_ns.size() / 2);
-  std::nth_element(intervals_ns.begin(), middle, intervals_ns.end());
-  return Duration::fromNanoseconds(*middle);
+  return Duration::fromNanoseconds(median(std::move(intervals_ns)));
 }
 
 }  // namespace lodeline

@@ -7,6 +7,7 @@
 
 #include "lodeline/frontend/detection/particle_filter.h"
 #include "lodeline/frontend/detection/structure_tensor.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -142,10 +143,7 @@ double noiseGrey(const cv::Mat& picture) {
         blocks.push_back(static_cast<double>(sum) / count);
     }
   }
-  if (blocks.empty()) return 0.0;
-  const auto tenth = blocks.begin() + static_cast<ptrdiff_t>(blocks.size() / 10);
-  std::nth_element(blocks.begin(), tenth, blocks.end());
-  return *tenth;
+  return orderStatistic(std::move(blocks), 0.1);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -38,9 +40,7 @@ float detail(const cv::Mat& image) {
       sizes.push_back(std::abs(grey[x - 1] - 2.0F * grey[x] + grey[x + 1]));
     }
   }
-  const auto middle = sizes.begin() + static_cast<ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return middle == sizes.end() ? 0.0F : *middle;
+  return median(std::move(sizes));
 }
 
 }  // namespace

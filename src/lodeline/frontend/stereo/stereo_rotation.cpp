@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lodeline/util/angles.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -46,9 +47,7 @@ void StereoRotation::fit() {
 double StereoRotation::medianAfter(const Vec3& turn) const {
   std::vector<double> errors;
   for (const Equation& equation : newest_) errors.push_back(equation.after(turn));
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return median(std::move(errors));
 }
 
 void StereoRotation::add(const std::vector<RayPair>& pairs, const Rigid3& second_from_first) {

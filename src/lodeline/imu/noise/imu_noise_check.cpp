@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -121,15 +123,6 @@ class Judge {
 };
 
 }  // namespace
-
-double medianStep_s(std::span<const ImuSample> samples) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
-}
 
 WhiteNoise whiteNoiseOf(std::span<const ImuSample> samples) {
   constexpr double kWorstGyroscope = 6e-4, kWorstAccelerometer = 1e-2;

@@ -13,9 +13,6 @@ struct WhiteNoise {
   double accelerometer_m_per_s2_sqrtHz = 0.0;
 };
 
-/// Median time between readings, s. Two readings at least.
-double medianStep_s(std::span<const ImuSample> samples);
-
 /// Estimates the white noise in the quietest quarter of a second from third differences of the readings x.
 /// Where the motion is smooth, their mean square is 20 sigma^2, and the density is sigma sqrt(h) at a period
 /// h. The resolution adds the variance (smallest change)^2 / 12. Motors and hands cause more vibration than

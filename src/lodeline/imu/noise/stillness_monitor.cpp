@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -45,9 +47,7 @@ Stillness StillnessMonitor::result() const {
   if (windows_.empty()) return result;
   std::vector<float> scatter;
   for (const Window& window : windows_) scatter.push_back(window.std);
-  const auto middle = scatter.begin() + static_cast<std::ptrdiff_t>(scatter.size() / 2);
-  std::nth_element(scatter.begin(), middle, scatter.end());
-  result.median_std = *middle;
+  result.median_std = median(std::move(scatter));
   const double limit = std::min(limits_.largest_std, kUnusualScatter * result.median_std);
   for (const Window& window : windows_) {
     // A sensor without noise has a median of zero, which gives no limit.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lodeline/imu/noise/imu_noise_check.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {

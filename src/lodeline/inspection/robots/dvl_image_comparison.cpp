@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "lodeline/inspection/robots/dvl_comparison.h"
-#include "lodeline/inspection/survey/median.h"
 #include "lodeline/inspection/survey/signed_axes.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/inspection/survey/median.h"
 #include "lodeline/inspection/survey/signed_axes.h"
 #include "lodeline/io/streams/inertial_screen.h"
 #include "lodeline/io/streams/ordered_stream.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lodeline/geometry/so3.h"
-#include "lodeline/inspection/survey/median.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/inspection/survey/median.h"
 #include "lodeline/io/streams/stamp_bursts.h"
 #include "lodeline/io/streams/stream_rate.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lodeline/geometry/so3.h"
-#include "lodeline/inspection/survey/median.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {

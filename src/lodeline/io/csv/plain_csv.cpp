@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/imu/gravity.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -23,12 +23,6 @@ bool namesSensors(const std::vector<ColumnName>& columns, const PlainCsvOptions&
   const bool has_unnamed = (options.is_magnetometer || options.bare_columns) && found.unnamed;
   const bool has_triad = found.angular_rate || found.specific_force || found.field || has_unnamed;
   return has_triad && (!found.times.empty() || options.is_magnetometer);
-}
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -267,7 +261,7 @@ void PlainCsv::guessUnit(std::span<const UnitGuess> guesses, const char* what, T
     if (const std::optional<Vec3> value = valueOf(*triad, row)) norms.push_back(value->norm());
   }
   if (triad->unit.factor || norms.empty()) return;
-  const double norm = medianOf(std::move(norms));
+  const double norm = median(std::move(norms));
   for (const UnitGuess& guess : guesses) {
     if (norm < guess.least || norm > guess.most) continue;
     triad->to_si = guess.to_si;

@@ -12,6 +12,7 @@
 #include "lodeline/io/dives/profile_screen.h"
 #include "lodeline/io/logs/files/zip_archive.h"
 #include "lodeline/io/tables/byte_source.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -35,9 +36,7 @@ double resolutionOf(const std::vector<DepthReading>& readings) {
 double maxGap(const std::vector<DepthReading>& readings) {
   std::vector<double> steps_s;
   for (size_t i = 1; i < readings.size(); ++i) steps_s.push_back(readings[i].time_s - readings[i - 1].time_s);
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return std::max(60.0, 2.0 * *middle);
+  return std::max(60.0, 2.0 * median(std::move(steps_s)));
 }
 
 /// A log, and the name of its file in an archive.

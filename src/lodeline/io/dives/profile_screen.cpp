@@ -5,19 +5,12 @@
 #include <iterator>
 #include <limits>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
 using Rows = std::vector<ProfileRow>;
-
-/// Quantile of the values at `share`, 0 to 1.
-double quantileOf(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// The longest step in time within a dive, s.
 double longestStep(const Rows& rows) {
@@ -27,7 +20,7 @@ double longestStep(const Rows& rows) {
     const double step_s = rows[i].time_s - rows[i - 1].time_s;
     if (step_s > 0.0) steps_s.push_back(step_s);
   }
-  return std::clamp(10.0 * quantileOf(steps_s, 0.5), kUsual_s, kLongest_s);
+  return std::clamp(10.0 * median(steps_s), kUsual_s, kLongest_s);
 }
 
 /// Test whether one reading can follow another.
@@ -118,11 +111,11 @@ void screenDepths(Rows* dive, const PassOverRow& pass_over) {
   constexpr size_t kFewestToCompare = 10;
   std::vector<double> depths;
   for (const ProfileRow& row : *dive) depths.push_back(row.depth);
-  const bool are_heights = quantileOf(depths, 0.5) < 0.0;
+  const bool are_heights = median(depths) < 0.0;
   if (are_heights) {
     for (double& depth : depths) depth = -depth;
   }
-  const double usual = quantileOf(depths, 0.75);
+  const double usual = orderStatistic(depths, 0.75);
   Rows kept;
   for (size_t i = 0; i < depths.size(); ++i) {
     ProfileRow row = (*dive)[i];

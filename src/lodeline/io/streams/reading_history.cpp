@@ -1,6 +1,6 @@
 #include "lodeline/io/streams/reading_history.h"
 
-#include <algorithm>
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -11,10 +11,7 @@ double medianChange(std::span<const ImuSample> samples, Vec3 ImuSample::*reading
   for (size_t i = 1; i < samples.size(); ++i) {
     changes.push_back((samples[i].*reading - samples[i - 1].*reading).norm());
   }
-  if (changes.empty()) return 0.0;
-  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-  std::nth_element(changes.begin(), middle, changes.end());
-  return *middle;
+  return median(std::move(changes));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/streams/stamp_bursts.h"
+#include "lodeline/util/median.h"
 #include "lodeline/util/time/time_steps.h"
 
 namespace lodeline {
@@ -60,11 +61,9 @@ std::optional<double> measuredRate_hz(const std::vector<Time>& stamps) {
   if (const std::optional<Duration> period = burstPeriod(stamps)) return 1.0 / period->seconds();
   std::vector<double> steps_s;
   for (size_t i = 1; i < stamps.size(); ++i) steps_s.push_back(span(stamps[i], stamps[i - 1]).seconds());
-  if (steps_s.empty()) return std::nullopt;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  if (!(*middle > 0.0)) return std::nullopt;
-  return 1.0 / *middle;
+  const double step_s = median(std::move(steps_s));
+  if (!(step_s > 0.0)) return std::nullopt;
+  return 1.0 / step_s;
 }
 
 double settleRate(const std::string& name, const std::vector<Time>& stamps, double stated_hz,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lodeline/util/angles.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -16,11 +17,7 @@ constexpr double kGravity_m_per_s2 = 9.80665;
 double forceQuantile(std::span<const ImuSample> samples, double share) {
   std::vector<double> sizes;
   for (const ImuSample& sample : samples) sizes.push_back(sample.specific_force_B.norm());
-  if (sizes.empty()) return 0.0;
-  const auto place =
-      sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), place, sizes.end());
-  return *place;
+  return orderStatistic(std::move(sizes), share);
 }
 
 double medianForce(std::span<const ImuSample> samples) { return forceQuantile(samples, 0.5); }

@@ -8,6 +8,7 @@
 
 #include "lodeline/cameras/camera_model.h"
 #include "lodeline/io/synchronizer/sparse_difference.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -43,12 +44,6 @@ bool isBlank(const cv::Mat& image) {
     if (!std::all_of(p, p + image.cols, [grey](uint8_t value) { return value == grey; })) return false;
   }
   return true;
-}
-
-double medianOf(std::deque<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Time after the first image, formatted as "1:02.350".
@@ -93,7 +88,7 @@ bool ImageRepeats::isRepeat(const cv::Mat& image, View* view) const {
   const double difference = sparseDifference(image, view->newest);
   if (difference == 0.0 && areEqual(image, view->newest)) return true;
   if (view->differences.size() >= kUsual) {
-    const double usual = medianOf(view->differences);
+    const double usual = median(std::vector<double>(view->differences.begin(), view->differences.end()));
     const double turn_px = view->focal_px * (view->camera_from_body * view->turn_B).head<2>().norm();
     const bool is_near = usual > kLeastUsual_grey && difference < kShare * usual;
     if (is_near && turn_px > kLeastTurn_px) ++view->near_repeats;

@@ -6,6 +6,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/io/synchronizer/inertial_stream.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 
@@ -195,10 +196,8 @@ double Synchronizer::delay_s(const PendingImage& reference, const PendingImage& 
   std::deque<double>& latest = histories_[camera].delays_s;
   latest.push_back(by_stamps_s);
   if (latest.size() > kLatest) latest.pop_front();
-  std::vector<double> sorted(latest.begin(), latest.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return std::abs(by_stamps_s - *middle) < kTremble_s ? *middle : by_stamps_s;
+  const double usual_s = median(std::vector<double>(latest.begin(), latest.end()));
+  return std::abs(by_stamps_s - usual_s) < kTremble_s ? usual_s : by_stamps_s;
 }
 
 void Synchronizer::startDecoding(Draft* draft) const {

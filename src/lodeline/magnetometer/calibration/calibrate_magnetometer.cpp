@@ -14,6 +14,7 @@
 #include "lodeline/magnetometer/iron/heading_error.h"
 #include "lodeline/magnetometer/iron/reading_screen.h"
 #include "lodeline/util/angles.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -25,13 +26,8 @@ constexpr double kGreatestRotationSigma_rad = 2.0 * kDegree;
 constexpr double kGreatestDipDifference_rad = 3.0 * kDegree;
 
 double medianRate_hz(std::span<const MagnetometerSample> samples) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
-  if (steps_s.empty()) return 0.0;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle > 0.0 ? 1.0 / *middle : 0.0;
+  const double step_s = medianStep_s(samples);
+  return step_s > 0.0 ? 1.0 / step_s : 0.0;
 }
 
 /// Readings used by the ellipsoid fit, raw and corrected, in units of the field magnitude.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline {
 namespace {
 
@@ -59,13 +61,8 @@ double slowHeading_rad(const CurrentFit& fit) {
 }
 
 double rateOf(std::span<const CurrentSample> samples) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
-  if (steps_s.empty()) return 0.0;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle > 0.0 ? 1.0 / *middle : 0.0;
+  const double step_s = medianStep_s(samples);
+  return step_s > 0.0 ? 1.0 / step_s : 0.0;
 }
 
 }  // namespace lodeline

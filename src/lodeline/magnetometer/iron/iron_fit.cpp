@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lodeline/diagnostics.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -218,11 +219,8 @@ double correlationFactor(std::span<const double> series) {
 }
 
 double robustSigma(std::vector<double> values) {
-  if (values.empty()) return 0.0;
   for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return 1.4826 * *middle;
+  return 1.4826 * median(std::move(values));
 }
 
 }  // namespace lodeline

@@ -5,6 +5,7 @@
 
 #include "lodeline/geometry/squared.h"
 #include "lodeline/mapping/cloud/local_plane.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -30,10 +31,7 @@ CloudSurface::CloudSurface(const LocalCloud& cloud, int neighbours)
   for (const CloudPoint& point : cloud.points) {
     if (!point.normal_F.isZero()) thicknesses.push_back(point.thickness_m);
   }
-  if (thicknesses.empty()) return;
-  const auto middle = thicknesses.begin() + static_cast<std::ptrdiff_t>(thicknesses.size() / 2);
-  std::nth_element(thicknesses.begin(), middle, thicknesses.end());
-  thickness_m_ = *middle;
+  thickness_m_ = median(std::move(thicknesses));
 }
 
 std::optional<SurfaceDistance> CloudSurface::at(const Vec3& place, const Vec3& normal,

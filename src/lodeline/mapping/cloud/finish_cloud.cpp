@@ -6,6 +6,7 @@
 #include "lodeline/mapping/cloud/cloud_index.h"
 #include "lodeline/mapping/cloud/local_cloud.h"
 #include "lodeline/mapping/cloud/local_plane.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -16,12 +17,6 @@ std::vector<Vec3> positionsIn(const LocalCloud& cloud) {
   std::vector<Vec3> positions;
   for (const CloudPoint& point : cloud.points) positions.push_back(point.position_F);
   return positions;
-}
-
-double medianOfSpacing(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Keeps the most certain point of each cube. The cubes' order is that of their coordinates.
@@ -55,11 +50,11 @@ void removeIsolated(LocalCloud& cloud) {
     for (const Neighbour& neighbour : found) sum += std::sqrt(neighbour.squared_distance);
     spacings.push_back(sum / kIsolationNeighbours);
   }
-  const double median = medianOfSpacing(spacings);
+  const double median = lodeline::median(spacings);
   std::vector<double> deviations;
   for (const double spacing : spacings) deviations.push_back(std::abs(spacing - median));
   // The corner of a regular grid has 1.4 times the spacing of its middle.
-  const double limit = std::max(median + 3.0 * 1.4826 * medianOfSpacing(deviations), 1.5 * median);
+  const double limit = std::max(median + 3.0 * 1.4826 * lodeline::median(deviations), 1.5 * median);
   std::vector<CloudPoint> kept;
   for (size_t i = 0; i < spacings.size(); ++i) {
     if (spacings[i] <= limit) kept.push_back(cloud.points[i]);

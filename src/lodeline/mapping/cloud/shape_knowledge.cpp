@@ -9,6 +9,7 @@
 
 #include "lodeline/geometry/squared.h"
 #include "lodeline/mapping/cloud/shape_solver.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -82,9 +83,7 @@ double sightOf(const LocalCloud& cloud) {
 double usualError(const std::vector<ShapeRow>& rows) {
   std::vector<double> errors;
   for (const ShapeRow& row : rows) errors.push_back(std::abs(row.error));
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return 1.4826 * *middle;
+  return 1.4826 * median(std::move(errors));
 }
 
 }  // namespace

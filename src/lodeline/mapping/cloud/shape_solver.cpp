@@ -7,6 +7,7 @@
 
 #include "lodeline/geometry/so3.h"
 #include "lodeline/geometry/squared.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -30,9 +31,7 @@ double scoreOf(const std::vector<ShapeRow>& rows) {
 double usualSigma(const std::vector<ShapeRow>& rows) {
   std::vector<double> sigmas;
   for (const ShapeRow& row : rows) sigmas.push_back(1.0 / row.jacobian[4]);
-  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
-  std::nth_element(sigmas.begin(), middle, sigmas.end());
-  return *middle;
+  return median(std::move(sigmas));
 }
 
 Vec5 stepOf(const ShapeProblem& problem, const ShapePrior& prior, const ShapeState& state,

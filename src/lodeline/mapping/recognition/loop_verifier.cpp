@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 
 #include "lodeline/geometry/so3.h"
@@ -11,6 +10,7 @@
 #include "lodeline/mapping/recognition/verification/false_alarms.h"
 #include "lodeline/mapping/recognition/verification/loop_ransac.h"
 #include "lodeline/util/angles.h"
+#include "lodeline/util/median.h"
 #include "lodeline/util/settings/option_check.h"
 
 namespace lodeline {
@@ -97,9 +97,7 @@ class Verification {
         evidenceFor(pairs_, searched_rad_, consensus_.is_inlier, pose_.old_from_new, old_view_, new_view_);
     loop_.covered_share = evidence_.covered_share;
     if (distances_m.empty()) return;
-    const auto middle = distances_m.begin() + static_cast<ptrdiff_t>(distances_m.size() / 2);
-    std::nth_element(distances_m.begin(), middle, distances_m.end());
-    distance_m_ = *middle;
+    distance_m_ = median(std::move(distances_m));
     loop_.covariance = designEffect(pairs_, consensus_.is_inlier, groups, pose_) *
                        Mat6(informationOfStructure(pairs_, consensus_.is_inlier, pose_).inverse());
     // Each of both keyframes has its common errors.

@@ -7,6 +7,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/rig_calibration/start/inertial_start.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -39,13 +40,6 @@ void forEachError(const CalibrationBoard& board, const RigState& state, const Us
       }
     }
   }
-}
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 PoseSigmas poseSigmas(const Mat6& covariance) {
@@ -130,13 +124,6 @@ void setErrors(CameraCalibrationResult* result) {
   result->coverage_share = coverageShare(*result);
 }
 
-double tiltOfMost(std::vector<double> tilts_rad) {
-  if (tilts_rad.empty()) return 0.0;
-  const auto most = tilts_rad.begin() + static_cast<long>(9 * tilts_rad.size() / 10);
-  std::nth_element(tilts_rad.begin(), most, tilts_rad.end());
-  return *most;
-}
-
 }  // namespace
 
 void settleCornerSigmas(const CalibrationBoard& board, RigState* state) {
@@ -146,7 +133,7 @@ void settleCornerSigmas(const CalibrationBoard& board, RigState* state) {
     errors_px[camera].push_back(std::abs(error_px.y()));
   });
   for (size_t k = 0; k < state->cameras.size(); ++k)
-    state->cameras[k].sigma_px = std::max(kLeastSigma_px, medianOf(errors_px[k]) / kMedianOfNormal);
+    state->cameras[k].sigma_px = std::max(kLeastSigma_px, median(errors_px[k]) / kMedianOfNormal);
 }
 
 void dropOutlyingFrames(const CalibrationBoard& board, RigState* state) {
@@ -158,7 +145,7 @@ void dropOutlyingFrames(const CalibrationBoard& board, RigState* state) {
   });
   size_t kept = 0;
   for (size_t f = 0; f < state->frames.size(); ++f) {
-    if (medianOf(of_frame[f]) < kMost_sigmas) state->frames[kept++] = state->frames[f];
+    if (median(of_frame[f]) < kMost_sigmas) state->frames[kept++] = state->frames[f];
   }
   state->frames.resize(kept);
 }
@@ -193,7 +180,7 @@ std::vector<CameraCalibrationResult> cameraResults(const BoardRecord& record, co
                });
   for (size_t k = 0; k < results.size(); ++k) {
     setErrors(&results[k]);
-    results[k].largest_tilt_rad = tiltOfMost(std::move(tilts_rad[k]));
+    results[k].largest_tilt_rad = orderStatistic(std::move(tilts_rad[k]), 0.9);
   }
   return results;
 }

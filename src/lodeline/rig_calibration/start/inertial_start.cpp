@@ -8,6 +8,7 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/imu/gravity.h"
 #include "lodeline/io/synchronizer/imu_interval.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -98,8 +99,7 @@ RateFit fitRates(const std::vector<Turn>& turns, const RateIntegral& integral, d
   std::vector<double> squares;
   for (size_t i = 0; i < camera.size(); ++i)
     squares.push_back((gyroscope[i] - fit.bias_B - rotation * camera[i]).squaredNorm());
-  std::nth_element(squares.begin(), squares.begin() + static_cast<long>(squares.size() / 2), squares.end());
-  fit.error = squares[squares.size() / 2];
+  fit.error = median(std::move(squares));
   return fit;
 }
 

@@ -1,10 +1,10 @@
 #include "lodeline/rig_calibration/start/view_pose.h"
 
-#include <algorithm>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 
@@ -41,9 +41,7 @@ double medianError_px(const Camera& camera, const CalibrationBoard& board,
     errors_px.push_back(pixel ? (*pixel - corner.pixel).norm() : kNone);
   }
   if (errors_px.empty()) return kNone;
-  const auto middle = errors_px.begin() + static_cast<long>(errors_px.size() / 2);
-  std::nth_element(errors_px.begin(), middle, errors_px.end());
-  return *middle;
+  return median(std::move(errors_px));
 }
 
 }  // namespace lodeline

@@ -9,6 +9,7 @@
 #include "lodeline/io/csv/sensor_columns.h"
 #include "lodeline/io/logs/files/zip_archive.h"
 #include "lodeline/io/tables/table_reader.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -39,13 +40,6 @@ struct Content {
   double force_m_per_s2 = 0.0;  ///< median magnitude of the first readings
 };
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Content contentOf(const LogTable& table) {
   constexpr size_t kReadings = 100;
   Content content;
@@ -60,7 +54,7 @@ Content contentOf(const LogTable& table) {
       if (!reading.specific_force) break;
       forces.push_back(reading.specific_force->norm());
     }
-    content.force_m_per_s2 = medianOf(std::move(forces));
+    content.force_m_per_s2 = median(std::move(forces));
   } catch (const InputError&) {
     return {};  // another table, such as places or notes
   }

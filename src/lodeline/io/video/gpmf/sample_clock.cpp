@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lodeline/util/median.h"
+
 namespace lodeline::gpmf {
 namespace {
 
@@ -13,12 +15,6 @@ constexpr size_t kPayloadsEachSide = 60;  // of about one second
 constexpr double kGreatestLoss = 100'000.0;
 constexpr double kHuber = 1.345;
 constexpr int kRounds = 8;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A line from medians: slopes between points half of the record apart.
 ClockLine roughLine(const std::vector<ClockPoint>& points) {

@@ -4,20 +4,12 @@
 
 #include "lodeline/imu/rotation_increment.h"
 #include "lodeline/imu/sample_check.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
 
 constexpr double kGapSteps = 4.0;
-
-double medianStep_s(std::span<const ImuSample> samples) {
-  std::vector<double> steps_s;
-  for (size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back((samples[i].time - samples[i - 1].time).seconds());
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
-}
 
 GyroscopePath::Point advanced(const GyroscopePath::Point& from, const Vec3& rate_B, double step_s) {
   const RotationIncrement step(from.rate_B, rate_B, step_s);

@@ -10,6 +10,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/magnetometer/iron/iron_fit.h"
 #include "lodeline/trajectory.h"
+#include "lodeline/util/median.h"
 
 namespace lodeline {
 namespace {
@@ -86,10 +87,8 @@ class LagCost {
   double operator()(double lag_s) const {
     std::vector<double> values = differences(lag_s);
     if (values.size() < std::max<size_t>(fewest_, 3)) return std::numeric_limits<double>::infinity();
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    const double median = *middle;
-    for (double& value : values) value = std::abs(value - median);
+    const double usual = median(values);
+    for (double& value : values) value = std::abs(value - usual);
     const size_t kept = values.size() - values.size() / 10;
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kept - 1), values.end());
     double sum = 0.0;
