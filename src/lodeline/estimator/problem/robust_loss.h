@@ -65,9 +65,9 @@ double differenceOfTracks(const ErrorsByTrack& by_track);
 /// right.
 double trackWeight(const TrackErrors& errors, double difference);
 
-/// Sets the losses of frames and the weights of tracks from their residuals after a solution. A frame that
-/// has not been part of a solution keeps the widest loss, because its prediction may be off by more than its
-/// points will be. A track without residuals has the weight 1.
+/// Sets the losses of frames and the weights of tracks from their residuals after a solution. A frame before
+/// its first solution keeps the widest loss, because its prediction may be off by more than its points. A
+/// track without residuals has the weight 1.
 void adaptRobustLosses(Window& window, const std::vector<ObservationError>& errors,
                        const SolverOptions& options);
 

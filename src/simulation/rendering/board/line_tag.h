@@ -26,8 +26,8 @@ struct LinedStretch {
 };
 
 /// Places tags 0 to count - 1 evenly along the line, in turns of random sides. They hang just outside the
-/// diver's corridor, face divers who come along the line from its start, and hang askew by about 8 degrees
-/// about each axis.
+/// diver's corridor and face divers who come from the start. They are askew by about 8 degrees about each
+/// axis.
 std::vector<LineTag> placeTags(const CaveLayout& cave, const std::vector<LinedStretch>& line, int count,
                                uint64_t seed);
 
