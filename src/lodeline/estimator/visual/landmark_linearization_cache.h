@@ -28,7 +28,7 @@ class LandmarkLinearizationCache {
   /// the cache is in use.
   void freeze(Window& window, const FactorBuilder& factors);
 
-  /// Empties the cache, before a frame is solved, in three cases: it is old enough, or a frame or block it
+  /// Empties the cache, before a frame is solved, if it is old enough. It also does so if a frame or block it
   /// depends on was removed, has a new linearization point or has left the range of the quadratic cost.
   void invalidateIfStale(Window& window);
 

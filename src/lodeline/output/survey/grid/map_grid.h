@@ -41,8 +41,8 @@ struct MapGridDescription {
 /// installed; nothing is downloaded. All coordinates are in metres.
 ///
 /// Survey programs and GIS take the first coordinate for an easting and the second for a northing. A grid
-/// that counts to the west and south is therefore used with easting = -westing and northing = -southing, and
-/// named as the grid with these axes: by EPSG's code of it, or by its definition.
+/// that counts to the west and south therefore has easting = -westing and northing = -southing, and the name
+/// of the grid with these axes: by EPSG's code of it, or by its definition.
 class MapGrid {
  public:
   /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or
