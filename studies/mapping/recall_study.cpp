@@ -1,5 +1,5 @@
 // Measures which share of true revisits between two simulated dives of one cave is recognized, stage by
-// stage. Prints the table of docs/theory/loop-verification.md.
+// stage. Prints the table of docs/lab-notes/slam.md.
 
 #include <fmt/core.h>
 

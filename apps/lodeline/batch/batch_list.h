@@ -31,8 +31,8 @@ struct BatchList {
   std::vector<BatchItem> items;       ///< recordings × variants × seeds, in the order of the list
 };
 
-/// Reads a list of runs. Throws UsageError with file and line for an unknown key, a missing or repeated name,
-/// a file that does not exist, or a setting that `lodeline run` does not have.
+/// Reads a list of runs. Throws UsageError with file and line for an unknown key and for a missing or
+/// repeated name. The same holds for a missing file and an unknown setting of `lodeline run`.
 BatchList readBatchList(const std::filesystem::path& file);
 
 /// A part of a batch, for jobs on several machines.

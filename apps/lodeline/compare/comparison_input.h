@@ -44,8 +44,8 @@ struct ComparisonInput {
 };
 
 /// Prepares the recording `input`. A scenario is simulated, unless it exists (sensors once per noise seed,
-/// images once), and its rig's magnetometer is calibrated with `figure_eight` where no calibration is given.
-/// A folder is used as it is, and its runs differ by the front end's seed. If images are missing at the end,
+/// images once). Its rig's magnetometer is calibrated with `figure_eight` where no calibration is given. A
+/// folder is used as it is, and its runs differ by the front end's seed. If images are missing at the end,
 /// the part before is used. Throws UsageError and InputError; EstimationError where the magnetometer cannot
 /// be calibrated. Returns false where the user ended the simulation.
 bool prepareComparison(const std::string& input, const ComparisonRequest& request, ComparisonInput* prepared);

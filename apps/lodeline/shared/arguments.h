@@ -18,7 +18,7 @@ std::vector<std::string> withHelpAsOption(std::vector<std::string> words);
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words);
 
 /// Throws UsageError, with the nearest name as a suggestion, where `words` begin with an unknown command of
-/// `program`, or contain an option that the command does not have.
+/// `program` or contain an unknown option.
 void refuseUnknownWords(const CLI::App& program, const std::vector<std::string>& words);
 
 }  // namespace lodeline

@@ -18,8 +18,8 @@ struct GyroscopeBiasOptions {
   /// inclination. Their sigma is therefore multiplied by sqrt(1 + (settling_s / t)^2), with t the time since
   /// the start.
   double settling_s = 20.0;
-  /// A mean rate at rest is a slow rotation and not a bias where its distance from the bias exceeds this
-  /// value plus three sigmas of the bias.
+  /// A mean rate at rest is a slow rotation where it differs from the bias by more than this plus three
+  /// sigmas.
   double slow_turn_rad_per_s = 5e-3;
 };
 

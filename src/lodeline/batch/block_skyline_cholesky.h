@@ -6,10 +6,10 @@
 namespace lodeline {
 
 /// Symmetric positive definite block matrix in skyline (envelope) storage: each block row is stored from its
-/// first entry up to the diagonal. The Cholesky factor, and the blocks of the inverse within the skyline,
-/// need no additional memory (George & Liu, "Computer solution of large sparse positive definite systems",
-/// 1981, chapter 4; Takahashi, Fagan & Chin, 1973). With states in order of time, and their shared blocks at
-/// the end, time and memory grow linearly with the number of states.
+/// first entry up to the diagonal. The Cholesky factor and the inverse's blocks within the skyline need no
+/// additional memory (George & Liu, "Computer solution of large sparse positive definite systems", 1981,
+/// chapter 4; Takahashi, Fagan & Chin, 1973). With states in order of time, and their shared blocks at the
+/// end, time and memory grow linearly with the number of states.
 class BlockSkylineCholesky {
  public:
   /// `sizes`: of the block rows; `first`: first block column of each row, at most the row's own number.

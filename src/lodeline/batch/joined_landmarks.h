@@ -30,9 +30,9 @@ struct JoinedLandmarks {
 /// are two points. A joined landmark has the number of its oldest part; the other parts' tracks are removed.
 ///
 /// `loosening` > 1: at first the loop is open by more than the errors of images. The observations of all
-/// parts but the oldest then count with sigmas larger by this factor, and their tracks stay as well, so that
-/// the motion between neighbouring states keeps its accuracy. Steps with a smaller factor each lead to the
-/// common solution, as in a graduated non-convexity (A. Blake, A. Zisserman, "Visual reconstruction", 1987).
+/// parts but the oldest then count with sigmas larger by this factor. Their tracks stay as well: the motion
+/// between neighbouring states keeps its accuracy. Steps with a smaller factor each lead to the common
+/// solution, as in a graduated non-convexity (A. Blake, A. Zisserman, "Visual reconstruction", 1987).
 JoinedLandmarks joinLandmarks(Window& window, const FactorBuilder& factors, const LandmarkOptions& options,
                               const std::vector<LoopLink>& links, double loosening);
 

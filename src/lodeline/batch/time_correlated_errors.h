@@ -6,10 +6,10 @@
 
 namespace lodeline {
 
-/// Statistics of the time correlation of track errors. A tracker follows the patch of the image before, and
-/// errors of the intrinsics or of a port are the same for a point from image to image. The error of a track
-/// therefore wanders, and its observations are not independent. The correlation of neighbouring residuals
-/// after a solution shows by how much.
+/// Statistics of the time correlation of track errors. A tracker follows the patch of the image before.
+/// Errors of the intrinsics or of a port stay with a point. The error of a track therefore wanders, and its
+/// observations are not independent. The correlation of neighbouring residuals after a solution shows by how
+/// much.
 class TimeCorrelatedErrors {
  public:
   /// Adds the reprojection residuals of one track in one camera in order of time, in stated standard

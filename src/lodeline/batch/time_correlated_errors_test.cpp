@@ -21,8 +21,8 @@ void takeLandmark(std::vector<Vec2>* errors) {
   for (size_t i = 0; i < errors->size(); ++i) (*errors)[i] -= mean + Vec2(slope * fromMiddle(i), 0.0);
 }
 
-/// Statistics of tracks of `length` observations whose errors are white noise and a random walk, in these
-/// shares of the variance at the end of a track.
+/// Statistics of tracks of `length` observations with white noise and a random walk, in these shares of the
+/// final variance.
 TimeCorrelatedErrors errorsOf(int length, double walk_share) {
   constexpr int kTracks = 2000;
   std::mt19937 random(7);

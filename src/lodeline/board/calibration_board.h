@@ -9,7 +9,7 @@
 namespace lodeline {
 
 /// A grid of AprilTags of the family 36h11, as Kalibr's `aprilgrid`. The board frame T has its origin at the
-/// lower left corner of tag 0, x to the right, y up and z out of the print. The numbers of the tags grow
+/// lower left corner of tag 0. x is to the right, y up and z out of the print. The numbers of the tags grow
 /// along x, then along y. Black squares fill the crossings of the gaps, so that every corner of a tag is a
 /// saddle point of the image.
 struct CalibrationBoard {

@@ -49,8 +49,8 @@ struct CameraModel {
   std::shared_ptr<const Camera> (*make)(const CameraCalibration& calibration) = nullptr;
 
   RadialPlane plane = RadialPlane::Angle;
-  /// Name of the model whose first two parameters are coefficients of the second and fourth power of the
-  /// radius in `plane`, and which contains this model. Empty where there is none.
+  /// Name of the model that contains this one and begins with coefficients of the radius in `plane`, second
+  /// and fourth power. Empty where there is none.
   std::string_view radial_model = {};
   /// Place of the first of two tangential coefficients among the parameters, if the model has any.
   std::optional<size_t> tangential_at = {};

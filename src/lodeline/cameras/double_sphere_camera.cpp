@@ -9,8 +9,8 @@
 namespace lodeline {
 namespace {
 
-/// Fisheye camera of two unit spheres whose centres are xi apart. With d1 = |(x, y, z)|, k = xi d1 + z and
-/// d2 = |(x, y, k)| the position in the image, in units of the focal lengths, is
+/// Fisheye camera of two unit spheres whose centres are xi apart. With d1 = |(x, y, z)|, k = xi d1 + z and d2
+/// = |(x, y, k)| the image position, in focal lengths, is
 ///
 ///     (x, y) / (alpha d2 + (1 - alpha) k)
 ///

@@ -8,8 +8,8 @@
 namespace lodeline {
 namespace {
 
-// Cosine of the angle to the measured ray below which a point is a gross outlier (about 84 degrees), and the
-// residual of such a point, in sigmas.
+// Cosine of the angle to the measured ray below which a point is a gross outlier (about 84 degrees). Its
+// residual, in sigmas.
 constexpr double kMinCosine = 0.1;
 constexpr double kOutlierResidual = 1e4;
 

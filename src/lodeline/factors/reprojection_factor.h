@@ -8,7 +8,7 @@
 namespace lodeline {
 
 /// Tangent basis of a landmark's parameters in its host camera. The direction is d = base + tangent * (a, b),
-/// not normalized, and rho (1/m) is the inverse distance along `base`, so the point lies at d / rho. The
+/// not normalized. rho (1/m) is the inverse distance along `base`, so the point lies at d / rho. The
 /// parameter block is (a, b, rho). Points behind the camera or infinitely far away (rho = 0) need no special
 /// case.
 struct LandmarkBase {

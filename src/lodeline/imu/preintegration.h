@@ -69,7 +69,7 @@ struct ImuAxes {
 ///
 /// Model: measured rate = true rate + b_g + noise, measured force = R_B_W (a_W - g_W) + b_a + noise. White
 /// noise and random walks of the biases have the densities of ImuNoise times `noise_inflation`, and more in
-/// motion (imu/step_noise.h). Over a step the rate is a cubic in time, whose slopes at the readings are those
+/// motion (imu/step_noise.h). Over a step the rate is a cubic in time. Its slopes at the readings are those
 /// of the chords between their neighbours (rotation by the Magnus expansion to second order). The specific
 /// force, rotated into body k's axes, is linear in time.
 ///

@@ -11,10 +11,11 @@ struct TurningRate {
 };
 
 /// Rotation over an interval in which the rate is a cubic in time with the given end values and slopes:
-/// exp(rotation_vector) = body at start from body at end. It uses the first two terms of the Magnus expansion
-/// (Blanes et al., "The Magnus expansion and some of its applications", Physics Reports 2009, section 2),
-/// with an error of fifth order in the interval. The slopes matter where a rig rotates about two axes out of
-/// phase (coning): without them, the error of each interval is of third order and accumulates.
+/// exp(rotation_vector) = body at start from body at end. It uses the first two terms of the Magnus
+/// expansion, with an error of fifth order in the interval. Source: Blanes et al., "The Magnus expansion and
+/// some of its applications", Physics Reports 2009, section 2. The slopes matter where a rig rotates about
+/// two axes out of phase (coning): without them, the error of each interval is of third order and
+/// accumulates.
 struct RotationIncrement {
   Vec3 rotation_vector;  ///< rad
   Mat3 by_bias;          ///< derivative by a bias subtracted from both rates, s

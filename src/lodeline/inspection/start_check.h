@@ -26,7 +26,7 @@ struct StartCheck {
   WhiteNoise noise;         ///< estimated from the readings
 };
 
-/// Fast check before a run: inspects the first seconds of a recording with a few dozen of its images, and
+/// Fast check before a run: inspects the first seconds of a recording with a few dozen of its images. It
 /// reports every serious finding of inspect(), and odd intrinsics, to `diagnostics` under its kind. If axes,
 /// units or extrinsics are so wrong that no estimate can be correct, it also reports kSensorsContradict. A
 /// rig at rest gives no findings. `data`: name of the recording for the messages. Readings in another unit,

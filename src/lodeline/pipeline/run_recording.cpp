@@ -55,11 +55,10 @@ void checkRequested(const RunRequest& request, RunSettings* options, Diagnostics
   checkRecording(open, request.data, options, diagnostics);
 }
 
-/// Configures the heap of glibc. By default it gives every thread its own heap. Images are decoded by one
-/// short-lived thread each, and memory freed in one heap is not available in another, so memory would depend
-/// on thread scheduling. By default it also returns large blocks at once, and every frame's images and
-/// matrices would be mapped again, page by page. That takes a tenth of the time of a start with one camera,
-/// and saves 4 MB.
+/// Configures the heap of glibc. By default it gives every thread its own heap. Each image is decoded by a
+/// short-lived thread. Memory freed in one heap is not available in another, so memory would depend on thread
+/// scheduling. By default it also returns large blocks at once, and every frame's images and matrices would
+/// be mapped again, page by page. That takes a tenth of the time of a start with one camera, and saves 4 MB.
 void arrangeHeap() {
 #ifdef __GLIBC__
   constexpr int kGreatestMappingBytes = 32 << 20;  // the largest value that glibc accepts

@@ -14,8 +14,8 @@ Quat drawTurn(double least_rad, double most_rad, Random& random) {
 }
 
 // Errors of the given intrinsics. Their causes (target, water, window) affect both cameras of a calibration
-// equally, and it fits both together, so that the stereo images still agree to a fraction of a pixel. The
-// errors are therefore mostly common, with a small part for each camera.
+// equally. It fits both together, so the stereo images still agree to a fraction of a pixel. The errors are
+// therefore mostly common, with a small part for each camera.
 void misstateIntrinsics(uint64_t seed, Rig& given) {
   Random common(seed, "calibration/intrinsics");
   const double focal_error = common.sign() * common.uniform(0.0012, 0.0048);

@@ -20,9 +20,9 @@ struct DiveMotionOptions {
 };
 
 /// Motion of a swim along the passage and (usually) back on nearly the same line. It includes fin kicks with
-/// surge, roll and yaw at the kick frequency and its double, breathing, slow swaying, sweeps of the hand-held
-/// rig, tremor and halts. The path length is within 1 % of the requested one. Throws UsageError like
-/// SwimPlan.
+/// surge, roll and yaw at the kick frequency and its double. Breathing, slow swaying, sweeps of the hand-held
+/// rig, tremor and halts are included too. The path length is within 1 % of the requested one. Throws
+/// UsageError like SwimPlan.
 Motion makeDiveMotion(const Centerline& centerline, const DiveMotionOptions& options,
                       const Rigid3& diver_from_body);
 

@@ -21,8 +21,8 @@ struct HandMotionOptions {
 };
 
 /// Adds fin kicks, breathing, swaying, sweeps and tremor to the channels. Values: kick cycle 0.45 to 0.65 Hz
-/// with 6 mm of surge at its double (two kicks per cycle), breathing at 0.16 to 0.22 Hz with 2.5 cm of rise,
-/// swaying of 2 to 4 degrees over seconds, sweeps of 10 to 30 degrees, tremor of 0.1 degrees and 0.4 mm below
+/// with 6 mm of surge at its double (two kicks per cycle); breathing at 0.16 to 0.22 Hz with 2.5 cm of rise;
+/// swaying of 2 to 4 degrees over seconds; sweeps of 10 to 30 degrees; tremor of 0.1 degrees and 0.4 mm below
 /// 3 Hz (a housing of several kilograms in water damps higher frequencies).
 void addHandMotion(const HandMotionOptions& options, MotionChannels& channels);
 

@@ -42,8 +42,8 @@ Motion makeTransectMotion(const GroundHeight& ground, double altitude_m, double 
 /// Distance from the bow at which laps around a wreck begin and end, m.
 constexpr double kWreckApproach_m = 15.0;
 
-/// Laps of a vehicle: from outside to the bow, then around the hull at 3.5 m with the view at it and through
-/// the hull along its keel, in turn, and away again. `path_length_m` cuts the last leg.
+/// Laps of a vehicle: from outside to the bow, then in turn around the hull at 3.5 m, facing it, and through
+/// it along its keel, and away. `path_length_m` cuts the last leg.
 Motion makeWreckLapMotion(const WreckLayout& wreck, int laps, double path_length_m,
                           const VehicleMotionOptions& options, const Rigid3& vehicle_from_body);
 

@@ -89,8 +89,8 @@ CavePlan planJunction(const CavePlanOptions& o) {
           {{0, 0.0, main_m}, {1, 0.0, branch_m}}};
 }
 
-/// Rounds through a chamber: from its middle line to one side, then around with radii that swing between a
-/// wide and a narrow round, and between below and above the middle.
+/// Rounds through a chamber: from its middle line to one side, then around, with radii between wide and
+/// narrow, and heights below and above the middle.
 CavePlan planRoom(const CavePlanOptions& o) {
   // Lengths for scale 1: a round, and the way from the chamber's begin to its middle and to the end.
   constexpr double kWayIn_m = 10.0, kRound_m = 28.5, kRest_m = 14.5;

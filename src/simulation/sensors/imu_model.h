@@ -9,8 +9,9 @@
 namespace lodeline {
 
 /// Errors of a three-axis inertial sensor in the unit of its reading [u] (rad/s or m/s^2):
-///   reading = matrix * true + warm_up * exp(-t / warm_up_time) + b(t) + white noise, clipped to the range,
-/// where b(t) starts at `turn_on_bias` and adds a random walk and a flicker process (bias instability).
+///   reading = matrix * true + warm_up * exp(-t / warm_up_time) + b(t) + white noise.
+/// It is clipped to the range. b(t) starts at `turn_on_bias` and adds a random walk and a flicker process
+/// (bias instability).
 struct TriadErrors {
   double noise_density = 0.0;     ///< [u]/sqrt(Hz), two-sided (Kalibr)
   double random_walk = 0.0;       ///< [u]/s/sqrt(Hz)

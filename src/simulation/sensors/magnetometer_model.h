@@ -12,7 +12,7 @@ namespace lodeline {
 ///   reading(t) = S R_M_B R_B_W(t') m_W(t') + h + sum_i k_i I_i(t') + c t' + w(t) + white noise,
 /// where t' = t - lag and m_W is the Earth's field plus the disturbances. The reading is clipped to +-range
 /// and rounded to the resolution; some readings repeat the previous row. S is the soft iron (A = S^-1
-/// corrects it), h the hard iron, w its random walk, and k_i I_i the field of an electric current.
+/// corrects it), h the hard iron, w its random walk, k_i I_i the field of a current.
 struct MagnetometerErrors {
   Mat3 soft_iron = Mat3::Identity();
   Vec3 hard_iron_T = Vec3::Zero();

@@ -53,8 +53,8 @@ class SurveySonarTest : public ::testing::Test {
  protected:
   SurveySonarTest() : cave_(folder_.path() / "cave.db", 5) {}
 
-  /// The result of a run of a dive, in an odometry's world of another place and north, and a recording whose
-  /// sonar scans across the passage: a tube about the way.
+  /// The result of a run of a dive, in a world of another place and north, with a sonar that scans across the
+  /// passage: a tube about the way.
   void writeDive(const std::string& dive) const {
     const Odometry odometry(MapFile::open(folder_.path() / "cave.db", MapFile::Access::Read), dive);
     const Rigid3 elsewhere(Quat(Eigen::AngleAxisd(0.7, Vec3::UnitZ())), Vec3(30.0, -12.0, 4.0));

@@ -10,8 +10,8 @@
 namespace lodeline::test {
 
 /// A map of three dives of one cave with a loop, a junction and two entrances, solved, and the truth. Dive
-/// "upstream" swims the main passage from entrance A and back, "loop" takes a side passage that leaves the
-/// main one and comes back to it, "sink" comes from entrance B to the main passage. Odometry drifts; every
+/// "upstream" swims the main passage from entrance A and back. "loop" takes a side passage that leaves the
+/// main one and comes back to it. "sink" comes from entrance B to the main passage. Odometry drifts; every
 /// few metres, a place that was seen before makes a loop.
 struct CaveMap {
   /// Writes the map. `seed`: of all errors.

@@ -8,10 +8,9 @@
 namespace lodeline {
 
 /// Correction of the states of a forward run by the poses from which the batch solution is to start. At each
-/// of these poses the world is turned about the vertical by an angle a and shifted, so that heading and
-/// position are those of the pose. Between two of them, a and the corrected positions are interpolated over
-/// time; before the first and after the last, the correction is constant. Roll and pitch stay those of the
-/// run, which gravity holds.
+/// of them the world is turned about the vertical by an angle a and shifted to the heading and position of
+/// the pose. Between two of them, a and the corrected positions are interpolated over time; before the first
+/// and after the last, the correction is constant. Roll and pitch stay those of the run, which gravity holds.
 class InitialCorrection {
  public:
   /// `frames`: estimates of the run, in order of time. Throws InputError where the poses are not in order of

@@ -48,7 +48,7 @@ struct CircuitLoopOptions {
 };
 
 /// The loops of the second lap, and initial poses like those of a pose graph: the misclosure of the first lap
-/// is spread over its time, and the images of the second lap are placed beside those of the first one.
+/// is spread over its time. Images of the second lap are placed beside the first.
 LoopClosures circuitLoops(const CircuitRun& run, const CircuitLoopOptions& options);
 
 }  // namespace lodeline

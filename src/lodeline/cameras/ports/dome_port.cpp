@@ -19,10 +19,10 @@ struct BendPart {
   }
 };
 
-/// Angle from the axis at the centre of the spheres to the point, as a function of the angle in air (alpha),
-/// minus its true one. The product of index and distance of the ray from the centre is the same in all media
-/// (Bouguer's law): n_a l sin(alpha), with the lens l behind the centre. A ray at the distance q from the
-/// centre makes the angle asin(q / R) with the normal of a sphere of the radius R. Hence
+/// Angle at the centre of the spheres from the axis to the point, for the angle in air (alpha), minus its
+/// true one. The product of index and distance of the ray from the centre is the same in all media (Bouguer's
+/// law): n_a l sin(alpha), with the lens l behind the centre. A ray at the distance q from the centre makes
+/// the angle asin(q / R) with the normal of a sphere of the radius R. Hence
 ///
 ///     g(alpha) = alpha + asin(q_a / R_1) - asin(q_g / R_1) + asin(q_g / R_2) - asin(q_w / R_2)
 ///                + asin(q_w / R) - phi

@@ -44,8 +44,8 @@ struct FlatPath {
   }
 
   /// The tangent in air. Near the normal, all light seems to come from one point, the paraxial image of the
-  /// lens. The line from there to the point gives an angle in the water, which is a start with an error of
-  /// the order of distance over height.
+  /// lens. The line from there to the point gives an angle in the water. Its error is of the order of
+  /// distance over height.
   std::optional<double> tangentInAir() const {
     const double n_a = port.index_air, n_g = port.index_glass, n_w = port.index_water;
     const double inside_m = port.distance_m / n_a + port.thickness_m / n_g;

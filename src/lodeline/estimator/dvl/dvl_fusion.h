@@ -43,7 +43,7 @@ struct DvlEstimate {
 };
 
 /// Adds a Doppler velocity log to a window. Each ping is carried to the frame after it by inertial readings.
-/// Its beams are compared with the predicted velocity, and those within the gate become rows of the frame's
+/// Its beams are compared with the predicted velocity. Those within the gate become rows of the frame's
 /// DvlMeasurement, while the record of the sensor is good (DvlTrust). Scale and misalignment are states from
 /// the start.
 class DvlFusion final : public SensorFusion {

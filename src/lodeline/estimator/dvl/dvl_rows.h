@@ -17,9 +17,9 @@ struct DvlReading {
   std::string fault;  ///< values that no instrument measures, in words; empty where all are possible
 };
 
-/// The rows of a reading: its beams, or the axes of its velocity where no beam has a velocity. Left out are
-/// numbers that are not finite, speeds over 10 m/s, beams that the calibration does not have, and readings
-/// whose velocities are all exactly 0, with which instruments and drivers stand for "nothing measured".
+/// The rows of a reading: its beams, or the axes of its velocity where no beam has a velocity. Numbers that
+/// are not finite, speeds over 10 m/s and beams without calibration are left out. So are readings whose
+/// velocities are all exactly 0, which means "nothing measured".
 DvlReading readRows(const DvlSample& sample, const DvlCalibration& dvl);
 
 }  // namespace lodeline

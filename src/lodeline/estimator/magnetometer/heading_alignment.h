@@ -22,8 +22,8 @@ HeadingReference wantedReference(const MagnetometerOptions& options);
 
 /// Computes the yaw that turns a level world to north. `level_field_W`: mean of the fields at the start, T,
 /// in a world with a correct vertical and an arbitrary yaw. East is field x up, north is up x east; true
-/// north differs from this by the declination of the field at the site. The alignment is refused where size
-/// or dip do not match the Earth's field or that of the site, and where the field is nearly vertical.
+/// north differs from this by the declination of the field at the site. A nearly vertical field, and a size
+/// or dip unlike the Earth's or the site's, are refused.
 HeadingAlignment alignHeading(const Vec3& level_field_W, const MagnetometerOptions& options);
 
 /// Rotation about the vertical, rad in (-pi, pi], from a world in which the Earth's field is `field_W` to one

@@ -15,8 +15,8 @@
 namespace lodeline {
 namespace {
 
-// Maximum length of a mean. A rig that has just been switched on does not know its gyroscope bias, so
-// readings should be carried for a short time only, if there are enough.
+// Maximum length of a mean. A rig just switched on does not know its gyroscope bias, so readings are carried
+// for a short time, if they suffice.
 constexpr double kShortMean_s = 0.25;
 constexpr double kLongMean_s = 1.0;
 constexpr int kEnoughReadings = 3;

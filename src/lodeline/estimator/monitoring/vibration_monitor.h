@@ -8,10 +8,9 @@
 
 namespace lodeline {
 
-/// Measures the vibration of motors in the inertial readings, as noise of the inertial terms. The IMU samples
-/// a vibration, and what lies near a multiple of its rate appears as a slow acceleration that no filter can
-/// tell from motion. The fast part shows how strong it is. With second differences d of readings x at the
-/// period h,
+/// Measures the vibration of motors in the inertial readings, as noise of the inertial terms. A vibration
+/// near a multiple of the IMU's rate appears as a slow acceleration that no filter can tell from motion. The
+/// fast part shows how strong it is. With second differences d of readings x at the period h,
 ///
 ///     d_i = x_(i+1) - 2 x_i + x_(i-1),   v = mean |d|^2 / (3 * 6),
 ///
@@ -24,9 +23,9 @@ namespace lodeline {
 /// seconds. It needs readings at even times, so that readings interpolated at frames do not count.
 class VibrationMonitor {
  public:
-  /// Adds no noise where the rig has no sensor of a vehicle, which is without a motor then, and where the IMU
-  /// is faster than the vibrations of thrusters: 80 Hz and the double of it. These fold to slow ones only at
-  /// a rate below.
+  /// Adds no noise where the rig has no sensor of a vehicle, and so no motor. The same holds for an IMU
+  /// faster than the vibrations of thrusters: 80 Hz and the double of it. These fold to slow ones only at a
+  /// rate below.
   VibrationMonitor(const Rig& rig, double noise_inflation);
 
   /// The readings that lead to a frame, in order of time.

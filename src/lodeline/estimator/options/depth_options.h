@@ -9,8 +9,8 @@ struct DepthGateOptions {
   double max_jump_m = 0.15;
   /// After a rejection of this length, steady readings are used with a new offset.
   double readmission_s = 10.0;
-  /// Readings whose change is outside these multiples of the estimated rise and fall are in another unit, or
-  /// do not measure the water pressure at all.
+  /// Readings that change outside these multiples of the estimated rise have another unit, or measure no
+  /// water pressure.
   double least_slope = 0.6;
   double greatest_slope = 1.4;
 

@@ -29,10 +29,10 @@ struct MagnetometerGateOptions {
   double readmission_s = 60.0;
   /// Time over which rejections reduce the weight of later readings.
   double memory_s = 60.0;
-  /// A field counts as that of a wrong calibration or of a magnet on board, and is not used, under two
-  /// conditions over the last `rejection_window_s`. The time of rejection is longer than `max_rejected_ratio`
-  /// of the time of agreement, and it exceeds this by more than `rejection_margin_s`. A good sensor among
-  /// passing iron is rejected for a tenth to a third of the time.
+  /// A field of a wrong calibration or a magnet on board is not used. Two conditions over the last
+  /// `rejection_window_s` show it. The time of rejection is longer than `max_rejected_ratio` of the time of
+  /// agreement, and it exceeds this by more than `rejection_margin_s`. A good sensor among passing iron is
+  /// rejected for a tenth to a third of the time.
   double rejection_window_s = 600.0;
   double max_rejected_ratio = 0.5;
   double rejection_margin_s = 90.0;  ///< longer than readmission_s, so that a new field is tried first

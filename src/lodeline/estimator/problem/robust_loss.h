@@ -30,10 +30,10 @@ struct FrameErrors {
 /// correlated; a loss as wide as sigma_px would weight them like the others.
 ///
 /// The loss log(1 + r^2 / c^2) is the negative log-likelihood of errors with a bivariate t distribution of nu
-/// degrees of freedom, c^2 = nu s^2, for which P(r < R) = 1 - (1 + R^2 / c^2)^(-nu / 2). The median and the
-/// 90 % quantile of the errors give nu and c: 1.55 medians for nu = 4 and heavier tails,
-/// `robust_scale_medians` (2.5, the value for nu = 9.3) for normal errors. (K. L. Lange, R. J. A. Little, J.
-/// M. G. Taylor, "Robust statistical modeling using the t distribution", JASA 84, 1989.)
+/// degrees of freedom, c^2 = nu s^2. For it P(r < R) = 1 - (1 + R^2 / c^2)^(-nu / 2). The median and the 90 %
+/// quantile of the errors give nu and c: 1.55 medians for nu = 4 and heavier tails, `robust_scale_medians`
+/// (2.5, the value for nu = 9.3) for normal errors. (K. L. Lange, R. J. A. Little, J. M. G. Taylor, "Robust
+/// statistical modeling using the t distribution", JASA 84, 1989.)
 std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const SolverOptions& options);
 
 /// Squared residuals of a track's observations, in units of the usual residual in their frames
@@ -65,9 +65,9 @@ double differenceOfTracks(const ErrorsByTrack& by_track);
 /// right.
 double trackWeight(const TrackErrors& errors, double difference);
 
-/// Sets the losses of frames and the weights of tracks from their residuals after a solution. A frame that
-/// has not been part of a solution keeps the widest loss, because its prediction may be off by more than its
-/// points will be. A track without residuals has the weight 1.
+/// Sets the losses of frames and the weights of tracks from their residuals after a solution. A frame before
+/// its first solution keeps the widest loss, because its prediction may be off by more than its points. A
+/// track without residuals has the weight 1.
 void adaptRobustLosses(Window& window, const std::vector<ObservationError>& errors,
                        const SolverOptions& options);
 

@@ -25,11 +25,10 @@ double evidenceForFile(const Eigen::VectorXd& seen, const Eigen::MatrixXd& covar
 /// If they are free, intrinsics and rotations absorb that error and bias the scale. Most files, however, are
 /// either correct or wrong by far more, in several parameters that images soon reveal. The parameters are
 /// therefore held while evidenceForFile() is clearly for the file, and freed when it is not. The test uses
-/// the mean intrinsics of all cameras. Cameras that agree with each other confirm no file, because one
-/// calibration target or one port in front of all cameras causes the same error in each. In addition, no
-/// single parameter and no difference between the intrinsics of two cameras may contradict the file. A wrong
-/// baseline is an error of scale, which images do not reveal but the accelerometer does: it stays free
-/// (FactorBuilder::placement).
+/// the mean intrinsics of all cameras. Cameras that agree with each other confirm no file: one calibration
+/// target or one port causes the same error in each. In addition, no single parameter and no difference
+/// between the intrinsics of two cameras may contradict the file. A wrong baseline is an error of scale,
+/// which images do not reveal but the accelerometer does: it stays free (FactorBuilder::placement).
 class IntrinsicsModelSelection {
  public:
   explicit IntrinsicsModelSelection(const CameraCalibrationOptions& options) : options_(options) {}

@@ -32,8 +32,8 @@ class Marginalizer {
   /// factor is linearized at the present values until the prior contains the frames again. Neither
   /// translations nor a rotation of everything about gravity become observable by it. This is for frames that
   /// may still move by as much as the baselines between them. For them, a landmark's derivative would be
-  /// taken along the baseline from one frame's linearization point to another frame's present value, which is
-  /// an arbitrary direction.
+  /// along the baseline from a linearization point to another frame's present value. That direction is
+  /// arbitrary.
   void resetLinearizationPoints(Window& window);
 
   /// Adds external information on a parameter block: `sigmas` about its present value.

@@ -16,8 +16,8 @@ struct WindowUpdate {
 };
 
 /// Minimizes the cost over all variables of the window with minimize(). The normal equations use PriorTerms
-/// and ReprojectionSystem in place of the factors, which takes a fraction of the time of a general solver,
-/// and also gives the covariance. It updates poses, motions and landmarks of the window in place, except for
+/// and ReprojectionSystem in place of the factors. This takes a fraction of the time of a general solver, and
+/// also gives the covariance. It updates poses, motions and landmarks of the window in place, except for
 /// frozen landmarks. On one thread, so that the same input gives the same bytes.
 WindowUpdate updateWindow(Window& window, const Prior& prior, const FactorBuilder& factors,
                           const SolveLimits& limits,

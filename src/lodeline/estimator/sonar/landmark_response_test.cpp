@@ -110,8 +110,8 @@ TEST_F(LandmarkElimination, VarianceGrowsByTheErrorsOfTheLandmarks) {
 }
 
 TEST_F(LandmarkElimination, LandmarksFollowTheirPoses) {
-  // A response is the derivative of the landmark's best position: a step of the host and of all other poses
-  // that is a common motion leaves the landmark, which is relative to its host, where it is.
+  // A response is the derivative of the landmark's best position: a common motion of the host and all other
+  // poses leaves the landmark, which is relative to its host, where it is.
   const LandmarkResponse response = responses().front();
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();
   double size = 0.0;

@@ -32,8 +32,8 @@ struct EchoEstimate {
 };
 
 /// Adds the echoes of a kind of sonar (EchoSource) to a window. Each echo is compared with the surface that
-/// the landmarks around its beam form. It is used where it lies within the gate, whose width follows from the
-/// noise of the sonar, the scatter of the surface and the window's covariance of the scale.
+/// the landmarks around its beam form. It is used within a gate, whose width follows from sonar noise,
+/// scatter of the surface and the window's covariance of the scale.
 template <typename Sample>
 class EchoFusion final : public SensorFusion {
  public:

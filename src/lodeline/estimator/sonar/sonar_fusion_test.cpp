@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kSonarRate_hz = 20.0;
 
-/// A rig with one camera that moves so calmly in a room that its accelerometer tells little of the scale, and
-/// a sonar that scans the view to and fro.
+/// A rig with one camera in a room, and a sonar that scans the view to and fro. It moves so calmly that its
+/// accelerometer tells little of the scale.
 TestSceneOptions calmScene(uint64_t seed) {
   TestSceneOptions options;
   options.seed = seed;

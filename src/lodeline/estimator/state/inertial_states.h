@@ -14,9 +14,8 @@ namespace lodeline {
 EstimatorOptions optionsFor(const Rig& rig, EstimatorOptions options);
 
 /// Adds the axes of gyroscope and accelerometer (factors/inertial_factor.h), unless they are to be held.
-/// Rotations make them observable: vision, and the magnetometer where there is one, measure the true rotation
-/// of the rig, and a rig that tilts rotates its accelerometer in known gravity. FactorBuilder::imuAxes() is
-/// the prior.
+/// Rotations make them observable: vision and any magnetometer measure the true rotation of the rig. A rig
+/// that tilts rotates its accelerometer in known gravity. FactorBuilder::imuAxes() is the prior.
 void addInertialStates(Window& window, const ImuAxesOptions& options);
 
 /// States of the IMU axes; null where the axes are held.

@@ -112,8 +112,8 @@ using Tracks = boost::container::flat_map<TrackId, FeatureTrack>;
 /// Removes tracks with fewer observations.
 void removeShortTracks(Tracks& tracks, size_t least_observations);
 
-/// The sliding window: old keyframes (poses) and interpolated frames between them, then the most recent
-/// frames (poses and motions), their tracks, and the parameter blocks that belong to no frame.
+/// The sliding window: old keyframes (poses) and interpolated frames between them, recent frames (poses and
+/// motions), their tracks, and parameter blocks of no frame.
 class Window {
  public:
   Frame& add(std::unique_ptr<Frame> frame);

@@ -16,8 +16,8 @@ namespace lodeline {
 /// small.
 constexpr double kOneCameraScaleSigma = 0.01;
 
-/// With such intrinsics the estimate of a translation v is v + C v, and a rotation w adds a translation d D
-/// w, where d is the distance of the observed scene. The matrices C and D are constant for a whole dive: C
+/// With such intrinsics the estimate of a translation v is v + C v. A rotation w adds a translation d D w,
+/// where d is the distance of the observed scene. The matrices C and D are constant for a whole dive: C
 /// changes the direction of travel, D takes part of a rotation for a translation. One sigma of each entry.
 /// Dives with a real rig's errors shifted by 2 to 3 cm in every half turn 2 m from the wall, in the same
 /// direction in every run. They also shifted by 3 mm in every metre. Dives without these errors shifted by a

@@ -11,8 +11,8 @@
 namespace lodeline {
 
 /// Chain rule from the nodes of ReprojectionSystem to the window's blocks. A node's step is T times the step
-/// of the blocks. The camera pose of a frame depends on the pose of its body (of two bodies where the frame
-/// is interpolated between them) and on the calibration. The other nodes are blocks themselves.
+/// of the blocks. The camera pose of a frame depends on the calibration and the pose of its body, or of two
+/// bodies where it is interpolated. The other nodes are blocks themselves.
 class CameraToBodyChainRule {
  public:
   /// All must outlive this object. `rows`: number of coordinates of all nodes; frames come first, six each.

@@ -7,8 +7,8 @@
 namespace lodeline {
 
 /// Whether the newest frame should become a keyframe. It should if it observes too few of the last keyframe's
-/// landmarks, has moved far enough from it, or if too few landmarks are in view. A rig at rest makes no
-/// keyframes, so that its window keeps its information.
+/// landmarks, has moved far enough, or sees too few landmarks. A rig at rest makes no keyframes, so that its
+/// window keeps its information.
 bool wantsKeyframe(const Window& window, const FactorBuilder& factors, const KeyframeOptions& options);
 
 /// Makes the last frame with at least `least_landmarks` landmarks a keyframe when it is about to leave the
@@ -17,10 +17,10 @@ bool wantsKeyframe(const Window& window, const FactorBuilder& factors, const Key
 /// rest, that is all image information.
 void keepLastView(Window& window, int recent_frames, int least_landmarks);
 
-/// The keyframes before and after a frame that is not a keyframe and leaves the window's recent frames, if
-/// the frame should be interpolated between them. It should if it observes landmarks and is far enough in
-/// time from other frames for independent information (close frames have similar errors). Empty where the
-/// next keyframe does not exist yet, or is too far away for the motion in between to be known.
+/// The keyframes before and after a frame that leaves the window's recent frames and should be interpolated
+/// between them. It should if it observes landmarks and is far enough in time from other frames for
+/// independent information (close frames have similar errors). Empty where the next keyframe does not exist
+/// yet, or is too far away for the motion in between to be known.
 struct KeyframesAbout {
   const Frame* before;
   const Frame* after;

@@ -23,13 +23,13 @@ class LandmarkLinearizationCache {
   /// The cache is valid for `most_frames` frames at most; 0: never.
   explicit LandmarkLinearizationCache(int most_frames) : most_frames_(most_frames) {}
 
-  /// Caches, at the end of a frame that linearized all landmarks, those last observed by the old keyframes or
-  /// between them, at their present values (FeatureTrack::is_frozen). Does nothing while the cache is in use.
+  /// Caches landmarks last observed by the old keyframes or between them, at their present values
+  /// (FeatureTrack::is_frozen). To be called after a frame that linearized all landmarks. Does nothing while
+  /// the cache is in use.
   void freeze(Window& window, const FactorBuilder& factors);
 
-  /// Empties the cache, before a frame is solved, in three cases: it is old enough, a frame or block it
-  /// depends on was removed or has a new linearization point, or one has moved beyond the range of the
-  /// quadratic cost.
+  /// Empties the cache, before a frame is solved, if it is old enough. It also does so if a frame or block it
+  /// depends on was removed, has a new linearization point or has left the range of the quadratic cost.
   void invalidateIfStale(Window& window);
 
   /// Approximate terms of ReprojectionSystem for these landmarks at the blocks' present values: first order

@@ -113,9 +113,9 @@ std::optional<double> usualInverseDistance(const Window& window) {
 }
 
 /// Whether the inverse distance is accurate enough for a landmark. The decision must not depend on the effect
-/// of noise on the distance. Where the rig hardly moves, apparently near points are those that move by
-/// themselves, such as flakes in the water, and those with the largest errors. The sigma is therefore
-/// compared with the `usual` inverse distance.
+/// of noise on the distance. Where the rig hardly moves, apparently near points have the largest errors, or
+/// move by themselves, such as flakes in the water. The sigma is therefore compared with the `usual` inverse
+/// distance.
 bool isUsable(const InverseDistance& rho, std::optional<double> usual, const LandmarkOptions& options) {
   const bool known = rho.sigma < options.max_relative_sigma * usual.value_or(std::abs(rho.value)) ||
                      rho.sigma < options.max_inverse_distance_sigma_per_m;

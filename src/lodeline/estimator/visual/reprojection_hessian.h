@@ -6,10 +6,10 @@
 
 namespace lodeline {
 
-/// Columns of the two rows of an observation: its derivatives by the intrinsics of its camera, by the
-/// extrinsics of a secondary camera and by the pose of its landmark's host (zero where there is none). The
-/// residual is one more column, because gradients are summed like Hessians. Another is the derivative by the
-/// line delay of the camera, zero for a global shutter. Rows are whole SIMD vectors.
+/// Columns of the two rows of an observation: its derivatives by the camera's intrinsics, a secondary
+/// camera's extrinsics and the pose of the landmark's host (zero where there is none). The residual is one
+/// more column, because gradients are summed like Hessians. Another is the derivative by the line delay of
+/// the camera, zero for a global shutter. Rows are whole SIMD vectors.
 struct ObservationColumns {
   static constexpr int kIntrinsics = 0, kSecondary = kIntrinsicsSize, kResidual = kSecondary + 6,
                        kHost = kResidual + 1, kLineDelay = kHost + 6, kCount = (kLineDelay + 4) / 4 * 4;

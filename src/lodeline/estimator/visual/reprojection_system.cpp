@@ -51,8 +51,8 @@ std::vector<int> hostsOf(const Window& window, ReprojectionSystem::Of which) {
   return hosts;
 }
 
-/// Converts derivatives by the pose of a host's camera (columns) to those by the pose of a target's camera,
-/// at the given baseline from target to host. A motion of one is the reverse motion of the other.
+/// Converts derivatives by the pose of a host's camera (columns) to those by a target's, at the baseline from
+/// target to host. A motion of one is the reverse motion of the other.
 template <int kRows>
 Eigen::Matrix<double, kRows, 6> byTarget(const Eigen::Matrix<double, kRows, 6>& by_host,
                                          const Vec3& baseline_W) {

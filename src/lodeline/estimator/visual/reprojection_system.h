@@ -133,10 +133,9 @@ class ReprojectionSystem {
   std::vector<CameraMotion> motions_;        ///< by frame and camera
   std::vector<DirectionMeasurement> moved_;  ///< measurements at the time of the images
   std::vector<Vec2> shutter_products_;       ///< by camera: squared derivative, and times the residual
-  // Nodes are the variables with respect to which landmarks are eliminated, `rows_` coordinates in all: the
-  // camera poses of the frames in the window's order, then the extrinsics of secondary cameras, then the
-  // intrinsics where they are estimated, then the shutter where one is rolling (the line delays of six
-  // cameras).
+  // Nodes are the variables with respect to which landmarks are eliminated, `rows_` coordinates in all:
+  // camera poses in the window's order, extrinsics of secondary cameras, intrinsics where estimated, the line
+  // delays of six cameras where a shutter is rolling.
   std::vector<HostProducts> by_host_;                ///< by indexOf()
   std::vector<CalibrationProducts> by_calibration_;  ///< by camera
   Eigen::MatrixXd hessian_;                          ///< of the nodes; lower triangle

@@ -42,8 +42,8 @@ Mat3 nearestRotation(const Mat3& matrix) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Rms angle (rad) between a_i and W b_i B for the best constant rotation B, and for the given W or the best
-/// one, found by alternation.
+/// Rms angle (rad) between a_i and W b_i B for the best constant B, and the given W or the best, by
+/// alternation.
 double disagreement(const Rotations& a, const Rotations& b, const std::optional<Mat3>& known_world) {
   Mat3 world = known_world.value_or(Mat3::Identity()), body = Mat3::Identity();
   for (int iteration = 0; iteration < (known_world ? 1 : 15); ++iteration) {

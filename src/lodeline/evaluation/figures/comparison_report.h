@@ -20,8 +20,8 @@ std::string comparisonMarkdown(const ComparedRecording& recording);
 /// Every run and the means; keys contain units.
 nlohmann::ordered_json comparisonJson(const ComparedRecording& recording);
 
-/// Top view of the paths of every method's first run with errors, from equal first positions (and headings,
-/// where a method does not know north), with the reference; NAME_trajectories.
+/// Top view of the reference and every method's first run with errors, from equal first positions (and
+/// headings without north); NAME_trajectories.
 gnuplot::Figure trajectoriesFigure(const ComparedRecording& recording);
 
 /// Relative yaw error over the length of the path section, one box per method and length over all runs:

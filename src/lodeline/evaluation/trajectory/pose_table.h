@@ -17,12 +17,11 @@ namespace lodeline {
 /// w comes first after stamps in nanoseconds with commas (EuRoC, VINS-Fusion), else last (TUM, ORB-SLAM3).
 /// `format` Tum, Kitti or Euroc fixes the order of the columns, whatever the header states.
 ///
-/// Times are in the unit of the header, else in the unit that fits their size as Unix time, else in seconds,
-/// unless only another unit gives a plausible rate. Unusual assumptions are reported.
+/// Times are in the unit of the header, else in the one that fits Unix time, else in seconds. Another unit
+/// counts where it alone gives a plausible rate. Unusual assumptions are reported.
 ///
-/// Throws InputError, with file and line, for a row with another number of columns than the first, for text
-/// that is not a number, and for invalid rotations. Poses with NaN and an incomplete last line are skipped
-/// with a warning.
+/// Throws InputError, with file and line, for a row of another length, for text that is not a number, and for
+/// invalid rotations. Poses with NaN and an incomplete last line are skipped with a warning.
 Trajectory readPoseTable(std::unique_ptr<ByteSource> bytes, const std::string& name,
                          std::optional<TrajectoryFormat> format, Diagnostics& diagnostics);
 

@@ -23,8 +23,8 @@ class PoseTableTest : public ::testing::Test {
     return readPoseTable(bytesInMemory(text), "poses.txt", format, diagnostics_);
   }
 
-  /// One row per pose of `truth_`, in which `layout` has the fields {ns} {us} {ms} {s} {x} {y} {z} {qx} {qy}
-  /// {qz} {qw}, the rows of the matrix {r0} {r1} {r2}, and the row's number {i}.
+  /// One row per pose of `truth_`. `layout` has the fields {ns} {us} {ms} {s} {x} {y} {z} {qx} {qy} {qz}
+  /// {qw}. {r0} {r1} {r2} are rows of the matrix, {i} is the row's number.
   std::string rows(const std::string& layout) const {
     std::string text;
     int i = 0;

@@ -14,7 +14,7 @@ struct CornerDetectorOptions {
   /// Root-mean-square gradient across the weaker direction of the texture, on the half-size image: twice that
   /// of a good sensor's noise.
   double min_gradient_grey_per_px = 0.5;
-  /// The same limit in noisy images, relative to the mean absolute second difference, over steps of two
+  /// The same limit in noisy images. It is relative to the mean absolute second difference, over steps of two
   /// pixels, in the smoothest tenth of the half-size image. Noise alone gives corners of up to 0.7. In clear
   /// images without a plain area that difference would be texture.
   double min_gradient_of_noise = 0.75;

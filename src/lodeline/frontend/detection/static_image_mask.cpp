@@ -29,8 +29,8 @@ cv::Mat withoutSlopes(const cv::Mat& image) {
 }
 
 /// Median absolute second difference, grey levels: where noise is stronger than texture, it measures the
-/// noise. For mere noise with all of this front end's smoothing, gradients one level further up are below 3
-/// times this value, and those on the same level below 4 times.
+/// noise. For mere noise after this front end's smoothing, gradients one level up are below 3 times this
+/// value, those here below 4 times.
 float detail(const cv::Mat& image) {
   std::vector<float> sizes;
   sizes.reserve(image.total() / 4 + 1);

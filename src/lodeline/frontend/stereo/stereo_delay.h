@@ -9,9 +9,8 @@
 namespace lodeline {
 
 /// Estimates the delay of a pair's second camera relative to its time stamps from the distances of stereo
-/// matches to their epipolar lines. A delay d moves the second camera, between the first image and its own,
-/// by the rotation w d and the translation v d (its own axes). A match b at inverse depth rho is then off its
-/// line by
+/// matches to their epipolar lines. A delay d moves the second camera between the images by the rotation w d
+/// and the translation v d (its own axes). A match b at inverse depth rho is then off its line by
 ///   e = -focal_px (w . (b x n) + rho n . v) d + focal_px (b x n) . theta,
 /// with n the unit normal of the epipolar plane and theta a constant rotation of the camera relative to its
 /// file. w and v change from frame to frame, which separates d from theta. The estimate minimizes the sum of

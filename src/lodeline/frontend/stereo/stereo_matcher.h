@@ -64,12 +64,12 @@ class StereoMatcher {
                                       const std::optional<PatchWarp>& hint, const Track& track) const;
   /// Updates the rotation with all candidates of a frame.
   void learn(const std::vector<RayPair>& candidates);
-  /// Inverse depth (1/m along the first camera's ray, not negative) of a candidate that is on its epipolar
-  /// line and neither too near nor beyond infinity; empty for others.
+  /// Inverse depth (1/m along the first camera's ray, not negative) of a candidate on its epipolar line,
+  /// neither too near nor beyond infinity; empty for others.
   std::optional<double> accept(const RayPair& candidate) const;
 
-  /// Ray of the second camera at the frame's time for a point that it observed on `second` at its own time,
-  /// at `inverse_depth_per_m` on the ray `first`. It has the origin of `second`.
+  /// Ray of the second camera at the frame's time, for a point that it observed on `second` at another time.
+  /// The point is at `inverse_depth_per_m` on the ray `first`. It has the origin of `second`.
   Vec3 rayAtFrame(const RayPair& rays, double inverse_depth_per_m) const;
 
   /// Estimator of the second camera's delay relative to the assumed time.

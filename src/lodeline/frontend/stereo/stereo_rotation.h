@@ -31,8 +31,7 @@ std::optional<Vec3> epipolarNormal(const Rigid3& second_from_first, const Vec3& 
 /// would be no matches. A rotation about their common axis changes only the depths and remains unknown here.
 ///
 /// n is the normal of the plane through both cameras and the point by the file. For a rotation theta of the
-/// second camera (in its axes, second_from_first becomes exp(theta) second_from_first), a match b has the
-/// residual
+/// second camera (second_from_first becomes exp(theta) second_from_first), a match b has the residual
 ///   e(theta) = focal_px n^T exp(-theta) b.
 /// The estimate minimizes the sum of |e| over the newest matches, correct and wrong ones (iteratively
 /// reweighted least squares).

@@ -132,8 +132,8 @@ void SensorNoiseAnalysis::bridge(Time time, const Vec3& reading) {
 bool SensorNoiseAnalysis::holdsReadings() const {
   // Model: a fraction h of readings is held; in the others, each axis repeats independently with probability
   // q due to coarse resolution. Then an axis repeats in p = h + (1 - h) q of the readings, and all three
-  // together in j = h + (1 - h) q^3, so that (1 - j) / (1 - p) = 1 + q + q^2. The axis with the fewest
-  // repetitions gives p, because an axis that is not measured always repeats.
+  // together in j = h + (1 - h) q^3. So (1 - j) / (1 - p) = 1 + q + q^2. The axis with the fewest repetitions
+  // gives p, because an axis that is not measured always repeats.
   const auto count = static_cast<double>(std::max<int64_t>(1, readings_ - 1));
   const double p =
       static_cast<double>(*std::min_element(repeated_axis_.begin(), repeated_axis_.end())) / count;

@@ -24,8 +24,7 @@ struct Stillness {
 };
 
 /// Stationary detector for readings of a sensor at rest. A window counts as moved where its scatter exceeds
-/// the limit or three times that of the median window, or where its mean changes from that of the previous
-/// window.
+/// the limit or three times the median window's. So does one whose mean changes from the previous window's.
 class StillnessMonitor {
  public:
   explicit StillnessMonitor(const StillLimits& limits) : limits_(limits) {}

@@ -52,8 +52,8 @@ std::string otherOrder(const Intrinsics& in, const Vec2& size_px) {
   return {};
 }
 
-/// The ratio of the image's size to that for which the principal point is the centre, where width and height
-/// agree in it and it is not near 1.
+/// The image's size over that for which the principal point is the centre, where width and height agree and
+/// it is not near 1.
 std::optional<double> otherSize(const Intrinsics& in, const Vec2& size_px) {
   constexpr double kFar = 1.25, kSame = 1.1;
   const Vec2 ratio = 0.5 * size_px.cwiseQuotient(Vec2(in.cx, in.cy));

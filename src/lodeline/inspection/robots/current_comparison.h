@@ -17,7 +17,7 @@ struct ChannelField {
 };
 
 /// Consistency of currents with the magnetometer. Within windows of seconds, the field turned back by the
-/// gyroscope must be constant, except for the hard iron h and the fields k_i of the currents:
+/// gyroscope is constant, apart from hard iron h and fields k_i of currents:
 ///
 ///     R_k m_k = m_0 + R_k (h + sum_i k_i I_i,k)
 ///

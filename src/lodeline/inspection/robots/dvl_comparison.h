@@ -8,9 +8,9 @@
 
 namespace lodeline {
 
-/// Consistency of a DVL with the IMU. Within windows of seconds, velocities in the axes of the window's start
-/// must change as the integral of the specific force does, except for a constant and for gravity, which grows
-/// with time:
+/// Consistency of a DVL with the IMU. Within windows of seconds, velocities in axes of the window's start
+/// must change as the integral of the specific force does. A constant and gravity, which grows with time, are
+/// free:
 ///
 ///     R_k v_k = v_0 + F_k + g t_k
 ///

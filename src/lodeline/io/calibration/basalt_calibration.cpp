@@ -50,8 +50,8 @@ std::string largest(const std::string& key, CalibrationMap* map) {
   return fmt::format("{}", *std::max_element(values.begin(), values.end()));
 }
 
-/// Converts Basalt's model, calibrated = (I + S) reading - b, to that of a rig file, reading = M calibrated +
-/// bias with M = (I + S)^-1, and writes it to `section`.
+/// Converts Basalt's model, calibrated = (I + S) reading - b, to that of a rig file. It writes reading = M
+/// calibrated + bias with M = (I + S)^-1 to `section`.
 void setCorrection(const Mat3& scale, const Vec3& bias, YAML::Node* section) {
   if (scale.isZero(0.0) && bias.isZero(0.0)) return;
   const Mat3 axes = (Mat3::Identity() + scale).inverse();

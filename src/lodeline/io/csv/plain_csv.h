@@ -25,8 +25,8 @@ struct PlainReading {
 
 /// Caller's choices for properties that a table does not define.
 struct PlainCsvOptions {
-  /// The table belongs to a magnetometer. Columns x, y, z without a sensor name then hold the field, the
-  /// field keeps its numbers where no unit is stated, and times may be missing.
+  /// The table belongs to a magnetometer. Columns x, y, z without a sensor name then hold the field. It keeps
+  /// its numbers where no unit is stated. Times may be missing.
   bool is_magnetometer = false;
   /// Quantity of columns x, y, z without a sensor name, where the name of the file states it.
   std::optional<Quantity> bare_columns = std::nullopt;
@@ -42,8 +42,8 @@ struct PlainCsvOptions {
 /// numbers (all). Rows `Raw:ax,ay,az,gx,gy,gz,mx,my,mz` of calibration programs are also accepted; only their
 /// magnetometer is used.
 ///
-/// Without a unit, a time with a decimal point is in seconds and a whole number in nanoseconds, unless only
-/// another unit gives a plausible sensor rate, or the numbers are the current time in steps of 100 ns. Whole
+/// Without a unit, a time with a decimal point is in seconds and a whole number in nanoseconds. Another unit
+/// counts where it alone gives a plausible sensor rate, or for the current time in steps of 100 ns. Whole
 /// numbers are refused where nanoseconds would mean an unusually fast sensor. The gyroscope is in rad/s.
 /// Accelerometer and magnetometer have the unit for which the median of the first readings is plausible on
 /// Earth. Units other than SI are reported.

@@ -36,11 +36,10 @@ struct DepthProfile {
   std::string unit = "m";     ///< of the depths in the file, for messages
 };
 
-/// Reads the dives of a log: a table, XML or DL7 (profile_rows.h), or a zip
-/// archive of such files. Rows that cannot be read or are impossible
-/// (profile_screen.h) are reported and skipped. Throws InputError where the
-/// file is missing, is not a readable log, states an unknown unit, or has no
-/// dive with 10 usable readings (3 in a log that says where each dive begins).
+/// Reads the dives of a log: a table, XML or DL7 (profile_rows.h), or a zip archive of such files. Rows that
+/// cannot be read or are impossible (profile_screen.h) are reported and skipped. Throws InputError for a
+/// missing file, a file that is no readable log, and an unknown unit. A dive needs 10 usable readings (3 in a
+/// log that says where each dive begins).
 std::vector<DepthProfile> readDepthProfiles(const std::filesystem::path& file, Diagnostics* diagnostics);
 
 /// The same dive with every depth multiplied.

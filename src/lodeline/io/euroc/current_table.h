@@ -16,7 +16,7 @@ namespace lodeline {
 class CurrentTable {
  public:
   /// `channels`: those of the calibration, empty without one. Throws InputError for a file without a header,
-  /// a column whose unit is not one of a current, and channels other than those of the calibration.
+  /// a column without a unit of current, and channels that the calibration lacks.
   CurrentTable(const std::filesystem::path& file, const std::vector<std::string>& channels,
                Diagnostics* diagnostics);
 

@@ -17,8 +17,8 @@ struct ListedImage {
 
 /// The images of one camera folder (camN) in the order of its data.csv. Without data.csv, the list is made
 /// from the image files in camN/data in order of time. File names that are stamps give the times (an integer
-/// as in data.csv, or seconds with decimals). Otherwise, the rows of a times file (timestamps.txt, times.txt)
-/// in the folder, beside it or above it give the times, if it has one row per image.
+/// as in data.csv, or seconds with decimals). Otherwise a times file (timestamps.txt, times.txt) in the
+/// folder, beside it or above it gives the times, if it has one row per image.
 class ImageList {
  public:
   /// Throws InputError where there is no list and none can be made. `diagnostics` must outlive the list.

@@ -28,10 +28,10 @@ struct StatedDvlPing {
   std::vector<StatedDvlBeam> beams;
 };
 
-/// Removes the numbers that stand for "no lock". They are NaN, -32.768 m/s (-32768 mm/s of the format PD0 of
-/// RDI), ranges of 0 or less (-1 and -2 of several drivers), and everything that is stated as not valid.
-/// Velocities of exactly 0 or -2 m/s on all axes, or along a beam, count as well where no validity is stated.
-/// A velocity of one or two beams is removed, because it is no vector.
+/// Removes the numbers that mean "no lock". They are NaN, -32.768 m/s (-32768 mm/s of RDI's format PD0),
+/// ranges of 0 or less (-1 and -2 of several drivers), and all stated as not valid. Velocities of exactly 0
+/// or -2 m/s on all axes, or along a beam, count as well where no validity is stated. A velocity of one or
+/// two beams is removed, because it is no vector.
 DvlSample withoutSentinels(const StatedDvlPing& ping);
 
 /// Numbers the beams of a ping from 0 where the instrument counts all of them from 1.

@@ -140,8 +140,8 @@ class Chooser {
     for (size_t i = 0; i < missing.size(); ++i) take(missing[i], free[i]);
   }
 
-  /// Whether a topic is chosen for another sensor, or has the first type of one without a topic, but not the
-  /// first type of this one: a Range is an altimeter's, where the rig has one, and otherwise a sonar's.
+  /// Whether a topic is chosen for another sensor, or has the first type of a sensor without topic but not of
+  /// this one: a Range is an altimeter's, where the rig has one, and otherwise a sonar's.
   bool isRatherOfOther(const BagTopic& topic, const std::string& sensor) const {
     const auto hasFirstTypeOf = [&](const std::string& other) {
       return topic.connection.type == typesOf(other).front().name;

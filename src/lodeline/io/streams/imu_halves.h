@@ -9,8 +9,8 @@ namespace lodeline {
 
 /// Merges the streams of a gyroscope and an accelerometer into one IMU. It gives one reading per gyroscope
 /// reading, with the specific force interpolated linearly between the accelerometer's readings before and
-/// after. It leaves out gyroscope readings before the first accelerometer reading, after the last one, and in
-/// gaps of the accelerometer longer than four of its usual steps.
+/// after. It leaves out gyroscope readings outside of the accelerometer readings, and in their gaps longer
+/// than four usual steps.
 class ImuHalves {
  public:
   using Next = std::function<std::optional<ImuSample>()>;

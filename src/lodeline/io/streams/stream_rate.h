@@ -21,8 +21,8 @@ std::optional<double> measuredRate_hz(const std::vector<Time>& stamps);
 /// The rate stated by a calibration, Hz, where it is plausible; otherwise the measured rate. A contradiction
 /// between the two is reported as `rate`. `stated_hz`: 0 where nothing is stated. Returns 0 where neither
 /// rate is available. `name`: of the stream, for messages. Throws InputError where many stamps are all equal
-/// (`advice` gives the remedy), and where the stamps are faster than a sensor by the factor between two units
-/// of time.
+/// (`advice` gives the remedy). The same holds for stamps that are faster than a sensor by the factor between
+/// two units of time.
 double settleRate(const std::string& name, const std::vector<Time>& stamps, double stated_hz,
                   Diagnostics* diagnostics,
                   const std::string& advice = "use a driver that stamps its readings");
@@ -35,9 +35,9 @@ void refuseBadClock(const std::string& name, const std::vector<Time>& stamps,
 /// Message about readings that are stored from the last to the first.
 std::string storedInReverse(const std::string& name, Time former, Time latter);
 
-/// Unit of integer stamps that should be nanoseconds. Another unit is returned only where nanoseconds give an
-/// impossible rate for the sensor and the other unit gives a plausible one, or where the stamps are the
-/// current time in steps of 100 ns (areTicks()).
+/// Unit of integer stamps that should be nanoseconds. Another unit is returned where nanoseconds give an
+/// impossible rate for the sensor and the other unit a plausible one. It is also returned for the current
+/// time in steps of 100 ns (areTicks()).
 TimeUnit unitOfNanosecondStamps(const std::vector<double>& stamps, PlausibleRate rate);
 
 }  // namespace lodeline

@@ -22,8 +22,8 @@ namespace lodeline {
 /// gyroscope measured a rotation of more than 2.5 px. After three such repeats, the fifth alone is the
 /// criterion. Only every 16th row is compared while the rows are equal or the difference is small.
 ///
-/// A rendered camera without noise gives equal images at rest. Where the inertial readings are also at rest,
-/// and were not before the images became equal, equal images are observations of a resting rig and are kept.
+/// A rendered camera without noise gives equal images at rest. Equal images are observations of a resting
+/// rig, and kept, where the inertial readings came to rest with them.
 class ImageRepeats {
  public:
   /// `diagnostics` must outlive the object.

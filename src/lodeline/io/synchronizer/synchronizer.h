@@ -39,15 +39,14 @@ struct SynchronizerOptions {
   InertialScreenOptions inertial;
 };
 
-/// Combines the separate streams of a source into one packet per image of the first camera. It returns a
-/// packet only when there are inertial readings at or after the image time and magnetometer readings after it
-/// (or their stream has ended).
+/// Combines the separate streams of a source into one packet per image of the first camera. A packet needs
+/// inertial readings at or after the image time and magnetometer readings after it, or the end of their
+/// stream.
 ///
-/// It reports, each with a stamp: images without inertial data (dropped), images without a partner, missing
-/// and damaged images (an empty cv::Mat in the packet), and gaps, duplicates and disorder of every stream.
-/// Images that repeat the one before are left out (ImageRepeats). Where an image of the first camera is a
-/// repeat, the next packet gets the readings, unless the camera is frozen. Memory use does not depend on the
-/// length of the recording.
+/// It reports, each with a stamp: images without inertial data (dropped) or without a partner, missing and
+/// damaged images (an empty cv::Mat), gaps, duplicates and disorder of every stream. Images that repeat the
+/// one before are left out (ImageRepeats). Where an image of the first camera is a repeat, the next packet
+/// gets the readings, unless the camera is frozen. Memory use does not depend on the length of the recording.
 class Synchronizer {
  public:
   /// `source` and `diagnostics` must outlive the synchronizer.

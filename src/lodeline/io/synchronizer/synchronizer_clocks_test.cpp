@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// Recordings whose clocks jump or do not overlap. The first gyroscope axis reads the true time in seconds,
-/// and the first pixel of the images counts them, so that both show their assigned times.
+/// and the first pixel counts the images: both show their assigned times.
 class SynchronizerClocksTest : public testing::Test {
  protected:
   std::vector<FramePacket> readAll() {

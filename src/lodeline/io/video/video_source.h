@@ -31,8 +31,8 @@ struct VideoOptions {
 /// are decoded on demand, and scaled down to the resolution of the rig.
 class VideoSource : public RecordedSource {
  public:
-  /// Throws InputError where the film cannot be read, has no inertial readings, or where the rig does not
-  /// describe one camera with the proportions of the images. `diagnostics` must outlive the source.
+  /// Throws InputError where the film cannot be read or has no inertial readings. The same holds for a rig
+  /// that does not describe one camera with the images' proportions. `diagnostics` must outlive the source.
   VideoSource(const std::filesystem::path& data, const VideoOptions& options, Diagnostics* diagnostics);
 
   std::optional<ImuSample> nextRecordedImu() override;

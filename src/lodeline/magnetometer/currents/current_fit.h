@@ -37,7 +37,7 @@ struct CurrentFit {
   /// Covariance of one component of all k_i, T^2/A^2; zero for channels that never changed.
   Eigen::MatrixXd covariance;
   /// One sigma of each component of each k_i for CurrentCalibration: that of the sum at the test's currents,
-  /// and two per cent of the fields for what is not linear or changes from day to day.
+  /// and two per cent of the fields for non-linearity and change from day to day.
   double field_sigma_T_per_A = 0.0;
   double rate_hz = 0.0;  ///< of the current readings
   double lag_s =

@@ -27,7 +27,7 @@ class CurrentTrack {
   CurrentTrack(size_t channels, double longest_gap_s) : channels_(channels), longest_gap_s_(longest_gap_s) {}
 
   /// Adds a reading, on the clock of the IMU. Returns false, and keeps nothing, for a reading with another
-  /// number of channels, with a value that is no finite number, or not later than the one before.
+  /// number of channels, a value that is not finite, or no later time.
   bool add(const CurrentSample& sample);
 
   /// Forgets what only times before `time` need.

@@ -16,10 +16,10 @@ struct RobustLines {
 };
 
 /// Iteratively reweighted least squares with Cauchy's weights 1 / (1 + (r / (2.385 sigma))^2), r the root
-/// mean square of a row's residuals over the axes (Holland and Welsch, "Robust regression using iteratively
-/// reweighted least-squares", 1977). `prior_sigmas`: one for each column of the design, about zero, in units
-/// of the coefficients; infinite for none. `sigma`: of a residual, where it is known; 0 determines it from
-/// the residuals. Rows of the design that are no numbers do not count.
+/// mean square of a row's residuals over the axes. Source: Holland and Welsch, "Robust regression using
+/// iteratively reweighted least-squares", 1977. `prior_sigmas`: one for each column of the design, about
+/// zero, in units of the coefficients; infinite for none. `sigma`: of a residual, where it is known; 0
+/// determines it from the residuals. Rows of the design that are no numbers do not count.
 RobustLines fitLines(const Eigen::MatrixXd& design, const Eigen::MatrixXd& right,
                      const Eigen::VectorXd& prior_sigmas, double sigma = 0.0);
 

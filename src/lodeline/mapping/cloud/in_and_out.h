@@ -25,16 +25,16 @@ struct InAndOutOptions {
   void check() const;
 };
 
-/// Pairs of stretches where the way back comes near an earlier part of the way, within 3 sigma of the
-/// relative position, at most one for each `spacing_m` of path. Of the keyframes within reach, the pair takes
-/// the nearest. Pairs with the least uncertainty come first: once registered, they narrow the others.
-/// Keyframes must be of one dive in their order. Longer dives than `most_pairs` allows are spaced wider.
+/// Pairs of stretches where the way back comes within 3 sigma of an earlier part of the way, one for each
+/// `spacing_m` of path. Of the keyframes within reach, the pair takes the nearest. Pairs with the least
+/// uncertainty come first: once registered, they narrow the others. Keyframes must be of one dive in their
+/// order. Longer dives than `most_pairs` allows are spaced wider.
 std::vector<CloudPair> inAndOutCandidates(const std::vector<MapKeyframe>& keyframes,
                                           const InAndOutOptions& options = {});
 
 /// Covariance of [dp, dtheta] of a later body in the axes of an earlier one. The covariances are those of the
-/// odometry relative to its start; drift between both adds up, so that the difference of the covariances is
-/// that of the relative pose (errors of the earlier pose are part of the later one, moved by its lever).
+/// odometry relative to its start; drift between both adds up, so the difference of the covariances is that
+/// of the relative pose. Errors of the earlier pose are part of the later one, moved by its lever.
 Mat6 relativeCovariance(const MapKeyframe& earlier, const MapKeyframe& later);
 
 }  // namespace lodeline

@@ -47,10 +47,10 @@ struct CloudRegistration {
 /// nothing, the loop's covariance is a hundred times the prior's sigma, squared.
 constexpr double kUnobservedFactor = 1e4;
 
-/// Registers the new cloud to the old one: point to plane, with known gravity. `old_from_new` is the pose of
-/// the new frame in the old frame as predicted, `covariance` that of its [dp, dtheta] in axes of the old
-/// frame. docs/theory/cloud-registration.md describes the method. Throws InputError for a prediction that is
-/// not finite or a covariance that is not positive definite.
+/// Registers the new cloud to the old one: point to plane, with known gravity. `old_from_new` is the
+/// predicted pose of the new frame in the old one, `covariance` that of its [dp, dtheta] in old axes.
+/// docs/theory/cloud-registration.md describes the method. Throws InputError for a prediction that is not
+/// finite or a covariance that is not positive definite.
 CloudRegistration registerClouds(const LocalCloud& old_cloud, const LocalCloud& new_cloud,
                                  const Rigid3& old_from_new, const Mat6& covariance,
                                  const CloudRegistrationOptions& options = {});

@@ -26,8 +26,8 @@ struct ShapeFit {
 };
 
 /// Minimizes the robust distances plus the prior by Gauss-Newton steps. The width of the loss starts at
-/// `start_width_m` and shrinks to the noise (graduated non-convexity). Errors of points in the same metre of
-/// wall are not independent, so that a row counts as a fifth of an observation beside the prior.
+/// `start_width_m` and shrinks to the noise (graduated non-convexity). Errors of points in one metre of wall
+/// are not independent, so a row counts as a fifth of an observation beside the prior.
 ShapeFit fitShape(const ShapeProblem& problem, const ShapePrior& prior, const ShapeState& start,
                   double start_width_m, size_t stride, int most_iterations);
 

@@ -47,8 +47,8 @@ Solution solved(const G2oGraph& graph, const std::vector<GraphEdge>& false_loops
   return solution;
 }
 
-/// The solution's own error: half of the distance between the solutions of every other loop, because the
-/// errors of both halves have twice the variance of the whole and are independent.
+/// The solution's own error: half of the distance between the solutions of every other loop. The errors of
+/// both halves are independent, with twice the variance of the whole.
 double ownError_m(const G2oGraph& graph) {
   PoseGraph halves[2];
   int number = 0;

@@ -29,9 +29,9 @@ struct KeyframeFactorOptions {
 /// The headings of two neighbours have mostly the same error. A keyframe therefore adds only what its heading
 /// tells beyond the previous heading and the turn since: with the variances s_i^2 of the headings without
 /// their common part and q of the turn, the variance r of the added heading is
-///   1 / r = 1 / s_i^2 - 1 / (s_{i-1}^2 + q),
-/// so that all headings up to i together have the variance s_i^2. Where s_i^2 is not below s_{i-1}^2 + q,
-/// the heading was only carried on, and nothing is added.
+///   1 / r = 1 / s_i^2 - 1 / (s_{i-1}^2 + q).
+/// All headings up to i together then have the variance s_i^2. Where s_i^2 is not below s_{i-1}^2 + q, the
+/// heading was only carried on, and nothing is added.
 void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseGraph* graph,
                  const Rigid3& first_world_from_odom = {}, const KeyframeFactorOptions& options = {});
 

@@ -25,9 +25,8 @@ struct PoseGraphOptions {
 ///
 /// The world W has z up. Measurements of position, north and depth determine its origin and azimuth. What
 /// they leave open is held at the first node: its horizontal position, height, azimuth, or roll and pitch.
-/// The first node of every other part that no certain measurement connects (a dive that only loops join) has
-/// a weak prior of 1 km and 10 rad at its initial pose; the result stays defined where all its loops are
-/// refused.
+/// Every other part without a certain connection (a dive that only loops join) has a weak prior of 1 km and
+/// 10 rad at its first node; the result stays defined where all its loops are refused.
 ///
 /// RobustSolution decides which robust factors are used. A solution starts from the last one: where new loops
 /// agree with it, they are added. Where any is refused, all begins anew from the odometry.

@@ -14,8 +14,8 @@ struct G2oGraph {
   std::vector<GraphEdge> edges;        ///< robust where they do not connect neighbours
 };
 
-/// Reads a g2o file. An edge has the information matrix of [dp, dq] in the axes of `to`, where dq is the
-/// vector part of the error's quaternion, half of its angle. It becomes the covariance of [dp, dtheta] in
+/// Reads a g2o file. An edge has the information matrix of [dp, dq] in the axes of `to`. dq is the vector
+/// part of the error's quaternion, half of its angle. The matrix becomes the covariance of [dp, dtheta] in
 /// axes of `from`. Throws InputError that names the line.
 G2oGraph readG2o(const std::filesystem::path& file);
 

@@ -30,8 +30,8 @@ struct SimilarKeyframe {
 /// Descriptors are in a binary search tree. Each node tests one bit, each leaf holds up to 64 descriptors. A
 /// full leaf splits at the bit that divides it best (D. Schlegel and G. Grisetti, "HBST: a Hamming distance
 /// embedding binary search tree for feature-based visual place recognition", RA-L 2018). A search visits the
-/// leaf of the query and the leaves that differ from its path in one decision, because the corresponding
-/// descriptor differs in some bits. Adding and searching take time logarithmic in the number of descriptors.
+/// leaf of the query and the leaves that differ from its path in one decision: descriptors differ in some
+/// bits. Adding and searching take time logarithmic in the number of descriptors.
 ///
 /// Memory: about 55 bytes for each indexed feature: 110 MB for 10^4 keyframes of 200 features.
 class DescriptorIndex {

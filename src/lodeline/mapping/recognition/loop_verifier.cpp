@@ -138,8 +138,8 @@ class Verification {
                        loop_.rms_sigmas);
   }
 
-  /// A pose that is known less accurately than a twentieth of the distance, or than a degree and a half,
-  /// moves the scene by more than neighbouring places differ.
+  /// A pose less accurate than a twentieth of the distance, or 1.5 degrees, moves the scene by more than
+  /// neighbouring places differ.
   std::string byWeakness() {
     constexpr double kLargestShare = 0.05, kLargest_rad = 1.5 * kDegree;
     const auto widest = [](const Mat3& covariance) {

@@ -7,10 +7,10 @@
 
 namespace lodeline {
 
-/// Writes a database with the cameras and images of a map, and with the poses of the images as priors, for
-/// COLMAP's feature extraction, matching and reconstruction. Numbers of cameras and images are those of
-/// colmapModel(). Replaces the file. A camera whose model COLMAP lacks is reported as `colmap_camera_fitted`.
-/// Throws UsageError without images, and InputError where the file cannot be written.
+/// Writes the database of a map's cameras and images, with poses as priors, for COLMAP's extraction, matching
+/// and reconstruction. Numbers of cameras and images are those of colmapModel(). Replaces the file. A camera
+/// whose model COLMAP lacks is reported as `colmap_camera_fitted`. Throws UsageError without images, and
+/// InputError where the file cannot be written.
 ///
 /// The schema is that of COLMAP 3.8 (src/base/database.cc), and the table pose_priors that of COLMAP 3.11
 /// (src/colmap/scene/database.cc). The rotation of a prior is camera_from_map. Its translation is the centre

@@ -12,8 +12,8 @@
 
 namespace lodeline {
 
-/// Writes `trajectory.tum` (body in world) and `states.csv` (all estimates of each frame), one line per
-/// frame, flushed after each so that an interrupted run keeps its results.
+/// Writes `trajectory.tum` (body in world) and `states.csv` (all estimates of each frame). Each line is
+/// flushed, so that an interrupted run keeps its results.
 class StateWriter {
  public:
   /// `suffix` is added to the names of both files, before the dot. `sensor_columns`: names of the columns in

@@ -39,8 +39,8 @@ class LiveView {
   std::string url() const { return server_.url(); }
   bool isWatched() const { return server_.isWatched(); }
 
-  /// To be called after each frame, with the landmarks that left the window, and the pose of the odometry's
-  /// world in the map if there is one; does nothing for most frames.
+  /// To be called after each frame, with the landmarks that left the window, and the odometry's world in the
+  /// map if any; does nothing for most frames.
   void show(const FramePacket& packet, const FrameEstimate& estimate, const RunSummary& summary,
             const FrontEnd& front_end, const std::vector<MapPoint>& landmarks,
             const std::optional<Rigid3>& map_from_world = std::nullopt);

@@ -16,9 +16,9 @@ std::string noiseTable(const std::vector<SensorNoise>& sensors);
 /// JSON: coefficients with sigmas, and the curves.
 nlohmann::ordered_json noiseJson(const std::vector<SensorNoise>& sensors);
 
-/// Kalibr's imu.yaml, an input of `lodeline run`. Densities are those of the mean variance of the axes. Where
-/// the record shows no random walk, the stated random walk reaches the Allan deviation of the bias
-/// instability at 100 s, because the filter models the instability by it.
+/// Kalibr's imu.yaml, an input of `lodeline run`. Densities are those of the mean variance of the axes.
+/// Without a random walk in the record, the stated one reaches the Allan deviation of the bias instability at
+/// 100 s. The filter models the instability by it.
 std::string kalibrImuYaml(const SensorNoise& gyroscope, const SensorNoise& accelerometer);
 
 /// The noise keys of mag0/sensor.yaml.

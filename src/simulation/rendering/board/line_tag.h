@@ -11,8 +11,8 @@ namespace lodeline {
 struct LineTag {
   int id = 0;
   double size_m = 0.15;  ///< edge of the black square
-  /// From the frame of the tag, with its origin in the middle, x to the right, y up and z out of the print,
-  /// to the frame C of the cave.
+  /// From the frame of the tag (origin in the middle, x right, y up, z out of the print) to the frame C of
+  /// the cave.
   Rigid3 cave_from_tag;
 
   /// Corners of the black square: lower left, lower right, upper right, upper left, as libapriltag counts.
@@ -26,8 +26,8 @@ struct LinedStretch {
 };
 
 /// Places tags 0 to count - 1 evenly along the line, in turns of random sides. They hang just outside the
-/// diver's corridor, face divers who come along the line from its start, and hang askew by about 8 degrees
-/// about each axis.
+/// diver's corridor and face divers who come from the start. They are askew by about 8 degrees about each
+/// axis.
 std::vector<LineTag> placeTags(const CaveLayout& cave, const std::vector<LinedStretch>& line, int count,
                                uint64_t seed);
 

@@ -38,7 +38,7 @@ struct CaveWalls {
 };
 
 /// Makes the walls by sweeping a superelliptic section along the centreline. Layered noise displaces it
-/// (large alcoves, bedding ledges, crags down to the size of a triangle), sediment fills its lower part, and
+/// (large alcoves, bedding ledges, crags down to the size of a triangle). Sediment fills its lower part, and
 /// both ends of an open passage are closed. The relief is a function of the place. All walls keep
 /// `clearance_m` from the diver's corridor. The mesh has at most about `max_triangles`.
 CaveWalls makeCaveWalls(const Centerline& centerline, const CaveStyle& style, uint64_t seed,

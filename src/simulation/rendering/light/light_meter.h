@@ -16,9 +16,9 @@ namespace lodeline {
 using WorldFromBodyAt = std::function<Rigid3(double time_s)>;
 
 /// Automatic exposure: a few hundred rays measure the light, and a first-order lag in its logarithm follows
-/// it. The lag is evaluated over the recent past instead of carried from image to image, so that images can
-/// be rendered separately and in any order. Measurements are made on a grid of times and cached, because
-/// neighbouring images share most of them. Safe to share between threads.
+/// it. The lag is evaluated over the recent past, so that images can be rendered separately and in any order.
+/// Measurements are made on a grid of times and cached, because neighbouring images share most of them. Safe
+/// to share between threads.
 class LightMeter {
  public:
   LightMeter(std::shared_ptr<const RenderWorld> world, const RenderSettings& settings)

@@ -43,7 +43,7 @@ TriangleMesh makeCaveMesh(const Centerline& centerline, const CaveOptions& optio
 /// other are left out.
 TriangleMesh makeCaveMesh(const CaveLayout& cave, const CaveOptions& options);
 
-/// A cave of a layout in its frame C with tags on its line, for a dive in whose world C has its origin at
+/// A cave of a layout in its frame C with tags on its line. In the dive's world, C has its origin at
 /// `cave_origin_W`. Rock and texture depend on the cave and the options alone.
 std::shared_ptr<const RenderWorld> buildCaveWorld(const CaveLayout& cave_C, const CaveOptions& options,
                                                   const std::vector<LineTag>& tags_C,

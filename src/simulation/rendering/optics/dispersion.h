@@ -30,8 +30,8 @@ class Dispersion {
   /// `optics` are those of a camera with a port, at kMiddleWavelength_nm.
   explicit Dispersion(const CameraOptics& optics);
 
-  /// Offset from a pixel to the pixel that, in light of the middle wavelength, sees the same ray as the pixel
-  /// sees in light of the band, px.
+  /// Offset (px) from a pixel in light of the band to the pixel that sees its ray in light of the middle
+  /// wavelength.
   Vec2 shift(int band, double x_px, double y_px) const;
 
   /// Mean offset for light from a wall at `range_m`, px.

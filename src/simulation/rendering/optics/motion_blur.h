@@ -15,8 +15,8 @@ struct ExposureMotion {
 };
 
 /// Averages light along each pixel's path in the image during the exposure. The static point at a pixel (its
-/// ray at range `range_m`) is projected at start and end, and the radiance is averaged along the line between
-/// them. This is exact for points that are not occluded in between. Both images are CV_32F.
+/// ray at range `range_m`) is projected at start and end. The radiance is averaged along the line between.
+/// This is exact for points that are not occluded in between. Both images are CV_32F.
 void blurByMotion(cv::Mat& radiance, const cv::Mat& range_m, const CameraOptics& optics,
                   const ExposureMotion& motion);
 

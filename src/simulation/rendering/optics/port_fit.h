@@ -12,7 +12,7 @@ struct PortFit {
 
 /// Least-squares fit (Gauss-Newton) of a radial-tangential camera to points seen through the port at `near_m`
 /// to `far_m`. The parameters are focal lengths, principal point, k1 k2 p1 p2 and a shift of the centre along
-/// the optical axis, as in a calibration with a target at these distances.
+/// the optical axis. A calibration with a target at these distances has the same ones.
 PortFit fitRadialTangential(const CameraCalibration& in_air, const PortWindow& port, double near_m = 0.6,
                             double far_m = 4.0);
 

@@ -21,8 +21,8 @@ class CurrentMonitor {
   /// `sigma_T_per_A`: of each component of the calibrated fields.
   CurrentMonitor(size_t channels, double sigma_T_per_A);
 
-  /// Adds a frame's mean currents, and its field minus the expected one, with the calibrated fields
-  /// subtracted, T, body axes, with white noise of `white_variance_T2` per axis.
+  /// Adds a frame's mean currents, and its field minus the expected and the calibrated ones (T, body axes,
+  /// white noise of `white_variance_T2` per axis).
   void add(Time time, const Eigen::VectorXd& currents_A, const Vec3& difference_B, double white_variance_T2);
 
   /// Whether the calibration is wrong, and by so much that it harms.

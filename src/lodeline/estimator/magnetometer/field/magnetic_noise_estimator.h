@@ -19,11 +19,11 @@ namespace lodeline {
 /// - a walk: magnetization of iron on board that changes slowly, in body axes.
 ///
 /// A bank of Kalman filters processes means over a fifth of `correlated_noise_time_s`. Each filter has its
-/// own floor and walk. Its state contains the offset in body axes, the size and dip of the Earth's field, and
-/// the floor's current deviation from both, a Gauss-Markov process. The likelihoods of the filters'
-/// innovations weight the filters; older likelihoods fade with `correlated_noise_memory_s`. This is
-/// multiple-model adaptive estimation (Magill, "Optimal adaptive estimation of sampled stochastic processes",
-/// 1965). The result is the root of the weighted mean of squares.
+/// own floor and walk. Its state contains the offset in body axes, and the size and dip of the Earth's field.
+/// Further states are the floor's present deviations from both, Gauss-Markov processes. The likelihoods of
+/// the filters' innovations weight the filters; older likelihoods fade with `correlated_noise_memory_s`. This
+/// is multiple-model adaptive estimation (Magill, "Optimal adaptive estimation of sampled stochastic
+/// processes", 1965). The result is the root of the weighted mean of squares.
 class MagneticNoiseEstimator {
  public:
   /// Width of the prior: floor and walk are log-normal with this factor, and the options' values are their

@@ -11,8 +11,8 @@ namespace lodeline {
 /// that deviates much more than the floor, e.g. by a passing magnet below the limits of the gate, shows it in
 /// size and dip. It then gets the variance that a Student distribution of `student_dof` degrees would give,
 /// with both components as one draw. A deviation d with variance sigma^2 per component weighs like one of
-/// variance (freedom sigma^2 + d^T d) / (freedom + 2) (Lange, Little, Taylor, "Robust statistical modeling
-/// using the t distribution", JASA 1989).
+/// variance (freedom sigma^2 + d^T d) / (freedom + 2). Source: Lange, Little, Taylor, "Robust statistical
+/// modeling using the t distribution", JASA 1989.
 class StudentTWeight {
  public:
   explicit StudentTWeight(const MagnetometerOptions& options) : options_(options) {}

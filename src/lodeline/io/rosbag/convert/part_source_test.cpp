@@ -11,8 +11,8 @@ Rig oneCameraRig() {
   return rig;
 }
 
-/// Inertial readings at 10 Hz from 0.5 s on, of which the 15th and 16th are exchanged, images at 1 Hz from 1
-/// s on, and one depth at 0 s, which starts the recording. Times count from an arbitrary stamp.
+/// Inertial readings at 10 Hz from 0.5 s on (the 15th and 16th exchanged) and images at 1 Hz from 1 s on. One
+/// depth at 0 s starts the recording. Times count from an arbitrary stamp.
 class TestSource final : public RecordedSource {
  public:
   TestSource() : RecordedSource(oneCameraRig()) {}

@@ -42,9 +42,9 @@ struct PayloadSamples {
 ///
 /// A camera states the time of a payload, not of a sample, and takes samples over in bursts: their number in
 /// a payload jitters. The number n of a sample since the start counts the sensor's own periods exactly. So
-/// the time is a line t(n), fitted to the starts of all payloads within one minute on both sides, and so to
-/// the whole of a short film; the rate may follow the temperature over a long one. Where payloads have stamps
-/// (STMP), the line is fitted to these, and a second line maps the camera's clock to that of the images.
+/// the time is a line t(n), fitted to the starts of all payloads within one minute on both sides; the rate
+/// may follow the temperature over a long one. Where payloads have stamps (STMP), the line is fitted to
+/// these, and a second line maps the camera's clock to that of the images.
 class SampleClock {
  public:
   /// `clock_map`: seconds of the images' clock from the camera's; nothing to fit it to the payload times.

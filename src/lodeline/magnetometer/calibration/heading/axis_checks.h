@@ -26,10 +26,10 @@ std::optional<std::string> gyroscopeObjection(std::span<const NormalizedFieldSam
 void reportNegativeDip(double dip_rad, Diagnostics* diagnostics);
 
 /// Checks the sign of the measured dip and the estimated rotation. Mirrored axes (exchanged, or one or three
-/// signs reversed) appear as right-handed axes with the field reversed (alignField), so the dip has the sign
-/// of the other hemisphere. Throws EstimationError where the field at the site proves this; without a site,
-/// see reportNegativeDip(). Reports `magnetometer_rotation` where the rotation differs greatly from that
-/// stated in the recording.
+/// signs reversed) appear as right-handed axes with the field reversed (alignField). The dip then has the
+/// sign of the other hemisphere. Throws EstimationError where the field at the site proves this; without a
+/// site, see reportNegativeDip(). Reports `magnetometer_rotation` where the rotation differs greatly from
+/// that stated in the recording.
 void checkAxes(const MagnetometerFit& fit, const std::optional<Vec3>& site_field_ENU,
                const std::optional<Quat>& stated_body_from_magnetometer, Diagnostics* diagnostics);
 

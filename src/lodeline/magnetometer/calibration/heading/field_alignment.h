@@ -33,7 +33,7 @@ struct FieldAlignmentOptions {
 };
 
 /// Estimates rotation and time offset from the motion. While the body rotates by dR (body 1 from body 2), a
-/// field that is constant in the world satisfies
+/// constant field satisfies
 ///   R z_2 = dR^T R z_1,   R = R_B_M,
 /// which is linear in R. The solution is the null vector of the stacked equations, projected to a rotation.
 /// It needs rotations about at least two axes but no initial value. The time offset minimizes the

@@ -8,8 +8,8 @@
 
 namespace lodeline {
 
-/// Pose of a square of known size by the rays to its corners, least squares of the angles between the rays
-/// and the corners over their sigmas.
+/// Pose of a square of known size by the rays to its corners. Least squares of the angles between rays and
+/// corners over their sigmas.
 struct TagPose {
   Rigid3 body_from_tag;    ///< tag frame: x right and y up on the print, z out of it, origin in its centre
   PositionPrior centre_B;  ///< with the covariance of the angles alone

@@ -25,8 +25,7 @@ struct ConsistentLoops {
 using OdometryBetween = std::function<RelativePose(KeyframeId, KeyframeId)>;
 
 /// The circuit through two loops a and b and the odometry between their ends: the pose of new_b in old_a by
-/// the way old_a -> new_a -> new_b and by the way old_a -> old_b -> new_b, and the sum of the covariances of
-/// both ways.
+/// new_a and by old_b, and the sum of the covariances of both ways.
 struct Circuit {
   Rigid3 by_a, by_b;
   Mat6 covariance = Mat6::Zero();

@@ -8,8 +8,8 @@
 
 namespace lodeline {
 
-/// log10 of the expected number of poses that chance alone gives at least `agreeing` of `tried` independent
-/// trials, where each trial agrees with probability `chance`, and where poses are made from two trials:
+/// log10 of the expected number of poses to which chance alone gives `agreeing` of `tried` independent trials
+/// or more. A trial agrees with probability `chance`, and two trials make a pose:
 ///
 ///     (tried - 2) * 4 * C(tried, agreeing) * C(agreeing, 2) * chance^(agreeing - 2).
 ///

@@ -40,8 +40,8 @@ std::optional<LoopCorrespondence> correspondenceOf(const MapKeyframe& old_keyfra
                                                    const MapKeyframe& new_keyframe,
                                                    const FeatureMatch& match);
 
-/// Difference between the measurements of one point by two keyframes. With the point q = (x, y, z) as the
-/// pose predicts it, in axes of the ray (z along the bearing b) and relative to its origin,
+/// Difference between the measurements of one point by two keyframes. With the predicted point q = (x, y, z)
+/// in axes of the ray (z along the bearing b) and relative to its origin,
 ///
 ///     e = (x / z, y / z)   and, where the ray's keyframe knows the distance d,   e_3 = z - d.
 ///

@@ -27,8 +27,8 @@ struct RefinedPose {
   bool is_determined = false;       ///< the information has full rank
 };
 
-/// Pose with the smallest sum of robust squared residuals (Cauchy loss) of the pairs with `is_used` and of
-/// the vertical, by Levenberg-Marquardt in all six coordinates.
+/// Pose with the smallest sum of robust squared residuals (Cauchy loss) of the used pairs and the vertical.
+/// Levenberg-Marquardt in all six coordinates.
 RefinedPose refinePose(const std::vector<LoopCorrespondence>& pairs, const std::vector<bool>& is_used,
                        const CommonVertical& vertical, const Rigid3& start, int iterations);
 

@@ -22,8 +22,8 @@ struct PlacedField {
 };
 using PlacedFields = std::vector<PlacedField>;
 
-/// Readings of the dive of a keyframe near it, on the path from `from_m` (without) to `to_m` (with) after it,
-/// in its body frame by odometry.
+/// Readings near a keyframe, on the path from `from_m` (without) to `to_m` (with) after it, in its body frame
+/// by odometry.
 PlacedFields readingsAround(const KnownKeyframes& known, KeyframeId id, double from_m, double to_m) {
   const std::vector<KnownKeyframe>& all = known.all();
   const KnownKeyframe& middle = known.at(id);

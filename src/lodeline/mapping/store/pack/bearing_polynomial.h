@@ -11,9 +11,9 @@ namespace lodeline {
 /// A vector as a polynomial of a bearing: pixels and origins of the rays of one camera, which its lens and
 /// port make smooth functions of the direction.
 ///
-/// With the angle theta between the bearing b and the axis a, and the azimuth phi of b around a, the
-/// arguments are x = theta cos(phi), y = theta sin(phi), rad. The monomials are 1, x, y, x^2, x y, y^2, x^3,
-/// ... up to the degree; the coefficients are float32.
+/// The arguments are x = theta cos(phi), y = theta sin(phi), rad. theta is the angle between the bearing b
+/// and the axis a, phi the azimuth of b around a. The monomials are 1, x, y, x^2, x y, y^2, x^3, ... up to
+/// the degree; the coefficients are float32.
 class BearingPolynomial {
  public:
   static constexpr int kMostDegree = 7;

@@ -21,8 +21,8 @@ namespace lodeline {
 ///   sigmas                        5 %
 ///
 /// docs/reference/map-file.md describes the bytes. Throws InputError for more than 65,535 features, a feature
-/// without rays, cameras beyond 6 or not in rising order, bearings that are no unit vectors, sigmas that are
-/// not positive, and numbers that are not finite.
+/// without rays, and cameras beyond 6 or not in rising order. Bearings must be unit vectors, sigmas positive,
+/// numbers finite.
 Bytes packFeatures(const std::vector<MapFeature>& features);
 
 /// Throws InputError where the bytes are not what packFeatures() wrote.

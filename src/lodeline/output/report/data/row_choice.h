@@ -12,9 +12,8 @@ struct RowChoice {
   std::vector<size_t> rows;  ///< in order
 };
 
-/// Chooses every n-th of `count` rows and the last one, at most about `most`. It also includes the rows in
-/// which a word changes in one of the columns `words`, so that short problems stay visible, unless these are
-/// more than `most`.
+/// Chooses every n-th of `count` rows and the last one, at most about `most`. It also includes rows in which
+/// a word changes in one of the columns `words`, unless these exceed `most`. So short problems stay visible.
 RowChoice chooseRows(size_t count, size_t most, const std::vector<const std::vector<std::string>*>& words);
 
 }  // namespace lodeline

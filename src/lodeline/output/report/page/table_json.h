@@ -22,8 +22,8 @@ nlohmann::json shortNumbers(const std::vector<double>& values, const std::vector
 nlohmann::json secondsSince(int64_t origin_ns, const std::vector<int64_t>& stamp_ns,
                             const std::vector<size_t>& rows);
 
-/// A table in the format of the page (`Table` in web/src/data.ts), with at most about `most` rows from
-/// chooseRows(), and the columns for whose names `is_wanted` is true; all where it is not set.
+/// A table in the format of the page (`Table` in web/src/data.ts), with about `most` rows from chooseRows()
+/// at most, and the columns that `is_wanted` accepts; all where it is not set.
 nlohmann::ordered_json tableJson(const RunTable& table, int64_t origin_ns, size_t most = kMostRows,
                                  const std::function<bool(const std::string&)>& is_wanted = nullptr);
 

@@ -14,9 +14,9 @@ struct AnglePair {
 };
 
 /// Reads latitude and longitude in degrees, minutes and seconds: signs or letters N, S, E, W before or after
-/// the numbers, the marks ° ' " or d m s, colons, or blanks between the numbers, in which case letters are
-/// necessary. A number after both angles is the height, in metres or with the unit "ft". Nothing where the
-/// text is something else, minutes or seconds reach 60, or a sign contradicts a letter.
+/// the numbers, the marks ° ' " or d m s, colons, or blanks between the numbers; letters are then necessary.
+/// A number after both angles is the height, in metres or with the unit "ft". Nothing where the text is
+/// something else, minutes or seconds reach 60, or a sign contradicts a letter.
 std::optional<AnglePair> parseAngles(const std::string& text);
 
 }  // namespace lodeline

@@ -41,13 +41,13 @@ struct MapGridDescription {
 /// installed; nothing is downloaded. All coordinates are in metres.
 ///
 /// Survey programs and GIS take the first coordinate for an easting and the second for a northing. A grid
-/// that counts to the west and south is therefore used with easting = -westing and northing = -southing, and
-/// named as the grid with these axes: by EPSG's code of it, or by its definition.
+/// that counts to the west and south therefore has easting = -westing and northing = -southing, and the name
+/// of the grid with these axes: by EPSG's code of it, or by its definition.
 class MapGrid {
  public:
   /// `crs`: "auto" for the UTM zone of the position (UPS near the poles), "UTM17N", "17N", "EPSG:6372" or
-  /// "ESRI:102008", in any case. Throws UsageError where it is not the name of a projected grid with axes to
-  /// the east and north, to the west and south, or along two meridians about a pole.
+  /// "ESRI:102008", in any case. Throws UsageError where it names no projected grid with axes to east and
+  /// north, to west and south, or along two meridians about a pole.
   MapGrid(const std::string& crs, const GeodeticPosition& place);
 
   const MapGridDescription& description() const { return description_; }
@@ -55,8 +55,8 @@ class MapGrid {
   /// Easting and northing in metres, also if the unit of the grid is feet; infinite where the position has no
   /// coordinates.
   Vec2 project(double latitude_deg, double longitude_deg) const;
-  /// WGS 84 position of easting and northing in the grid's own unit, or of westing and southing in the order
-  /// of EPSG's axes where the grid counts so; infinite where there is none.
+  /// WGS 84 position of easting and northing in the grid's unit, or of westing and southing in the order of
+  /// EPSG's axes; infinite where there is none.
   GeodeticPosition locate(const Vec2& coordinates) const;
 
  private:

@@ -30,8 +30,8 @@ struct PinholeView {
 
 /// Images of one or two cameras of any model, behind any port, as images of one pinhole camera with the same
 /// rotation. V has its origin in the first camera's lens centre. With two cameras, x points to the second
-/// one, so that a point has the same row in both images and its column in the second one is smaller. With
-/// one camera, V is its frame.
+/// one. A point has the same row in both images, and a smaller column in the second one. With one camera, V
+/// is its frame.
 class RectifiedView {
  public:
   /// `cameras`: one or two. Throws InputError where the two cameras do not look the same way, or lie behind

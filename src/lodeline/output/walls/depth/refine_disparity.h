@@ -9,8 +9,8 @@ struct Disparities {
   cv::Mat value_px, sigma_px;
 };
 
-/// Refines disparities to fractions of a pixel by least squares on the grey values in a window, which may
-/// differ by an offset between the images (B. Lucas, T. Kanade, IJCAI 1981, along rows alone):
+/// Refines disparities to fractions of a pixel by least squares on grey values in a window, with an offset
+/// between the images (B. Lucas, T. Kanade, IJCAI 1981, along rows alone):
 ///
 ///     delta = -cov(g, e) / var(g),    e(u, v) = first(u, v) - second(u - d, v),
 ///

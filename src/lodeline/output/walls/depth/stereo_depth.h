@@ -8,8 +8,8 @@ namespace lodeline {
 
 /// Depths of the first camera of a rectified pair by semi-global matching (H. Hirschmüller, "Stereo
 /// processing by semiglobal matching and mutual information", PAMI 2008, in OpenCV's implementation). A depth
-/// is kept where the match of the second image leads back to it, the surface has texture, the region is no
-/// speck, and the expected error, |dz/dd| times the sigma of a match, is small enough.
+/// is kept where the match leads back to it, the surface has texture and the region is no speck. The expected
+/// error, |dz/dd| times the sigma of a match, must be small enough.
 class StereoDepth {
  public:
   /// Keeps a reference to `view`, which has two cameras.

@@ -67,8 +67,8 @@ class Open3dVolume final : public WallVolume {
     std::vector<int> keys;
     for (const Eigen::Vector3i& block : blocks) keys.insert(keys.end(), block.data(), block.data() + 3);
     const o3::core::Tensor coordinates(keys, {static_cast<int64_t>(blocks.size()), 3}, o3::core::Int32);
-    // Open3D 0.16 asserts that no voxel beside a surface is the very first one of its memory, so that one is
-    // given to a block far from everything.
+    // Open3D 0.16 asserts that no voxel beside a surface is the first one of its memory. A block far from
+    // everything gets that one.
     grid_.GetHashMap().Activate(o3::core::Tensor(std::vector<int>(3, 1 << 20), {1, 3}, o3::core::Int32));
     grid_.GetHashMap().Activate(coordinates);
     for (const char* name : {"tsdf", "weight", "color"}) grid_.GetAttribute(name).Fill(0.0F);

@@ -8,8 +8,7 @@
 namespace lodeline {
 
 /// A truncated signed distance volume of some blocks. Open3D holds it, with 40 further libraries. They are in
-/// a module that is loaded when the first volume is made, so that no other work waits for them or has them in
-/// its memory.
+/// a module that the first volume loads, so that no other work waits for them or has them in memory.
 class WallVolume {
  public:
   virtual ~WallVolume() = default;
