@@ -4,11 +4,11 @@
 Usage: scripts/generate_reference.py [--program FILE] [--config FILE] [--check]
 
 --program FILE  the program (build/release/bin/lodeline)
---config FILE   a config.yaml with all defaults, in place of that of the program
+--config FILE   a config.yaml with the defaults, in place of that of the program
 --check         write nothing; end with exit code 1 where a page is not up to date
 
 Commands come from `lodeline --help` and `lodeline COMMAND --help`, without the examples. Settings, their
-defaults and their meaning come from `lodeline settings --expert`.
+defaults and their meaning come from `lodeline settings`.
 """
 
 import argparse
@@ -119,7 +119,7 @@ def commands_page(program):
 
 
 def config_of(program):
-    return subprocess.run([program, "settings", "--expert"], check=True, capture_output=True, text=True).stdout
+    return subprocess.run([program, "settings"], check=True, capture_output=True, text=True).stdout
 
 
 def settings_of(config):
@@ -139,13 +139,8 @@ def settings_of(config):
     return settings
 
 
-def table(settings):
-    rows = [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in settings]
-    return ["", "| setting | default | meaning |", "| --- | --- | --- |", *rows]
-
-
 def settings_page(config):
-    settings = settings_of(config)
+    rows = [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in settings_of(config)]
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
             "The defaults serve all recordings. Change a setting on the command line, `--set front_end.max_tracks=300`,",
@@ -153,12 +148,11 @@ def settings_page(config):
             "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
             "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",
             "deviation. An unknown setting is an error that names the nearest known one. [Theory](../theory/index.md)",
-            "explains the models."]
-    page += table([setting for setting in settings if not setting[0].startswith("expert.")])
-    page += ["", "## Expert settings", "",
-             "Experiments need these settings; users do not. `expert.` may be left out: `--set window.keyframes=10`.",
-             "An IMU counts as calibrated by its maker when `axes_sigma` of its calibration is below 0.002."]
-    page += table([setting for setting in settings if setting[0].startswith("expert.")])
+            "explains the models.", "",
+            "| setting | default | meaning |", "| --- | --- | --- |", *rows, "", "## Expert settings", "",
+            "Experiments need further settings; users do not. `lodeline settings --expert` prints all settings with their",
+            "meaning and default. `expert.` may be left out of a name: `--set window.keyframes=10`.",
+            "An IMU counts as calibrated by its maker when `axes_sigma` of its calibration is below 0.002."]
     return "\n".join(page) + "\n"
 
 
