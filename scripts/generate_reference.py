@@ -4,11 +4,11 @@
 Usage: scripts/generate_reference.py [--program FILE] [--config FILE] [--check]
 
 --program FILE  the program (build/release/bin/lodeline)
---config FILE   a config.yaml with all defaults, in place of that of the program
+--config FILE   a config.yaml with the defaults, in place of that of the program
 --check         write nothing; end with exit code 1 where a page is not up to date
 
-Commands come from `lodeline --help` and `lodeline COMMAND --help`. Settings and their defaults come
-from `lodeline settings --expert`. scripts/reference/settings.txt has the titles of the sections.
+Commands come from `lodeline --help` and `lodeline COMMAND --help`, without the examples. Settings, their
+defaults and their meaning come from `lodeline settings`.
 """
 
 import argparse
@@ -20,7 +20,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ROOT / "docs" / "reference"
-SECTIONS = ROOT / "scripts" / "reference" / "settings.txt"
 
 
 def help_of(program, *words):
@@ -41,12 +40,18 @@ def subcommands(text, is_program=False):
     return commands
 
 
+EXAMPLES = re.compile(r"^Examples?\b[^\n]*:\n(?:  .*\n?)+|^`lodeline help COMMAND` explains .*\n?", re.MULTILINE)
+EVERYWHERE = {"--help", "--verbose", "--quiet"}
 OPTION = re.compile(r"^  -\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
 
 
 def named(option):
     """The long name of an option, such as --rig."""
     return re.search(r"--[a-z-]+", option).group()
+
+
+def without_purpose_and_examples(text):
+    return EXAMPLES.sub("", text.partition("\n\n")[2] + "\n").rstrip()
 
 
 def places_of_options(leaves, texts):
@@ -76,7 +81,7 @@ def without_shown(text, shown):
     """
     names = {}
     for option in OPTION.findall(text):
-        if option.rstrip() in shown and named(option) != "--help":
+        if option.rstrip() in shown and named(option) not in EVERYWHERE:
             names.setdefault(shown[option.rstrip()], []).append(f"`{named(option)}`")
     paragraphs = []
     for paragraph in text.split("\n\n"):
@@ -98,9 +103,9 @@ def commands_page(program):
     for words, summary in leaves:
         name = " ".join(words)
         page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
-    page += ["", "`lodeline COMMAND --help` prints the text of one command, as does `lodeline help COMMAND`. `lodeline --version` prints the version.",
-             "[Exit codes](exit-codes.md) are the same for all commands."]
-    texts = [help_of(program, *words) for words, _ in leaves]
+    page += ["", "`lodeline help COMMAND` prints the text of one command, with examples. `lodeline --version` prints the version.",
+             "Nearly all commands have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all commands."]
+    texts = [without_purpose_and_examples(help_of(program, *words)) for words, _ in leaves]
     places = places_of_options(leaves, texts)
     shared = [option for option, (owner, _) in places.items() if owner is None]
     page += ["", "## Options of many commands", "", "```text", *"\n".join(shared).splitlines(), "```"]
@@ -114,7 +119,7 @@ def commands_page(program):
 
 
 def config_of(program):
-    return subprocess.run([program, "settings", "--expert"], check=True, capture_output=True, text=True).stdout
+    return subprocess.run([program, "settings"], check=True, capture_output=True, text=True).stdout
 
 
 def settings_of(config):
@@ -134,55 +139,20 @@ def settings_of(config):
     return settings
 
 
-def read_sections():
-    """Name, title and introduction of each section."""
-    sections = []
-    for number, line in enumerate(SECTIONS.read_text(encoding="utf-8").splitlines(), 1):
-        if line.startswith("## "):
-            name, _, title = line[3:].partition(": ")
-            sections.append([name, title, ""])
-        elif line.startswith("> "):
-            sections[-1][2] = line[2:]
-        elif line.strip() and not line.startswith("#"):
-            sys.exit(f"{SECTIONS}:{number}: neither a section nor an introduction")
-    return sections
-
-
-def section_of(name, sections):
-    name = name.removeprefix("expert.")
-    fitting = [section for section, _, _ in sections if name == section or name.startswith(section + ".")]
-    if not fitting:
-        sys.exit(f"{SECTIONS.name}: no section for {name}")
-    return max(fitting, key=len)
-
-
-def tables(settings, sections, level):
-    page = []
-    for section, title, introduction in sections:
-        rows = [setting for setting in settings if section_of(setting[0], sections) == section]
-        if not rows:
-            continue
-        page += ["", f"{level} {title}", ""] + ([*textwrap.wrap(introduction, 118), ""] if introduction else [])
-        page += ["| setting | default | meaning |", "| --- | --- | --- |"]
-        page += [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in rows]
-    return page
-
-
 def settings_page(config):
-    settings, sections = settings_of(config), read_sections()
-    common = [setting for setting in settings if not setting[0].startswith("expert.")]
-    expert = [setting for setting in settings if setting[0].startswith("expert.")]
+    rows = [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in settings_of(config)]
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
             "The defaults serve all recordings. Change a setting on the command line, `--set front_end.max_tracks=300`,",
             "or in a YAML file, `-c config.yaml`. The command line goes over the file. Every run writes all settings in",
             "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
             "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",
-            "deviation. An unknown setting is an error that names the nearest known one."]
-    page += tables(common, sections, "##")
-    page += ["", "## Expert settings", "",
-             "Experiments need these settings; users do not. `expert.` may be left out: `--set window.keyframes=10`."]
-    page += tables(expert, sections, "###")
+            "deviation. An unknown setting is an error that names the nearest known one. [Theory](../theory/index.md)",
+            "explains the models.", "",
+            "| setting | default | meaning |", "| --- | --- | --- |", *rows, "", "## Expert settings", "",
+            "Experiments need further settings; users do not. `lodeline settings --expert` prints all settings with their",
+            "meaning and default. `expert.` may be left out of a name: `--set window.keyframes=10`.",
+            "An IMU counts as calibrated by its maker when `axes_sigma` of its calibration is below 0.002."]
     return "\n".join(page) + "\n"
 
 

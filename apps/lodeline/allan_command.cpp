@@ -81,25 +81,21 @@ void addAllanCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
-      ->add_option(
-          "DATA", arguments->request.data,
-          "folder with mav0 (EuRoC ASL layout), ROS bag or film with telemetry, cameras and "
-          "calibration may be missing; or a sensor log: a CSV file, a folder or zip of them, a log of "
-          "PX4 or ArduPilot")
+      ->add_option("DATA", arguments->request.data,
+                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder), film with "
+                   "telemetry or sensor log (CSV file, folder or zip of them, log of PX4 or ArduPilot); "
+                   "cameras and calibration may be missing")
       ->required();
   addBagOptions(&arguments->request.bag, command);
   command->add_option("-o,--output", arguments->output,
-                      "folder for imu.yaml (Kalibr), magnetometer.yaml and plots; made where it is missing");
+                      "folder for imu.yaml (Kalibr), magnetometer.yaml and plots");
   command->add_option("--json", arguments->json, "write all figures and curves to this file");
   addRecordingPart(&arguments->part, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "Record the rig lying still on solid ground, for hours: white noise takes minutes to know to 5 %, "
-      "bias\n"
-      "instability and random walk hours.\n"
-      "A CSV file has a header with units, `t [s], wx [rad/s], wy [rad/s], wz [rad/s], ax [m/s^2], … , mx "
-      "[uT], …`,\n"
-      "or no header and a time with 3 (magnetometer), 6 (gyroscope, accelerometer) or 9 numbers.\n"
+      "The rig must lie still on solid ground, for hours. A CSV file has a header with units, such as\n"
+      "`t [s], wx [rad/s], …, ax [m/s^2], …, mx [uT], …`, or a time with 3 (magnetometer), 6 (gyroscope,\n"
+      "accelerometer) or 9 numbers.\n"
       "Examples:\n"
       "  lodeline allan bench -o bench_noise --json bench_noise/figures.json\n"
       "  lodeline allan rest.csv --from 600");

@@ -164,10 +164,9 @@ void addAttitudeCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "attitude", "Orientation and heading from gyroscope, accelerometer and magnetometer, without images");
   command
-      ->add_option(
-          "DATA", arguments->data,
-          "folder with mav0 (EuRoC ASL layout) or ROS bag, cameras may be missing; or a sensor log: a CSV "
-          "file, a folder or zip of them, a log of PX4 or ArduPilot")
+      ->add_option("DATA", arguments->data,
+                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or sensor log (CSV "
+                   "file, folder or zip of them, log of PX4 or ArduPilot); cameras may be missing")
       ->required();
   addBagOptions(&arguments->bag, command);
   command
@@ -175,16 +174,19 @@ void addAttitudeCommand(CLI::App& program) {
       ->required();
   command->add_option("--mag-calibration", arguments->magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote");
-  addSite(&arguments->site, "heading from true north", command);
+  addSite(&arguments->site, command);
   addRecordingPart(&arguments->part, command);
-  command->add_option("--rate-hz", arguments->rate_hz, "lines a second; 0 for one each IMU reading")
+  command
+      ->add_option("--rate-hz", arguments->rate_hz,
+                   "rows per second of attitude.csv; 0 writes one for each IMU reading")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
-      ->add_option("--magnetometer-lag-s", arguments->magnetometer_lag_s, "by which its readings come late")
+      ->add_option("--magnetometer-lag-s", arguments->magnetometer_lag_s,
+                   "delay of the magnetometer's readings")
       ->check(CLI::Range(-0.4, 0.4));
   command->add_flag("--no-magnetometer", arguments->no_magnetometer,
-                    "heading counts from the first attitude");
+                    "do not use the magnetometer; the heading counts from the first attitude");
   addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Orientation is body to world, x east, y north, z up. heading is the azimuth of the body's x axis.\n"

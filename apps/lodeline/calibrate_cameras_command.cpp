@@ -18,12 +18,10 @@ namespace lodeline {
 namespace {
 
 const char* const kFooter =
-    R"(DATA is a folder in the EuRoC layout or a ROS bag. Images of one camera are enough; inertial
-readings give the place on the IMU and the delay as well.
+    R"(Images of one camera are enough. Inertial readings also give the pose on the IMU and the delay.
 The board is a grid of AprilTags (36h11), described in Kalibr's format:
   {target_type: aprilgrid, tagCols: 6, tagRows: 6, tagSize: 0.055, tagSpacing: 0.3}
-OUT receives rig.yaml (for --rig of all commands), camchain-imucam.yaml (Kalibr's format),
-calibration.json, report.txt, report.html and figures.
+Results: rig.yaml (for --rig), camchain-imucam.yaml (Kalibr's format), calibration.json, report.txt, report.html, figures.
 Examples, the port under water with a lens from air:
   lodeline calibrate cameras air -o lens --board board.yaml
   lodeline calibrate cameras water -o rig --board board.yaml --rig lens/rig.yaml --keep lens \
@@ -123,7 +121,9 @@ void calibrateCameras(const CamerasArguments& arguments) {
 void addSelection(CamerasArguments* arguments, CLI::App* command) {
   addCameras(&arguments->cameras, command);
   addRecordingPart(&arguments->part, command);
-  command->add_option("--rate-hz", arguments->rate_hz, "most images to use per second and camera (10)")
+  command
+      ->add_option("--rate-hz", arguments->rate_hz,
+                   "largest number of images per second and camera to use (default: 10)")
       ->check(CLI::PositiveNumber);
 }
 
@@ -133,26 +133,28 @@ void addCalibrateCamerasCommand(CLI::App& calibrate_command) {
   const auto arguments = std::make_shared<CamerasArguments>();
   CLI::App* command = calibrate_command.add_subcommand(
       "cameras", "Lenses, ports, poses and delay of cameras from a board, with uncertainties and a verdict");
-  command->add_option("DATA", arguments->data, "recording or ROS bag")->required();
+  command
+      ->add_option("DATA", arguments->data,
+                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder)")
+      ->required();
   command->add_option("-o,--output", arguments->output, "folder to write")->required();
   addBagOptions(&arguments->bag, command);
-  command->add_option("--board", arguments->board,
-                      "the board, in Kalibr's format (board.yaml in the folder DATA)");
+  command->add_option("--board", arguments->board, "board in Kalibr's format (default: board.yaml in DATA)");
   addSelection(arguments.get(), command);
   command->add_option(
       "--camera-model", arguments->model,
-      "lens of all cameras: " + cameraModelNames() + " (the stated one, else radial-tangential)");
+      "lens of all cameras: " + cameraModelNames() + " (default: the stated one, else radial-tangential)");
   command
       ->add_option("--port", arguments->port,
-                   "flat or dome: estimate a port where the rig states none; none: ignore stated ports")
+                   "flat or dome: estimate such a port where the rig states none; none: ignore stated ports")
       ->check(CLI::IsMember({"flat", "dome", "none"}));
-  command->add_option("--keep", arguments->keep, "lens, port: keep the stated ones")
+  command->add_option("--keep", arguments->keep, "stated values to keep: lens, port")
       ->delimiter(',')
       ->check(CLI::IsMember({"lens", "port"}));
   command->add_flag("--no-imu", arguments->without_imu, "calibrate the cameras alone");
   command
       ->add_option("--max-delay", arguments->most_delay_s,
-                   "largest delay between images and IMU to search, s (0.15)")
+                   "largest delay between images and IMU to look for, s (default: 0.15)")
       ->check(CLI::PositiveNumber);
   addVerbosity(&arguments->verbosity, command);
   command->footer(kFooter);

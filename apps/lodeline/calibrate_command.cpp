@@ -26,13 +26,9 @@ namespace lodeline {
 namespace {
 
 const char* const kCalibrateFooter =
-    R"(DATA is a recording in the EuRoC ASL layout (mav0/mag0, with mav0/imu0 also the rotation to the IMU and the lag) or a
-ROS bag (--rig may be missing; the noise of a usual IMU is assumed then), a log of PX4 or ArduPilot,
-a folder or zip of a telephone's CSV files, a CSV file with a header, `t [s], mx [uT], my [uT], mz [uT]`,
-or rows of t, mx, my, mz or mx, my, mz without one.
-How to move: away from iron, each of the six sides up in turn with a turn around each time, or figures of eight
-while rolling the rig over; 60 to 90 s. docs/how-to/calibrate-magnetometer.md explains every figure,
-docs/how-to/compensate-currents.md the test for --currents.
+    R"(Readings of the IMU in DATA also give the rotation to the IMU and the lag. Without --rig, the noise of a usual
+IMU is assumed. A text file has the header `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz.
+docs/how-to/calibrate-magnetometer.md explains how to move the rig, docs/how-to/compensate-currents.md the still test.
 Examples:
   lodeline calibrate magnetometer dive1 -o mag.yaml --to 90 --site 29.83,-82.60,20 --date 2026-11-21
   lodeline calibrate magnetometer cloud.txt --unit mG -o mag.yaml --plots plots
@@ -153,31 +149,30 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
       "Soft iron, hard iron, rotation to the IMU and lag, with their uncertainties and a verdict");
   command
       ->add_option("DATA", arguments->data,
-                   "recording, ROS bag, sensor log, CSV file or, with --compare, a calibration")
+                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder), sensor log (CSV "
+                   "file, folder or zip of them, log of PX4 or ArduPilot), text file of readings, or with "
+                   "--compare a calibration")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,
                       "calibration file, for `lodeline run --mag-calibration`");
   command->add_option(
       "--unit", arguments->unit,
-      "of a file without header: T, uT, nT, mG, G or raw; found by the field's size where not given");
+      "unit of a file without header: T, uT, nT, mG, G or raw; without it, found by the size of the field");
   addRecordingPart(&arguments->part, command);
-  addSite(&arguments->site, "the scale by the Earth's field", command);
+  addSite(&arguments->site, command);
   command->add_option(
       "--old", arguments->old,
-      "calibration to fall back on where the readings say too little; with --currents: that of the "
-      "magnetometer, for its axes and its lag");
-  command->add_option("--compare", arguments->compare,
-                      "calibration to compare with, e.g. that from before the dive");
+      "calibration to use where the readings say too little; with --currents: that of the magnetometer");
+  command->add_option("--compare", arguments->compare, "earlier calibration to compare with");
   command->add_option("--json", arguments->json, "write all figures to this file");
-  command->add_option("--plots", arguments->plots, "folder for pictures of the readings and of the coverage");
-  command->add_flag(
-      "--currents", arguments->currents,
-      "fields of electric currents (thrusters, lamps) from a still test, in which each channel is "
-      "ramped up and down; writes the section current0 of a rig file");
+  command->add_option("--plots", arguments->plots, "folder for plots of the readings and of the coverage");
+  command->add_flag("--currents", arguments->currents,
+                    "calibrate the fields of electric currents from a still test, and write the section "
+                    "current0 of a rig file");
   command->add_option(
       "--check", arguments->check,
-      "with --currents: a rig file with an earlier calibration; says whether cables have moved");
+      "with --currents: rig file with an earlier calibration; says whether cables have moved");
   addVerbosity(&arguments->verbosity, command);
   command->footer(kCalibrateFooter);
   command->callback([arguments] { calibrate(*arguments); });

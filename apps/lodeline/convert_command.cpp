@@ -126,39 +126,32 @@ void addConvertCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "convert", "Turn a recording into another format: EuRoC folder, ROS 1 bag, ROS 2 bag (MCAP, SQLite)");
   command
-      ->add_option(
-          "SRC", arguments->source,
-          "a ROS bag (.bag, .mcap, .db3, or the folder of a ROS 2 bag), a film with telemetry (.MP4; "
-          "all its chapters), or a folder with mav0 (EuRoC ASL layout)")
+      ->add_option("SRC", arguments->source,
+                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or film with "
+                   "telemetry (with all chapters)")
       ->required();
   command
-      ->add_option("DST", arguments->target,
-                   "NAME.bag, NAME.mcap, NAME.db3, or a folder; must not be there yet")
+      ->add_option("DST", arguments->target, "NAME.bag, NAME.mcap, NAME.db3, or a folder; must not exist yet")
       ->required();
   addBagOptions(&arguments->bag, command);
   command
-      ->add_option(
-          "--format", arguments->format,
-          "what DST becomes, where its name does not tell: folder (EuRoC), ros1, mcap, db3; the last two "
-          "make a folder with metadata.yaml for `ros2 bag` unless DST ends in .mcap or .db3")
+      ->add_option("--format", arguments->format,
+                   "format of DST where its name does not tell: folder (EuRoC), ros1, mcap, db3; mcap and "
+                   "db3 make a folder with metadata.yaml for `ros2 bag`")
       ->check(CLI::IsMember({"folder", "ros1", "mcap", "db3"}));
   command
-      ->add_option(
-          "--compression", arguments->compression,
-          "of the chunks of a bag that is written: none, lz4, bz2 (ROS 1), zstd (MCAP); ROS 1 bags have "
-          "none without it, MCAP has zstd")
+      ->add_option("--compression", arguments->compression,
+                   "compression of the chunks of a bag: none (default of ROS 1), lz4, bz2 (ROS 1), zstd "
+                   "(default of MCAP)")
       ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
   addRecordingPart(&arguments->part, command);
   addCameras(&arguments->cameras, command);
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "Readings, stamps and pixels are kept; findings name what the other format cannot hold. The "
-      "calibration of a\n"
-      "folder goes into NAME.rig.yaml beside the bag, and is found there again. --from and --to count from "
-      "the "
-      "first\n"
-      "reading; --cameras 1 makes a recording whose cam0 is camera 1.\n"
+      "Readings, stamps and pixels are kept; findings name what the other format cannot hold.\n"
+      "The calibration of a folder goes into NAME.rig.yaml beside the bag. --from and --to count from the "
+      "first\nreading. --cameras 1 makes a recording whose cam0 is camera 1.\n"
       "Examples:\n"
       "  lodeline convert dive1 dive1.bag\n"
       "  lodeline convert dive1 dive1.mcap\n"

@@ -38,9 +38,7 @@ const char* const kEvaluateFooter = R"(Examples:
   lodeline evaluate KITTI_00_ORB.txt KITTI_00_gt.txt --stretches-m 100,200,300,400
 
 --from and --to count from the first pose of the estimates. The reported uncertainty is checked for all poses.
-Layouts (found by themselves, or named with --format): TUM, KITTI, EuRoC ground truth, COLMAP images.txt and
-images.bin, the output folder of `lodeline run`; text files may be compressed with gzip. docs/reference/error-measures.md
-defines every figure.)";
+docs/reference/error-measures.md defines every figure.)";
 
 struct Arguments {
   std::vector<std::string> trajectories;  ///< estimates, and the reference as the last one
@@ -203,45 +201,47 @@ void addReadOptions(CLI::App& command, Arguments& arguments) {
   constexpr int kMostTrajectories = 1000;
   command
       .add_option("TRAJECTORY", arguments.trajectories,
-                  "files or folders: one or more to judge, and at the end the one that is taken as true")
+                  "files or folders: one or more estimates, and the reference as the last one")
       ->required()
       ->expected(2, kMostTrajectories);
   command.add_option("--format", arguments.estimate_format,
-                     "Layout of the estimate: tum, kitti, euroc, colmap-text, colmap-binary");
-  command.add_option("--reference-format", arguments.reference_format, "Layout of the reference");
+                     "layout of the estimate: tum, kitti, euroc, colmap-text, colmap-binary");
+  command.add_option("--reference-format", arguments.reference_format, "layout of the reference");
   command.add_option("--image-times", arguments.image_times,
-                     "Times of COLMAP images: lines `name time[s]`, or a EuRoC camera's data.csv");
-  command.add_option(
-      "--body-from-camera", arguments.body_from_camera,
-      "sensor.yaml of the camera COLMAP was run on (its T_BS): turns its poses into body poses");
+                     "times of COLMAP images: lines `name time[s]`, or data.csv of an EuRoC camera");
+  command.add_option("--body-from-camera", arguments.body_from_camera,
+                     "sensor.yaml of the camera of COLMAP, whose T_BS turns its poses into body poses");
 }
 
 void addComparisonOptions(CLI::App& command, Arguments& arguments) {
   EvaluationOptions& options = arguments.options;
   command.add_option("--align", arguments.align, "none, yaw, se3 or sim3")->capture_default_str();
   command
-      .add_option("--align-pairs", options.alignment_pairs, "Align on the first so many pairs only; 0: all")
+      .add_option("--align-pairs", options.alignment_pairs,
+                  "number of the first pairs to align on; 0 takes all")
       ->capture_default_str();
-  command.add_option("--time-offset-s", options.association.time_offset_s, "Added to the estimate's times")
+  command
+      .add_option("--time-offset-s", options.association.time_offset_s,
+                  "seconds to add to the times of the estimate")
       ->capture_default_str();
   command
       .add_option("--time-tolerance-s", options.association.tolerance_s,
-                  "Largest difference of times in a pair")
+                  "largest difference of times in a pair")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command.add_flag("--interpolate", arguments.interpolate,
-                   "Interpolate the reference to the estimate's times instead of taking the nearest pose");
+                   "interpolate the reference at the times of the estimate");
   command
       .add_option("--stretches-m", options.stretch_lengths_m,
-                  "Lengths for relative errors, comma-separated; default 10 to 50 % of the path")
+                  "lengths for relative errors, with commas (default: 10 to 50 % of the path)")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
-  command.add_option("--consecutive-m", options.consecutive_length_m, "Length of the consecutive stretches")
+  command.add_option("--consecutive-m", options.consecutive_length_m, "length of the consecutive stretches")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.add_option(
       "--images", arguments.images,
-      "A EuRoC camera's data.csv or folder: completion is the share of its images with a pose");
+      "data.csv or folder of an EuRoC camera; completion is the share of its images with a pose");
 }
 
 }  // namespace
@@ -251,10 +251,10 @@ void addEvaluateCommand(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>();
   addReadOptions(*command, *arguments);
   addComparisonOptions(*command, *arguments);
-  command->add_option("--json", arguments->json, "Write all figures to this file");
+  command->add_option("--json", arguments->json, "write all figures to this file");
   command->add_option("--plots", arguments->plots,
-                      "Write plots as SVG and PNG to this folder (needs gnuplot)");
-  command->add_option("--html", arguments->html, "Write a page for the browser, with paths coloured by error")
+                      "write plots as SVG and PNG to this folder (needs gnuplot)");
+  command->add_option("--html", arguments->html, "write a page for the browser, with paths coloured by error")
       ->type_name("FILE");
   addRecordingPart(&arguments->part, command);
   addVerbosity(&arguments->verbosity, command);

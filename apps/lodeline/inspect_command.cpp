@@ -95,26 +95,23 @@ void addInspectCommand(CLI::App& program) {
   command
       ->add_option(
           "DATA", arguments->data,
-          "folder with mav0 (EuRoC ASL layout), a ROS bag (.bag, .mcap, .db3, or the folder of a "
-          "ROS 2 bag), a film with telemetry (.MP4; all its chapters), or a sensor log: a CSV file, a folder "
-          "or zip of them, a log of PX4 or ArduPilot")
+          "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder), film with telemetry (with "
+          "all chapters) or sensor log (CSV file, folder or zip of them, log of PX4 or ArduPilot)")
       ->required();
   addBagOptions(&arguments->bag, command);
   command
       ->add_option("--messages", arguments->list_elements,
-                   "for a bag: print every message of every topic instead, with N elements of long arrays")
+                   "print every message of a bag instead, with N elements of long arrays")
       ->type_name("N")
       ->expected(0, 1)
       ->default_str("16");
   command->add_option("--json", arguments->json, "write all figures to this file");
-  addSite(&arguments->site, "comparison with its field", command);
+  addSite(&arguments->site, command);
   addRecordingPart(&arguments->part, command);
   addCameras(&arguments->cameras, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "Units, rates, gaps, order, axes, extrinsics, focal lengths, time offsets, image quality. "
-      "docs/reference/findings.md tells\n"
-      "what each finding means.\n"
+      "docs/reference/findings.md explains each finding.\n"
       "Examples:\n"
       "  lodeline inspect dive1\n"
       "  lodeline inspect dive1.mcap --messages\n"

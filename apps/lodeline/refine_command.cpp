@@ -16,7 +16,7 @@ void addRefineCommand(CLI::App& program) {
   addRunOptions(arguments.get(), command);
   command
       ->add_option("--state-interval", *request.refine_interval_s,
-                   "longest time between two states of the solution; 0 makes every image one")
+                   "longest time between two states of the solution; 0 makes every image a state")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
@@ -25,8 +25,8 @@ void addRefineCommand(CLI::App& program) {
       "  lodeline refine dive1 -o dive1_result\n"
       "  lodeline refine dive1 -o dive1_result --mag-calibration mag.yaml\n"
       "  lodeline export dive1_result --format survex\n"
-      "Results: those of `lodeline run`, and trajectory_refined.tum, states_refined.csv and\n"
-      "landmarks_refined.ply, which `lodeline export` takes in place of the others.");
+      "Results: those of `lodeline run`, and trajectory_refined.tum, states_refined.csv and "
+      "landmarks_refined.ply.");
   command->callback([arguments] { executeRun(requestOf(*arguments)); });
 }
 

@@ -87,21 +87,21 @@ void addReportCommand(CLI::App& program) {
   command->add_option("RUN", arguments->runs, "output folders of `lodeline run`; several are compared")
       ->required();
   command->add_option("--reference", arguments->reference,
-                      "trajectory taken as true, in any layout that `lodeline evaluate` reads");
+                      "ground truth, in any layout that `lodeline evaluate` reads");
   command->add_option("--align", arguments->align, "none, yaw, se3 or sim3")->capture_default_str();
   command
       ->add_option("--background", arguments->background,
-                   "map under the plan: PNG or JPEG image with a world file, or GeoJSON lines")
+                   "map below the plan: PNG or JPEG image with a world file, or GeoJSON lines")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--background-at", arguments->background_at,
-          "place of the first pose on it: LAT,LON (GeoJSON in degrees) or E,N[,TURN] in m of its grid; TURN "
-          "(degrees): its north clockwise from that of the run")
+      ->add_option("--background-at", arguments->background_at,
+                   "place of the first pose on the map: LAT,LON (GeoJSON in degrees) or E,N[,TURN] (m on its "
+                   "grid; TURN: degrees from the north of the run clockwise to that of the map)")
       ->type_name("PLACE");
-  CLI::Option* output =
-      command->add_option("-o,--output", arguments->output, "page to write; with --pdf only if named")
-          ->capture_default_str();
+  CLI::Option* output = command
+                            ->add_option("-o,--output", arguments->output,
+                                         "file of the page; with --pdf, written only where named")
+                            ->capture_default_str();
   command->add_option("--pdf", arguments->pdf, "print the page to this file (A4; needs Chromium)")
       ->type_name("FILE");
   addVerbosity(&arguments->verbosity, command);
@@ -111,7 +111,7 @@ void addReportCommand(CLI::App& program) {
       "  lodeline report with_mag without_mag --reference dive1/truth.tum --align none -o comparison.html\n"
       "  lodeline report dive1_result --pdf dive1.pdf\n"
       "  lodeline report dive1_result --background plan.png --background-at 372410.5,3298801.2\n"
-      "The page is one file that works without a network; docs/how-to/report.md tells what it shows.");
+      "docs/how-to/report.md explains the page.");
   command->callback([arguments, output] {
     arguments->is_page_named = output->count() > 0;
     reportCommand(*arguments);

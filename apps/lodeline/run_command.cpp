@@ -49,47 +49,46 @@ void executeRun(RunRequest request) {
 void addRunOptions(RunArguments* arguments, CLI::App* command) {
   RunRequest* const request = &arguments->request;
   command
-      ->add_option("DATA", request->data,
-                   "folder that contains mav0 (EuRoC ASL layout), or mav0 itself; or a ROS bag (.bag, .mcap, "
-                   ".db3, folder)")
+      ->add_option(
+          "DATA", request->data,
+          "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or film with telemetry")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
       ->required();
-  command->add_option("-c,--config", request->config,
-                      "YAML configuration; without one, defaults serve all data");
-  command->add_option("-s,--set", request->overrides, "one setting, KEY=VALUE; goes over the configuration");
+  command->add_option("-c,--config", request->config, "file of settings (YAML)");
+  command->add_option("-s,--set", request->overrides, "one setting; goes over the file");
   command
       ->add_option("--draw-tracks", request->draw_tracks_s,
-                   "write pictures of the followed points, one frame each so many seconds")
+                   "write an image with tracks every so many seconds, to frames")
       ->type_name("SECONDS");
   command->add_option("--mag-calibration", request->magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote");
-  command->add_option("--magnetometer", request->magnetometer,
-                      "off, paper or absolute; by default absolute where it is calibrated");
-  addSite(&arguments->site, "true north", command);
-  command->add_option("--map", request->map,
-                      "map of earlier dives (`lodeline map`): find the dive's place in it");
+  command->add_option(
+      "--magnetometer", request->magnetometer,
+      "use of the magnetometer: off, paper or absolute (default: absolute where it is calibrated)");
+  addSite(&arguments->site, command);
+  command->add_option(
+      "--map", request->map,
+      "map of earlier dives (`lodeline map`), in which the run looks for the place of the dive");
   addStartOptions(&arguments->start, command)->needs("--map");
   command
-      ->add_option("--live", request->live_port,
-                   fmt::format("show the run in the browser while it goes on, at this port ({} where none is "
-                               "named); 0 for any",
-                               kLivePort))
+      ->add_option(
+          "--live", request->live_port,
+          fmt::format("show the run in the browser, at this port ({} where none is named); 0 takes any port",
+                      kLivePort))
       ->type_name("[PORT]")
       ->check(CLI::Range(0, 65535));
   command
       ->add_option("--live-address", request->live_address,
-                   "network address for --live; 0.0.0.0 lets other machines see it")
+                   "network address for --live; 0.0.0.0 lets other machines see the page")
       ->capture_default_str();
-  command
-      ->add_flag("--live-wait", request->live_wait, "with --live: begin when a browser has opened the page")
+  command->add_flag("--live-wait", request->live_wait, "begin when a browser has opened the page of --live")
       ->needs("--live");
   command
-      ->add_option("--rate", request->rate,
-                   "read the recording at most so many times as fast as it was made; 1 plays it")
+      ->add_option("--rate", request->rate, "read the recording at most so many times as fast as it was made")
       ->type_name("FACTOR")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--no-report", request->no_report, "leave out report.html and its pictures");
+  command->add_flag("--no-report", request->no_report, "do not write report.html and its images");
   addBagOptions(&request->bag, command);
   addRecordingPart(&arguments->part, command);
   addCameras(&arguments->cameras, command);
@@ -119,8 +118,7 @@ void addRunCommand(CLI::App& program) {
       "  lodeline run dive1 -o dive1_result --draw-tracks 5\n"
       "  lodeline run dive1 -o dive1_result --live --live-wait --rate 1\n"
       "  lodeline run dive1.bag -o dive1_result --rig camchain-imucam.yaml --rig imu.yaml\n"
-      "Results: trajectory.tum, states.csv, landmarks.ply, config.yaml (all settings in effect), run.json,\n"
-      "report.html (all of it to look at); pictures of tracks in frames.");
+      "docs/reference/output-files.md describes the results.");
   command->callback([arguments] { executeRun(requestOf(*arguments)); });
 }
 

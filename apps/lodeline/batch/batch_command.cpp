@@ -20,15 +20,7 @@ namespace lodeline {
 namespace {
 
 const char* const kBatchFooter =
-    R"(LIST.yaml has recordings × variants × seeds; paths in it start at its folder (docs/how-to/process-many-dives.md):
-  recordings:
-    - {data: dives/peacock1, name: peacock1, args: [--mag-calibration, mag.yaml], truth: truth/peacock1.tum}
-    - {simulate: cave1_short --metres 60, name: cave}
-  variants:
-    - {name: plain}
-    - {name: left, set: {source.cameras: [0]}}
-  seeds: [1, 2]
-Several processes may work on one folder at the same time; each item is made once.
+    R"(docs/how-to/process-many-dives.md explains the list. Several processes may work on one folder at the same time.
 Results: results/NAME, failed/NAME, table.csv, table.md.
 Examples:
   lodeline batch LIST.yaml -o season --jobs 4
@@ -80,18 +72,18 @@ void addBatchWorkOptions(BatchWork* work, CLI::App* command) {
   command
       ->add_option_function<std::string>(
           "--shard", [work](const std::string& text) { work->shard = batchShardFromText(text); },
-          "work only on part I of N")
+          "make only part I of N of the items")
       ->type_name("I/N")
       ->default_str("1/1");
-  command->add_option("--jobs", work->jobs, "runs at a time")
+  command->add_option("--jobs", work->jobs, "number of runs at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->add_flag("--retry", work->retry, "run again what failed before");
+  command->add_flag("--retry", work->retry, "make items again that failed before");
   command->add_flag_callback(
-      "--no-wait", [work] { work->wait = false; }, "end while other processes still work on items");
+      "--no-wait", [work] { work->wait = false; }, "end where other processes still work on items");
   command
       ->add_option("--stale-after-s", work->stale_after_s,
-                   "a lock from another machine that was not renewed for so long is taken over")
+                   "age after which a lock of another machine is taken over")
       ->check(CLI::Range(60.0, 1e6))
       ->capture_default_str();
   command->add_flag("-q,--quiet", work->quiet, "no progress and no table");
@@ -105,7 +97,7 @@ void addBatchCommand(CLI::App& program) {
   command->add_option("-o,--output", arguments->output, "folder for the results; made where it is missing")
       ->required();
   addBatchWorkOptions(&arguments->work, command);
-  command->add_flag("--summary", arguments->only_summary, "run nothing; write the tables anew");
+  command->add_flag("--summary", arguments->only_summary, "write the tables and run nothing");
   command->add_option("--against", arguments->against, "output folder of another batch to compare with");
   command->footer(kBatchFooter);
   command->callback([arguments] { runBatch(*arguments); });

@@ -26,10 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const kBenchmarkFooter =
-    R"(Sets: euroc, tumvi, uzhfpv, hilti22, tank, aqualoc (docs/how-to/public-benchmarks.md).
-Sequences that are not there are left out. A broken one is a row with the reason.
-Results: benchmark.md, benchmark.csv, and the folders of `lodeline batch` with its list.yaml.
-Given again, the command makes only what is missing.
+    R"(docs/how-to/public-benchmarks.md explains sets and results. Given again, the command makes only what is missing.
 Examples:
   lodeline benchmark euroc datasets/euroc --jobs 4
   lodeline benchmark tumvi datasets/tumvi -o tumvi_left --set source.cameras=[0]
@@ -131,11 +128,10 @@ void addBenchmarkCommand(CLI::App& program) {
       "benchmark", "Run a public set of recordings and compare the errors with published ones");
   command->add_option("SET", arguments->set, "euroc, tumvi, uzhfpv, hilti22, tank or aqualoc")->required();
   command
-      ->add_option("FOLDER", arguments->folder, "where the unpacked sequences are, at most four levels down")
+      ->add_option("FOLDER", arguments->folder, "folder of the unpacked sequences, at most four levels down")
       ->required();
-  command->add_option("-o,--output", arguments->output,
-                      "folder for the results; made where it is missing (benchmark_SET)");
-  command->add_option("-s,--set", arguments->settings, "one setting of all runs, KEY=VALUE");
+  command->add_option("-o,--output", arguments->output, "folder for the results (default: benchmark_SET)");
+  command->add_option("-s,--set", arguments->settings, "one setting of all runs");
   addBatchWorkOptions(&arguments->work, command);
   command->footer(kBenchmarkFooter);
   command->callback([arguments] { runBenchmark(*arguments); });

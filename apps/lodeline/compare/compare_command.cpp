@@ -24,11 +24,10 @@ namespace lodeline {
 namespace {
 
 const char* const kCompareFooter =
-    R"(Methods: off (images and inertial readings alone), paper and absolute (docs/theory/magnetometer.md), azimuth (the finished
+    R"(Methods: off (images and inertial readings alone), paper and absolute (docs/theory/magnetometer.md), azimuth (the
 trajectory of off, its heading corrected by the 20 s running median of the field's azimuth).
 Runs of a scenario differ by the noise of its sensors, with the same images; runs of a folder by the front end's seed.
-Bags are turned into folders first, as by `lodeline convert`, in OUT/recordings or the folder of --recordings.
-Results: compare.json, compare.md, plots and one folder a run. Given again, the command makes only what is missing.
+Bags are converted to folders in --recordings first. Given again, the command makes only what is missing.
 Examples:
   lodeline compare demo --realism field -o demo_compared
   lodeline compare dive1 dive2 --methods off,absolute --runs 1 --mag-calibration mag.yaml -o compared
@@ -145,11 +144,11 @@ void compare(ComparisonRequest request) {
 
 void addSharedRunOptions(CLI::App* command, RunArguments* arguments) {
   RunRequest& run = arguments->request;
-  command->add_option("-c,--config", run.config, "YAML configuration of all runs");
-  command->add_option("-s,--set", run.overrides, "one setting of all runs, KEY=VALUE");
+  command->add_option("-c,--config", run.config, "file of settings of all runs (YAML)");
+  command->add_option("-s,--set", run.overrides, "one setting of all runs");
   command->add_option("--mag-calibration", run.magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote; scenarios calibrate their own rig");
-  addSite(&arguments->site, "true north (scenarios know theirs)", command);
+  addSite(&arguments->site, command);
   addCameras(&arguments->cameras, command);
   addVerbosity(&arguments->verbosity, command);
 }
@@ -162,27 +161,26 @@ void addCompareCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "compare", "Compare methods of using the magnetometer on recordings with ground truth");
   command
-      ->add_option("DATA|SCENARIO", request->inputs,
-                   "folders in the EuRoC ASL layout or ROS bags, with ground truth, or scenarios of "
-                   "`lodeline simulate`")
+      ->add_option(
+          "DATA|SCENARIO", request->inputs,
+          "folders in the EuRoC layout or ROS bags, with ground truth; or scenarios of `lodeline simulate`")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
       ->required();
-  command->add_option("--methods", request->methods, "comma-separated")
+  command->add_option("--methods", request->methods, "methods, with commas")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--runs", request->runs, "runs of each method")
+  command->add_option("--runs", request->runs, "number of runs of each method")
       ->check(CLI::Range(1, 99))
       ->capture_default_str();
   addSharedRunOptions(command, &request->arguments);
   addBagOptions(&request->arguments.request.bag, command);
   addRecordingPart(&request->arguments.part, command);
   command->add_option("--recordings", request->recordings,
-                      "folder of simulated recordings, NAME_REALISM each; default OUT/recordings");
-  command->add_flag(
-      "!--no-rendering", request->render,
-      "render no images: where a simulated recording is unfinished, compare on the part there is");
-  command->add_option("--threads", request->threads, "for rendering (all cores)");
+                      "folder of simulated recordings, NAME_REALISM each (default: OUT/recordings)");
+  command->add_flag("!--no-rendering", request->render,
+                    "render no images; of an unfinished simulated recording, take the part there is");
+  command->add_option("--threads", request->threads, "number of threads for rendering (default: all cores)");
   addScenarioOptions(command, &request->changes);
   command->footer(kCompareFooter);
   command->callback([request] { compare(*request); });

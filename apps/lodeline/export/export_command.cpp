@@ -11,60 +11,57 @@ namespace lodeline {
 namespace {
 
 void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
-  command->add_option(
-      "--entrance", arguments->entrance,
-      "of the water's surface above the first pose: LAT,LON,HEIGHT in degrees (WGS 84, any notation) and "
-      "m; \"16Q 450000 2246000 5\" (UTM) or \"EPSG:6372 3912345 912345 5\"; without it, the run's own "
-      "--site, else a map in metres");
+  command->add_option("--entrance", arguments->entrance,
+                      "place of the water's surface above the first pose: LAT,LON,HEIGHT (degrees, m), \"16Q "
+                      "450000 2246000 5\" (UTM) or \"EPSG:6372 3912345 912345 5\"; without it, the --site of "
+                      "the run, else files are in plain metres");
   command
       ->add_option("--entrance-sigma", arguments->entrance_sigma,
-                   "HORIZONTAL,VERTICAL (m): how well that is known")
+                   "one sigma of that place: HORIZONTAL,VERTICAL (m)")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  command->add_option(
-      "--start-depth", arguments->map.start_depth_m,
-      "m of the first pose under that surface; without it, the depth profile's, else that of the "
-      "run's pressure sensor, else 0");
+  command->add_option("--start-depth", arguments->map.start_depth_m,
+                      "depth of the first pose below that surface, m; without it, that of the depth profile, "
+                      "else of the pressure sensor, else 0");
   command->add_option(
       "--geoid-height", arguments->map.geoid_height_m,
-      "m of the level that HEIGHT counts from above the WGS 84 ellipsoid, for GeoJSON; without "
-      "it, PROJ's for --vertical-datum, else 0");
+      "height of the vertical datum above the WGS 84 ellipsoid, m, for GeoJSON; without it, PROJ's, else 0");
   command->add_option("--vertical-datum", arguments->map.vertical_datum,
-                      "the level that HEIGHT counts from: EPSG:5703 (NAVD88), EPSG:5773 (EGM96), ellipsoid");
+                      "level that HEIGHT counts from: EPSG:5703 (NAVD88), EPSG:5773 (EGM96), ellipsoid");
   command
       ->add_option("--crs", arguments->map.crs,
-                   "grid: a UTM zone (UTM17N), a national or polar grid (EPSG:6372); auto: the entrance's "
-                   "UTM zone, or "
-                   "UPS near a pole")
+                   "grid: a UTM zone (UTM17N), a national or polar grid (EPSG:6372), or auto: the UTM zone "
+                   "of the entrance, UPS near a pole")
       ->capture_default_str();
-  command->add_option("--date", arguments->map.date, "YYYY-MM-DD; without it, the run's or its stamps'");
+  command->add_option("--date", arguments->map.date,
+                      "date of the dive, YYYY-MM-DD; without it, that of the run or of its stamps");
   command->add_option(
       "--turn", arguments->map.turn_deg,
-      "degrees clockwise that turn the run's world to true north, in place of the declination");
+      "clockwise turn of the run's world to true north, degrees, in place of the declination");
 }
 
 void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
   DiveMapOptions& map = arguments->map;
-  command->add_option("--name", map.name,
-                      "of survey and files; without it, the run folder's; with several runs, of the project");
-  command->add_option("--title", map.title, "of the survey");
-  command->add_option("--team", map.team, "a person; once for each");
-  command->add_option("--spacing", map.stations.spacing_m, "m between stations on a straight way")
+  command->add_option(
+      "--name", map.name,
+      "name of survey and files, with several runs of the project; without it, that of the run's folder");
+  command->add_option("--title", map.title, "title of the survey");
+  command->add_option("--team", map.team, "name of a person of the team; may be repeated");
+  command->add_option("--spacing", map.stations.spacing_m, "distance between stations on a straight way, m")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
   command
-      ->add_option("--relative-sigma", map.relative_sigma,
-                   "uncertainty of the end by the length of the line, as 0.01; without it, the run's own")
+      ->add_option(
+          "--relative-sigma", map.relative_sigma,
+          "uncertainty of the end over the length of the line, such as 0.01; without it, that of the run")
       ->check(CLI::Range(1e-6, 1.0));
-  command->add_flag(
-      "--closed", map.is_closed,
-      "the dive ended exactly where it began: equate both and let the program spread the misclosure");
-  command->add_flag("--no-splays", arguments->no_splays, "leave the legs to the walls out");
-  command->add_option(
-      "--recording", arguments->recording,
-      "the run's recording, a folder or a ROS bag: its sonar adds walls; COLMAP takes cameras "
-      "and images from it");
+  command->add_flag("--closed", map.is_closed,
+                    "the dive ended exactly where it began; the survey program spreads the misclosure");
+  command->add_flag("--no-splays", arguments->no_splays, "write no legs to the walls");
+  command->add_option("--recording", arguments->recording,
+                      "recording of the run (folder or ROS bag): its sonar gives walls, COLMAP takes cameras "
+                      "and images from it");
   addBagOptions(&arguments->bag, command);
 }
 

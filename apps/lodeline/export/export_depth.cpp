@@ -55,18 +55,17 @@ void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics
 
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
   CLI::Option* file = command->add_option("--depth-profile", arguments->file,
-                                          "log of a dive computer or a diver (CSV with time and depth, "
-                                          "Subsurface, UDDF, UDCF, Suunto, DL7); compared with the run");
+                                          "log of a dive computer or a diver to compare with the run (CSV "
+                                          "with time and depth, Subsurface, UDDF, UDCF, Suunto, DL7)");
   command
       ->add_option(
           "--dive", arguments->dive,
           "number of the dive in that log, or the start of its date (2026-11-21, \"2026-11-21 10:34\")")
       ->needs(file);
-  command->add_flag("--correct-depth", arguments->correct, "take the vertical from that profile")
-      ->needs(file);
+  command->add_flag("--correct-depth", arguments->correct, "take the heights from that profile")->needs(file);
   command
       ->add_option("--profile-lag", arguments->lag_s,
-                   "seconds to add to the profile's times; without it, they are found")
+                   "seconds to add to the times of the profile; without it, they are estimated")
       ->needs(file);
 }
 

@@ -11,10 +11,10 @@ namespace lodeline {
 void addFoxgloveOptions(CLI::App* command, FoxgloveArguments* arguments) {
   command->get_option("--format")
       ->description(
-          "survex, therion, geojson, kml, gpx, ply, csv, tum, colmap, or mcap for Foxglove; several with "
-          "commas");
+          "survex, therion, geojson, kml, gpx, gpkg, dxf, ply, csv, tum, colmap, or mcap for Foxglove; "
+          "several with commas");
   command->add_flag("--images", arguments->with_pictures,
-                    "mcap: with the run's sample images with tracks (RUN/pictures)");
+                    "with --format mcap: add the sample images with tracks");
 }
 
 void takeFoxglove(std::vector<std::string>* formats, FoxgloveArguments* arguments) {

@@ -120,7 +120,7 @@ void addMapBuildCommands(CLI::App* map) {
   build->add_option("MAP", arguments->map, "file of the new map")->required();
   build
       ->add_option("RUN", arguments->runs,
-                   "folders that `lodeline run` wrote, the first one defines the frame")
+                   "folders that `lodeline run` wrote; the first one defines the frame")
       ->required();
   addOverwrite(&arguments->overwrite, build);
   addVerbosity(&arguments->verbosity, build);

@@ -155,7 +155,7 @@ void addMapContentCommands(CLI::App* map) {
   const auto arguments = std::make_shared<ContentArguments>();
   CLI::App* info = map->add_subcommand("info", "What a map holds");
   info->add_option("MAP", arguments->map, "file of the map")->required();
-  info->add_flag("--json", arguments->json, "as JSON");
+  info->add_flag("--json", arguments->json, "print JSON");
   info->callback([arguments] { printInfo(*arguments); });
 
   CLI::App* check = map->add_subcommand("check", "Look for damage in a map");

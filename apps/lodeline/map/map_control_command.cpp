@@ -44,12 +44,11 @@ void addMapControlCommand(CLI::App* map) {
       "control", "Add control points: fixes, surveyed stations and marks, from a CSV or Survex file");
   command->add_option("MAP", arguments->map, "file of the map")->required();
   command->add_option("FILE", arguments->file, "table (.csv), or Survex' .3d or .pos")->required();
-  command->add_option(
-      "--site", arguments->site,
-      "LAT,LON,HEIGHT of the map's origin, as --entrance of `export`, for positions in degrees");
+  command->add_option("--site", arguments->site,
+                      "place of the origin of the map, as --entrance of `export`, for positions in degrees");
   command
       ->add_option("--grid-origin", arguments->grid_origin,
-                   "EASTING,NORTHING,ALTITUDE (m) of the map's origin, for positions on a grid")
+                   "origin of the map on a grid, for positions on that grid: EASTING,NORTHING,ALTITUDE (m)")
       ->delimiter(',')
       ->expected(3);
   addVerbosity(&arguments->verbosity, command);

@@ -57,12 +57,11 @@ std::string SiteArguments::numbers() const {
   return fmt::format("{},{},{}", place.latitude_deg, place.longitude_deg, place.height_m);
 }
 
-void addSite(SiteArguments* site, const std::string& use, CLI::App* command) {
+void addSite(SiteArguments* site, CLI::App* command) {
   command
       ->add_option("--site", site->position,
-                   "place of the recording, for " + use +
-                       ": LATITUDE,LONGITUDE,HEIGHT in degrees and m (height 0 if not stated), or another "
-                       "usual notation")
+                   "place of the recording, for true north and the Earth's field: "
+                   "LATITUDE,LONGITUDE[,HEIGHT] (degrees, m), or another usual notation")
       ->type_name("PLACE");
   command->add_option("--date", site->date, "date of the recording, with --site")->type_name("YYYY-MM-DD");
 }
@@ -84,7 +83,7 @@ void addRecordingPart(RecordingPart* part, CLI::App* command) {
 }
 
 void addCameras(std::vector<int>* cameras, CLI::App* command) {
-  command->add_option("--cameras", *cameras, "numbers of the cameras to use, such as 0,1; by default all")
+  command->add_option("--cameras", *cameras, "numbers of the cameras to use, such as 0,1 (default: all)")
       ->type_name("N,N")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber);

@@ -33,8 +33,7 @@ struct SiteArguments {
   /// "LATITUDE,LONGITUDE,HEIGHT" in degrees and metres; empty for none.
   std::string numbers() const;
 };
-/// `use`: what place and date are for.
-void addSite(SiteArguments* site, const std::string& use, CLI::App* command);
+void addSite(SiteArguments* site, CLI::App* command);
 
 /// Part of a recording, in seconds from its start.
 struct RecordingPart {

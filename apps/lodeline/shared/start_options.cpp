@@ -16,10 +16,11 @@ CLI::Option* addStartOptions(StartArguments* arguments, CLI::App* command) {
   CLI::Option* start =
       command
           ->add_option("--start", arguments->position_m,
-                       "EAST,NORTH,UP (m from the map's origin) at which the dive began, as by a GPS fix")
+                       "start of the dive from the origin of the map, such as a GPS fix: EAST,NORTH,UP (m)")
           ->delimiter(',')
           ->expected(3);
-  command->add_option("--start-sigma", arguments->sigmas_m, "HORIZONTAL,VERTICAL (m): how well that is known")
+  command
+      ->add_option("--start-sigma", arguments->sigmas_m, "one sigma of that start: HORIZONTAL,VERTICAL (m)")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();

@@ -76,31 +76,36 @@ void simulate(const SimulateArguments& arguments) {
 
 void addScenarioOptions(CLI::App* command, ScenarioChanges* changes) {
   ScenarioChanges& c = *changes;
-  command->add_option("--seconds", c.seconds, "duration; given alone, the length follows");
-  command->add_option("--metres", c.metres, "length of the path; given alone, the duration follows");
-  command->add_option("--seed", c.seed, "of everything random (1)");
-  command->add_option("--cave-seed", c.cave_seed, "of the cave: place, walls and tags (--seed)");
+  command->add_option("--seconds", c.seconds,
+                      "duration of the dive; without --metres, the length of the path follows");
+  command->add_option("--metres", c.metres, "length of the path, m; without --seconds, the duration follows");
+  command->add_option("--seed", c.seed, "seed of everything random (default: 1)");
+  command->add_option("--cave-seed", c.cave_seed,
+                      "seed of the cave: place, walls and tags (default: --seed)");
   command->add_option("--dive-seed", c.dive_seed,
-                      "of the dive: motion, rig, lamps, water and disturbances (--seed)");
-  command->add_option("--cave-metres", c.cave_metres, "length of the passage (half of the path)");
-  command->add_option("--entrance", c.entrance, "2: dive from the far end of the passage (1)");
-  command->add_option("--laps", c.laps, "rounds of a circuit or chamber (2), or of a wreck (3)");
-  command->add_option("--tags", c.tags, "AprilTags on the line of the cave (0)");
+                      "seed of the dive: motion, rig, lamps, water and disturbances (default: --seed)");
+  command->add_option("--cave-metres", c.cave_metres, "length of the passage, m (default: half of the path)");
+  command->add_option("--entrance", c.entrance, "2: begin at the far end of the passage (default: 1)");
+  command->add_option("--laps", c.laps,
+                      "number of rounds of a circuit or chamber (default: 2), or of a wreck (default: 3)");
+  command->add_option("--tags", c.tags, "number of AprilTags on the line of the cave (default: 0)");
   command->add_option("--realism", c.realism,
-                      "clean; field: what a diver delivers; physical: more optics, water and life (clean)");
-  command->add_option("--effect", c.effects, "NAME=on or NAME=off, repeatable; see --list-effects");
-  command->add_option("--width", c.width_px, "of the images, px; the height follows as 3/4 (640)");
-  command->add_option("--height", c.height_px, "of the images, px");
-  command->add_option("--camera-rate-hz", c.camera_rate_hz, "images a second (15)");
-  command->add_option("--imu-rate-hz", c.imu_rate_hz, "inertial readings a second (200)");
+                      "clean: exact files, clear water; field: errors of a real dive; physical: more optics, "
+                      "water and life (default: clean)");
+  command->add_option("--effect", c.effects, "effect to switch, as NAME=on or NAME=off; may be repeated");
+  command->add_option("--width", c.width_px,
+                      "width of the images, px; without --height, the height is 3/4 of it (default: 640)");
+  command->add_option("--height", c.height_px, "height of the images, px");
+  command->add_option("--camera-rate-hz", c.camera_rate_hz, "images per second (default: 15)");
+  command->add_option("--imu-rate-hz", c.imu_rate_hz, "inertial readings per second (default: 200)");
   command->add_option("--magnetometer-rate-hz", c.magnetometer_rate_hz,
-                      "magnetometer readings a second (50)");
+                      "magnetometer readings per second (default: 50)");
   command->add_option("--camera-model", c.camera_model,
-                      "lens of the cameras: " + cameraModelNames() + " (the rig's own)");
+                      "lens of the cameras: " + cameraModelNames() + " (default: that of the rig)");
   command->add_option("--readout-ms", c.readout_ms,
-                      "of a rolling shutter, which it switches on (drawn, 10 to 30)");
-  command->add_option("--imu", c.imu_grade, "gx5-25, gv7 or consumer");
-  command->add_flag("--starts-moving", c.starts_moving, "begin in mid-swim instead of at rest");
+                      "readout time of a rolling shutter, which this switches on (default: drawn, 10 to 30)");
+  command->add_option("--imu", c.imu_grade, "grade of the IMU: gx5-25, gv7 or consumer");
+  command->add_flag("--starts-moving", c.starts_moving, "begin in mid-swim, not at rest");
 }
 
 void addSimulateCommand(CLI::App& program) {
@@ -108,16 +113,18 @@ void addSimulateCommand(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("simulate", "Make a recording of a simulated dive with exact truth");
   ScenarioChanges& c = arguments->changes;
-  command->add_option("SCENARIO", arguments->scenario, "what to simulate, see below");
+  command->add_option("SCENARIO", arguments->scenario, "scenario, see below");
   command->add_option("-o,--output", arguments->output, "folder to write: mav0 (EuRoC layout) and truth");
   addScenarioOptions(command, &c);
-  command->add_option("--cameras", c.cameras, "1 or 2");
+  command->add_option("--cameras", c.cameras, "number of cameras, 1 or 2");
   command->add_flag("--sonar-ahead", c.sonar_ahead,
-                    "the sonar scans a sector of the view, not the plane across it");
-  command->add_flag("--cables-moved", c.cables_moved,
-                    "of a vehicle: another day, on which its currents disturb the magnetometer otherwise");
+                    "scan a sector of the view with the sonar, not the plane across it");
+  command->add_flag(
+      "--cables-moved", c.cables_moved,
+      "move the cables of a vehicle; its currents then disturb the magnetometer in another way");
   command->add_flag("--no-images", c.no_images, "write everything but the images");
-  command->add_option("--threads", arguments->threads, "for rendering (all cores)");
+  command->add_option("--threads", arguments->threads,
+                      "number of threads for rendering (default: all cores)");
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->add_flag("--list-effects", arguments->list_effects, "print all effects and end");

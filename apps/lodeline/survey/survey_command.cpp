@@ -173,18 +173,21 @@ void addSurveyCommand(CLI::App& program) {
       ->required();
   command->add_option("-o,--output", arguments->output, "folder for the files")->required();
   addOverwrite(&arguments->overwrite, command);
-  command->add_option("--name", arguments->name, "of survey and files; without it, the project's file name");
-  command->add_option("--title", arguments->title, "of the survey");
-  command->add_option("--team", arguments->team, "a person; once for each");
-  command->add_option("--date", arguments->date, "YYYY-MM-DD of dives whose date nothing else states");
+  command->add_option("--name", arguments->name,
+                      "name of survey and files; without it, that of the project's file");
+  command->add_option("--title", arguments->title, "title of the survey");
+  command->add_option("--team", arguments->team, "name of a person of the team; may be repeated");
+  command->add_option("--date", arguments->date, "date of dives whose date nothing else states, YYYY-MM-DD");
   command->add_option("--entrance", arguments->entrance,
-                      "of the water's surface above the first pose of the first dive, as in `export`");
+                      "place of the water's surface above the first pose of the first dive, as in `export`");
   command->add_option("--crs", arguments->crs, "grid, as in `export`");
   command->add_option("--vertical-datum", arguments->vertical_datum,
-                      "the level that heights count from, as in `export`");
-  command->add_option("--merge", arguments->merge_m,
-                      "m between ways through one passage, which become one line (2.5); 0 keeps every way");
-  command->add_option("--spacing", arguments->spacing_m, "m between stations on a straight way (5)");
+                      "level that heights count from, as in `export`");
+  command->add_option(
+      "--merge", arguments->merge_m,
+      "largest distance between ways that become one line, m (default: 2.5); 0 keeps every way");
+  command->add_option("--spacing", arguments->spacing_m,
+                      "distance between stations on a straight way, m (default: 5)");
   addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Options replace the values of the project.\n"

@@ -12,11 +12,13 @@ namespace {
 
 void addSurfaceOptions(WallsArguments* arguments, CLI::App* command) {
   command->add_flag("--one-camera", arguments->one_camera,
-                    "depths from neighbouring images of the first camera, also where the rig has two");
+                    "take depths from neighbouring images of the first camera, although the rig has two");
   command->add_option("--voxel", arguments->walls.fusion.voxel_m, "edge of the cells of the surface, m")
       ->check(CLI::Range(0.005, 0.5))
       ->capture_default_str();
-  command->add_option("--step", arguments->walls.depths.steps.step_m, "m between two keyframes with depths")
+  command
+      ->add_option("--step", arguments->walls.depths.steps.step_m,
+                   "distance between two keyframes with depths, m")
       ->check(CLI::Range(0.02, 5.0))
       ->capture_default_str();
   command
@@ -26,12 +28,12 @@ void addSurfaceOptions(WallsArguments* arguments, CLI::App* command) {
       ->capture_default_str();
   command
       ->add_option("--min-views", arguments->walls.fusion.min_views,
-                   "keyframes that must see a place; what fewer see is particles")
+                   "number of keyframes that must see a place; others count as particles in the water")
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
   command
       ->add_option("--spacing", arguments->map.stations.spacing_m,
-                   "m between cross-sections on a straight way")
+                   "distance between cross-sections on a straight way, m")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
 }
@@ -39,13 +41,11 @@ void addSurfaceOptions(WallsArguments* arguments, CLI::App* command) {
 void addWallsPlaceOptions(WallsArguments* arguments, CLI::App* command) {
   command->add_option(
       "--entrance", arguments->entrance,
-      "place of the water's surface above the first pose, as for `lodeline export`; LAS and DXF "
-      "are then on a grid");
-  command->add_option("--crs", arguments->map.crs, "that grid, as for `lodeline export`")
-      ->capture_default_str();
+      "place of the water's surface above the first pose, as in `export`; LAS and DXF are then on a grid");
+  command->add_option("--crs", arguments->map.crs, "grid, as in `export`")->capture_default_str();
   command->add_option(
       "--turn", arguments->map.turn_deg,
-      "degrees clockwise that turn the run's world to true north, in place of the declination");
+      "clockwise turn of the run's world to true north, degrees, in place of the declination");
 }
 
 }  // namespace
@@ -57,8 +57,7 @@ void addWallsCommand(CLI::App& program) {
   command->add_option("RUN", arguments->run, "folder that `lodeline refine` or `lodeline run` wrote")
       ->required();
   command->add_option("-o,--output", arguments->output, "folder for the files; without it, RUN/walls");
-  command->add_option("--recording", arguments->recording,
-                      "the run's recording, where it is no longer at the place that the run names");
+  command->add_option("--recording", arguments->recording, "recording of the run, where it has moved");
   addBagOptions(&arguments->bag, command);
   addSurfaceOptions(arguments.get(), command);
   addWallsPlaceOptions(arguments.get(), command);
@@ -67,9 +66,7 @@ void addWallsCommand(CLI::App& program) {
   command->add_flag("--keep-work", arguments->keep_work, "keep depths and tiles in OUTPUT/work");
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "An interrupted call goes on where it stopped when the same command is given again. --from and --to "
-      "count\n"
-      "from the first pose of the run.\n"
+      "An interrupted command goes on when it is given again. --from and --to count from the first pose.\n"
       "Examples:\n"
       "  lodeline walls result -o walls\n"
       "  lodeline walls result -o walls --voxel 0.03 --spacing 2\n"
