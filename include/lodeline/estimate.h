@@ -120,11 +120,11 @@ struct MagnetometerEstimate {
   MagnetometerStatus status = MagnetometerStatus::Off;
   HeadingReference heading_reference = HeadingReference::Start;
   /// Rotation about the vertical, rad, from the estimator's world to a world whose y axis points to that
-  /// reference, by the present estimate. 0 where the world was rotated before the first pose; empty while
-  /// north is unknown. The estimator's world itself never rotates after its first pose.
+  /// reference, by the present estimate; empty while north is unknown. The estimator's world itself never
+  /// rotates after its first pose, which points to north as well as the first readings tell.
   std::optional<double> north_from_world_rad;
   double north_from_world_sigma_rad = 0.0;  ///< of that rotation, relative to the heading of the first pose
-  std::optional<Time> north_found;          ///< time at which north was found, if after the first pose
+  std::optional<Time> north_found;          ///< time of the first pose with a known north
   int field_epoch = 0;  ///< counts replacements of the field that is taken for the Earth's
   /// Sigmas of the heading relative to that reference, rad: from the frame's covariance, and of the
   /// declination.

@@ -17,14 +17,13 @@ using namespace lodeline;
 void printRow(const DisturbedDive& dive, const DiveErrorsOfRun& off, const DiveErrorsOfRun& on) {
   const auto degrees = [](double rad) { return rad * kDegreesPerRadian; };
   fmt::print(
-      "{:33} {:>5.0f} {:>6.3f} {:>6.3f} {:>5.2f} {:>6.3f} {:>6.3f} {:>5.2f} {:>7.2f} {:>7.2f} {:>7.2f} "
-      "{:>6.1f} "
-      "{:>6.1f} {:>5.0f} {:>5.0f}\n",
+      "{:33} {:>5.0f} {:>6.3f} {:>6.3f} {:>5.2f} {:>7.2f} {:>6.3f} {:>6.3f} {:>5.2f} {:>7.2f} {:>7.2f} "
+      "{:>7.2f} {:>6.1f} {:>6.1f} {:>5.0f} {:>5.0f}\n",
       dive.name, on.path_m, degrees(off.heading_rms_rad), degrees(on.heading_rms_rad),
-      on.heading_rms_rad / off.heading_rms_rad, off.position_rms_m, on.position_rms_m,
-      on.position_rms_m / off.position_rms_m, degrees(on.north_rms_rad), degrees(on.north_end_rad),
-      degrees(on.claimed_rad), 100.0 * on.within_3_sigmas, on.most_sigmas, 100.0 * on.used_share,
-      100.0 * on.readmitted_share);
+      on.heading_rms_rad / off.heading_rms_rad, on.settled_rms_rad / off.settled_rms_rad, off.position_rms_m,
+      on.position_rms_m, on.position_rms_m / off.position_rms_m, degrees(on.north_rms_rad),
+      degrees(on.north_end_rad), degrees(on.claimed_rad), 100.0 * on.within_3_sigmas, on.most_sigmas,
+      100.0 * on.used_share, 100.0 * on.readmitted_share);
   std::fflush(stdout);
 }
 
@@ -45,7 +44,8 @@ void printEach(const DisturbedRun& run, double step_s) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Harm of the magnetometer on dives of points: path, m; heading about its mean and position after "
-      "alignment (deg, m), without and with magnetometer, and their ratio; with it, the error of north (root "
+      "alignment (deg, m), without and with magnetometer, and their ratio; that of the headings after the "
+      "first 20 s; with it, the error of north (root "
       "mean square, and at the end), what it claims, the share of frames within three claimed sigmas, the "
       "largest error in sigmas, and the share of frames that used the field or used it after a readmission.");
   bool undisturbed = false, on_alone = false;
@@ -62,9 +62,10 @@ int main(int argc, char** argv) {
   if (numbers.empty()) {
     for (size_t i = 1; i <= dives.size(); ++i) numbers.push_back(i);
   }
-  fmt::print("{:33} {:>5} {:>6} {:>6} {:>5} {:>6} {:>6} {:>5} {:>7} {:>7} {:>7} {:>6} {:>6} {:>5} {:>5}\n",
-             "dive", "path", "h off", "h on", "ratio", "p off", "p on", "ratio", "north", "end", "claimed",
-             "in 3s", "most s", "used%", "readm");
+  fmt::print(
+      "{:33} {:>5} {:>6} {:>6} {:>5} {:>7} {:>6} {:>6} {:>5} {:>7} {:>7} {:>7} {:>6} {:>6} {:>5} {:>5}\n",
+      "dive", "path", "h off", "h on", "ratio", "settled", "p off", "p on", "ratio", "north", "end",
+      "claimed", "in 3s", "most s", "used%", "readm");
   for (const size_t number : numbers) {
     DisturbedDive dive = dives.at(number - 1);
     dive.seed += seed_shift;

@@ -85,7 +85,7 @@ TEST(StartPrior, TiltAndAccelerometerBiasAnswerForEachOther) {
   Frame& first = window.add(std::move(added));
   Prior turned = startPrior(first, options, 0.01);
   tieTiltToAccelerometerBias(first, kStandardGravity, &turned);
-  turnWorld(1.2, 0.3, &window, &turned);
+  turnWorld(1.2, &window, &turned);
   state = first.state();
   state.world_from_body.rotation = so3::exp(1.2 * Vec3::UnitZ()) * yaw * true_attitude;
   state.accelerometer_bias_B = bias_B;

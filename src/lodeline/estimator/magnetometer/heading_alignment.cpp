@@ -82,7 +82,7 @@ void relateToNorth(const NavigationState& state, const AzimuthCovariance& azimut
                  azimuth.with_state * turn.transpose();
 }
 
-void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior) {
+void turnWorld(double yaw_rad, Window* window, Prior* prior) {
   const Rigid3 turned_from_world(so3::exp(yaw_rad * Vec3::UnitZ()), Vec3::Zero());
   for (const auto& frame : window->frames()) {
     NavigationState state = frame->state();
@@ -96,7 +96,6 @@ void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prio
   poseToBlock(turned_from_world * poseFromBlock(pose), pose);
   prior->blocks[1].linearization_point.head<3>() =
       turned_from_world.rotation * Vec3(prior->blocks[1].linearization_point.head<3>());
-  prior->sqrt_information(5, 5) = 1.0 / yaw_sigma_rad;
   // The correlation of roll and pitch (world axes) with the motion block (tieTiltToAccelerometerBias) rotates
   // as well.
   constexpr int kTilt = 3;

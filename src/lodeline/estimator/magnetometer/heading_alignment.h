@@ -48,7 +48,7 @@ void relateToNorth(const NavigationState& state, const AzimuthCovariance& azimut
                    Eigen::Matrix<double, 15, 15>* covariance);
 
 /// Rotates the world of a window without marginalized states, together with the prior on its first frame
-/// (startPrior). The sigma of that frame's heading becomes `yaw_sigma_rad`.
-void turnWorld(double yaw_rad, double yaw_sigma_rad, Window* window, Prior* prior);
+/// (startPrior).
+void turnWorld(double yaw_rad, Window* window, Prior* prior);
 
 }  // namespace lodeline

@@ -41,16 +41,6 @@ std::span<const FieldSample> recent(std::span<const FieldSample> samples, std::s
   return since(std::max(imu.front().time, end - Duration::fromSeconds(kLongMean_s)));
 }
 
-/// Upper triangular root of the information of a field with a practically known azimuth.
-Mat3 fieldPrior(const Vec3& field_W, double sigma_T, double azimuth_sigma_rad) {
-  const double horizontal_T = field_W.head<2>().norm();
-  const Vec3 across = Vec3::UnitZ().cross(field_W) / horizontal_T;
-  const double across_sigma_T = azimuth_sigma_rad * horizontal_T;
-  const Mat3 information = Mat3::Identity() / (sigma_T * sigma_T) +
-                           across * across.transpose() / (across_sigma_T * across_sigma_T);
-  return information.llt().matrixU();
-}
-
 }  // namespace
 
 MagnetometerFusion::MagnetometerFusion(const Rig& rig, const EstimatorOptions& options,
@@ -131,10 +121,6 @@ void MagnetometerFusion::addStates(const HeadingAlignment& alignment, Window* wi
   ParameterBlock& offset = add(MagnetometerStates::kOffset, Vec3::Zero(), wanted.offset_walk_T_per_sqrt_s);
   add(MagnetometerStates::kDisturbance, Vec3::Zero(), wanted.disturbance_walk_T_per_sqrt_s);
   prior->append(field.value.data(), 3, Vec3::Constant(wanted.field_sigma_T));
-  if (alignment.reference != HeadingReference::Start) {
-    prior->sqrt_information.bottomRightCorner<3, 3>() =
-        fieldPrior(alignment.field_W, wanted.field_sigma_T, options_.initial_state.yaw_sigma_rad);
-  }
   prior->append(offset.value.data(), 3, Vec3::Constant(offsetSigma()));
   for (ParameterBlock& state : currents_.states()) {
     ParameterBlock& field_of_current = window->add(std::move(state));

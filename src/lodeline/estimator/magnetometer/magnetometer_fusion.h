@@ -137,7 +137,7 @@ class MagnetometerFusion final : public SensorFusion {
   HeadingReference heading_reference_ = HeadingReference::Start;
   EarthFieldSearch search_;
   Time started_;                          ///< time of the first pose
-  std::optional<Time> north_found_;       ///< if later than that
+  std::optional<Time> north_found_;       ///< that of the first pose, or later
   Vec3 relative_field_W_ = Vec3::Zero();  ///< from which north was found without a state of the field
   int field_epoch_ = 0;
   bool north_missing_reported_ = false;

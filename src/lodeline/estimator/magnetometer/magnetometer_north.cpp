@@ -52,9 +52,11 @@ void MagnetometerFusion::align(Window* window, Prior* prior) {
   heading_reference_ = alignment.reference;
   reportFieldUpwards(alignment.field_W, wanted, diagnostics_);
   if (heading_reference_ != HeadingReference::Start) {
-    const double offset_sigma_rad =
-        std::hypot(offsetSigma(), floorSigma(alignment.field_W)) / alignment.field_W.head<2>().norm();
-    turnWorld(alignment.yaw_rad, absolute() ? wanted.start_yaw_sigma_rad : offset_sigma_rad, window, prior);
+    // The heading of the first pose stays, and the azimuth of the field is estimated. Where the first field
+    // is that of iron, north moves later, and not the path.
+    turnWorld(alignment.yaw_rad, window, prior);
+    north_found_ = started_;
+    relative_field_W_ = alignment.field_W;
   }
   if (absolute()) addStates(alignment, window, prior);
 }
@@ -181,7 +183,6 @@ void MagnetometerFusion::describeNorth(const Window& window, MagnetometerEstimat
   estimate->heading_reference = heading_reference_;
   estimate->north_found = north_found_;
   estimate->field_epoch = field_epoch_;
-  if (heading_reference_ != HeadingReference::Start) estimate->north_from_world_rad = 0.0;
   if (!north_found_) return;
   const Vec3 field_W = northField(window);
   estimate->north_from_world_rad = northFromWorld(field_W, heading_reference_, options_.magnetometer);
@@ -189,12 +190,9 @@ void MagnetometerFusion::describeNorth(const Window& window, MagnetometerEstimat
 }
 
 void MagnetometerFusion::relate(const Window& window, Eigen::Matrix<double, 15, 15>* covariance) const {
-  const bool doubts_field =
-      MagnetometerStates(window).field != nullptr && heading_reference_ != HeadingReference::Start;
-  if (!north_found_ && !doubts_field) return;
-  AzimuthCovariance north;
-  if (north_found_) north = azimuth(window);
-  if (doubts_field)
+  if (!north_found_) return;
+  AzimuthCovariance north = azimuth(window);
+  if (MagnetometerStates(window).field != nullptr)
     north.variance_rad2 += std::pow(anomaly_.sigma_T() / northField(window).head<2>().norm(), 2);
   relateToNorth(window.newest().state(), north, covariance);
 }

@@ -53,7 +53,6 @@ void MagnetometerOptions::check() const {
       .notNegative("offset_walk_T_per_sqrt_s", offset_walk_T_per_sqrt_s)
       .notNegative("disturbance_sigma_T", disturbance_sigma_T)
       .notNegative("disturbance_walk_T_per_sqrt_s", disturbance_walk_T_per_sqrt_s)
-      .positive("start_yaw_sigma_rad", start_yaw_sigma_rad)
       .notNegative("max_start_norm_error", max_start_norm_error)
       .notNegative("max_start_dip_error_rad", max_start_dip_error_rad)
       .notNegative("min_horizontal_field_T", min_horizontal_field_T)

@@ -101,9 +101,6 @@ struct MagnetometerOptions {
   double disturbance_sigma_T = 5e-6;
   double disturbance_walk_T_per_sqrt_s = 5e-8;
 
-  /// Sigma of the first heading before the field is used. It is just small enough to keep the first solver
-  /// steps small.
-  double start_yaw_sigma_rad = 0.5;
   double max_start_norm_error = 0.1;      ///< relative to the field at the site
   double max_start_dip_error_rad = 0.12;  ///< against the field at the site
   double min_horizontal_field_T = 5e-6;   ///< a smaller horizontal field gives no heading (polar regions)

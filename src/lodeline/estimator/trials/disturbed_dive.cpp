@@ -51,15 +51,8 @@ class RunErrors {
     DiveErrorsOfRun& errors = run.errors;
     const double count = static_cast<double>(samples_.size());
     errors.path_m = path_m_;
-    double cosines = 0.0, sines = 0.0;
-    for (const double turn_rad : turns_rad_) {
-      cosines += std::cos(turn_rad);
-      sines += std::sin(turn_rad);
-    }
-    const double mean_rad = std::atan2(sines, cosines);
-    for (const double turn_rad : turns_rad_)
-      errors.heading_rms_rad += std::pow(std::remainder(turn_rad - mean_rad, 2.0 * std::numbers::pi), 2);
-    errors.heading_rms_rad = std::sqrt(errors.heading_rms_rad / count);
+    errors.heading_rms_rad = headingRmsFrom(0.0);
+    errors.settled_rms_rad = headingRmsFrom(kSettled_s);
     errors.position_rms_m = alignedPositionRms();
     double end_sum_rad = 0.0;
     int at_end = 0;
@@ -83,6 +76,23 @@ class RunErrors {
   }
 
  private:
+  /// Root mean square of the heading errors about their mean, of the frames from `begin_s` on.
+  double headingRmsFrom(double begin_s) const {
+    std::vector<double> turns_rad;
+    double cosines = 0.0, sines = 0.0;
+    for (size_t i = 0; i < turns_rad_.size(); ++i) {
+      if (samples_[i].time_s < begin_s) continue;
+      turns_rad.push_back(turns_rad_[i]);
+      cosines += std::cos(turns_rad_[i]);
+      sines += std::sin(turns_rad_[i]);
+    }
+    const double mean_rad = std::atan2(sines, cosines);
+    double squares = 0.0;
+    for (const double turn_rad : turns_rad)
+      squares += std::pow(std::remainder(turn_rad - mean_rad, 2.0 * std::numbers::pi), 2);
+    return std::sqrt(squares / static_cast<double>(turns_rad.size()));
+  }
+
   double alignedPositionRms() const {
     Vec3 mean_estimated_W = Vec3::Zero(), mean_true_W = Vec3::Zero();
     const double count = static_cast<double>(true_W_.size());

@@ -28,9 +28,13 @@ std::vector<DisturbedDive> disturbedDives();
 /// The same caves without disturbance, with good and with noisy sensors.
 std::vector<DisturbedDive> undisturbedDives();
 
+/// Until then the field turns the first heading to north, s.
+constexpr double kSettled_s = 20.0;
+
 /// Errors of one run. Headings and positions are compared after the turn and shift that fit best.
 struct DiveErrorsOfRun {
   double heading_rms_rad = 0.0;   ///< about its mean
+  double settled_rms_rad = 0.0;   ///< the same from kSettled_s after the beginning on
   double position_rms_m = 0.0;    ///< after alignment in four degrees of freedom
   double north_rms_rad = 0.0;     ///< against north; of a run without north, against the first heading
   double north_end_rad = 0.0;     ///< over the last 10 s

@@ -112,8 +112,8 @@ std::optional<double> StationaryDetector::shiftAtRest() const {
   if (static_cast<int>(shifts.size()) < options_.min_tracks) return std::nullopt;
   // Noise gives a shift of sqrt(2) sigma and a second difference of sqrt(6) sigma; a steady motion gives only
   // a shift.
-  const double noise_shift = std::sqrt(2.0 / 6.0) * median(std::move(bends));
-  const double shift = median(std::move(shifts));
+  const double noise_shift = std::sqrt(2.0 / 6.0) * median(bends);
+  const double shift = median(shifts);
   if (shift >= std::max(options_.shift_px / focal_length_px_, 1.4 * noise_shift)) return std::nullopt;
   // The common shift of all tracks, after subtraction of the noise, plus the uncertainty of the median by
   // noise.

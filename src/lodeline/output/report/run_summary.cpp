@@ -201,8 +201,11 @@ double RunSummary::northFoundAfter_s() const {
 bool RunSummary::hasNorth() const { return WorldTurn::of(lastMagnetometer()).has_value(); }
 
 std::string RunSummary::headingText() const {
-  return fmt::format("{} found {:.1f} s after the first pose; all files are turned by {:.1f} deg to it",
-                     toString(lastMagnetometer().heading_reference), northFoundAfter_s(),
+  const double found_after_s = northFoundAfter_s();
+  const std::string late =
+      found_after_s > 0.0 ? fmt::format(" found {:.1f} s after the first pose", found_after_s) : "";
+  return fmt::format("{}{}; all files are turned by {:.1f} deg to it",
+                     toString(lastMagnetometer().heading_reference), late,
                      WorldTurn::of(lastMagnetometer())->angle_rad * 180.0 / M_PI);
 }
 
