@@ -91,9 +91,11 @@ class Open3dVolume final : public WallVolume {
   }
 
   WallMesh extract() override {
+    const float least = leastWeight();
     for (BlockValues& block : blocks_) {
       for (int i = 0; i < kVoxels; ++i) {
-        if (block.views[static_cast<size_t>(i)] < options_.min_views) block.weight[i] = 0.0F;
+        if (block.views[static_cast<size_t>(i)] < options_.min_views || block.weight[i] < least)
+          block.weight[i] = 0.0F;
       }
     }
     const o3::t::geometry::TriangleMesh mesh = grid_.ExtractTriangleMesh(0.0F, -1);
@@ -131,6 +133,9 @@ class Open3dVolume final : public WallVolume {
     return pixel.x() > -border.x() && pixel.y() > -border.y() && pixel.x() < size.width + border.x() &&
            pixel.y() < size.height + border.y();
   }
+
+  /// Least sum of the weights of a voxel, 1 for 1 cm: one sigma of the joint distance is a voxel.
+  float leastWeight() const { return static_cast<float>(std::pow(0.01 / options_.voxel_m, 2.0)); }
 
   void addTo(BlockValues* block, const Projection& projection, const DepthImage& image) const {
     const auto voxel_m = static_cast<float>(options_.voxel_m);
