@@ -65,6 +65,11 @@ magnetic-harm: everything
 walls-figures: everything
 	./scripts/walls_figures.sh build/walls_figures
 
+# Walls of an excerpt beside the points of COLMAP, with the poses of the run; needs colmap, some minutes.
+.PHONY: walls-colmap
+walls-colmap: walls-figures
+	./scripts/walls_colmap.sh build/walls_figures
+
 # Fuzzers of all readers, built with Clang; each runs for ten seconds on its corpus.
 fuzz: test-dependencies
 	cmake --preset sanitized

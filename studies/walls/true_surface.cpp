@@ -49,6 +49,24 @@ std::vector<double> TrueSurface::behind_m(const std::vector<Vec3>& points, const
   return distances;
 }
 
+std::optional<SurfaceHit> TrueSurface::hit(const Vec3& eye, const Vec3& direction) const {
+  constexpr double kBeside = 4e-4;
+  const Vec3 right = direction.unitOrthogonal(), above = direction.cross(right);
+  std::array<Vec3, 3> points;
+  std::optional<SurfaceHit> hit;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Vec3 beside = i == 0 ? Vec3(Vec3::Zero()) : Vec3(kBeside * (i == 1 ? right : above));
+    const Vec3 ray = (direction + beside).normalized();
+    const auto range_m = world_->scene.range(eye, ray);
+    if (!range_m) return std::nullopt;
+    if (i == 0) hit = SurfaceHit{*range_m, 0.0};
+    points[i] = eye + *range_m * ray;
+  }
+  const Vec3 normal = (points[1] - points[0]).cross(points[2] - points[0]);
+  hit->incidence_rad = std::acos(std::min(1.0, std::abs(normal.normalized().dot(direction))));
+  return hit;
+}
+
 std::vector<Vec3> TrueSurface::visible(const Trajectory& true_poses, double reach_m) const {
   constexpr double kStep_m = 0.2, kCell_m = 0.04;
   constexpr int kPixelStep = 6;
@@ -70,6 +88,19 @@ std::vector<Vec3> TrueSurface::visible(const Trajectory& true_poses, double reac
     }
   }
   return points;
+}
+
+Trajectory TrueSurface::withoutSilt(const Trajectory& true_poses) const {
+  Trajectory clear = true_poses;
+  const Time begin = true_poses.poses.front().time;
+  const std::vector<SiltEpisode> episodes = renderSettings(dive_).water.silt;
+  std::erase_if(clear.poses, [&](const StampedPose& pose) {
+    const double time_s = (pose.time - begin).seconds();
+    return std::any_of(episodes.begin(), episodes.end(), [&](const SiltEpisode& episode) {
+      return time_s >= episode.start_s && time_s < episode.start_s + episode.duration_s;
+    });
+  });
+  return clear;
 }
 
 double TrueSurface::area_m2(const Rigid3& truth_from_map, const SectionPlane& plane) const {

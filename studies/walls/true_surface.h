@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lodeline/output/walls/section/cross_section.h"
@@ -10,6 +11,12 @@
 #include "simulation/rendering/image_renderer.h"
 
 namespace lodeline {
+
+/// Where a line of sight meets the surface.
+struct SurfaceHit {
+  double range_m = 0.0;
+  double incidence_rad = 0.0;  ///< between the line of sight and the normal, 0 to pi/2
+};
 
 /// The exact walls of a simulated dive, in its world.
 class TrueSurface {
@@ -21,8 +28,12 @@ class TrueSurface {
   /// Signed distances of at most `most` of the points behind the surface, seen from the nearest pose, m.
   std::vector<double> behind_m(const std::vector<Vec3>& points, const Trajectory& true_poses,
                                size_t most) const;
+  /// Meeting of a line of sight, and the slope of the surface there by rays 0.4 mrad beside it.
+  std::optional<SurfaceHit> hit(const Vec3& eye, const Vec3& direction) const;
   /// Points that camera 0 sees within `reach_m` from any pose, one in each cell of 4 cm.
   std::vector<Vec3> visible(const Trajectory& true_poses, double reach_m) const;
+  /// The poses outside the silt-outs of the dive, which hide all walls.
+  Trajectory withoutSilt(const Trajectory& true_poses) const;
   /// Area that is seen from a station in its plane. `plane`: in the frame of a map.
   double area_m2(const Rigid3& truth_from_map, const SectionPlane& plane) const;
 

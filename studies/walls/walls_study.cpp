@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "lodeline/output/survey/map/dive_map.h"
 #include "lodeline/output/walls/section/cross_section.h"
@@ -19,6 +20,7 @@ using namespace lodeline;
 
 struct Arguments {
   std::string recording, run, walls, scenario = "cave1_short";
+  double from_s = 0.0, to_s = 1e9;
   ScenarioChanges changes;
 };
 
@@ -41,6 +43,31 @@ std::vector<Vec3> readCloud(const std::filesystem::path& file) {
     points.emplace_back(position[0], position[1], position[2]);
   }
   return points;
+}
+
+/// Points of points3D.txt as COLMAP writes it: rows of number, x, y, z and more.
+std::vector<Vec3> readColmapPoints(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::vector<Vec3> points;
+  while (std::getline(stream, line)) {
+    std::istringstream row(line);
+    double number = 0.0;
+    Vec3 point;
+    if (row >> number >> point.x() >> point.y() >> point.z()) points.push_back(point);
+  }
+  if (points.empty()) throw InputError(file.string() + ": no points of COLMAP");
+  return points;
+}
+
+/// Poses of the part of the run that `--from` and `--to` choose, as `lodeline walls` counts it.
+Trajectory partOf(const Trajectory& true_poses, Time begin, const Arguments& arguments) {
+  Trajectory part = true_poses;
+  std::erase_if(part.poses, [&](const StampedPose& pose) {
+    const double since_s = (pose.time - begin).seconds();
+    return since_s < arguments.from_s || since_s > arguments.to_s;
+  });
+  return part;
 }
 
 double shareWithin(const std::vector<double>& errors_m, double limit_m) {
@@ -101,7 +128,8 @@ void study(const Arguments& arguments) {
   const DiveMap map = makeDiveMap(readRunFolder(arguments.run, &diagnostics), {}, {}, &diagnostics);
   const Trajectory true_poses = readTrajectory(arguments.recording, {}, diagnostics);
   const PosePairs pairs = associate(map.trajectory, true_poses, {AssociationMethod::Interpolate, 0.1, 0.0});
-  const Rigid3 truth_from_map = align(AlignmentType::SE3, pairs).reference_from_estimate;
+  // The vertical is part of the map: a turn about a straight dive would not show in its positions.
+  const Rigid3 truth_from_map = align(AlignmentType::Yaw, pairs).reference_from_estimate;
   double squares = 0.0;
   for (size_t i = 0; i < pairs.size(); ++i)
     squares +=
@@ -110,21 +138,28 @@ void study(const Arguments& arguments) {
              100.0 * std::sqrt(squares / static_cast<double>(pairs.size())));
 
   const TrueSurface truth(scenario);
-  std::vector<Vec3> cloud = readCloud(std::filesystem::path(arguments.walls) / "cloud.ply");
+  const std::filesystem::path walls = arguments.walls;
+  const bool is_colmap = walls.extension() == ".txt";
+  std::vector<Vec3> cloud = is_colmap ? readColmapPoints(walls) : readCloud(walls / "cloud.ply");
   for (Vec3& point : cloud) point = truth_from_map * point;
   fmt::print("{:<32}{:>8}{:>8}{:>8}{:>8}{:>8}{:>12}{:>10}\n", "share (%) within", "2 cm", "4 cm", "5 cm",
              "8 cm", "10 cm", "90 % in cm", "points");
   printErrors("cloud from the true surface", truth.distances_m(cloud, 20'000));
-  std::vector<double> behind = truth.behind_m(cloud, true_poses, 20'000);
+  const Trajectory part = partOf(true_poses, map.trajectory.poses.front().time, arguments);
+  const Trajectory clear = truth.withoutSilt(part);
+  std::vector<double> behind = truth.behind_m(cloud, part, 20'000);
   std::sort(behind.begin(), behind.end());
   fmt::print("behind the surface: quartiles {:+.1f}, {:+.1f}, {:+.1f} cm\n", 100.0 * quantile(behind, 0.25),
              100.0 * quantile(behind, 0.5), 100.0 * quantile(behind, 0.75));
   for (const double reach_m : {3.0, 4.0, 5.0}) {
-    const std::vector<Vec3> visible = truth.visible(true_poses, reach_m);
+    const std::vector<Vec3> visible = truth.visible(part, reach_m);
     printErrors(fmt::format("visible surface within {:.0f} m", reach_m).c_str(), nearest_m(cloud, visible));
+    if (clear.size() < part.size())
+      printErrors("  outside of silt-outs", nearest_m(cloud, truth.visible(clear, reach_m)));
   }
-  printAreas(std::filesystem::path(arguments.walls) / "sections.csv", map, truth, truth_from_map);
-  printCost(std::filesystem::path(arguments.walls) / "walls.json");
+  if (is_colmap) return;
+  printAreas(walls / "sections.csv", map, truth, truth_from_map);
+  printCost(walls / "walls.json");
 }
 
 }  // namespace
@@ -134,7 +169,9 @@ int main(int argc, char** argv) {
   Arguments arguments;
   program.add_option("RECORDING", arguments.recording)->required();
   program.add_option("RUN", arguments.run)->required();
-  program.add_option("WALLS", arguments.walls)->required();
+  program.add_option("WALLS", arguments.walls, "of `lodeline walls`, or points3D.txt of COLMAP")->required();
+  program.add_option("--from", arguments.from_s, "s of the run, as for `lodeline walls`");
+  program.add_option("--to", arguments.to_s);
   program.add_option("--scenario", arguments.scenario);
   program.add_option("--realism", arguments.changes.realism);
   program.add_option("--metres", arguments.changes.metres);

@@ -40,14 +40,14 @@ struct ExportedDive {
 };
 
 RecordingParts readRecording(const ExportArguments& arguments, const std::vector<MapFormat>& formats,
-                             const RunFolder& run, Diagnostics* diagnostics) {
+                             const RunFolder& run, const ShareDone& progress, Diagnostics* diagnostics) {
   RecordingParts parts;
   if (arguments.recording.empty()) return parts;
   EurocOptions options;
   options.with_cameras = std::find(formats.begin(), formats.end(), MapFormat::Colmap) != formats.end();
   const std::unique_ptr<RecordedSource> source =
       openRecording(arguments.recording, options, arguments.bag, diagnostics);
-  parts.walls_W = sonarWalls(*source, run.trajectory, diagnostics);
+  parts.walls_W = sonarWalls(*source, run.trajectory, diagnostics, progress);
   if (options.with_cameras) parts.images = recordingImages(*source, run, diagnostics);
   return parts;
 }
@@ -86,11 +86,12 @@ std::vector<MapFormat> wantedFormats(const ExportArguments& arguments) {
 }
 
 ExportedDive makeDive(const ExportArguments& arguments, const std::vector<MapFormat>& formats, RunFolder run,
-                      DiveMapOptions options, Diagnostics* diagnostics) {
+                      DiveMapOptions options, const ShareDone& progress, Diagnostics* diagnostics) {
   ExportedDive dive;
+  progress(0.0);
   if (!arguments.depth.file.empty())
     dive.depth_comparison = applyDepthProfile(arguments.depth, &run, &options, diagnostics);
-  dive.recording = readRecording(arguments, formats, run, diagnostics);
+  dive.recording = readRecording(arguments, formats, run, progress, diagnostics);
   dive.map = makeDiveMap(run, options, dive.recording.walls_W, diagnostics);
   if (dive.map.echoes_ENU.empty()) return dive;
   std::vector<StationWalls> sections = echoesAtStations(dive.map.echoes_ENU, dive.map.survey, {});
@@ -109,17 +110,19 @@ std::vector<ExportedDive> makeDives(const ExportArguments& arguments, const std:
   DiveMapOptions options = mapOptions(arguments, diagnostics);
   std::vector<ExportedDive> dives;
   if (runs.size() == 1) {
-    dives.push_back(makeDive(arguments, formats, std::move(runs.front()), options, diagnostics));
+    dives.push_back(makeDive(arguments, formats, std::move(runs.front()), options, progress, diagnostics));
     return dives;
   }
   std::vector<std::filesystem::path> folders;
   for (const RunFolder& run : runs) folders.push_back(run.folder);
   const std::vector<std::string> names = surveyNames(folders);
   for (size_t i = 0; i < names.size(); ++i) {
-    progress(static_cast<double>(i) / static_cast<double>(names.size()));
     options.name = names[i];
     options.title.clear();
-    dives.push_back(makeDive(arguments, formats, std::move(runs[i]), options, diagnostics));
+    const auto ofDive = [&](double share) {
+      progress((static_cast<double>(i) + share) / static_cast<double>(names.size()));
+    };
+    dives.push_back(makeDive(arguments, formats, std::move(runs[i]), options, ofDive, diagnostics));
     const std::optional<Georeference>& place = dives.back().map.place;
     if (place) options.crs = place->gridDescription().code;
   }

@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-constexpr int kFormat = 1;  ///< of the files of unfinished work
+constexpr int kFormat = 2;  ///< of the files of unfinished work, and of how they are computed
 
 /// Hash of bytes (FNV-1a, 64 bit).
 class Hash {

@@ -18,7 +18,7 @@ struct ReportOptions {
   std::function<nlohmann::ordered_json(const std::filesystem::path& run, int64_t origin_ns)> stations =
       nullptr;
   nlohmann::ordered_json background = nullptr;                 ///< as readBackground() gives it
-  std::function<void(double share)> progress = [](double) {};  ///< takes the share of the page that is made
+  std::function<void(double share)> progress = [](double) {};  ///< takes the share of the work that is done
 };
 
 }  // namespace lodeline

@@ -44,10 +44,14 @@ std::string fillPage(const nlohmann::ordered_json& data) {
 std::string reportPage(const std::vector<std::filesystem::path>& runs, const ReportOptions& options,
                        Diagnostics* diagnostics) {
   nlohmann::ordered_json data = {{"live", false}, {"runs", nlohmann::ordered_json::array()}};
+  ReportOptions of_run = options;
   for (const auto& run : runs) {
-    options.progress(static_cast<double>(data["runs"].size()) / static_cast<double>(runs.size()));
-    data["runs"].push_back(runPageJson(run, options, diagnostics, runs.size()));
+    of_run.progress = [&](double share) {
+      options.progress((static_cast<double>(data["runs"].size()) + share) / static_cast<double>(runs.size()));
+    };
+    data["runs"].push_back(runPageJson(run, of_run, diagnostics, runs.size()));
   }
+  options.progress(1.0);
   data["background"] = options.background;
   return fillPage(data);
 }

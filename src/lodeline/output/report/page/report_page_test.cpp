@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -277,6 +278,21 @@ TEST(ReportPage, NothingInTheDataEndsTheScript) {
   EXPECT_THAT(page, HasSubstr("a name with \\u003c/script> in it"));
   EXPECT_THAT(page, Not(HasSubstr("with </script>")));
   EXPECT_THAT(page, Not(HasSubstr("LODELINE_DATA")));
+}
+
+TEST(ReportPage, SaysHowMuchOfEachRunIsDone) {
+  if (pageTemplate().empty()) GTEST_SKIP() << "built without the report page";
+  const TemporaryFolder folder;
+  test::writeTestRun(folder.path());
+  Diagnostics diagnostics;
+  std::vector<double> shares;
+  ReportOptions options;
+  options.progress = [&](double share) { shares.push_back(share); };
+  reportPage({folder.path(), folder.path()}, options, &diagnostics);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_GE(std::count_if(shares.begin(), shares.end(), [](double share) { return share < 0.5; }), 5);
 }
 
 TEST(ReportPage, AsksForNothingFromTheNetwork) {

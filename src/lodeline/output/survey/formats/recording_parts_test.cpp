@@ -56,8 +56,15 @@ TEST(SonarWalls, LieWhereTheBeamEnded) {
                     {Time::fromSeconds(9.0), 2.0, 0.0},
                     {Time::fromSeconds(13.0), 2.0, 0.0}};
   Diagnostics diagnostics;
-  const std::vector<Vec3> walls = sonarWalls(source, straightWay(), &diagnostics);
+  std::vector<double> shares;
+  const std::vector<Vec3> walls =
+      sonarWalls(source, straightWay(), &diagnostics, [&](double share) { shares.push_back(share); });
   ASSERT_EQ(walls.size(), 2U);
+  ASSERT_EQ(shares.size(), 5U);
+  EXPECT_GT(shares[0], 0.0);
+  EXPECT_GT(shares[1], shares[0]);
+  EXPECT_EQ(shares[3], 0.0);  // before the first pose
+  EXPECT_EQ(shares[4], 1.0);  // behind the last one
   EXPECT_LT((walls[0] - Vec3(0.55, 2.0, 0.5)).norm(), 1e-9);
   EXPECT_LT((walls[1] - Vec3(1.0, 0.0, 3.5)).norm(), 1e-9);
   EXPECT_EQ(diagnostics.count("sonar_without_pose"), 1);

@@ -34,7 +34,7 @@ struct DepthImage {
 /// Which depths are kept.
 struct DepthOptions {
   double nearest_m = 0.5;           ///< nearer surfaces give no depth
-  double max_sigma_m = 0.04;        ///< expected error of a depth by baseline and disparity
+  double max_sigma_m = 0.08;        ///< expected error of a depth by baseline and disparity
   double disparity_sigma_px = 0.3;  ///< one sigma of a match of the plane sweep
   double min_texture = 1.5;         ///< RMS gradient about a pixel, grey levels per px
 };

@@ -62,12 +62,12 @@ TEST_F(StereoDepthTest, LeavesOutWhatIsTooUncertain) {
   const cv::Mat texture = test::wallTexture();
   const cv::Mat first = test::planeImage(texture, 0.0, 3.0);
   const cv::Mat second = test::planeImage(texture, test::kWallBaseline_m, 3.0);
-  // dz = z^2 / (f b) sigma = 30 cm a pixel, and no match is better than 0.06 px.
+  // dz = z^2 / (f b) sigma = 30 cm a pixel, and no match is better than 0.12 px.
   options_.max_sigma_m = 0.12;
   const DepthImage kept = depths(first, second);
   EXPECT_GT(kept.share(), 0.5);
-  EXPECT_NEAR(kept.sigma_m(200, 120), 0.02, 0.005);
-  options_.max_sigma_m = 0.015;
+  EXPECT_NEAR(kept.sigma_m(200, 120), 0.038, 0.005);
+  options_.max_sigma_m = 0.03;
   EXPECT_LT(depths(first, second).share(), 0.03);
 }
 
@@ -84,6 +84,61 @@ TEST(RefineDisparity, FindsFractionsOfAPixel) {
     EXPECT_NEAR(refined.value_px.at<float>(120, u), true_px, 0.08) << u;
     EXPECT_GT(refined.sigma_px.at<float>(120, u), 0.05F);
     EXPECT_EQ(refined.value_px.at<float>(20, u), -1.0F);
+  }
+}
+
+/// RMS of the errors of refined disparities, and of their sigmas, from starts that are off by 0.3 px (RMS) in
+/// each pixel alone; a faint wall in images with noise of `noise_grey`.
+std::pair<double, double> refinedErrors(double noise_grey) {
+  const double depth_m = 1.37, true_px = test::kWallFocal_px * test::kWallBaseline_m / depth_m;
+  cv::RNG random(5);
+  const auto imageAt = [&](double x_m) {
+    cv::Mat image = test::planeImage(test::wallTexture(), x_m, depth_m), noise(240, 320, CV_32F);
+    random.fill(noise, cv::RNG::NORMAL, 0.0, noise_grey);
+    image.convertTo(image, CV_32F, 0.15, 60.0);
+    image += noise;
+    image.convertTo(image, CV_8U);
+    return image;
+  };
+  cv::Mat start(240, 320, CV_32F);
+  random.fill(start, cv::RNG::NORMAL, true_px, 0.3);
+  const Disparities refined = refineDisparity(imageAt(0.0), imageAt(test::kWallBaseline_m), start);
+  double errors = 0.0, sigmas = 0.0;
+  int count = 0;
+  for (int v = 20; v < 220; ++v) {
+    for (int u = 60; u < 300; ++u) {
+      if (refined.value_px.at<float>(v, u) < 0.0F) continue;
+      errors += std::pow(refined.value_px.at<float>(v, u) - true_px, 2.0);
+      sigmas += std::pow(refined.sigma_px.at<float>(v, u), 2.0);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 0.9 * 200 * 240);
+  return {std::sqrt(errors / count), std::sqrt(sigmas / count)};
+}
+
+TEST(RefineDisparity, IsAsGoodAsItSaysInNoise) {
+  for (const double noise_grey : {0.5, 2.0, 5.0}) {
+    const auto [error_px, sigma_px] = refinedErrors(noise_grey);
+    EXPECT_LT(error_px, 1.2 * sigma_px) << noise_grey;
+    EXPECT_LT(sigma_px, 0.12 + 0.1 * noise_grey) << noise_grey;
+  }
+  EXPECT_LT(refinedErrors(0.5).first, 0.1);
+  EXPECT_LT(refinedErrors(2.0).first, 0.2);
+}
+
+TEST(RefineDisparity, KeepsAnEdge) {
+  constexpr int kEdge = 160;
+  const cv::Mat first = test::planeImage(test::wallTexture(), 0.0, 1.0);
+  cv::Mat second(first.size(), CV_8U, cv::Scalar(0)), start(first.size(), CV_32F, cv::Scalar(12.0));
+  start.colRange(kEdge, 320).setTo(20.0F);
+  first.colRange(12, kEdge).copyTo(second.colRange(0, kEdge - 12));
+  first.colRange(kEdge, 320).copyTo(second.colRange(kEdge - 20, 300));
+  const cv::Mat refined = refineDisparity(first, second, start).value_px;
+  for (int u = 130; u < 180; ++u) {
+    if (u >= kEdge - 12 && u < kEdge + 2) continue;  // hidden behind the right half, and the edge itself
+    // The mean of a window over the edge is off by 2 px and more.
+    EXPECT_NEAR(refined.at<float>(120, u), u < kEdge ? 12.0 : 20.0, 0.6) << u;
   }
 }
 

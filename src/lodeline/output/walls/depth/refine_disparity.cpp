@@ -2,20 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 namespace lodeline {
 namespace {
 
-constexpr int kSide_px = 17, kRounds = 4;
+constexpr int kSide_px = 11, kRounds = 3;
 constexpr float kLargestStep_px = 0.5F, kLargestChange_px = 1.0F;
-constexpr float kFloor_px = 0.06F;
-constexpr float kNoise = 1.0F;  ///< variance of a grey value that residuals never fall below
+constexpr float kFloor_px = 0.12F;
+constexpr double kBlur_px = 1.2;
+/// Pixels that share the noise of one, after the blur: the inverse of the sum of its squared weights.
+constexpr auto kSharing = static_cast<float>(4.0 * std::numbers::pi * kBlur_px * kBlur_px);
+constexpr float kNoise = 1.0F;  ///< variance of a grey value before the blur that residuals never fall below
 
 cv::Mat windowMean(const cv::Mat& image) {
   cv::Mat mean;
   cv::boxFilter(image, mean, CV_32F, {kSide_px, kSide_px});
   return mean;
+}
+
+cv::Mat blurred(const cv::Mat& image) {
+  cv::Mat grey;
+  image.convertTo(grey, CV_32F);
+  cv::GaussianBlur(grey, grey, {0, 0}, kBlur_px);
+  return grey;
 }
 
 /// Covariances in windows of pixels where `known` is 1; its mean is `share`.
@@ -25,12 +36,19 @@ cv::Mat covariance(const cv::Mat& a, const cv::Mat& b, const cv::Mat& mean_a, co
   return products - mean_a.mul(mean_b);
 }
 
+/// Gives each pixel the mean of its window, but not where the window has an edge: a spread of a pixel or
+/// more.
+void smoothSurface(const cv::Mat& known, const cv::Mat& share, cv::Mat* value_px) {
+  const cv::Mat mean = windowMean(value_px->mul(known)) / share;
+  const cv::Mat variance = covariance(*value_px, *value_px, mean, mean, known, share);
+  mean.copyTo(*value_px, (variance < 1.0F) & (known > 0.5F));
+}
+
 }  // namespace
 
 Disparities refineDisparity(const cv::Mat& first, const cv::Mat& second, const cv::Mat& disparity_px) {
-  cv::Mat grey0, grey1, gradient1;
-  first.convertTo(grey0, CV_32F);
-  second.convertTo(grey1, CV_32F);
+  const cv::Mat grey0 = blurred(first), grey1 = blurred(second);
+  cv::Mat gradient1;
   cv::Sobel(grey1, gradient1, CV_32F, 1, 0, 1, 0.5);
   cv::Mat known;
   cv::Mat(disparity_px >= 0.0F).convertTo(known, CV_32F, 1.0 / 255.0);
@@ -45,9 +63,10 @@ Disparities refineDisparity(const cv::Mat& first, const cv::Mat& second, const c
   Disparities result{disparity_px.clone(), cv::Mat(first.size(), CV_32F, cv::Scalar(-1.0))};
   cv::Mat variance_e, variance_g;
   for (int round = 0; round < kRounds; ++round) {
+    smoothSurface(known, share, &result.value_px);
     const cv::Mat place = columns - result.value_px;
     cv::Mat seen, gradient;
-    cv::remap(grey1, seen, place, rows, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    cv::remap(grey1, seen, place, rows, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
     cv::remap(gradient1, gradient, place, rows, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
     const cv::Mat error = grey0 - seen;
     const cv::Mat mean_e = windowMean(error.mul(known)) / share,
@@ -67,7 +86,7 @@ Disparities refineDisparity(const cv::Mat& first, const cv::Mat& second, const c
         continue;
       }
       const float pixels = kSide_px * kSide_px * share.at<float>(v, u);
-      const float by_noise = std::max(kNoise, variance_e.at<float>(v, u)) /
+      const float by_noise = std::max(kNoise, kSharing * variance_e.at<float>(v, u)) /
                              (pixels * std::max(1e-3F, variance_g.at<float>(v, u)));
       result.sigma_px.at<float>(v, u) = std::sqrt(by_noise + kFloor_px * kFloor_px);
     }

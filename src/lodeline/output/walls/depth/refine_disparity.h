@@ -14,9 +14,14 @@ struct Disparities {
 ///
 ///     delta = -cov(g, e) / var(g),    e(u, v) = first(u, v) - second(u - d, v),
 ///
-/// with the gradient g of the second image at u - d. The sigma is that of delta by the residuals, and a floor
-/// for what the window cannot know. `disparity_px`: CV_32F, negative where there is none. Disparities that
-/// move by more than one pixel are removed.
+/// with the gradient g of the second image at u - d. Both images are blurred first, because the noise of a
+/// gradient makes the steps too short. Before each step, every disparity becomes the mean of its window: a
+/// step moves the window as a whole and leaves the errors between its pixels. Windows with an edge are not
+/// smoothed.
+///
+/// The sigma is that of delta by the residuals, and a floor for what the window cannot know. The blur makes
+/// pixels share their noise, which the sigma counts. `disparity_px`: CV_32F, negative where there is none.
+/// Disparities that move by more than one pixel are removed.
 Disparities refineDisparity(const cv::Mat& first, const cv::Mat& second, const cv::Mat& disparity_px);
 
 }  // namespace lodeline

@@ -104,6 +104,21 @@ TEST_F(TileFusion, NeedsSeveralViews) {
   EXPECT_FALSE(fuse().empty());
 }
 
+TEST_F(TileFusion, LeavesOutWhatAllViewsTogetherDoNotKnow) {
+  const auto clean = input_.depths;
+  double sigma_m = 0.05;
+  input_.depths = [&](size_t number) {
+    DepthImage image = clean(number);
+    image.sigma.setTo(1e3 * sigma_m);
+    return image;
+  };
+  // Of 60 views, some fifteen show a voxel: 5 cm become 1.3 cm, and 25 cm become 6.5 cm.
+  const size_t whole = fuse().vertices();
+  EXPECT_GT(whole, 10'000U);
+  sigma_m = 0.25;
+  EXPECT_LT(fuse().vertices(), whole / 4);
+}
+
 TEST(TileFile, RefusesDamage) {
   const test::TemporaryFolder folder;
   WallMesh mesh;

@@ -15,6 +15,9 @@ namespace {
 namespace o3 = open3d;
 
 constexpr int kVoxels = kBlockVoxels * kBlockVoxels * kBlockVoxels;
+/// Least sum of the weights of a voxel (1 for 1 cm): one sigma of its joint distance is 3 cm. With 2 cm the
+/// cloud is more exact, but far walls and most cross-sections are missing (docs/lab-notes/walls.md).
+constexpr float kLeastWeight = 1.0F / 9.0F;
 
 /// The values of one block in Open3D's memory, and the number of keyframes that saw each voxel near a
 /// surface.
@@ -93,7 +96,8 @@ class Open3dVolume final : public WallVolume {
   WallMesh extract() override {
     for (BlockValues& block : blocks_) {
       for (int i = 0; i < kVoxels; ++i) {
-        if (block.views[static_cast<size_t>(i)] < options_.min_views) block.weight[i] = 0.0F;
+        if (block.views[static_cast<size_t>(i)] < options_.min_views || block.weight[i] < kLeastWeight)
+          block.weight[i] = 0.0F;
       }
     }
     const o3::t::geometry::TriangleMesh mesh = grid_.ExtractTriangleMesh(0.0F, -1);
@@ -131,6 +135,7 @@ class Open3dVolume final : public WallVolume {
     return pixel.x() > -border.x() && pixel.y() > -border.y() && pixel.x() < size.width + border.x() &&
            pixel.y() < size.height + border.y();
   }
+
 
   void addTo(BlockValues* block, const Projection& projection, const DepthImage& image) const {
     const auto voxel_m = static_cast<float>(options_.voxel_m);

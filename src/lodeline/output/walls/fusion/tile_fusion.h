@@ -54,9 +54,10 @@ bool hasOpen3d();
 /// The surface in a tile: depths of all keyframes in a truncated signed distance volume (B. Curless, M.
 /// Levoy, "A volumetric method for building complex models from range images", SIGGRAPH 1996) with weights
 /// 1/sigma^2, extracted by marching cubes. Blocks and voxels that fewer than `min_views` keyframes saw near a
-/// surface are left out; keyframes that look through a voxel vote against it. Neighbouring tiles have equal
-/// vertices where they meet. Empty where the volume would need more than `max_blocks`: the tile must then be
-/// divided. The same input gives the same bytes. Throws UsageError without Open3D.
+/// surface are left out, and voxels whose joint distance has a sigma above 3 cm; keyframes that look
+/// through a voxel vote against it. Neighbouring tiles have equal vertices where they meet. Empty where the
+/// volume would need more than `max_blocks`: the tile must then be divided. The same input gives the same
+/// bytes. Throws UsageError without Open3D.
 std::optional<WallMesh> fuseTile(const Tile& tile, const DepthKeyframes& input, const FusionOptions& options);
 
 }  // namespace lodeline
