@@ -2,7 +2,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
-#include <tuple>
 
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/pipeline/run_outcome.h"
@@ -72,8 +71,10 @@ std::optional<DiveStart> startOf(const std::optional<std::array<double, 3>>& pos
   }
   DiveStart start;
   start.position = Vec3(position_m->data());
-  if (sigmas_m)
-    std::tie(start.horizontal_sigma_m, start.vertical_sigma_m) = std::tie((*sigmas_m)[0], (*sigmas_m)[1]);
+  if (sigmas_m) {
+    start.horizontal_sigma_m = (*sigmas_m)[0];
+    start.vertical_sigma_m = (*sigmas_m)[1];
+  }
   start.check();
   return start;
 }
