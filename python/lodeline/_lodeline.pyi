@@ -428,6 +428,8 @@ def run(
     received_times: bool = False,
     magnetometer_calibration: _Path | None = None,
     map: _Path | None = None,
+    start: Sequence[float] | None = None,
+    start_sigma: Sequence[float] | None = None,
     refine_interval_s: float | None = None,
     report: bool = False,
     overwrite: bool = False,

@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
+
 #include "lodeline/output/report/page/page_template.h"
 #include "lodeline/pipeline/run_outcome.h"
 #include "lodeline/pipeline/run_recording.h"
@@ -60,12 +62,31 @@ std::unique_ptr<RunResult> execute(const RunRequest& request, const py::object& 
   return result;
 }
 
+/// Where a dive began in a map; sigmas that are not given are those of the program.
+std::optional<DiveStart> startOf(const std::optional<std::array<double, 3>>& position_m,
+                                 const std::optional<std::array<double, 2>>& sigmas_m) {
+  if (!position_m) {
+    if (sigmas_m) throw UsageError("run: start_sigma needs start");
+    return std::nullopt;
+  }
+  DiveStart start;
+  start.position = Vec3(position_m->data());
+  if (sigmas_m) {
+    start.horizontal_sigma_m = (*sigmas_m)[0];
+    start.vertical_sigma_m = (*sigmas_m)[1];
+  }
+  start.check();
+  return start;
+}
+
 std::unique_ptr<RunResult> run(const fs::path& data, const std::optional<fs::path>& output,
                                const py::dict& settings, const std::optional<fs::path>& config,
                                const std::vector<fs::path>& rig,
                                const std::map<std::string, std::string>& topics, bool received_times,
                                const std::optional<fs::path>& magnetometer_calibration,
                                const std::optional<fs::path>& map,
+                               const std::optional<std::array<double, 3>>& start,
+                               const std::optional<std::array<double, 2>>& start_sigma,
                                const std::optional<double>& refine_interval_s, bool report, bool overwrite,
                                bool check, const py::object& progress) {
   RunRequest request;
@@ -74,6 +95,7 @@ std::unique_ptr<RunResult> run(const fs::path& data, const std::optional<fs::pat
   request.config = config.value_or(fs::path()).string();
   request.bag = bagArguments(rig, topics, received_times);
   request.map = map.value_or(fs::path()).string();
+  request.map_start = startOf(start, start_sigma);
   request.magnetometer_calibration = magnetometer_calibration.value_or(fs::path()).string();
   request.refine_interval_s = refine_interval_s;
   request.no_report = !report;
@@ -83,6 +105,7 @@ std::unique_ptr<RunResult> run(const fs::path& data, const std::optional<fs::pat
     request.overrides.push_back(py::str(key).cast<std::string>() + "=" + yamlText(value));
   if (request.output.empty() && (report || map || refine_interval_s))
     throw UsageError("run: report, map and refine_interval_s need an output folder");
+  if (start && !map) throw UsageError("run: start needs a map");
   std::unique_ptr<RunResult> result = execute(request, progress);
   if (check && !result->summary.interrupted)
     requireResult(result->request, result->summary, result->diagnostics);
@@ -119,12 +142,16 @@ void bindRun(py::module_& module) {
       py::arg("settings") = py::dict(), py::arg("config") = py::none(),
       py::arg("rig") = std::vector<fs::path>(), py::arg("topics") = std::map<std::string, std::string>(),
       py::arg("received_times") = false, py::arg("magnetometer_calibration") = py::none(),
-      py::arg("map") = py::none(), py::arg("refine_interval_s") = py::none(), py::arg("report") = false,
-      py::arg("overwrite") = false, py::arg("check") = true, py::arg("progress") = py::none(),
+      py::arg("map") = py::none(), py::arg("start") = py::none(), py::arg("start_sigma") = py::none(),
+      py::arg("refine_interval_s") = py::none(), py::arg("report") = false, py::arg("overwrite") = false,
+      py::arg("check") = true, py::arg("progress") = py::none(),
       "Estimates a trajectory and a map from a recording, as `lodeline run` does, with the same files.\n\n"
       "data: folder with mav0, or a bag. output: folder for the files; without one, none are written.\n"
       "settings: values by the keys of docs/reference/settings.md, over those of the file config.\n"
       "rig, topics, received_times: see Recording. magnetometer_calibration, map: files.\n"
+      "start: (east, north, up), m from the origin of the map, at which the dive began. start_sigma: "
+      "(horizontal,\n"
+      "vertical), m: how well that is known, by default (3, 1). Both need map.\n"
       "refine_interval_s: also compute the batch solution, with states at most so far apart.\n"
       "report: write report.html. overwrite: replace another run in the folder.\n"
       "check: raise EstimationError or InputError where there is no result, or one that is not to be "

@@ -113,6 +113,24 @@ class RunTest(FolderTest):
         self.assertIn("cameras: [0]", text)
         self.assertGreater(len(one.estimates), 0)
 
+    def test_a_start_in_a_map(self):
+        magnetometer = SAMPLE / "magnetometer.yaml"
+        earlier, start, sigma = self.folder / "earlier", (1.5, 0.5, -0.5), (2.0, 0.5)
+        lodeline.run(SAMPLE, earlier, settings=SECONDS, magnetometer_calibration=magnetometer)
+        # The rig looks the other way by then, and recognizes nothing.
+        part = {"source.skip_s": 14, "source.duration_s": 2}
+        options = {"magnetometer_calibration": magnetometer, "map": earlier / "map.db", "settings": part, "check": False}
+        lodeline.run(SAMPLE, self.folder / "ours", start=start, start_sigma=sigma, **options)
+        self.program("run", SAMPLE, "-o", "theirs", "--no-report", "-q", "--from", 14, "--to", 16, "--mag-calibration", magnetometer,
+                     "--map", earlier / "map.db", "--start", "1.5,0.5,-0.5", "--start-sigma", "2,0.5")
+        ours, theirs = (self.folder / run / "trajectory_map.tum" for run in ("ours", "theirs"))
+        self.assertEqual(ours.read_bytes(), theirs.read_bytes())
+        np.testing.assert_allclose(np.loadtxt(ours)[0, 1:4], start, atol=0.1)
+        for wrong in ({"start_sigma": sigma}, {"start": start, "map": None}, {"start": (1.0, 2.0, float("nan"))},
+                      {"start": start, "start_sigma": (0.0, 1.0)}):
+            with self.assertRaises(lodeline.UsageError):
+                lodeline.run(SAMPLE, self.folder / "wrong", **{**options, **wrong})
+
 
 class ErrorTest(FolderTest):
     def test_missing_recording(self):

@@ -1,14 +1,11 @@
 #include "apps/lodeline/shared/start_options.h"
 
-#include "lodeline/diagnostics.h"
-
 namespace lodeline {
 
 std::optional<DiveStart> StartArguments::start() const {
   if (position_m.empty()) return std::nullopt;
   const DiveStart start{{position_m[0], position_m[1], position_m[2]}, sigmas_m[0], sigmas_m[1]};
-  if (!start.position.allFinite() || !(start.horizontal_sigma_m > 0.0) || !(start.vertical_sigma_m > 0.0))
-    throw UsageError("--start wants three finite numbers, --start-sigma two positive ones");
+  start.check();
   return start;
 }
 

@@ -75,6 +75,7 @@ std::string addRun(const ProjectDive& dive, const ShareDone& progress, MapFile* 
     start.position = *dive.start_ENU;
     start.horizontal_sigma_m = dive.start_sigma_m.value_or(start.horizontal_sigma_m);
     start.vertical_sigma_m = dive.start_sigma_up_m.value_or(start.vertical_sigma_m);
+    start.check();
   }
   const bool is_first = map->dives().empty();
   const MergedDive merged = mergeDive(map, MapFile::open(file, MapFile::Access::Read), options);

@@ -63,7 +63,7 @@ struct MapKeyframe {
   std::optional<ScalarPrior> depth_m;
   std::vector<MapFeature> features;
   std::vector<SeenTag> tags;           ///< a map keeps them as observations of control points
-  std::optional<KeyframeField> field;  ///< during the run alone; the map's file does not keep it
+  std::optional<KeyframeField> field;  ///< empty without a magnetometer
 };
 
 /// A feature of an old keyframe and one of a new keyframe that show the same point: indices.

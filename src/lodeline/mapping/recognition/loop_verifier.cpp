@@ -24,15 +24,21 @@ constexpr double kLargestRms = 1.3;
 /// Quantiles 99.9 % of chi squared, of 2 and 6 degrees of freedom.
 constexpr double kTiltGate = 13.82, kPoseGate = 22.46;
 
+/// Where matches are searched: near the places that the prediction gives, or in the whole view. The first
+/// finds more of them, and each of the second is stronger evidence.
+enum class Search { ByPrediction, Everywhere };
+
 /// The work on one pair of keyframes.
 class Verification {
  public:
   Verification(const LoopVerifierOptions& options, const MapKeyframe& old_keyframe,
-               const MapKeyframe& new_keyframe, const std::optional<LoopPrediction>& prediction)
+               const MapKeyframe& new_keyframe, const std::optional<LoopPrediction>& prediction,
+               Search search)
       : options_(options),
         old_(old_keyframe),
         new_(new_keyframe),
         prediction_(prediction),
+        search_(search),
         old_view_(old_keyframe),
         new_view_(new_keyframe),
         vertical_(old_keyframe, new_keyframe) {
@@ -52,7 +58,8 @@ class Verification {
  private:
   /// Matches and the best pose; returns the reason where there is none.
   std::string findPose() {
-    const auto matches = matchDescriptors(old_, new_, prediction_);
+    const auto matches =
+        matchDescriptors(old_, new_, search_ == Search::ByPrediction ? prediction_ : std::nullopt);
     loop_.matches = static_cast<int>(matches.size());
     for (const DescriptorMatch& match : matches) {
       const auto pair = correspondenceOf(old_, new_, match.features);
@@ -120,7 +127,9 @@ class Verification {
   }
 
   std::string byChance() {
-    if (evidence_.log10_false_alarms <= std::log10(options_.max_false_alarms)) return "";
+    // Both searches together may let pass so many.
+    const double most = prediction_ ? 0.5 * options_.max_false_alarms : options_.max_false_alarms;
+    if (evidence_.log10_false_alarms <= std::log10(most)) return "";
     return fmt::format(
         "chance explains {} inliers of {} matches in {} cells: 1e{:.1f} such poses are expected",
         loop_.inliers, pairs_.size(), evidence_.cells, evidence_.log10_false_alarms);
@@ -216,6 +225,7 @@ class Verification {
   const MapKeyframe& old_;
   const MapKeyframe& new_;
   const std::optional<LoopPrediction>& prediction_;
+  Search search_;
   ViewGrid old_view_, new_view_;
   CommonVertical vertical_;
   Loop loop_;
@@ -241,7 +251,13 @@ LoopVerifier::LoopVerifier(const LoopVerifierOptions& options) : options_(option
 
 Loop LoopVerifier::verify(const MapKeyframe& old_keyframe, const MapKeyframe& new_keyframe,
                           const std::optional<LoopPrediction>& prediction) const {
-  return Verification(options_, old_keyframe, new_keyframe, prediction).run();
+  const auto searched = [&](Search search) {
+    return Verification(options_, old_keyframe, new_keyframe, prediction, search).run();
+  };
+  Loop loop = searched(Search::ByPrediction);
+  if (loop.status == LoopStatus::Verified || !prediction) return loop;
+  Loop everywhere = searched(Search::Everywhere);
+  return everywhere.status == LoopStatus::Verified ? everywhere : loop;
 }
 
 }  // namespace lodeline

@@ -136,6 +136,21 @@ TEST(LoopVerifier, FindsMoreWithANarrowPrediction) {
   EXPECT_EQ(with.status, LoopStatus::Verified) << with.reason;
 }
 
+// Within so narrow a cone, chance alone makes inliers of matches. The same matches found in the whole view
+// are evidence.
+TEST(LoopVerifier, ANarrowPredictionHidesNoPlace) {
+  SceneMaker maker(18);
+  for (const double sigma : {1e-2, 3e-3, 1e-3}) {
+    const Revisit revisit(&maker, 30, 60);
+    const LoopPrediction prediction{revisit.old_from_new, sigma * sigma * Mat6::Identity()};
+    const Loop loop = LoopVerifier().verify(revisit.old_keyframe, revisit.new_keyframe, prediction);
+    EXPECT_EQ(loop.status, LoopStatus::Verified) << sigma << ": " << loop.reason;
+    const Revisit other(&maker, 0, 90);
+    EXPECT_NE(LoopVerifier().verify(other.old_keyframe, other.new_keyframe, prediction).status,
+              LoopStatus::Verified);
+  }
+}
+
 TEST(LoopVerifier, RefusesAPoseAgainstGravity) {
   SceneMaker maker(17);
   Revisit revisit(&maker, 80, 0);

@@ -166,10 +166,47 @@ TEST_F(MapAccessTest, OtherVersionsAreNamed) {
   MapFile::create(path(), {});
   const auto setVersion = [&](const char* sql) { Database(path(), Database::Mode::Change).run(sql); };
   setVersion("PRAGMA user_version = 7");
-  EXPECT_THAT(openError(), HasSubstr("is a map of version 7, and this program knows maps up to version 1"));
+  EXPECT_THAT(openError(), HasSubstr("is a map of version 7, and this program knows maps up to version 2"));
   EXPECT_THAT(openError(MapFile::Access::Read), HasSubstr("use a newer program"));
   setVersion("PRAGMA user_version = 0");
   EXPECT_THAT(openError(), HasSubstr("is a map of version 0, older"));
+}
+
+// A map of version 1 has no table of fields.
+TEST_F(MapAccessTest, AMapOfVersion1IsReadAndCanBeExtended) {
+  std::mt19937 random(1);
+  const auto extend = [&](const char* name) {
+    MapFile map = MapFile::openOrCreate(path(), {});
+    MapChange change = map.change();
+    const DiveId dive = change.addDive(test::namedDive(name));
+    const KeyframeId id = change.addKeyframe(test::passageKeyframe(dive, 1, 2, &random));
+    change.commit();
+    return id;
+  };
+  const KeyframeId first = extend("a");
+  Database(path(), Database::Mode::Change).run("DROP TABLE field; PRAGMA user_version = 1");
+  for (int time = 0; time < 2; ++time) {
+    const MapFile map = MapFile::open(path(), MapFile::Access::Read);
+    EXPECT_FALSE(map.keyframe(first)->keyframe.field);
+    EXPECT_EQ(map.fullKeyframe(first).features.size(), 2u);
+    EXPECT_TRUE(map.check().empty());
+  }
+  EXPECT_EQ(Database(path(), Database::Mode::Read).number("PRAGMA user_version"), 1)
+      << "reading changes nothing";
+  std::filesystem::permissions(path(), std::filesystem::perms::owner_read);
+  EXPECT_FALSE(MapFile::open(path(), MapFile::Access::Read).keyframe(first)->keyframe.field);
+  std::filesystem::permissions(path(), std::filesystem::perms::owner_all);
+
+  const KeyframeId second = extend("b");
+  MapFile map = MapFile::open(path(), MapFile::Access::Change);
+  EXPECT_FALSE(map.keyframe(first)->keyframe.field);
+  EXPECT_TRUE(map.keyframe(second)->keyframe.field);
+  EXPECT_EQ(Database(path(), Database::Mode::Read).number("PRAGMA user_version"), 2);
+  EXPECT_TRUE(map.check().empty());
+  MapChange change = map.change();
+  change.removeDive(map.findDive("b")->id);
+  change.commit();
+  EXPECT_EQ(Database(path(), Database::Mode::Read).number("SELECT count(*) FROM field"), 0);
 }
 
 TEST_F(MapAccessTest, ALockedMapIsNamed) {

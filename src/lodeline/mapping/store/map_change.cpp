@@ -118,6 +118,7 @@ KeyframeId MapChange::addKeyframe(const MapKeyframe& keyframe) {
       bindFinite(keyframe.depth_m->sigma, &query);
     }
     query.run();
+    if (keyframe.field) addField(id, *keyframe.field);
     if (keyframe.features.empty()) return;
     const Bytes data = packFeatures(keyframe.features);
     database_->query("INSERT INTO features (keyframe, count, data) VALUES (?, ?, ?)")
@@ -127,6 +128,14 @@ KeyframeId MapChange::addKeyframe(const MapKeyframe& keyframe) {
         .run();
   });
   return id;
+}
+
+void MapChange::addField(KeyframeId id, const KeyframeField& field) {
+  Query query = database_->query("INSERT INTO field (keyframe, x, y, z, sigma) VALUES (?, ?, ?, ?, ?)");
+  query.integer(id);
+  bindPoint(field.field_B, &query);
+  bindFinite(field.sigma_T, &query);
+  query.run();
 }
 
 void MapChange::removeKeyframe(KeyframeId id) {

@@ -50,6 +50,7 @@ class MapChange {
  private:
   friend class MapFile;
   explicit MapChange(Database* database);
+  void addField(KeyframeId id, const KeyframeField& field);
 
   Database* database_;  ///< null after commit or move
 };

@@ -102,6 +102,11 @@ TEST_F(MapFileTest, KeepsKeyframesAndReadsThemOnDemand) {
     EXPECT_EQ(stored.keyframe.north_from_odom_rad, expected.north_from_odom_rad);
     EXPECT_EQ(stored.keyframe.heading_sigma_rad, expected.heading_sigma_rad);
     EXPECT_EQ(stored.keyframe.depth_m.has_value(), expected.depth_m.has_value());
+    ASSERT_EQ(stored.keyframe.field.has_value(), expected.field.has_value());
+    if (expected.field) {
+      EXPECT_EQ(stored.keyframe.field->field_B, expected.field->field_B);
+      EXPECT_EQ(stored.keyframe.field->sigma_T, expected.field->sigma_T);
+    }
     EXPECT_THAT(stored.keyframe.features, IsEmpty());
     EXPECT_EQ(stored.feature_count, 3);
     EXPECT_FALSE(stored.solved);

@@ -68,6 +68,7 @@ StoredKeyframe keyframeAt(const Query& query) {
   if (!query.isNull(12)) keyframe.depth_m = ScalarPrior{finiteAt(query, 12), finiteAt(query, 13)};
   stored.feature_count = static_cast<int>(query.integerAt(14));
   if (!query.isNull(15)) stored.solved = SolvedPose{poseAt(query, 15), unpackCovariance<6>(query.blobAt(22))};
+  if (!query.isNull(24)) keyframe.field = KeyframeField{pointAt(query, 24), finiteAt(query, 27)};
   return stored;
 }
 

@@ -22,9 +22,9 @@ MapDive diveAt(const Query& query);
   "SELECT k.id, k.dive, k.time_ns, k.x, k.y, k.z, k.qx, k.qy, k.qz, k.qw, k.covariance, "      \
   "k.heading_sigma_rad, "                                                                      \
   "k.depth_m, k.depth_sigma_m, f.count, s.x, s.y, s.z, s.qx, s.qy, s.qz, s.qw, s.covariance, " \
-  "k.north_from_odom_rad FROM keyframe "                                                       \
-  "k "                                                                                         \
-  "LEFT JOIN features f ON f.keyframe = k.id LEFT JOIN solution s ON s.keyframe = k.id "
+  "k.north_from_odom_rad, m.x, m.y, m.z, m.sigma FROM keyframe k "                             \
+  "LEFT JOIN features f ON f.keyframe = k.id LEFT JOIN solution s ON s.keyframe = k.id "       \
+  "LEFT JOIN field m ON m.keyframe = k.id "
 constexpr const char* kSelectKeyframe = LODELINE_SELECT_KEYFRAME "WHERE k.id = ?";
 constexpr const char* kSelectKeyframes =
     LODELINE_SELECT_KEYFRAME "WHERE k.dive = ? AND k.id > ? ORDER BY k.id LIMIT ?";

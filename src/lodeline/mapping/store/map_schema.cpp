@@ -97,13 +97,48 @@ CREATE INDEX control_observation_by_point ON control_observation (point);
 CREATE INDEX control_observation_by_keyframe ON control_observation (keyframe);
 )";
 
+// Of a TABLE or TEMP TABLE. A temporary table cannot refer to a table of the file.
+constexpr const char* kFieldTable = R"(
+CREATE {} field (
+  keyframe INTEGER PRIMARY KEY{},
+  x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL,
+  sigma REAL NOT NULL
+);
+)";
+
+constexpr int kFirstVersion = 1;
+
+std::string fieldTable() {
+  return fmt::format(kFieldTable, "TABLE", " REFERENCES keyframe (id) ON DELETE CASCADE");
+}
+
+void setVersion(Database* database) {
+  database->run(fmt::format("PRAGMA user_version = {}", kMapSchemaVersion).c_str());
+}
+
+/// Adds what later versions have, in one transaction.
+void upgrade(Database* database) {
+  database->run("BEGIN IMMEDIATE");
+  try {
+    // Another program may have done it in the meantime.
+    if (database->number("PRAGMA user_version") < kMapSchemaVersion) {
+      database->run(fieldTable().c_str());
+      setVersion(database);
+    }
+    database->run("COMMIT");
+  } catch (const InputError&) {
+    if (database->inTransaction()) database->run("ROLLBACK");
+    throw;
+  }
+}
+
 }  // namespace
 
 void createMapTables(Database* database) {
   database->run(kTables);
-  database->run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kMapApplicationId,
-                            kMapSchemaVersion)
-                    .c_str());
+  database->run(fieldTable().c_str());
+  database->run(fmt::format("PRAGMA application_id = {}", kMapApplicationId).c_str());
+  setVersion(database);
 }
 
 void checkMapVersion(Database* database) {
@@ -118,9 +153,15 @@ void checkMapVersion(Database* database) {
                     "use a newer program",
                     file, version, kMapSchemaVersion));
   }
-  if (version < kMapSchemaVersion) {
+  if (version < kFirstVersion) {
     throw InputError(fmt::format("{}: is a map of version {}, older than the first one ({}); build it again",
-                                 file, version, kMapSchemaVersion));
+                                 file, version, kFirstVersion));
+  }
+  if (version == kMapSchemaVersion) return;
+  if (database->isReadOnly()) {
+    database->runOnTemporaryTables(fmt::format(kFieldTable, "TEMP TABLE", "").c_str());
+  } else {
+    upgrade(database);
   }
 }
 

@@ -74,6 +74,7 @@ MapKeyframe passageKeyframe(DiveId dive, int number, int feature_count, std::mt1
   keyframe.north_from_odom_rad = 0.001 * number;
   if (number % 2 == 0) keyframe.heading_sigma_rad = 0.02;
   if (number % 3 == 0) keyframe.depth_m = ScalarPrior{5.0, 0.05};
+  if (number % 4 == 1) keyframe.field = KeyframeField{Vec3(1e-6, 24e-6, -38e-6 - 1e-7 * number), 0.1e-6};
   keyframe.features = stereoFeatures(feature_count, 0.0, random);
   return keyframe;
 }

@@ -17,6 +17,7 @@ namespace {
 struct PlacedField {
   Rigid3 pose;
   KeyframeField reading;
+  int dive = 0;  ///< two dives have different sensors, or calibrations of one
 
   Vec3 turned() const { return pose.rotation * reading.field_B; }
 };
@@ -33,7 +34,8 @@ PlacedFields readingsAround(const KnownKeyframes& known, KeyframeId id, double f
     const double along_m = keyframe.path_m - middle.path_m;
     if (along_m <= from_m || along_m > to_m) return false;
     if (keyframe.field)
-      readings.push_back({middle.odom_from_body.inverse() * keyframe.odom_from_body, *keyframe.field});
+      readings.push_back(
+          {middle.odom_from_body.inverse() * keyframe.odom_from_body, *keyframe.field, keyframe.dive});
     return true;
   };
   const auto index = static_cast<size_t>(&middle - all.data());
@@ -82,10 +84,13 @@ bool varies(const PlacedFields& old_way, const PlacedFields& new_way, const Fiel
 /// Covariance of the fields of two readings, T^2, without independent noise. The anomaly is the gradient of a
 /// Gaussian process with a squared exponential covariance, as in the field map.
 Mat3 shared(const PlacedField& a, const PlacedField& b, bool same_place, const FieldSupportOptions& options) {
-  const double error_T2 = options.offset_sigma_T * options.offset_sigma_T +
-                          options.axes_sigma * options.axes_sigma * a.reading.field_B.dot(b.reading.field_B);
-  Mat3 covariance = options.earth_sigma_T * options.earth_sigma_T * Mat3::Identity() +
-                    error_T2 * (a.pose.rotation * b.pose.rotation.conjugate()).toRotationMatrix();
+  Mat3 covariance = options.earth_sigma_T * options.earth_sigma_T * Mat3::Identity();
+  if (a.dive == b.dive) {
+    const double error_T2 =
+        options.offset_sigma_T * options.offset_sigma_T +
+        options.axes_sigma * options.axes_sigma * a.reading.field_B.dot(b.reading.field_B);
+    covariance += error_T2 * (a.pose.rotation * b.pose.rotation.conjugate()).toRotationMatrix();
+  }
   if (!same_place) return covariance;
   const Vec3 apart = (a.pose.translation - b.pose.translation) / options.map.length_scale_m;
   const double variance_T2 =
@@ -183,11 +188,16 @@ class WayPrediction {
 }  // namespace
 
 std::optional<FieldAgreement> fieldSupport(const KnownKeyframes& known, const Loop& loop,
-                                           const FieldSupportOptions& options) {
+                                           const FieldSupportOptions& given_options) {
   const KnownKeyframe &old_keyframe = known.at(loop.old_keyframe),
                       &new_keyframe = known.at(loop.new_keyframe);
-  // Two places of one way share no reading.
   const bool is_one_dive = old_keyframe.dive == new_keyframe.dive;
+  FieldSupportOptions options = given_options;
+  if (!is_one_dive) {
+    options.offset_sigma_T = options.other_offset_sigma_T;
+    options.axes_sigma = options.other_axes_sigma;
+  }
+  // Two places of one way share no reading.
   const double between_m = is_one_dive
                                ? std::min(options.reach_m, 0.5 * (new_keyframe.path_m - old_keyframe.path_m))
                                : options.reach_m;

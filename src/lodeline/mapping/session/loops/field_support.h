@@ -14,11 +14,13 @@ struct FieldSupportOptions {
   int least_readings = 3;             ///< of the new way within a length scale of readings of the old way
   double least_variation_T = 0.6e-6;  ///< along the ways, per axis; below, the field says nothing
   double floor_T = 0.2e-6;            ///< error that the model of the anomaly leaves, per axis
-  double offset_sigma_T = 0.15e-6;    ///< hard iron that is not estimated, the same in all readings
-  double axes_sigma = 0.003;          ///< errors of the axes, relative and rad, the same in all readings
-  double earth_sigma_T = 60e-6;       ///< of the Earth's field, the same in all readings
-  double most_turn_rad = 1.05;        ///< 60 degrees; beyond, errors of the calibration may contradict a loop
-  double least_log_ratio = -4.6;      ///< a loop below is contradicted: 1 to 100
+  double offset_sigma_T = 0.15e-6;    ///< hard iron that is not estimated, the same in all readings of a dive
+  double axes_sigma = 0.003;  ///< errors of the axes, relative and rad, the same in all readings of a dive
+  /// The same where the ways belong to two dives, whose sensors and iron differ.
+  double other_offset_sigma_T = 5e-6, other_axes_sigma = 0.02;
+  double earth_sigma_T = 60e-6;   ///< of the Earth's field, the same in all readings
+  double most_turn_rad = 1.05;    ///< 60 degrees; beyond, errors of the calibration may contradict a loop
+  double least_log_ratio = -4.6;  ///< a loop below is contradicted: 1 to 100
   double contradiction_probability = 0.9999;  ///< that chi-squared of a true loop is smaller
 };
 

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <random>
+#include <set>
 #include <vector>
 
+#include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/session/dive_mapping.h"
 
 // Loops along a hull: a row of dipoles on both sides of the way, as in the tests of the field map.
 
@@ -76,7 +80,7 @@ class FieldSupportTest : public testing::Test {
   /// `turned_rad`: heading of the second way's bodies against the first's. `offset_B`: hard iron.
   void swim(double turned_rad = 0.0, const Vec3& offset_B = Vec3::Zero(), double beside_m = 0.2) {
     known_ = {};
-    known_.startDive(1, {});
+    for (const int dive : std::set<int>{1, second_.dive}) known_.startDive(dive, {});
     for (int i = 0; i < 2 * kKeyframes; ++i) {
       const bool is_second = i >= kKeyframes;
       const int k = i % kKeyframes;
@@ -89,7 +93,7 @@ class FieldSupportTest : public testing::Test {
       truth_.push_back(truth);
       KnownKeyframe keyframe;
       keyframe.id = is_second ? 100 + k : k;
-      keyframe.dive = 1;
+      keyframe.dive = is_second ? second_.dive : 1;
       keyframe.path_m = kStep_m * i + (is_second ? 100.0 : 0.0);
       keyframe.odom_from_body = is_second ? drifted_ * truth : truth;
       keyframe.map_from_body = keyframe.odom_from_body;
@@ -98,8 +102,10 @@ class FieldSupportTest : public testing::Test {
                                      noise_T_};
       RelativePose step;
       step.covariance = 1e-6 * Mat6::Identity();
-      if (i > 0) step.from_from_to = known_.all().back().odom_from_body.inverse() * keyframe.odom_from_body;
-      known_.add(keyframe, i > 0 ? &step : nullptr);
+      if (is_second) keyframe.field->field_B = second_.axes * keyframe.field->field_B + second_.offset_B;
+      const bool begins = i == 0 || known_.all().back().dive != keyframe.dive;
+      if (!begins) step.from_from_to = known_.all().back().odom_from_body.inverse() * keyframe.odom_from_body;
+      known_.add(keyframe, begins ? nullptr : &step);
     }
   }
 
@@ -126,6 +132,12 @@ class FieldSupportTest : public testing::Test {
     return loop(place, place, place + static_cast<int>(std::lround(metres / kStep_m)));
   }
 
+  /// Of the second way: its dive, and what its sensor has beyond that of the first.
+  struct {
+    int dive = 1;
+    Mat3 axes = Mat3::Identity();
+    Vec3 offset_B = Vec3::Zero();
+  } second_;
   std::mt19937_64 random_{3};
   std::normal_distribution<double> normal_;
   double noise_T_ = 0.1e-6;          ///< as drawn
@@ -224,6 +236,76 @@ TEST_F(FieldSupportTest, ComparesNoReadingWithItself) {
   loop.old_from_new = truth_[20].inverse() * truth_[26];
   loop.covariance = 1e-4 * Mat6::Identity();
   EXPECT_EQ(fieldSupport(known_, loop).value().values, 9);
+}
+
+// Another dive by another rig, whose sensor nobody has calibrated.
+TEST_F(FieldSupportTest, JudgesLoopsBetweenDivesOfDifferentSensors) {
+  int loops = 0, kept = 0, refused = 0;
+  for (int hull = 0; hull < 6; ++hull) {
+    dipoles_.clear();
+    truth_.clear();
+    addHull();
+    second_.dive = 2;
+    second_.offset_B = normal3(5e-6);
+    for (int column = 0; column < 3; ++column) second_.axes.col(column) = Vec3::Unit(column) + normal3(0.02);
+    swim();
+    for (int place = 12; place < 45; place += 4) {
+      Loop right = trueLoop(place), wrong = falseLoop(place, 4.0);
+      judgeByField(known_, &right);
+      judgeByField(known_, &wrong);
+      ASSERT_TRUE(right.field && wrong.field);
+      ++loops;
+      kept += right.status == LoopStatus::Verified;
+      refused += wrong.status == LoopStatus::Refused;
+    }
+  }
+  RecordProperty("refused_between_dives", refused);
+  EXPECT_EQ(kept, loops) << "no true loop may be refused";
+  EXPECT_GE(refused, 8 * loops / 10);
+}
+
+// A map keeps the field, so that a later dive compares its own with it.
+TEST_F(FieldSupportTest, JudgesLoopsWithAMapOfAnEarlierDive) {
+  addHull();
+  second_.dive = 2;
+  swim();
+  const test::TemporaryFolder folder;
+  MapFile own[] = {MapFile::create(folder.path() / "first.db", {}),
+                   MapFile::create(folder.path() / "second.db", {})};
+  std::vector<std::unique_ptr<DiveMapping>> dives;
+  for (int number = 0; number < 2; ++number) {
+    MapDive dive;
+    dive.name = number == 0 ? "first" : "second";
+    dives.push_back(
+        std::make_unique<DiveMapping>(&own[number], dive, number == 0 ? nullptr : &own[0], MappingOptions{}));
+    for (const KnownKeyframe& swum : known_.all()) {
+      if (swum.dive != number + 1) continue;
+      MapKeyframe keyframe;
+      keyframe.time = Time::fromNanoseconds(1'000'000'000 * swum.id);
+      keyframe.odom_from_body = swum.odom_from_body;
+      keyframe.covariance = 1e-6 * static_cast<double>(1 + swum.id) * Mat6::Identity();
+      keyframe.field = swum.field;
+      dives.back()->add(keyframe);
+    }
+    dives.back()->finish(Time::fromNanoseconds(1'000'000'000'000));
+  }
+  const KnownKeyframes& known = dives.back()->known();
+  ASSERT_EQ(known.all().size(), 2u * kKeyframes);
+  // Numbers of a map begin with 1, and those of the second dive follow.
+  const auto renamed = [](Loop loop) {
+    loop.old_keyframe += 1;
+    loop.new_keyframe += 1 + kKeyframes - 100;
+    return loop;
+  };
+  for (int place = 12; place < 45; place += 8) {
+    Loop right = renamed(trueLoop(place)), wrong = renamed(falseLoop(place, 4.0));
+    judgeByField(known, &right);
+    judgeByField(known, &wrong);
+    ASSERT_TRUE(right.field) << place;
+    EXPECT_GT(right.field->log_ratio, 0.0) << place;
+    EXPECT_EQ(right.status, LoopStatus::Verified);
+    EXPECT_EQ(wrong.status, LoopStatus::Refused) << place;
+  }
 }
 
 // Hard iron that nobody knows is the same on both ways where the rig looks the same way.

@@ -80,6 +80,12 @@ void Database::run(const char* sql) {
   if (code != SQLITE_OK) throw error(code);
 }
 
+void Database::runOnTemporaryTables(const char* sql) {
+  if (is_read_only_) run("PRAGMA query_only = OFF");
+  run(sql);
+  if (is_read_only_) run("PRAGMA query_only = ON");
+}
+
 Query Database::query(std::string_view sql) {
   auto found = statements_.find(sql);
   if (found == statements_.end()) {

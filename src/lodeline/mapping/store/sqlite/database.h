@@ -71,6 +71,8 @@ class Database {
 
   /// Runs statements without parameters.
   void run(const char* sql);
+  /// The same on tables that only this object has, also where the file can only be read.
+  void runOnTemporaryTables(const char* sql);
   Query query(std::string_view sql);
   /// First column of the first row, an integer.
   int64_t number(std::string_view sql);
