@@ -214,15 +214,79 @@ TEST(DvlFusion, WhatNoInstrumentMeasuresIsLeftOutAndReported) {
   expectSame(nothing, dive(options, std::nullopt));
 }
 
-TEST(DvlFusion, WaterTrackIsKeptApart) {
-  const TestSceneOptions options = sceneOptions(6.0);
+/// A current that changes slowly, m/s.
+Vec3 slowCurrent_W(double time_s) {
+  const double phase = 2.0 * M_PI * time_s / 200.0;
+  return Vec3(0.15 + 0.04 * std::sin(phase), -0.1 + 0.03 * std::cos(phase), 0.01);
+}
+
+TEST(DvlFusion, WaterTrackBoundsTheDriftInTheDarkByTheChangeOfTheCurrent) {
+  for (const int cameras : {1, 2}) {
+    TestSceneOptions options = sceneOptions(75.0, cameras);
+    options.drift_m_per_s = Vec3(0.02, 0.0, 0.0);
+    options.liveliness = 0.5;
+    options.points.blackouts = {{20.0, 40.0}};
+    SceneDvlErrors errors;
+    errors.current_W = slowCurrent_W;
+    const Dive water = dive(options, errors), without = dive(options, std::nullopt);
+    const auto drift_m = [](const Dive& dive) {
+      return (dive.at(59.8).error - dive.at(19.8).error).head<3>().norm();
+    };
+    const DvlEstimate& at_dusk = water.at(19.8).estimate.sensors.of<DvlEstimate>();
+    ASSERT_TRUE(at_dusk.current_W);
+    const double current_error_m_per_s = (*at_dusk.current_W - slowCurrent_W(19.8)).norm();
+    const double sigma_m = std::sqrt(water.at(59.8).estimate.covariance.topLeftCorner<3, 3>().trace());
+    const std::string with = std::to_string(cameras);
+    RecordProperty("drift_m_" + with, std::to_string(drift_m(water)));
+    RecordProperty("drift_without_m_" + with, std::to_string(drift_m(without)));
+    RecordProperty("current_error_mm_per_s_" + with, std::to_string(1e3 * current_error_m_per_s));
+    RecordProperty("sigma_m_" + with, std::to_string(sigma_m));
+    EXPECT_GT(water.statuses.at(DvlStatus::WaterTrack), 300);
+    EXPECT_EQ(water.statuses.count(DvlStatus::Used), 0u);
+    EXPECT_EQ(water.findings.count("dvl_water_track"), 1u);
+    EXPECT_LT(current_error_m_per_s, 4.0 * at_dusk.current_sigma_m_per_s);
+    EXPECT_LT(current_error_m_per_s, 0.02);
+    EXPECT_LT(drift_m(water), 0.5 * drift_m(without));
+    EXPECT_LT(water.at(59.8).positionError(), 4.0 * sigma_m)
+        << "the reported covariance knows of the current";
+    EXPECT_FALSE(without.dvl().current_W);
+  }
+}
+
+// The current is learnt while images see the bottom, or at the last velocity over the bottom.
+TEST(DvlFusion, WaterTrackCarriesOnWhereTheBottomIsLost) {
+  TestSceneOptions options = sceneOptions(60.0, 1);
+  options.liveliness = 0.5;
+  options.points.blackouts = {{20.0, 40.0}};
+  SceneDvlErrors bottom, both;
+  bottom.spoil = [](double time_s, DvlSample* sample) {
+    if (time_s > 25.0) sample->beams.clear();
+  };
+  const Dive lost = dive(options, bottom);
+  EXPECT_EQ(lost.statuses.count(DvlStatus::WaterTrack), 0u);
+  both.current_W = [](double time_s) { return time_s > 25.0 ? slowCurrent_W(time_s) : Vec3(Vec3::Zero()); };
+  both.spoil = [](double time_s, DvlSample* sample) {
+    sample->track = time_s > 25.0 ? DvlTrack::Water : DvlTrack::Bottom;
+  };
+  const Dive carried = dive(options, both);
+  const double lost_m = lost.frames.back().positionError();
+  const double carried_m = carried.frames.back().positionError();
+  RecordProperty("lost_m", std::to_string(lost_m));
+  RecordProperty("carried_m", std::to_string(carried_m));
+  EXPECT_GT(carried.statuses.at(DvlStatus::WaterTrack), 200);
+  EXPECT_GT(carried.statuses.at(DvlStatus::Used), 100);
+  EXPECT_LT(carried_m, 0.5 * lost_m);
+}
+
+// A mono start needs the velocity over the bottom: without acceleration, the water tells no scale.
+TEST(DvlFusion, WaterTrackDoesNotStartOneCamera) {
+  TestSceneOptions options = sceneOptions(5.0, 1);
+  options.liveliness = 0.0;
+  options.drift_m_per_s = Vec3(0.1, 0.5, 0.1);
+  options.points.tracks = 100;
   SceneDvlErrors errors;
-  errors.spoil = [](double, DvlSample* sample) { sample->track = DvlTrack::Water; };
-  const Dive water = dive(options, errors);
-  EXPECT_EQ(water.used, 0);
-  EXPECT_GT(water.statuses.at(DvlStatus::WaterTrack), 30);
-  EXPECT_EQ(water.findings.count("dvl_water_track"), 1u);
-  expectSame(water, dive(options, std::nullopt));
+  errors.current_W = slowCurrent_W;
+  EXPECT_FALSE(dive(options, errors).frames.back().initialized());
 }
 
 TEST(DvlFusion, WrongMountingIsReportedAndItsHarmIsBounded) {
