@@ -109,7 +109,9 @@ SteelDive diveThroughSteel(bool has_magnetometer) {
   std::filesystem::create_directories(folder);
   SteelPassage passage(3);
   MapFile file = MapFile::create(folder / "map.db", {});
-  DiveMapping mapping(&file, {}, nullptr, {});
+  MapDive about;
+  about.name = "steel";
+  DiveMapping mapping(&file, about, nullptr, {});
   // In the dark the odometry drifts by 5 m towards the place that looks alike, one sigma of its claim.
   Rigid3 odom_from_truth;
   std::vector<Rigid3> truth;
