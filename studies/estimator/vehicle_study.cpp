@@ -7,13 +7,16 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lodeline/estimator/trials/consistency.h"
 #include "lodeline/util/angles.h"
 #include "simulation/dive/dive_errors.h"
 #include "simulation/dive/point_dive.h"
+#include "simulation/sensors/pressure_model.h"
 
 namespace {
 
@@ -32,6 +35,7 @@ struct Study {
   double metres = 40.0, imu_rate_hz = 200.0, frame_rate_hz = 8.0;
   int tracks = 60;
   std::vector<double> dark;  ///< begin and duration, s
+  bool uses_pressure = false;
   EstimatorOptions estimator;
 };
 
@@ -56,9 +60,36 @@ double alignedRms_m(const std::vector<Vec3>& estimated, const std::vector<Vec3>&
   return std::sqrt(squares / std::max(count, 1.0));
 }
 
-SensorReadings readingsOf(const SimulatedFrame& frame) {
-  return SensorReadings(frame.magnetometer, frame.dvl, frame.altimeter, frame.currents);
+SensorReadings readingsOf(const SimulatedFrame& frame, std::vector<DepthSample> depths) {
+  return SensorReadings(frame.magnetometer, frame.dvl, frame.altimeter, frame.currents, std::move(depths));
 }
+
+/// The pressure sensor of a dive of points, as in a recording of the scenario.
+class StudyGauge {
+ public:
+  explicit StudyGauge(const VehicleDive& vehicle)
+      : start_(vehicle.dive.start),
+        rate_hz_(vehicle.dive.scenario.rig.pressure_rate_hz),
+        model_(vehicle.dive.motion, vehicle.trueRig().pressure.value().body_from_pressure,
+               vehicle.dive.surface_height_m, vehicle.dive.errors.pressure, vehicle.options.seed) {}
+
+  /// The readings since the last call, up to `end`.
+  std::vector<DepthSample> until(Time end) {
+    std::vector<DepthSample> samples;
+    for (;; ++next_) {
+      const double time_s = (static_cast<double>(next_) + 0.3) / rate_hz_;
+      const Time time = start_ + Duration::fromSeconds(time_s);
+      if (time > end) return samples;
+      samples.push_back({time, model_.measure(time_s)});
+    }
+  }
+
+ private:
+  Time start_;
+  double rate_hz_;
+  PressureModel model_;
+  int64_t next_ = 0;
+};
 
 /// The files' rig with a magnetometer and currents that were calibrated before the dive.
 Rig calibratedRig(const VehicleDive& dive) {
@@ -91,12 +122,17 @@ Figures run(const Study& study, uint64_t seed, Diagnostics* diagnostics) {
   EstimatorOptions estimator_options = study.estimator;
   estimator_options.magnetometer.site_field_W = dive.options.magnetometer->field_W;
   Estimator estimator(calibratedRig(dive), estimator_options, diagnostics);
+  std::optional<StudyGauge> gauge;
+  if (study.uses_pressure) gauge.emplace(dive);
   TruthComparison truth;
   Figures figures;
   std::optional<Vec3> last, at_dusk;
   std::vector<Vec3> estimated, truth_W;
   while (const auto frame = simulation.next()) {
-    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu, readingsOf(*frame));
+    std::vector<DepthSample> depths;
+    if (gauge) depths = gauge->until(frame->truth.time);
+    const FrameEstimate estimate =
+        estimator.add(frame->tracks, frame->imu, readingsOf(*frame, std::move(depths)));
     const Comparison comparison = truth.compare(*frame, estimate, estimator);
     const Vec3& place_W = frame->truth.motion.world_from_body.translation;
     if (last) figures.path_m += (place_W - *last).norm();
@@ -155,6 +191,7 @@ int main(int argc, char** argv) {
   app.add_option("--first-seed", first_seed)->capture_default_str();
   app.add_option("--magnetometer", magnetometer)->capture_default_str();
   app.add_option("--dvl", dvl)->capture_default_str();
+  app.add_option("--pressure", study.uses_pressure)->capture_default_str();
   app.add_option("--unresolved-share", motion_noise.unresolved_share)->capture_default_str();
   app.add_option("--inflation", study.estimator.preintegration.noise_inflation)->capture_default_str();
   app.add_flag("--findings", findings, "print the findings of every dive");

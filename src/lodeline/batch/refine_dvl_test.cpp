@@ -10,13 +10,15 @@
 namespace lodeline {
 namespace {
 
+enum class DvlReadings { None, Bottom, Water };
+
 /// A run with a DVL, or without its readings, through eight seconds of darkness.
 struct DvlRun {
   Refinement refinement;
   std::vector<Comparison> comparisons;
   double scale = 0.0;  ///< of the DVL, at the end of the forward run
 
-  explicit DvlRun(bool has_readings) {
+  explicit DvlRun(DvlReadings readings) {
     TestSceneOptions scene_options;
     scene_options.duration_s = 24.0;
     scene_options.points.tracks = 40;
@@ -32,11 +34,12 @@ struct DvlRun {
     EstimatorLog record;
     SceneDvlErrors errors;
     errors.scale = 0.01;
+    if (readings == DvlReadings::Water) errors.current_W = [](double) { return Vec3(0.2, -0.1, 0.0); };
     SceneDvl dvl(scene, *rig.dvl, scene_options, errors);
     TruthComparison truth;
     while (const auto frame = scene.next()) {
       std::vector<DvlSample> pings = dvl.until(frame->truth.time);
-      if (!has_readings) pings.clear();
+      if (readings == DvlReadings::None) pings.clear();
       const FrameEstimate estimate =
           estimator.add(frame->tracks, frame->imu, SensorReadings(std::move(pings)));
       record.add(frame->tracks, frame->imu, estimate, estimator);
@@ -65,7 +68,7 @@ struct DvlRun {
 };
 
 TEST(RefineDvl, BatchSolutionUsesTheVelocities) {
-  const DvlRun with(true), without(false);
+  const DvlRun with(DvlReadings::Bottom), without(DvlReadings::None);
   for (const DvlRun* run : {&with, &without}) {
     ASSERT_TRUE(run->refinement.summary.usable()) << run->refinement.summary.refusal;
     ASSERT_EQ(run->refinement.frames.size(), run->comparisons.size());
@@ -76,6 +79,16 @@ TEST(RefineDvl, BatchSolutionUsesTheVelocities) {
   EXPECT_LT(with.rootMeanSquare(true), 0.05);
   RecordProperty("with", std::to_string(with.rootMeanSquare(true)));
   RecordProperty("without", std::to_string(without.rootMeanSquare(true)));
+}
+
+TEST(RefineDvl, BatchSolutionUsesVelocitiesThroughTheWater) {
+  const DvlRun water(DvlReadings::Water), without(DvlReadings::None);
+  ASSERT_TRUE(water.refinement.summary.usable()) << water.refinement.summary.refusal;
+  RecordProperty("water_forward", std::to_string(water.rootMeanSquare(false)));
+  RecordProperty("water", std::to_string(water.rootMeanSquare(true)));
+  RecordProperty("without", std::to_string(without.rootMeanSquare(true)));
+  EXPECT_LT(water.rootMeanSquare(true), water.rootMeanSquare(false));
+  EXPECT_LT(water.rootMeanSquare(true), without.rootMeanSquare(true));
 }
 
 }  // namespace

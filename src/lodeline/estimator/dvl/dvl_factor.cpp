@@ -15,12 +15,13 @@ struct DvlState {
   Mat3 body_from_world;
   Vec3 velocity_W, gyroscope_bias, accelerometer_bias, misalignment;
   double scale;
-  Vec3 unfallen_W;  ///< v - g elapsed
-  Vec3 turned;      ///< gamma R^T (v - g elapsed)
+  Vec3 unfallen_W;  ///< v - g elapsed, through the water v - c - g elapsed
+  Vec3 turned;      ///< gamma R^T unfallen_W
   Vec3 shown_D;     ///< exp(m)^T R_BD^T (u + (w - b_g) x p_BD)
 
+  /// `current_block`: null over the bottom.
   DvlState(const DvlGeometry& geometry, const double* pose, const double* motion, const double* scale_block,
-           const double* misalignment_block)
+           const double* misalignment_block, const double* current_block)
       : body_from_world(poseFromBlock(pose).rotation.toRotationMatrix().transpose()),
         velocity_W(motion),
         gyroscope_bias(motion + 3),
@@ -29,6 +30,7 @@ struct DvlState {
         scale(1.0 + scale_block[0]) {
     const PingMotion& ping = geometry.motion;
     unfallen_W = velocity_W - ping.elapsed_s * geometry.gravity_W;
+    if (current_block != nullptr) unfallen_W -= Vec3(current_block);
     turned = ping.rotationFor(gyroscope_bias) * (body_from_world * unfallen_W);
     const Vec3 instrument_B = turned - ping.velocityChangeFor(gyroscope_bias, accelerometer_bias) +
                               (ping.rate_B - gyroscope_bias).cross(geometry.body_from_dvl.translation);
@@ -53,10 +55,12 @@ DvlFactor::DvlFactor(const Vec3& direction_D, double velocity_m_per_s, double si
   }
   set_num_residuals(1);
   *mutable_parameter_block_sizes() = {kPoseSize, kMotionSize, 1, kMisalignmentSize};
+  if (isThroughWater()) mutable_parameter_block_sizes()->push_back(kWaterCurrentSize);
 }
 
 bool DvlFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const DvlState now(geometry_, parameters[0], parameters[1], parameters[2], parameters[3]);
+  const DvlState now(geometry_, parameters[0], parameters[1], parameters[2], parameters[3],
+                     isThroughWater() ? parameters[4] : nullptr);
   residuals[0] = (now.scale * direction_D_.dot(now.shown_D) - velocity_) / sigma_;
   if (jacobians == nullptr) return true;
 
@@ -64,7 +68,7 @@ bool DvlFactor::Evaluate(double const* const* parameters, double* residuals, dou
     return first != nullptr ? first : parameters[block];
   };
   const DvlState state(geometry_, at(first_.pose, 0), at(first_.motion, 1), at(first_.scale, 2),
-                       at(first_.misalignment, 3));
+                       at(first_.misalignment, 3), isThroughWater() ? at(first_.current, 4) : nullptr);
   const PingMotion& ping = geometry_.motion;
   const Eigen::RowVector3d by_shown = state.scale / sigma_ * direction_D_.transpose();
   const Eigen::RowVector3d by_instrument_B =
@@ -89,6 +93,10 @@ bool DvlFactor::Evaluate(double const* const* parameters, double* residuals, dou
   if (jacobians[3] != nullptr) {
     Eigen::Map<Eigen::RowVector3d> by_misalignment(jacobians[3]);
     by_misalignment = by_shown * so3::skew(state.shown_D) * so3::rightJacobian(state.misalignment);
+  }
+  if (isThroughWater() && jacobians[4] != nullptr) {
+    Eigen::Map<Eigen::RowVector3d> by_current(jacobians[4]);
+    by_current = -by_unfallen_W;
   }
   return true;
 }

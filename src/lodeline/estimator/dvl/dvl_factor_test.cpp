@@ -19,11 +19,13 @@ const Vec3 kPingGyroscopeBias(0.01, -0.02, 0.015);
 const Vec3 kPingAccelerometerBias(0.05, 0.03, -0.04);
 constexpr double kTrueScale = 0.012;
 const Vec3 kTrueMisalignment(0.03, -0.04, 0.02);
+const Vec3 kTrueCurrent_W(0.21, -0.13, 0.04);
 constexpr double kPing_s = 0.61, kFrame_s = 0.72;
 
 /// A ping in the middle of a lively motion, 0.11 s before its frame.
 struct PingScene {
-  TestMotion truth;
+  DvlTrack track = DvlTrack::Bottom;
+  TestMotion truth = {};
   Rigid3 body_from_dvl{so3::exp(Vec3(2.9, 0.2, -0.4)), Vec3(-0.4, 0.15, -0.25)};
 
   /// Integrated with biases that are off.
@@ -33,11 +35,13 @@ struct PingScene {
     const auto samples =
         truth.readings(kPing_s, kFrame_s, 1000.0, kPingGyroscopeBias, kPingAccelerometerBias);
     const Preintegration interval(samples, gyroscope_bias, accelerometer_bias, ImuCalibration());
-    return {body_from_dvl, standardGravity_W(), PingMotion(interval, samples.front().angular_velocity_B)};
+    return {body_from_dvl, standardGravity_W(), PingMotion(interval, samples.front().angular_velocity_B),
+            track};
   }
   /// What the instrument shows, from the true motion at the ping.
   Vec3 shown_D() const {
-    const Vec3 instrument_B = truth.rotation(kPing_s).conjugate() * truth.velocity(kPing_s) +
+    const Vec3 current_W = track == DvlTrack::Water ? kTrueCurrent_W : Vec3::Zero();
+    const Vec3 instrument_B = truth.rotation(kPing_s).conjugate() * (truth.velocity(kPing_s) - current_W) +
                               truth.rate_B(kPing_s).cross(body_from_dvl.translation);
     return (1.0 + kTrueScale) *
            ((body_from_dvl.rotation * so3::exp(kTrueMisalignment)).conjugate() * instrument_B);
@@ -46,8 +50,10 @@ struct PingScene {
     const Time frame = Time::fromSeconds(kFrame_s);
     Eigen::VectorXd motion(kMotionSize);
     motion << truth.velocity(kFrame_s), kPingGyroscopeBias, kPingAccelerometerBias;
-    return {poseVector(truth.state(frame).world_from_body), motion, Eigen::VectorXd::Constant(1, kTrueScale),
-            kTrueMisalignment};
+    PingBlocks blocks = {poseVector(truth.state(frame).world_from_body), motion,
+                         Eigen::VectorXd::Constant(1, kTrueScale), kTrueMisalignment};
+    if (track == DvlTrack::Water) blocks.push_back(kTrueCurrent_W);
+    return blocks;
   }
 };
 
@@ -77,16 +83,20 @@ std::vector<Vec3> beamsAndAxes() {
   return all;
 }
 
+constexpr DvlTrack kTracks[] = {DvlTrack::Bottom, DvlTrack::Water};
+
 TEST(DvlFactor, IsZeroAtTheTruth) {
-  const PingScene scene;
-  for (const Vec3& direction : beamsAndAxes()) {
-    const DvlFactor factor(direction, direction.dot(scene.shown_D()), 1.0, scene.geometry());
-    EXPECT_NEAR(dvlResidual(factor, scene.blocks()), 0.0, 1e-4) << direction.transpose();
+  for (const DvlTrack track : kTracks) {
+    const PingScene scene{track};
+    for (const Vec3& direction : beamsAndAxes()) {
+      const DvlFactor factor(direction, direction.dot(scene.shown_D()), 1.0, scene.geometry());
+      EXPECT_NEAR(dvlResidual(factor, scene.blocks()), 0.0, 1e-4) << direction.transpose();
+    }
   }
 }
 
 TEST(DvlFactor, LeverArmGravityAndStatesMatter) {
-  const PingScene scene;
+  const PingScene scene{DvlTrack::Water};
   const Vec3 direction(0.6, 0.48, 0.64);
   const double shown = direction.dot(scene.shown_D());
   DvlGeometry without_arm = scene.geometry(), weightless = scene.geometry();
@@ -94,7 +104,7 @@ TEST(DvlFactor, LeverArmGravityAndStatesMatter) {
   weightless.gravity_W.setZero();
   EXPECT_GT(std::abs(dvlResidual({direction, shown, 1.0, without_arm}, scene.blocks())), 0.01);
   EXPECT_GT(std::abs(dvlResidual({direction, shown, 1.0, weightless}, scene.blocks())), 0.1);
-  for (const size_t state : {2, 3}) {
+  for (const size_t state : {2, 3, 4}) {
     PingBlocks blocks = scene.blocks();
     blocks[state].setZero();
     EXPECT_GT(std::abs(dvlResidual({direction, shown, 1.0, scene.geometry()}, blocks)), 0.005) << state;
@@ -102,21 +112,26 @@ TEST(DvlFactor, LeverArmGravityAndStatesMatter) {
 }
 
 TEST(DvlFactor, JacobiansAgreeWithNumericDifferentiation) {
-  const PingScene scene;
-  for (const Vec3& direction : beamsAndAxes())
-    expectJacobiansMatch(DvlFactor(direction, 0.3, 0.01, scene.geometry()), disturbedPing(scene.blocks()));
+  for (const DvlTrack track : kTracks) {
+    const PingScene scene{track};
+    for (const Vec3& direction : beamsAndAxes())
+      expectJacobiansMatch(DvlFactor(direction, 0.3, 0.01, scene.geometry()), disturbedPing(scene.blocks()));
+  }
 }
 
 TEST(DvlFactor, JacobiansAgreeForAPingAtTheFrame) {
-  DvlGeometry geometry = PingScene().geometry();
-  geometry.motion = PingMotion();
-  geometry.motion.rate_B = Vec3(0.3, -0.5, 0.2);
-  expectJacobiansMatch(DvlFactor(Vec3(0.6, 0.48, 0.64), 0.3, 0.01, geometry),
-                       disturbedPing(PingScene().blocks()));
+  for (const DvlTrack track : kTracks) {
+    const PingScene scene{track};
+    DvlGeometry geometry = scene.geometry();
+    geometry.motion = PingMotion();
+    geometry.motion.rate_B = Vec3(0.3, -0.5, 0.2);
+    expectJacobiansMatch(DvlFactor(Vec3(0.6, 0.48, 0.64), 0.3, 0.01, geometry),
+                         disturbedPing(scene.blocks()));
+  }
 }
 
 TEST(DvlFactor, HasUnitVarianceUnderItsNoise) {
-  const PingScene scene;
+  const PingScene scene{DvlTrack::Water};
   const Vec3 direction(0.6, -0.48, 0.64);
   const double shown = direction.dot(scene.shown_D());
   std::mt19937 random(3);
@@ -130,33 +145,51 @@ TEST(DvlFactor, HasUnitVarianceUnderItsNoise) {
 }
 
 TEST(DvlFactor, SeesNeitherPlaceNorHeadingOfTheWorld) {
-  const PingScene scene;
+  const PingScene scene{DvlTrack::Water};
   const DvlFactor factor(Vec3(0.6, 0.48, 0.64), 0.3, 0.01, scene.geometry());
   PingBlocks blocks = disturbedPing(scene.blocks());
   const double before = dvlResidual(factor, blocks);
   const Rigid3 motion(so3::exp(Vec3(0.0, 0.0, 1.3)), Vec3(4.0, -7.0, 2.0));
   blocks[0] = poseVector(motion * poseFromBlock(blocks[0].data()));
   blocks[1].head<3>() = motion.rotation * Vec3(blocks[1].head<3>());
+  blocks[4] = motion.rotation * Vec3(blocks[4]);
   EXPECT_NEAR(dvlResidual(factor, blocks), before, 1e-9);
   const Rigid3 tilt(so3::exp(Vec3(0.3, 0.0, 0.0)), Vec3::Zero());
   blocks[0] = poseVector(tilt * poseFromBlock(blocks[0].data()));
   blocks[1].head<3>() = tilt.rotation * Vec3(blocks[1].head<3>());
+  blocks[4] = tilt.rotation * Vec3(blocks[4]);
   EXPECT_GT(std::abs(dvlResidual(factor, blocks) - before), 1.0) << "gravity tells tilt";
+}
+
+// Water that moves with the vehicle: one velocity more of both changes nothing.
+TEST(DvlFactor, SeesOnlyTheVelocityThroughTheWater) {
+  const PingScene scene{DvlTrack::Water};
+  const DvlFactor factor(Vec3(0.6, 0.48, 0.64), 0.3, 0.01, scene.geometry());
+  PingBlocks blocks = disturbedPing(scene.blocks());
+  const double before = dvlResidual(factor, blocks);
+  const Vec3 more(0.3, 0.5, -0.2);
+  blocks[1].head<3>() += more;
+  EXPECT_GT(std::abs(dvlResidual(factor, blocks) - before), 1.0);
+  blocks[4] += more;
+  EXPECT_NEAR(dvlResidual(factor, blocks), before, 1e-9);
 }
 
 // The Jacobian at the linearization points has the null space of the residual, whatever the present values.
 TEST(DvlFactor, KeepsTheHeadingUnobservableAtLinearizationPoints) {
-  const PingScene scene;
+  const PingScene scene{DvlTrack::Water};
   const PingBlocks first = disturbedPing(scene.blocks()), now = scene.blocks();
-  const DvlFactor factor(Vec3(0.6, 0.48, 0.64), 0.3, 0.01, scene.geometry(),
-                         {first[0].data(), first[1].data(), first[2].data(), first[3].data()});
+  const DvlFactor factor(
+      Vec3(0.6, 0.48, 0.64), 0.3, 0.01, scene.geometry(),
+      {first[0].data(), first[1].data(), first[2].data(), first[3].data(), first[4].data()});
   std::vector<const double*> pointers;
   for (const auto& block : now) pointers.push_back(block.data());
   Eigen::VectorXd by_pose(kPoseSize), by_motion(kMotionSize);
-  double* jacobians[] = {by_pose.data(), by_motion.data(), nullptr, nullptr};
+  Vec3 by_current;
+  double* jacobians[] = {by_pose.data(), by_motion.data(), nullptr, nullptr, by_current.data()};
   double residual = 0.0;
   ASSERT_TRUE(factor.Evaluate(pointers.data(), &residual, jacobians));
-  const double turn = by_pose[5] + by_motion.head<3>().dot(Vec3::UnitZ().cross(Vec3(first[1].head<3>())));
+  const double turn = by_pose[5] + by_motion.head<3>().dot(Vec3::UnitZ().cross(Vec3(first[1].head<3>()))) +
+                      by_current.dot(Vec3::UnitZ().cross(Vec3(first[4])));
   EXPECT_GT(by_motion.norm(), 1.0);
   EXPECT_LT(std::abs(turn), 1e-9 * by_motion.norm());
   EXPECT_EQ(by_pose.head<3>().norm(), 0.0);

@@ -22,14 +22,14 @@ const char* toString(DvlStatus status) {
       return "off";
     case DvlStatus::NoData:
       return "no_data";
-    case DvlStatus::WaterTrack:
-      return "water_track";
     case DvlStatus::Invalid:
       return "invalid";
     case DvlStatus::Waiting:
       return "waiting";
     case DvlStatus::Rejected:
       return "rejected";
+    case DvlStatus::WaterTrack:
+      return "water_track";
     case DvlStatus::Used:
       return "used";
     case DvlStatus::Readmitted:
@@ -58,16 +58,8 @@ void DvlFusion::take(const SensorReadings& readings, std::span<const ImuSample> 
   taken_ = DvlStatus::NoData;
   integrator_.add(imu);
   for (const DvlSample& sample : readings.of<DvlSample>()) {
-    if (!takeReading(sample)) continue;
     DvlReading reading = readRows(sample, *dvl_);
-    if (!reading.fault.empty()) {
-      taken_ = std::max(taken_, DvlStatus::Invalid);
-      diagnostics_->report(
-          Severity::Warning, "dvl_invalid",
-          fmt::format("DVL: at {} ns it gives {}, which no instrument measures; left out. Check the unit of "
-                      "its velocities, and with which values its driver stands for a lost lock",
-                      sample.time.nanoseconds(), reading.fault));
-    }
+    reportTaken(sample, reading);
     if (!reading.rows.empty()) waiting_.push_back(std::move(reading));
   }
   // Before the start nobody asks for them.
@@ -76,16 +68,21 @@ void DvlFusion::take(const SensorReadings& readings, std::span<const ImuSample> 
   std::erase_if(waiting_, [&](const DvlReading& reading) { return reading.time < oldest; });
 }
 
-bool DvlFusion::takeReading(const DvlSample& sample) {
-  if (sample.track == DvlTrack::Bottom) return true;
-  taken_ = std::max(taken_, DvlStatus::WaterTrack);
+void DvlFusion::reportTaken(const DvlSample& sample, const DvlReading& reading) {
+  if (!reading.fault.empty()) {
+    taken_ = std::max(taken_, DvlStatus::Invalid);
+    diagnostics_->report(
+        Severity::Warning, "dvl_invalid",
+        fmt::format("DVL: at {} ns it gives {}, which no instrument measures; left out. Check the unit of "
+                    "its velocities, and with which values its driver stands for a lost lock",
+                    sample.time.nanoseconds(), reading.fault));
+  }
+  if (sample.track == DvlTrack::Bottom || reading.rows.empty()) return;
   diagnostics_->report(
       Severity::Notice, "dvl_water_track",
-      fmt::format(
-          "DVL: at {} ns the velocity is that through the water, whose own current is not known; such "
-          "readings are left out",
-          sample.time.nanoseconds()));
-  return false;
+      fmt::format("DVL: at {} ns the velocity is that through the water, whose own current is estimated; the "
+                  "position drifts with each change of the current that nothing else measures",
+                  sample.time.nanoseconds()));
 }
 
 std::vector<std::pair<Time, DvlPing>> DvlFusion::pingsUntil(const NavigationState& frame) {
@@ -95,7 +92,7 @@ std::vector<std::pair<Time, DvlPing>> DvlFusion::pingsUntil(const NavigationStat
     const std::optional<PingMotion> motion = integrator_.motion(reading.time, frame);
     if (!motion) return true;
     DvlPing ping;
-    ping.geometry = {dvl_->body_from_dvl, gravity_W_, *motion};
+    ping.geometry = {dvl_->body_from_dvl, gravity_W_, *motion, reading.track};
     ping.rows = reading.rows;
     ping.is_velocity = reading.is_velocity;
     ping.sigma_m_per_s = std::hypot(options_.noise_inflation * reading.sigma_m_per_s, motion->sigma_m_per_s,
@@ -119,7 +116,9 @@ std::shared_ptr<const Measurement> DvlFusion::measureBeforeStart(Time time) {
   NavigationState frame;
   frame.time = time;
   std::vector<DvlPing> pings;
-  for (auto& [ping_time, ping] : pingsUntil(frame)) pings.push_back(std::move(ping));
+  for (auto& [ping_time, ping] : pingsUntil(frame)) {
+    if (!ping.isThroughWater()) pings.push_back(std::move(ping));
+  }
   if (pings.empty()) return nullptr;
   return std::make_shared<DvlMeasurement>(measurementOf(std::move(pings)));
 }
@@ -148,7 +147,15 @@ void DvlFusion::start(double, Window* window, Prior* prior) {
   if (!has_prior) addStatesBeforeStart(*window, *prior);
 }
 
-void DvlFusion::addToNewest(Window& window, Marginalizer&) {
+void DvlFusion::addCurrent(Window& window, Marginalizer& marginalizer) const {
+  if (DvlStates(window).current != nullptr) return;
+  ParameterBlock& current = window.add({DvlStates::kCurrent, std::vector<double>(kWaterCurrentSize, 0.0),
+                                        std::nullopt, DvlStates::kCurrentWalk_m_per_s_per_sqrt_s, true});
+  marginalizer.addKnowledge(current,
+                            Eigen::VectorXd::Constant(kWaterCurrentSize, DvlStates::kCurrentSigma_m_per_s));
+}
+
+void DvlFusion::addToNewest(Window& window, Marginalizer& marginalizer) {
   if (!dvl_) return;
   Frame& newest = window.newest();
   estimate_.status = taken_;
@@ -157,6 +164,7 @@ void DvlFusion::addToNewest(Window& window, Marginalizer&) {
   std::vector<DvlPing> used;
   for (auto& [time, ping] : pingsUntil(newest.state())) {
     const int beams = static_cast<int>(ping.rows.size());
+    if (ping.isThroughWater()) addCurrent(window, marginalizer);
     const DvlStatus status = judge(time, window, &ping);
     see(status);
     if (status != DvlStatus::Waiting) estimate_.beams += beams;
@@ -193,7 +201,8 @@ DvlStatus DvlFusion::judge(Time time, const Window& window, DvlPing* ping) {
   if (!agrees) reportRejections(time);
   if (!trust_.isTrusted()) return readmit(time, agrees, innovation, ping);
   ping->rows = std::move(agreeing);
-  return count > 0 ? DvlStatus::Used : DvlStatus::Rejected;
+  if (count == 0) return DvlStatus::Rejected;
+  return ping->isThroughWater() ? DvlStatus::WaterTrack : DvlStatus::Used;
 }
 
 DvlStatus DvlFusion::readmit(Time time, bool agrees, const DvlInnovation& innovation, DvlPing* ping) {
@@ -239,6 +248,10 @@ void DvlFusion::remember(const JointCovariance& covariance, Window& window) {
   estimate_.scale_sigma = sigma(*states.scale);
   estimate_.misalignment_rad = Vec3(states.misalignment->value.data());
   estimate_.misalignment_sigma_rad = sigma(*states.misalignment);
+  if (states.current != nullptr) {
+    estimate_.current_W = Vec3(states.current->value.data());
+    estimate_.current_sigma_m_per_s = sigma(*states.current);
+  }
   reportCalibration(window.newest().time);
 }
 
@@ -292,7 +305,15 @@ std::vector<BatchState> DvlFusion::batchStates(const Window& window) const {
   scale.sigma = std::max(dvl_->scale_sigma, kHeld);
   misalignment.value = {0.0, 0.0, 0.0};
   misalignment.sigma = std::max(dvl_->misalignment_sigma_rad, kHeld);
-  return {scale, misalignment};
+  std::vector<BatchState> states = {scale, misalignment};
+  if (DvlStates(window).current != nullptr) {
+    BatchState& current = states.emplace_back(BatchState{DvlStates::kCurrent});
+    current.walk_per_sqrt_s = DvlStates::kCurrentWalk_m_per_s_per_sqrt_s;
+    current.value.assign(kWaterCurrentSize, 0.0);
+    current.sigma = DvlStates::kCurrentSigma_m_per_s;
+    current.is_added_late = true;
+  }
+  return states;
 }
 
 }  // namespace lodeline

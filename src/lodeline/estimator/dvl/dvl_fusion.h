@@ -22,11 +22,11 @@ namespace lodeline {
 enum class DvlStatus {
   Off,         ///< not requested, or not on board
   NoData,      ///< no ping with lock since the frame before
-  WaterTrack,  ///< velocities through the water, which are not used
   Invalid,     ///< velocities that no instrument measures
   Waiting,     ///< they agree, but the sensor has not passed enough tests yet
   Rejected,    ///< all beams disagree with the prediction, or the sensor does not deserve trust
-  Used,        ///< at least one beam
+  WaterTrack,  ///< at least one beam, of a velocity through the water
+  Used,        ///< at least one beam, of a velocity over the bottom
   Readmitted,  ///< used although it disagrees, because it has done so for long
 };
 const char* toString(DvlStatus status);
@@ -40,12 +40,15 @@ struct DvlEstimate {
   double scale = 0.0, scale_sigma = 0.0;
   Vec3 misalignment_rad = Vec3::Zero();
   double misalignment_sigma_rad = 0.0;  ///< of the axis that is known least
+  /// Velocity of the water in the world, since the first velocity through it.
+  std::optional<Vec3> current_W;
+  double current_sigma_m_per_s = 0.0;  ///< of the axis that is known least
 };
 
 /// Adds a Doppler velocity log to a window. Each ping is carried to the frame after it by inertial readings.
 /// Its beams are compared with the predicted velocity. Those within the gate become rows of the frame's
 /// DvlMeasurement, while the record of the sensor is good (DvlTrust). Scale and misalignment are states from
-/// the start.
+/// the start. Velocities through the water add its current as a state that walks.
 class DvlFusion final : public SensorFusion {
  public:
   /// `diagnostics` must outlive it.
@@ -64,10 +67,12 @@ class DvlFusion final : public SensorFusion {
   std::vector<BatchState> batchStates(const Window& window) const override;
 
  private:
-  bool takeReading(const DvlSample& sample);
+  void reportTaken(const DvlSample& sample, const DvlReading& reading);
   /// The readings up to a frame, carried to it; later ones wait.
   std::vector<std::pair<Time, DvlPing>> pingsUntil(const NavigationState& frame);
   DvlMeasurement measurementOf(std::vector<DvlPing> pings) const;
+  /// Adds the current of the water to the window, unless it has it.
+  void addCurrent(Window& window, Marginalizer& marginalizer) const;
   /// Removes the rows that disagree with the prediction, or all where the sensor is not trusted.
   DvlStatus judge(Time time, const Window& window, DvlPing* ping);
   void see(DvlStatus status) { estimate_.status = std::max(estimate_.status, status); }

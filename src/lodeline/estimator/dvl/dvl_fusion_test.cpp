@@ -214,15 +214,80 @@ TEST(DvlFusion, WhatNoInstrumentMeasuresIsLeftOutAndReported) {
   expectSame(nothing, dive(options, std::nullopt));
 }
 
-TEST(DvlFusion, WaterTrackIsKeptApart) {
-  const TestSceneOptions options = sceneOptions(6.0);
+/// A current that changes slowly, m/s.
+Vec3 slowCurrent_W(double time_s) {
+  const double phase = 2.0 * M_PI * time_s / 200.0;
+  return Vec3(0.15 + 0.02 * std::sin(phase), -0.1 + 0.015 * std::cos(phase), 0.01);
+}
+
+// Images see the first 20 s.
+TestSceneOptions sceneThatGoesDark(double duration_s) {
+  TestSceneOptions options = sceneOptions(duration_s, 1);
+  options.drift_m_per_s = Vec3(0.02, 0.0, 0.0);
+  options.liveliness = 0.5;
+  options.points.blackouts = {{20.0, duration_s}};
+  return options;
+}
+
+TEST(DvlFusion, WaterTrackBoundsTheDriftInTheDarkByTheChangeOfTheCurrent) {
+  const TestSceneOptions options = sceneThatGoesDark(80.0);
   SceneDvlErrors errors;
-  errors.spoil = [](double, DvlSample* sample) { sample->track = DvlTrack::Water; };
-  const Dive water = dive(options, errors);
-  EXPECT_EQ(water.used, 0);
-  EXPECT_GT(water.statuses.at(DvlStatus::WaterTrack), 30);
+  errors.current_W = slowCurrent_W;
+  const Dive water = dive(options, errors), without = dive(options, std::nullopt);
+  const DvlEstimate& at_dusk = water.at(19.8).estimate.sensors.of<DvlEstimate>();
+  ASSERT_TRUE(at_dusk.current_W);
+  const double current_error_m_per_s = (*at_dusk.current_W - slowCurrent_W(19.8)).norm();
+  const Comparison& last = water.frames.back();
+  const double sigma_m = std::sqrt(last.estimate.covariance.topLeftCorner<3, 3>().trace());
+  RecordProperty("drift_m", std::to_string(last.positionError()));
+  RecordProperty("drift_without_m", std::to_string(without.frames.back().positionError()));
+  RecordProperty("current_error_mm_per_s", std::to_string(1e3 * current_error_m_per_s));
+  RecordProperty("sigma_m", std::to_string(sigma_m));
+  EXPECT_GT(water.statuses.at(DvlStatus::WaterTrack), 400);
+  EXPECT_EQ(water.statuses.count(DvlStatus::Used), 0u);
   EXPECT_EQ(water.findings.count("dvl_water_track"), 1u);
-  expectSame(water, dive(options, std::nullopt));
+  EXPECT_LT(current_error_m_per_s, 0.03);
+  EXPECT_LT(current_error_m_per_s, 4.0 * at_dusk.current_sigma_m_per_s);
+  EXPECT_LT(last.positionError(), 0.05 * without.frames.back().positionError());
+  EXPECT_LT(last.positionError(), 4.0 * sigma_m) << "the reported covariance knows of the current";
+  EXPECT_FALSE(without.dvl().current_W);
+}
+
+// The current is learnt at the first velocity through the water, because the velocity of the rig is known
+// then.
+TEST(DvlFusion, WaterTrackCarriesOnWhereTheBottomIsLost) {
+  constexpr double kLost_s = 25.0;
+  const TestSceneOptions options = sceneThatGoesDark(75.0);
+  SceneDvlErrors bottom, both;
+  bottom.spoil = [](double time_s, DvlSample* sample) {
+    if (time_s > kLost_s) sample->beams.clear();
+  };
+  both.current_W = [](double time_s) {
+    return time_s > kLost_s ? slowCurrent_W(time_s) : Vec3(0.0, 0.0, 0.0);
+  };
+  both.spoil = [](double time_s, DvlSample* sample) {
+    if (time_s <= kLost_s) sample->track = DvlTrack::Bottom;
+  };
+  const Dive lost = dive(options, bottom), carried = dive(options, both);
+  const double lost_m = lost.frames.back().positionError();
+  const double carried_m = carried.frames.back().positionError();
+  RecordProperty("lost_m", std::to_string(lost_m));
+  RecordProperty("carried_m", std::to_string(carried_m));
+  EXPECT_EQ(lost.statuses.count(DvlStatus::WaterTrack), 0u);
+  EXPECT_GT(carried.statuses.at(DvlStatus::WaterTrack), 300);
+  EXPECT_GT(carried.statuses.at(DvlStatus::Used), 100);
+  EXPECT_LT(carried_m, 0.1 * lost_m);
+}
+
+// The start needs the velocity over the bottom: without acceleration, nothing else tells the scale.
+TEST(DvlFusion, WaterTrackDoesNotStartOneCamera) {
+  TestSceneOptions options = sceneOptions(5.0, 1);
+  options.liveliness = 0.0;
+  options.drift_m_per_s = Vec3(0.1, 0.5, 0.1);
+  options.points.tracks = 100;
+  SceneDvlErrors errors;
+  errors.current_W = slowCurrent_W;
+  EXPECT_FALSE(dive(options, errors).frames.back().initialized());
 }
 
 TEST(DvlFusion, WrongMountingIsReportedAndItsHarmIsBounded) {

@@ -1,9 +1,9 @@
 #include "lodeline/estimator/dvl/dvl_innovation.h"
 
 #include <Eigen/Cholesky>
-#include <array>
 #include <cmath>
 #include <iterator>
+#include <vector>
 
 #include "lodeline/estimator/dvl/dvl_states.h"
 #include "lodeline/geometry/so3.h"
@@ -12,8 +12,8 @@ namespace lodeline {
 namespace {
 
 constexpr int kMotionStart = kPoseTangentSize, kScaleStart = kMotionStart + kMotionSize,
-              kMisalignmentStart = kScaleStart + 1;
-constexpr int kRowSize = kMisalignmentStart + kMisalignmentSize;
+              kMisalignmentStart = kScaleStart + 1, kCurrentStart = kMisalignmentStart + kMisalignmentSize;
+constexpr int kRowSize = kCurrentStart + kWaterCurrentSize;
 using RowJacobians = Eigen::Matrix<double, Eigen::Dynamic, kRowSize>;
 
 /// Derivative of [pose, motion] of the newest frame by those of the frame before; positions do not matter.
@@ -28,19 +28,43 @@ Eigen::Matrix<double, 15, 15> transition(const Frame& before, const Preintegrati
   return by;
 }
 
-/// Covariance of the blocks, stacked; empty where one of them is not known.
-Eigen::MatrixXd stackedCovariance(const JointCovariance& known, const std::array<const double*, 4>& blocks) {
-  constexpr std::array<int, 4> kStarts = {0, kMotionStart, kScaleStart, kMisalignmentStart};
-  Eigen::MatrixXd covariance(kRowSize, kRowSize);
-  for (const double* block : blocks) {
-    if (!known.knows(block)) return {};
+/// A parameter block and its place in a row of RowJacobians.
+struct RowBlock {
+  const double* value;
+  int start;
+};
+
+/// Covariance of the blocks, stacked, and zero elsewhere; empty where one of them is not known.
+Eigen::MatrixXd stackedCovariance(const JointCovariance& known, const std::vector<RowBlock>& blocks) {
+  for (const RowBlock& block : blocks) {
+    if (!known.knows(block.value)) return {};
   }
-  for (size_t i = 0; i < blocks.size(); ++i) {
-    for (size_t j = 0; j < blocks.size(); ++j) {
-      const Eigen::MatrixXd part = known.between(blocks[i], blocks[j]);
-      covariance.block(kStarts[i], kStarts[j], part.rows(), part.cols()) = part;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(kRowSize, kRowSize);
+  for (const RowBlock& row : blocks) {
+    for (const RowBlock& column : blocks) {
+      const Eigen::MatrixXd part = known.between(row.value, column.value);
+      covariance.block(row.start, column.start, part.rows(), part.cols()) = part;
     }
   }
+  return covariance;
+}
+
+/// Covariance of the states of a row of the newest frame, with pose and motion of the frame before; empty
+/// where one of them is not known.
+Eigen::MatrixXd covarianceBefore(const Frame& before, const DvlStates& states, bool is_through_water,
+                                 const JointCovariance& known) {
+  std::vector<RowBlock> blocks = {{before.pose.data(), 0},
+                                  {before.motion.data(), kMotionStart},
+                                  {states.scale->value.data(), kScaleStart},
+                                  {states.misalignment->value.data(), kMisalignmentStart}};
+  if (!is_through_water) return stackedCovariance(known, blocks);
+  const double* current = states.current->value.data();
+  const bool is_current_known = known.knows(current);
+  if (is_current_known) blocks.push_back({current, kCurrentStart});
+  Eigen::MatrixXd covariance = stackedCovariance(known, blocks);
+  if (!is_current_known && covariance.size() > 0)
+    covariance.diagonal().tail<kWaterCurrentSize>().setConstant(
+        std::pow(DvlStates::kCurrentSigma_m_per_s, 2));
   return covariance;
 }
 
@@ -62,10 +86,12 @@ bool DvlInnovation::isTest(double max_sigmas) const {
 DvlInnovation innovate(const DvlPing& ping, const Window& window, const JointCovariance& known,
                        double speed_sigma) {
   const DvlStates states(window);
+  const bool is_through_water = ping.isThroughWater();
   const Frame& newest = window.newest();
   const Frame& before = **std::prev(window.frames().end(), 2);
   const double* values[] = {newest.pose.data(), newest.motion.data(), states.scale->value.data(),
-                            states.misalignment->value.data()};
+                            states.misalignment->value.data(),
+                            is_through_water ? states.current->value.data() : nullptr};
   const auto rows = static_cast<Eigen::Index>(ping.rows.size());
   RowJacobians by = RowJacobians::Zero(rows, kRowSize);
   DvlInnovation innovation;
@@ -76,17 +102,17 @@ DvlInnovation innovate(const DvlPing& ping, const Window& window, const JointCov
     const DvlRow& row = ping.rows[static_cast<size_t>(i)];
     Eigen::Matrix<double, 1, kPoseSize> by_pose;
     Eigen::Matrix<double, 1, kMotionSize> by_motion;
-    Eigen::RowVector3d by_misalignment;
+    Eigen::RowVector3d by_misalignment, by_current = Eigen::RowVector3d::Zero();
     double by_scale = 0.0;
-    double* jacobians[] = {by_pose.data(), by_motion.data(), &by_scale, by_misalignment.data()};
+    double* jacobians[] = {by_pose.data(), by_motion.data(), &by_scale, by_misalignment.data(),
+                           by_current.data()};
     DvlFactor(row.direction_D, row.velocity_m_per_s, 1.0, ping.geometry)
         .Evaluate(values, &innovation.value_m_per_s[i], jacobians);
-    by.row(i) << by_pose.head<kPoseTangentSize>(), by_motion, by_scale, by_misalignment;
+    by.row(i) << by_pose.head<kPoseTangentSize>(), by_motion, by_scale, by_misalignment, by_current;
     innovation.measured_m_per_s[i] = row.velocity_m_per_s;
     predicted[i] = innovation.value_m_per_s[i] + row.velocity_m_per_s;
   }
-  const Eigen::MatrixXd blocks =
-      stackedCovariance(known, {before.pose.data(), before.motion.data(), values[2], values[3]});
+  const Eigen::MatrixXd blocks = covarianceBefore(before, states, is_through_water, known);
   if (blocks.size() == 0 || !newest.from_previous) return innovation;
   const Eigen::MatrixX3d by_change =
       by.middleCols<3>(kMotionStart) * before.worldFromBody().rotation.toRotationMatrix();

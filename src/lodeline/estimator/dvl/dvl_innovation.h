@@ -22,8 +22,9 @@ struct DvlInnovation {
 };
 
 /// The innovation of a ping at the newest frame of a window. `known`: covariance of the window when the frame
-/// before was the newest; it is carried on by the inertial readings since then. `speed_sigma`: relative sigma
-/// of the predicted speed beside it.
+/// before was the newest; it is carried on by the inertial readings since then. A velocity through the water
+/// needs the current as a state of the window, which `known` may lack when it is new. `speed_sigma`: relative
+/// sigma of the predicted speed beside it.
 DvlInnovation innovate(const DvlPing& ping, const Window& window, const JointCovariance& known,
                        double speed_sigma);
 

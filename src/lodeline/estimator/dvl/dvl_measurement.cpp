@@ -40,9 +40,11 @@ std::vector<Factor> DvlMeasurement::factors(const MeasurementContext& context) c
   if (!states || !frame.has_motion) return factors;
   const DvlLinearizationPoints points{frame.firstPose(), frame.firstMotion(),
                                       states.scale->linearizationPoint(),
-                                      states.misalignment->linearizationPoint()};
+                                      states.misalignment->linearizationPoint(),
+                                      states.current ? states.current->linearizationPoint() : nullptr};
   const auto loss = std::make_shared<ceres::CauchyLoss>(robust_scale_sigmas);
   for (const DvlPing& ping : pings) {
+    if (ping.isThroughWater() && !states.current) continue;
     for (const DvlRow& row : ping.rows) {
       Factor& factor = factors.emplace_back();
       factor.function = std::make_unique<DvlFactor>(row.direction_D, row.velocity_m_per_s, ping.sigma_m_per_s,
@@ -50,6 +52,7 @@ std::vector<Factor> DvlMeasurement::factors(const MeasurementContext& context) c
       factor.loss = loss;
       factor.blocks = {frame.pose.data(), frame.motion.data(), states.scale->value.data(),
                        states.misalignment->value.data()};
+      if (ping.isThroughWater()) factor.blocks.push_back(states.current->value.data());
     }
   }
   return factors;
@@ -58,6 +61,7 @@ std::vector<Factor> DvlMeasurement::factors(const MeasurementContext& context) c
 double DvlMeasurement::speedInformation() const {
   double information = 0.0;
   for (const DvlPing& ping : pings) {
+    if (ping.isThroughWater()) continue;
     // Noise alone has a mean square of 1 for each row.
     double squares = -static_cast<double>(ping.rows.size());
     for (const DvlRow& row : ping.rows) squares += std::pow(row.velocity_m_per_s / ping.sigma_m_per_s, 2);
@@ -68,7 +72,7 @@ double DvlMeasurement::speedInformation() const {
 
 std::optional<CarriedVelocity> DvlMeasurement::velocity() const {
   for (auto ping = pings.rbegin(); ping != pings.rend(); ++ping) {
-    const std::optional<Vec3> velocity_D = velocityOf(*ping);
+    const std::optional<Vec3> velocity_D = ping->isThroughWater() ? std::nullopt : velocityOf(*ping);
     if (!velocity_D) continue;
     const Rigid3& body_from_dvl = ping->geometry.body_from_dvl;
     const PingMotion& motion = ping->geometry.motion;

@@ -21,11 +21,14 @@ struct DvlPing {
   std::vector<DvlRow> rows;
   bool is_velocity = false;
   double sigma_m_per_s = 0.0;  ///< of each row, with that of the motion since
+
+  bool isThroughWater() const { return geometry.track == DvlTrack::Water; }
 };
 
 /// DVL measurement of a frame: the pings since the frame before. Each row's factor is a DvlFactor under a
 /// Cauchy loss. Inertial readings carry the frame's velocity back to the time of the ping, so that a factor
-/// contains one frame only.
+/// contains one frame only. Those of pings through the water contain the current of the water as well. It may
+/// have any value, so that such pings tell neither the whole velocity nor the scale.
 struct DvlMeasurement final : Measurement {
   std::vector<DvlPing> pings;
   double robust_scale_sigmas = 2.0;

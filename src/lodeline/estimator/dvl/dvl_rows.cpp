@@ -42,6 +42,7 @@ void addAxes(const DvlSample& sample, DvlReading* reading) {
 DvlReading readRows(const DvlSample& sample, const DvlCalibration& dvl) {
   DvlReading reading;
   reading.time = sample.time;
+  reading.track = sample.track;
   const bool has_beams = std::any_of(sample.beams.begin(), sample.beams.end(),
                                      [](const DvlBeam& beam) { return beam.velocity_m_per_s.has_value(); });
   if (has_beams) {

@@ -11,6 +11,7 @@ namespace lodeline {
 /// What a reading of a DVL is good for.
 struct DvlReading {
   Time time;
+  DvlTrack track = DvlTrack::Bottom;
   std::vector<DvlRow> rows;  ///< empty without lock
   bool is_velocity = false;  ///< rows are axes, not beams
   double sigma_m_per_s = 0.0;

@@ -36,12 +36,14 @@ std::vector<DvlSample> SceneDvl::until(Time end) {
 
 DvlSample SceneDvl::pingAt(double time_s) {
   const MotionState truth = scene_.motion().at(time_s);
-  const Vec3 instrument_B = truth.world_from_body.rotation.conjugate() * truth.velocity_W +
+  const Vec3 current_W = errors_.current_W ? errors_.current_W(time_s) : Vec3::Zero();
+  const Vec3 instrument_B = truth.world_from_body.rotation.conjugate() * (truth.velocity_W - current_W) +
                             truth.angular_velocity_B.cross(dvl_.body_from_dvl.translation);
   const Quat body_from_dvl = dvl_.body_from_dvl.rotation * so3::exp(errors_.misalignment_rad);
   const Vec3 velocity_D = (1.0 + errors_.scale) * (body_from_dvl.conjugate() * instrument_B);
   DvlSample sample;
   sample.time = start_ + Duration::fromSeconds(time_s);
+  if (errors_.current_W) sample.track = DvlTrack::Water;
   if (!errors_.has_beams) {
     sample.velocity_D = velocity_D + errors_.noise_m_per_s * random_.normal3();
     return sample;

@@ -16,6 +16,8 @@ struct SceneDvlErrors {
   bool has_beams = true;                 ///< else a velocity
   double missing_share = 0.0;            ///< of the beams
   double sentinel_share = 0.0;           ///< of the beams, which show -2.0 or 0.0
+  /// Velocity of the water, m/s, world axes. All velocities are those through the water then.
+  std::function<Vec3(double time_s)> current_W = {};
   std::function<void(double time_s, DvlSample*)> spoil = {};
 };
 
