@@ -136,7 +136,6 @@ class Open3dVolume final : public WallVolume {
            pixel.y() < size.height + border.y();
   }
 
-
   void addTo(BlockValues* block, const Projection& projection, const DepthImage& image) const {
     const auto voxel_m = static_cast<float>(options_.voxel_m);
     const Eigen::Vector3f step_x = voxel_m * projection.rotation().col(0);
