@@ -161,21 +161,6 @@ TEST(MagnetometerFusion, IsNotTurnedByALampThatIsSwitched) {
   EXPECT_GT(believed.alignedRms(40.0), 2.0 * corrected.alignedRms(40.0)) << "this lamp disturbs nobody";
 }
 
-// Root mean square over three dives. Single dives differ by a factor from 0.8 to 2.
-TEST(MagnetometerFusion, DoubtsAMagnetThatItPasses) {
-  HeadingTrialOptions options = trialOptions(180.0);
-  options.trouble = FieldTrouble::Dipole;
-  const auto squares = [&](double student_dof) {
-    options.estimator.magnetometer.student_dof = student_dof;
-    double sum = 0.0;
-    for (options.seed = 1; options.seed <= 3; ++options.seed)
-      sum += std::pow(runHeadingTrial(options).alignedRms(60.0), 2);
-    return sum;
-  };
-  const double doubted = squares(MagnetometerOptions().student_dof), believed = squares(1e6);
-  EXPECT_GT(std::sqrt(believed / doubted), 1.15) << "size and dip were not asked";
-}
-
 TEST(MagnetometerFusion, OffChangesNotABit) {
   TestSceneOptions scene_options = sceneOptions(4.0, 10.0);
   std::vector<FrameEstimate> last;
