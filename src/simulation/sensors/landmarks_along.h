@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "simulation/shared/motion.h"
 #include "simulation/sensors/landmark_field.h"
+#include "simulation/shared/motion.h"
 
 namespace lodeline {
 

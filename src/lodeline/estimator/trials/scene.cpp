@@ -142,6 +142,22 @@ Rigid3 estimateFromTruth(const Rigid3& linearization_point, const Rigid3& first_
   return Rigid3(heading, linearization_point.translation - heading * first_truth.translation);
 }
 
+namespace {
+
+/// Turns an estimate about the vertical through the world's origin.
+void turn(double angle_rad, FrameEstimate* estimate) {
+  const Quat turned_from_world = so3::exp(angle_rad * Vec3::UnitZ());
+  NavigationState& state = estimate->state;
+  state.world_from_body = Rigid3(turned_from_world, Vec3::Zero()) * state.world_from_body;
+  state.velocity_W = turned_from_world * state.velocity_W;
+  const Mat3 rotation = turned_from_world.toRotationMatrix();
+  Eigen::Matrix<double, 15, 15> by = Eigen::Matrix<double, 15, 15>::Identity();
+  for (const int block : {0, 3, 6}) by.block<3, 3>(block, block) = rotation;
+  estimate->covariance = by * estimate->covariance * by.transpose();
+}
+
+}  // namespace
+
 Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEstimate& estimate,
                                     const Estimator& estimator) {
   const Rigid3& truth = frame.truth.motion.world_from_body;
@@ -158,8 +174,10 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
         oldest.firstPose() ? poseFromBlock(oldest.firstPose()) : oldest.worldFromBody();
     const Rigid3& first_truth = true_poses_.at(oldest.time);
     estimate_from_truth_ = estimateFromTruth(linearization_point, first_truth);
-    if (estimate.sensors.of<MagnetometerEstimate>().heading_reference != HeadingReference::Start) {
-      // The heading is that of the field, which points along the world's y axis in the simulation.
+    is_relative_to_north_ =
+        estimate.sensors.of<MagnetometerEstimate>().heading_reference != HeadingReference::Start;
+    if (is_relative_to_north_) {
+      // The field points along the world's y axis in the simulation.
       *estimate_from_truth_ =
           Rigid3(Quat::Identity(), linearization_point.translation - first_truth.translation);
     }
@@ -169,6 +187,8 @@ Comparison TruthComparison::compare(const SimulatedFrame& frame, const FrameEsti
   result.true_velocity_W = estimate_from_truth_->rotation * frame.truth.motion.velocity_W;
   result.true_gyroscope_bias_B = frame.truth.gyroscope_bias_B;
   result.true_accelerometer_bias_B = frame.truth.accelerometer_bias_B;
+  if (is_relative_to_north_)
+    turn(*estimate.sensors.of<MagnetometerEstimate>().north_from_world_rad, &result.estimate);
   result.error = perturbationBetween(result.true_world_from_body, result.estimate.state.world_from_body);
   return result;
 }

@@ -88,6 +88,7 @@ class TruthComparison {
  private:
   std::map<Time, Rigid3> true_poses_;  // until initialized
   std::optional<Rigid3> estimate_from_truth_;
+  bool is_relative_to_north_ = false;  ///< the estimates are then turned to north
 };
 
 /// An estimator whose output is compared with the truth after every frame.
