@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lodeline/estimator/estimator.h"
+#include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/angles.h"
 #include "lodeline/util/median.h"
@@ -39,7 +40,6 @@ const std::vector<Case> kCases = {
     {"imu_warm_up", "clean", {"imu_warm_up=on"}},
     {"g_sensitivity", "clean", {"g_sensitivity=on"}},
     {"dropped_frames", "clean", {"dropped_frames=on"}},
-    {"magnetometer_extrinsics", "clean", {"magnetometer_extrinsics=on"}},
     {"hard_iron_creep", "clean", {"hard_iron_creep=on"}},
     {"magnetic_disturbances", "clean", {"magnetic_disturbances=on"}},
     {"magnetometer_lag", "clean", {"magnetometer_lag=on"}},
@@ -61,15 +61,19 @@ struct Errors {
   std::vector<double> ends_m, ends_rad;
   int lost = 0;  ///< dives without a start
 
+  /// `north_of_truth_rad`: azimuth of the world of the truth in one that points to magnetic north. Without a
+  /// magnetometer headings count from the first pose.
   void add(const Rigid3& truth_from_first, const Rigid3& first, const Rigid3& truth,
-           const FrameEstimate& estimate) {
+           double north_of_truth_rad, const FrameEstimate& estimate) {
     const Rigid3& pose = estimate.state.world_from_body;
     const double turned_rad = so3::log(pose.rotation * truth.rotation.conjugate()).z();
     const double at_first_rad = so3::log(first.rotation * truth_from_first.rotation.conjugate()).z();
     const Quat turn = so3::exp(at_first_rad * Vec3::UnitZ());
     const Vec3 expected_W = turn * (truth.translation - truth_from_first.translation);
     position_m.push_back((pose.translation - first.translation - expected_W).norm());
-    heading_rad.push_back(std::abs(std::remainder(turned_rad - at_first_rad, 2.0 * std::numbers::pi)));
+    const auto& north_rad = estimate.sensors.of<MagnetometerEstimate>().north_from_world_rad;
+    const double reference_rad = north_rad ? north_of_truth_rad - *north_rad : at_first_rad;
+    heading_rad.push_back(std::abs(std::remainder(turned_rad - reference_rad, 2.0 * std::numbers::pi)));
     position_sigma_m.push_back(std::sqrt(estimate.covariance.topLeftCorner<3, 3>().trace()));
     heading_sigma_rad.push_back(std::sqrt(estimate.covariance(5, 5)));
   }
@@ -86,10 +90,11 @@ ScenarioChanges changesOf(const Study& study, const Case& which, uint64_t seed) 
   return changes;
 }
 
-/// The files' rig, with a magnetometer calibrated in its housing where its place is known.
+/// The files' rig with a calibrated magnetometer, whose rotation a calibration finds.
 Rig calibratedRig(const Dive& dive) {
   Rig rig = dive.errors.given;
   const MagnetometerErrors& errors = dive.errors.magnetometer;
+  rig.magnetometer->body_from_magnetometer = errors.body_from_magnetometer;
   rig.magnetometer->iron_correction = errors.soft_iron.inverse();
   rig.magnetometer->hard_iron_T = errors.hard_iron_T;
   rig.magnetometer->hard_iron_sigma_T = 0.05e-6;
@@ -120,6 +125,8 @@ void addDive(const Study& study, const Case& which, uint64_t seed, Errors* error
   options.magnetometer.use = study.use;
   Diagnostics findings;
   Estimator estimator(given, options, &findings);
+  const double north_of_truth_rad =
+      northFromWorld(dive.field_W, HeadingReference::Magnetic, options.magnetometer);
   std::optional<Rigid3> first, first_truth;
   while (const std::optional<SimulatedFrame> frame = simulation.next()) {
     const FrameEstimate estimate =
@@ -130,7 +137,7 @@ void addDive(const Study& study, const Case& which, uint64_t seed, Errors* error
       first = estimate.state.world_from_body;
       first_truth = truth;
     }
-    errors->add(*first_truth, *first, truth, estimate);
+    errors->add(*first_truth, *first, truth, north_of_truth_rad, estimate);
   }
   if (!first) {
     ++errors->lost;
