@@ -74,7 +74,7 @@ void DvlFusion::reportTaken(const DvlSample& sample, const DvlReading& reading) 
     diagnostics_->report(
         Severity::Warning, "dvl_invalid",
         fmt::format("DVL: at {} ns it gives {}, which no instrument measures; left out. Check the unit of "
-                    "its velocities, and with which values its driver stands for a lost lock",
+                    "its velocities, and which values its driver writes for a lost lock",
                     sample.time.nanoseconds(), reading.fault));
   }
   if (sample.track == DvlTrack::Bottom || reading.rows.empty()) return;

@@ -74,7 +74,7 @@ void writePictures(const std::filesystem::path& folder, const TestRun& run) {
   }
 }
 
-/// A ledger of five pairs, two of them loops, and two sightings of a tag. The keyframes in the map are half a
+/// A ledger of five pairs, two of them loops, and two observations of a tag. The keyframes in the map are half a
 /// metre east of the odometry.
 void writeMap(const std::filesystem::path& folder, const TestRun& run) {
   const auto stamp = [](double t_s) { return timeAt(t_s).nanoseconds(); };
