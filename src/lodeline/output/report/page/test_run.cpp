@@ -74,8 +74,8 @@ void writePictures(const std::filesystem::path& folder, const TestRun& run) {
   }
 }
 
-/// A ledger of five pairs, two of them loops, and two observations of a tag. The keyframes in the map are half a
-/// metre east of the odometry.
+/// A ledger of five pairs, two of them loops, and two observations of a tag. The keyframes in the map are
+/// half a metre east of the odometry.
 void writeMap(const std::filesystem::path& folder, const TestRun& run) {
   const auto stamp = [](double t_s) { return timeAt(t_s).nanoseconds(); };
   const auto row = [&](double new_s, double old_s, const char* old_dive, const char* end) {
