@@ -13,6 +13,7 @@
 #include "lodeline/estimator/estimator.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/util/angles.h"
 #include "lodeline/util/median.h"
 #include "simulation/dive/point_dive.h"
@@ -50,7 +51,7 @@ const std::vector<Case> kCases = {
 
 struct Study {
   std::string scenario = "demo", imu = "gx5-25";
-  double seconds = 60.0, rate_hz = 6.0;
+  double seconds = 60.0, metres = 0.0, rate_hz = 6.0;
   int tracks = 60, cameras = 2;
   MagnetometerUse use = MagnetometerUse::Off;
 };
@@ -59,7 +60,10 @@ struct Study {
 struct Errors {
   std::vector<double> position_m, position_sigma_m, heading_rad, heading_sigma_rad;
   std::vector<double> ends_m, ends_rad;
-  int lost = 0;  ///< dives without a start
+  std::vector<double> scales;  ///< relative scale errors after Sim3 alignment, one per dive
+  std::vector<double>
+      shares_of_paths;  ///< root mean square of the positions after SE3 alignment over the path
+  int lost = 0;         ///< dives without a start
 
   /// `north_of_truth_rad`: azimuth of the world of the truth in one that points to magnetic north. Without a
   /// magnetometer headings count from the first pose.
@@ -79,10 +83,31 @@ struct Errors {
   }
 };
 
+/// Length of the way through all poses, m.
+double pathOf_m(const std::vector<Rigid3>& poses) {
+  double path_m = 0.0;
+  for (size_t i = 1; i < poses.size(); ++i)
+    path_m += (poses[i].translation - poses[i - 1].translation).norm();
+  return path_m;
+}
+
+void addAlignedErrors(const PosePairs& pairs, Errors* errors) {
+  errors->ends_m.push_back(errors->position_m.back());
+  errors->ends_rad.push_back(errors->heading_rad.back());
+  errors->scales.push_back(align(AlignmentType::Sim3, pairs).scaleError());
+  const std::vector<Rigid3> aligned = applyAlignment(align(AlignmentType::SE3, pairs), pairs.estimate);
+  double squares_m2 = 0.0;
+  for (size_t i = 0; i < aligned.size(); ++i)
+    squares_m2 += (aligned[i].translation - pairs.reference[i].translation).squaredNorm();
+  errors->shares_of_paths.push_back(std::sqrt(squares_m2 / static_cast<double>(aligned.size())) /
+                                    pathOf_m(pairs.reference));
+}
+
 ScenarioChanges changesOf(const Study& study, const Case& which, uint64_t seed) {
   ScenarioChanges changes;
   changes.seed = seed;
   changes.seconds = study.seconds;
+  if (study.metres > 0.0) changes.metres = study.metres;
   changes.cameras = study.cameras;
   changes.imu_grade = study.imu;
   changes.realism = which.realism;
@@ -127,24 +152,22 @@ void addDive(const Study& study, const Case& which, uint64_t seed, Errors* error
   Estimator estimator(given, options, &findings);
   const double north_of_truth_rad =
       northFromWorld(dive.field_W, HeadingReference::Magnetic, options.magnetometer);
-  std::optional<Rigid3> first, first_truth;
+  PosePairs pairs;
   while (const std::optional<SimulatedFrame> frame = simulation.next()) {
     const FrameEstimate estimate =
         estimator.add(frame->tracks, frame->imu, SensorReadings(frame->magnetometer));
     if (estimate.status == Status::Waiting) continue;
     const Rigid3& truth = frame->truth.motion.world_from_body;
-    if (!first) {
-      first = estimate.state.world_from_body;
-      first_truth = truth;
-    }
-    errors->add(*first_truth, *first, truth, north_of_truth_rad, estimate);
+    pairs.time.push_back(estimate.time);
+    pairs.estimate.push_back(estimate.state.world_from_body);
+    pairs.reference.push_back(truth);
+    errors->add(pairs.reference.front(), pairs.estimate.front(), truth, north_of_truth_rad, estimate);
   }
-  if (!first) {
+  if (pairs.size() == 0) {
     ++errors->lost;
-    return;
+  } else {
+    addAlignedErrors(pairs, errors);
   }
-  errors->ends_m.push_back(errors->position_m.back());
-  errors->ends_rad.push_back(errors->heading_rad.back());
 }
 
 double withinThreeSigmas_percent(const std::vector<double>& errors, const std::vector<double>& sigmas) {
@@ -160,8 +183,9 @@ double rms(const std::vector<double>& values) {
 }
 
 void print(const Case& which, const Study& study, const Errors& errors) {
-  fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {} |\n", which.name,
-             study.cameras, rms(errors.ends_m), rms(errors.ends_rad) * kDegreesPerRadian,
+  fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {} |\n",
+             which.name, study.cameras, rms(errors.ends_m), rms(errors.ends_rad) * kDegreesPerRadian,
+             100.0 * rms(errors.scales), 100.0 * rms(errors.shares_of_paths),
              withinThreeSigmas_percent(errors.position_m, errors.position_sigma_m),
              withinThreeSigmas_percent(errors.heading_rad, errors.heading_sigma_rad),
              median(errors.position_sigma_m) / median(errors.position_m),
@@ -173,9 +197,9 @@ void print(const Case& which, const Study& study, const Errors& errors) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Errors at the end of dives of points (root mean square over seeds), share of all poses within three "
-      "claimed sigmas, and median sigma over median error, with each error of the rig alone and all "
-      "together.");
+      "Errors at the end of dives of points, of scale, and of aligned positions over the path (root mean "
+      "square over seeds), share of all poses within three claimed sigmas, and median sigma over median "
+      "error, with each error of the rig alone and all together.");
   Study study;
   int seeds = 10;
   uint64_t first_seed = 4001;
@@ -185,6 +209,7 @@ int main(int argc, char** argv) {
   app.add_option("--first-seed", first_seed)->capture_default_str();
   app.add_option("--scenario", study.scenario)->capture_default_str();
   app.add_option("--seconds", study.seconds)->capture_default_str();
+  app.add_option("--metres", study.metres, "length of the path; that of the scenario by default");
   app.add_option("--rate", study.rate_hz, "frames a second")->capture_default_str();
   app.add_option("--tracks", study.tracks)->capture_default_str();
   app.add_option("--cameras", study.cameras)->capture_default_str()->check(CLI::Range(1, 2));
@@ -196,10 +221,11 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   study.use = use == "off" ? MagnetometerUse::Off : MagnetometerUse::Absolute;
   fmt::print(
-      "| effect | cameras | end, m | heading at the end, ° | position within 3 σ, % | heading within 3 σ, % "
+      "| effect | cameras | end, m | heading at the end, ° | scale, % | position, % of the path | position "
+      "within 3 σ, % | heading within 3 σ, % "
       "| "
       "σ / error, position | σ / error, heading | dives without a start |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Case& which : kCases) {
     if (!only.empty() && std::find(only.begin(), only.end(), which.name) == only.end()) continue;
     Errors errors;
