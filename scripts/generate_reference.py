@@ -143,7 +143,7 @@ def settings_page(config):
     rows = [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in settings_of(config)]
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
-            "The defaults serve all recordings. Change a setting on the command line, `--set front_end.max_tracks=300`,",
+            "The defaults serve all recordings. Change a setting on the command line, `--set source.duration_s=60`,",
             "or in a YAML file, `-c config.yaml`. The command line goes over the file. Every run writes all settings in",
             "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
             "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",

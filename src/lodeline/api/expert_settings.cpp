@@ -12,14 +12,18 @@ void bindSource(Settings* settings, SynchronizerOptions* synchronizer) {
                  "same without it.");
 }
 
-void bindFrontEnd(Settings* settings, FrontEndOptions* options) {
+void bindFrontEnd(Settings* settings, OdometryOptions* odometry) {
+  FrontEndOptions* options = &odometry->front_end;
+  settings->bind("expert.front_end.max_tracks", &odometry->max_tracks,
+                 "Largest number of points that are followed at a time. `0` takes 180 with calibrated axes "
+                 "of the IMU, else 250.");
+  settings->bind("expert.front_end.static_image_mask", &options->static_image_mask.enabled,
+                 "Leave out regions that stay in place in the images, such as parts of the rig.");
   settings->bind("expert.front_end.min_distance_px", &options->detector.min_distance_px,
                  "Least distance between two points.");
   settings->bind("expert.front_end.max_stereo_epipolar_px", &options->stereo.max_epipolar_px,
                  "Largest distance of a stereo match from its epipolar line. A quarter of a degree is used "
                  "where that is more.");
-  settings->bind("expert.front_end.min_depth_m", &options->stereo.min_depth_m,
-                 "Least distance of a point that stereo matching searches for.");
   settings->bind("expert.front_end.max_epipolar_px", &options->consensus.max_error_px,
                  "Points that disagree with the motion of the other points by more than this are outliers.");
   settings->bind("expert.front_end.seed", &options->consensus.seed,
@@ -42,15 +46,6 @@ void bindInertial(Settings* settings, PreintegrationOptions* options, ImuAxesOpt
                  "Factor on all noise densities of the IMU calibration.", Settings::Sign::Positive);
 }
 
-void bindStart(Settings* settings, InitialStateOptions* start) {
-  settings->bind("expert.start.velocity_sigma_m_per_s", &start->velocity_sigma_m_per_s,
-                 "Uncertainty of the first velocity.");
-  settings->bind("expert.start.gyroscope_bias_sigma_rad_per_s", &start->gyroscope_bias_sigma_rad_per_s,
-                 "Uncertainty of the first gyroscope bias.");
-  settings->bind("expert.start.accelerometer_bias_sigma_m_per_s2", &start->accelerometer_bias_sigma_m_per_s2,
-                 "Uncertainty of the first accelerometer bias.");
-}
-
 void bindWindow(Settings* settings, EstimatorOptions* options) {
   settings->bind("expert.window.recent_frames", &options->window.recent_frames,
                  "Number of newest frames that keep velocity and biases.", 2);
@@ -69,11 +64,11 @@ void bindWindow(Settings* settings, EstimatorOptions* options) {
       "A frame becomes a keyframe when the median shift of the points, with rotation removed, is larger.");
   settings->bind("expert.landmark.max_count", &options->landmark.max_landmarks,
                  "Largest number of landmarks in the window.");
-  settings->bind("expert.landmark.min_distance_m", &options->landmark.min_distance_m,
-                 "Least distance of a landmark. Nearer points are discarded.");
 }
 
 void bindCameraCalibration(Settings* settings, CameraCalibrationOptions* cameras) {
+  settings->bind("expert.camera_calibration.enabled", &cameras->enabled,
+                 "Estimate the calibration of the cameras.");
   settings->bind("expert.camera_calibration.rotation_sigma_rad", &cameras->rotation_sigma_rad,
                  "Rotation of camera 0 against the IMU. `0` keeps it fixed.");
   settings->bind("expert.camera_calibration.position_sigma_m", &cameras->position_sigma_m,
@@ -106,8 +101,6 @@ void bindCameraCalibration(Settings* settings, CameraCalibrationOptions* cameras
 void bindSolver(Settings* settings, EstimatorOptions* options) {
   settings->bind("expert.solver.max_iterations", &options->solver.max_iterations,
                  "Largest number of iterations for a frame.", 1);
-  settings->bind("expert.solver.function_tolerance", &options->solver.function_tolerance,
-                 "Iterations end when the relative decrease of the cost is smaller than this.");
   settings->bind("expert.solver.robust_scale_sigmas", &options->solver.robust_scale_sigmas,
                  "Upper limit of the width of the Cauchy loss, in standard deviations of an observation.");
   settings->bind("expert.solver.track_weights", &options->solver.track_weights,
@@ -119,8 +112,6 @@ void bindSolver(Settings* settings, EstimatorOptions* options) {
 }
 
 void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
-  settings->bind("expert.magnetometer.correlated_noise_sigma_T", &options->correlated_noise_sigma_T,
-                 "First value of the time-correlated field error, per axis.");
   settings->bind("expert.magnetometer.noise_inflation", &options->noise_inflation,
                  "Factor on the noise density of the magnetometer.");
   settings->bind("expert.magnetometer.student_dof", &options->student_dof,
@@ -143,6 +134,7 @@ void bindMagnetometerGate(Settings* settings, MagnetometerGateOptions* gate) {
 }
 
 void bindDepth(Settings* settings, DepthOptions* options) {
+  settings->bind("expert.pressure.use", &options->use, "Use the pressure sensor.");
   settings->bind("expert.pressure.density_ratio_sigma", &options->density_ratio_sigma,
                  "Uncertainty of `pressure.density_ratio`. `0` keeps it fixed.");
   settings->bind(
@@ -151,28 +143,20 @@ void bindDepth(Settings* settings, DepthOptions* options) {
   settings->bind("expert.pressure.lag_s", &options->lag_s, "Time constant of the pressure sensor.");
   settings->bind("expert.pressure.noise_inflation", &options->noise_inflation,
                  "Factor on `depth_noise_std` of the calibration of the pressure sensor.");
-  settings->bind("expert.pressure.gate.max_sigmas", &options->gate.max_sigmas,
-                 "A jump of the depth is accepted below this number of standard deviations.");
 }
 
 void bindSonar(Settings* settings, SonarOptions* options) {
+  settings->bind("expert.sonar.use", &options->use, "Use the ranges of sonar, altimeter and DVL.");
   settings->bind("expert.sonar.noise_inflation", &options->noise_inflation,
                  "Factor on `range_noise_std` of the calibrations of sonar, altimeter and DVL.",
-                 Settings::Sign::Positive);
-  settings->bind("expert.sonar.gate.max_sigmas", &options->max_sigmas,
-                 "A range is rejected when its innovation is larger, in standard deviations.",
                  Settings::Sign::Positive);
 }
 
 void bindDvl(Settings* settings, DvlOptions* options) {
+  settings->bind("expert.dvl.use", &options->use, "Use the velocities of the DVL.");
   settings->bind("expert.dvl.noise_inflation", &options->noise_inflation,
                  "Factor on the noise of the velocities that the calibration of the DVL states.",
                  Settings::Sign::Positive);
-  settings->bind("expert.dvl.gate.max_sigmas", &options->max_sigmas,
-                 "A velocity is rejected when its innovation is larger, in standard deviations.",
-                 Settings::Sign::Positive);
-  settings->bind("expert.dvl.gate.readmission_s", &options->readmission_s,
-                 "Velocities that were rejected for that long are used again.", Settings::Sign::Positive);
 }
 
 }  // namespace
@@ -180,9 +164,8 @@ void bindDvl(Settings* settings, DvlOptions* options) {
 void bindExpertSettings(Settings* settings, RunSettings* options) {
   EstimatorOptions* estimator = &options->odometry.estimator;
   bindSource(settings, &options->synchronizer);
-  bindFrontEnd(settings, &options->odometry.front_end);
+  bindFrontEnd(settings, &options->odometry);
   bindInertial(settings, &estimator->preintegration, &estimator->imu_axes);
-  bindStart(settings, &estimator->initial_state);
   bindWindow(settings, estimator);
   bindCameraCalibration(settings, &estimator->camera_calibration);
   bindSolver(settings, estimator);

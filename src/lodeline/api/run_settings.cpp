@@ -19,11 +19,6 @@ void bindRecording(Settings* settings, RunSettings* options) {
                  "Time at the start of the recording that the run leaves out.");
   settings->bind("source.duration_s", &options->synchronizer.duration_s,
                  "Length of the part that the run reads. `0` reads the whole recording.");
-  settings->bind("front_end.max_tracks", &options->odometry.max_tracks,
-                 "Largest number of points that are followed at a time. `0` takes 180 with calibrated axes "
-                 "of the IMU, else 250.");
-  settings->bind("front_end.static_image_mask", &options->odometry.front_end.static_image_mask.enabled,
-                 "Leave out regions that stay in place in the images, such as parts of the rig.");
   settings->bind("loops.enabled", &options->loops,
                  "Recognize places that were seen before, and write the map of the dive.");
   settings->bind("tags.size_m", &options->tag_size_m,
@@ -31,8 +26,6 @@ void bindRecording(Settings* settings, RunSettings* options) {
   settings->bind("tags.control", &options->tags_control,
                  "File of [control points](../how-to/control-points.md) with names, sizes and positions of "
                  "tags. Empty for none.");
-  settings->bind("camera_calibration.enabled", &options->odometry.estimator.camera_calibration.enabled,
-                 "Estimate the calibration of the cameras.");
 }
 
 void bindSensors(Settings* settings, RunSettings* options) {
@@ -47,13 +40,9 @@ void bindSensors(Settings* settings, RunSettings* options) {
       "Use of the magnetometer. `automatic` is `absolute` with a calibrated magnetometer, else `off`.");
   settings->bind("magnetometer.map", &options->odometry.estimator.magnetometer.map,
                  "Map the field near steel on the first visit, and take heading from it on the next.");
-  settings->bind("pressure.use", &options->odometry.estimator.depth.use, "Use the pressure sensor.");
   settings->bind("pressure.density_ratio", &options->odometry.estimator.depth.density_ratio,
                  "Density of the water over the density that the sensor assumes. It is 0.975 for a sensor "
                  "that is set to salt water, in fresh water.");
-  settings->bind("sonar.use", &options->odometry.estimator.sonar.use,
-                 "Use the ranges of sonar, altimeter and DVL.");
-  settings->bind("dvl.use", &options->odometry.estimator.dvl.use, "Use the velocities of the DVL.");
 }
 
 void bindHeading(Settings* settings, RunSettings* options) {

@@ -164,9 +164,13 @@ bool Settings::isSection(const std::string& path) const {
 }
 
 std::string Settings::nearestKey(const std::string& key) const {
-  const auto nearest = std::min_element(
-      entries_.begin(), entries_.end(),
-      [&](const Entry& a, const Entry& b) { return editDistance(key, a.key) < editDistance(key, b.key); });
+  const auto distance = [&](const Entry& entry) {
+    const bool has_prefix = entry.key.starts_with(kExpert) && !key.starts_with(kExpert);
+    return editDistance(key, has_prefix ? entry.key.substr(kExpert.size()) : entry.key);
+  };
+  const auto nearest =
+      std::min_element(entries_.begin(), entries_.end(),
+                       [&](const Entry& a, const Entry& b) { return distance(a) < distance(b); });
   return nearest == entries_.end() ? std::string() : nearest->key;
 }
 
