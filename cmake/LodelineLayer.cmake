@@ -61,8 +61,8 @@ endfunction()
 #
 # One layer of the library: target lodeline_NAME (an interface library when it has no sources), linked against lower
 # layers (by layer name) and outside libraries (by target name). It is made of all .cpp files in the folder of its
-# CMakeLists.txt and in FOLDERS, which are listed from the bottom up ("." is the folder itself, without it the topmost).
-# What a file is, its name says:
+# CMakeLists.txt and in FOLDERS. These are listed from the bottom up ("." is the folder itself, without it the topmost).
+# The name of a file decides its kind:
 #
 #   *_real_test.cpp     tests that read recordings, and skip themselves where these are missing
 #   *_browser_test.cpp, *_benchmark.cpp, main.cpp     no part of the layer

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The paper's baseline: a COLMAP model of the images of one camera, made from an excerpt of a recording in the EuRoC
-# ASL layout, with the camera as its sensor.yaml has it.
+# The paper's baseline: a COLMAP model of the images of one camera. The images are an excerpt of a recording in the
+# EuRoC ASL layout. The camera is that of its sensor.yaml.
 #
 #   scripts/colmap_baseline.sh RECORDING OUT [--from S] [--to S] [--every N] [--runs FOLDER] [--report FILE]
 #

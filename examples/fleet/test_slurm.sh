@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs short simulated dives by a real Slurm on this machine, takes workers away in between, and checks that each run has
+# Runs short simulated dives by a real Slurm on this machine and takes workers away in between. Checks that each run has
 # one result and none was made twice. A long experiment, for root (make fleet-test):
 #   LODELINE=build/release/bin/lodeline test_slurm.sh [ITEMS [DIVES [KILLS]]]
 # It needs Debian's slurm-wlm and munge, and leaves other daemons of both alone. WORK names its folder.

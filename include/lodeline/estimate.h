@@ -236,8 +236,8 @@ struct FrameEstimate {
   Status status = Status::Waiting;
   std::string waiting_for;  ///< in words, while waiting
   NavigationState state;
-  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h), relative to the first pose's position,
-  /// and to north or, while that is unknown, to the first pose's heading.
+  /// Of [dp, dtheta, dv, db_g, db_a] (world axes, see parameters.h). Relative to the first position and
+  /// to north. While north is unknown, relative to the first heading.
   Eigen::Matrix<double, 15, 15> covariance = Eigen::Matrix<double, 15, 15>::Zero();
   /// The same as the stated model gives it, without the inflation for errors that have no state
   /// (docs/theory/covariance.md).

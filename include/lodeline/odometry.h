@@ -33,8 +33,8 @@ class OdometrySettings {
   /// Writes all values as a configuration.
   void write(std::ostream& stream) const;
 
-  /// Checks the first seconds of a recording, as `lodeline run` does before a run, and corrects units of the
-  /// readings and clock offsets that are found there. `name`: of the recording, for the findings.
+  /// Checks the first seconds of a recording, as `lodeline run` does before a run. Corrects units of the
+  /// readings and clock offsets that it finds there. `name`: of the recording, for the findings.
   void adaptTo(const RecordingOpener& open, const std::string& name, Diagnostics* diagnostics);
 
   /// Options for openEuroc() by `source.cameras`.

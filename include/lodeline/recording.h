@@ -119,11 +119,11 @@ struct LiveSourceOptions {
 
 /// Live sensors as a source. Any thread can push readings without waiting; one other thread, the
 /// synchronizer's, pulls and waits. Readings pushed in time give the same packets as a recording of them.
-/// Where a camera or a slower sensor is silent longer than `patience_s`, the source returns nothing (as at a
-/// stream's end), and the packet has no reading of it. Later readings of that time are dropped and reported
-/// as `image_late`, `magnetometer_late`, `depth_late`. Readings that exceed the capacity are reported as
-/// `image_dropped`, `imu_dropped` and so on. For inertial readings and images of the first camera, it waits
-/// without limit.
+/// Where a camera or a slower sensor is silent longer than `patience_s`, the source returns nothing, as
+/// at a stream's end. The packet then has no reading of it. Later readings of that time are dropped and
+/// reported as `image_late`, `magnetometer_late`, `depth_late`. Readings that exceed the capacity are
+/// reported as `image_dropped`, `imu_dropped` and so on. For inertial readings and images of the first
+/// camera, it waits without limit.
 class LiveSource : public RecordedSource {
  public:
   /// `diagnostics`, used while pulling, must outlive the source.

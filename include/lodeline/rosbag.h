@@ -28,7 +28,7 @@ struct BagOptions {
   bool use_received_times = false;
 };
 
-/// Opens a ROS bag. Throws InputError where it is no bag, or no rig file describes its sensors, and
+/// Opens a ROS bag. Throws InputError where it is no bag, or no rig file describes its sensors. Throws
 /// UsageError for a topic of a sensor that the rig does not have. `diagnostics` must outlive the source.
 std::unique_ptr<RecordedSource> openBag(const std::filesystem::path& bag, const BagOptions& options,
                                         Diagnostics* diagnostics);

@@ -138,8 +138,8 @@ struct StandardRigOptions {
 /// with focal lengths 0.3 % apart.
 MountedRig standardRig(const StandardRigOptions& options);
 
-/// The rig of a vehicle: IMU and magnetometer near its middle, cameras at its front, and below it a DVL of
-/// four beams at 22.5 degrees, an altimeter and a scanning sonar.
+/// The rig of a vehicle: IMU and magnetometer near its middle, cameras at its front. Below it are a DVL
+/// of four beams at 22.5 degrees, an altimeter and a scanning sonar.
 MountedRig vehicleRig(const StandardRigOptions& options);
 
 enum class WorldKind { Cave, Wreck, SeaFloor, Board, None };

@@ -83,15 +83,16 @@ struct TrajectorySource {
   TrajectoryFormat format;
 };
 
-/// Finds the poses: a file in one of the layouts (text may be compressed with gzip), a folder written by
-/// `lodeline run` (`trajectory.tum`), a EuRoC recording, its `mav0` or its `state_groundtruth_estimate0`, or
-/// a COLMAP model folder. Throws InputError, with the expected files, when nothing fits.
+/// Finds the poses: a file in one of the layouts (text may be compressed with gzip), or a folder.
+/// Folders are those of `lodeline run`, of a EuRoC recording (also `mav0`,
+/// `state_groundtruth_estimate0`), or of a COLMAP model. Throws InputError, with the expected files,
+/// when nothing fits.
 TrajectorySource findTrajectory(const std::filesystem::path& path,
                                 std::optional<TrajectoryFormat> format = std::nullopt);
 
 /// Reads a trajectory and orders it by time. Tables may be in UTF-8, UTF-16 or Latin-1, with any line ends
-/// and separators (TableReader). A line that does not fit its layout, a quaternion that is not a rotation and
-/// a file without poses throw InputError with file and line. Poses with NaN ("lost" in some references) and
+/// and separators (TableReader). Throws InputError with file and line: for a line that does not fit its
+/// layout, a quaternion that is no rotation, or no poses. Poses with NaN ("lost" in some references) and
 /// an incomplete last line are skipped with a warning.
 Trajectory readTrajectory(const std::filesystem::path& path, const TrajectoryReadOptions& options,
                           Diagnostics& diagnostics);

@@ -43,8 +43,8 @@ struct EstimateTable {
     landmarks.insert(landmarks.end(), points.begin(), points.end());
   }
 
-  /// The same table in a world that turns to a north which was found after the first pose, as the files of a
-  /// finished run do (WorldTurn).
+  /// The same table in a world that turns to a north that was found after the first pose (WorldTurn).
+  /// The files of a finished run have this world.
   EstimateTable turnedToNorth() const {
     const std::optional<WorldTurn> turn = WorldTurn::of(last_magnetometer);
     EstimateTable turned = *this;

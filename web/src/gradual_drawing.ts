@@ -18,7 +18,7 @@ export function hasGraphicsCard(): boolean {
   return !/swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-/// Draws a scene at once with as many points of its clouds as the machine draws in a twentieth of a second, and adds the
+/// Draws a scene at once with as many points of its clouds as the machine draws in a twentieth of a second. Adds the
 /// others in later pictures as long as nothing moves. Points must be in an order in which the first ones are spread over
 /// all of them, as makePoints() gives it.
 export class GradualDrawing {

@@ -85,8 +85,8 @@ export function appendPose(track: Track, row: number): void {
   track.error_m.push(track.states === track.run.states ? errorAt(track.run, track.states.t_s[row]) : null);
 }
 
-/// Length of the way up to the newest pose, counted from the last pose that lies so far away that the noise of
-/// the poses does not lengthen the way.
+/// Length of the way up to the newest pose. It is counted from the last pose that lies so far away that the noise
+/// of the poses does not lengthen the way.
 function chainage(track: Track): number {
   const { position, chainage_m } = track;
   const last = position.length - 1;

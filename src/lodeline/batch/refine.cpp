@@ -38,9 +38,9 @@ class BatchSteps {
   std::vector<double> before_;
 };
 
-/// Factors on the sigmas of loop observations in each round (joinLandmarks()). With 450 px per radian and
-/// points within half a pixel, the first one lets a loop pass that is open by a quarter of a radian; each
-/// round leaves less than a quarter of that.
+/// Factors on the sigmas of loop observations in each round (joinLandmarks()). At 450 px per radian and
+/// points within half a pixel, the first one lets a loop pass that is open by 0.25 rad. Each round
+/// leaves less than a quarter of that.
 std::vector<double> looseningsOf(const LoopClosures& loops, const RefinementOptions& wanted) {
   std::vector<double> loosenings;
   if (!loops.observations.empty()) loosenings = {64.0, 16.0, 4.0};

@@ -52,10 +52,10 @@ struct CalibratedLinearizationPoints {
 
 /// ReprojectionFactor with the camera calibration as variables.
 ///
-/// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3), extrinsics of camera 0
-/// (6), time offset (1) and, where the target camera is a secondary camera, its extrinsics (6). The poses
-/// R_h, p_h and R_t, p_t (world_from_body) are those at the true times of the images (R exp(w dt), p + v dt).
-/// Camera 0 has the pose R_0, p_0 in the body, the target camera the pose R_r, p_r in camera 0. Then
+/// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3), extrinsics of camera
+/// 0 (6), time offset (1). A secondary camera as target adds its extrinsics (6). The poses R_h, p_h and
+/// R_t, p_t (world_from_body) are those at the true times of the images (R exp(w dt), p + v dt). Camera
+/// 0 has the pose R_0, p_0 in the body, the target camera the pose R_r, p_r in camera 0. Then
 ///   m   = R_t^T (R_h (R_0 d + rho p_0) + rho (p_h - p_t)) - rho p_0
 ///   q_0 = R_0^T m,   q = R_r^T (q_0 - rho p_r)
 ///   e   = directionResidual(q - rho o)        with the origin o of the measured ray

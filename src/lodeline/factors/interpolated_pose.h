@@ -8,8 +8,8 @@
 
 namespace lodeline {
 
-/// Pose (world_from_body) at a time between two other poses, as a function of these. With the share s of the
-/// time between the poses before (b) and after (a) that has passed,
+/// Pose (world_from_body) at a time between two other poses, as a function of these. s is the share of
+/// the time between the poses before (b) and after (a) that has passed:
 ///   p = (1 - s) p_b + s p_a + R_b w,   R = exp(s log(R_a D_a^T R_b^T)) R_b D.
 /// w is the offset from the straight line between p_b and p_a. D = R_b^T R and D_a = R_b^T R_a are the
 /// attitudes of this pose and of the later one relative to the earlier one. w, D and D_a are constants,

@@ -14,14 +14,15 @@ namespace lodeline {
 //               shift of the principal point (px), change of two radial and two tangential coefficients, and
 //               two coefficients of a tilted port.
 // Let p be the position of a ray in the RadialPlane of the camera model (DirectionMeasurement::in_plane). Let
-// u be the pixel at which the intrinsics of the file project the ray. The corrected intrinsics project it at
+// u be the pixel at which the intrinsics of the file project the ray. The corrected intrinsics project
+// it at the following pixel, with the principal point c of the file and its focal lengths f on the axis:
 //   u + diag(s_u, s_v) (u - c) + [c_u, c_v] + diag(f_u, f_v) d(p)
 //   d(p) = (k_1 |p|^2 + k_2 |p|^4) p + |p|^2 t + 2 p (t^T p) + |p|^2 (|p|^2 q + 1.5 p (q^T p))
 //   t = [p_2, p_1], q = [q_1, q_2]
-// with the principal point c of the file and its focal lengths f on the axis. This is the first-order effect
-// of different numbers in the file; the last term is what a tilt of a flat port adds (docs/theory/ports.md).
-// Powers of the sine of the angle, in place of p, would leave 0.3 px at the border for errors of 0.006 in the
-// coefficients. Their signs would be opposite on opposite sides. The focal length would absorb that error.
+// This is the first-order effect of different numbers in the file; the last term is what a tilt of a
+// flat port adds (docs/theory/ports.md). Powers of the sine of the angle, in place of p, would leave 0.3
+// px at the border for errors of 0.006 in the coefficients. Their signs would be opposite on opposite
+// sides. The focal length would absorb that error.
 
 constexpr int kIntrinsicsSize = 10;
 

@@ -26,12 +26,12 @@ constexpr int kLandmarkSize = 3;
 
 /// Reprojection error of a landmark in a frame other than its host frame (paper section III-B, e_r).
 ///
-/// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3). With body poses R_h, p_h,
-/// R_t, p_t and extrinsics R_BC, p_BC of host and target camera,
+/// Blocks: pose of the host frame (7), pose of the target frame (7), landmark (3). R_h, p_h, R_t, p_t
+/// are the body poses, R_BC, p_BC the extrinsics of host and target camera. o is the origin of the
+/// measured ray, zero for a camera without a port.
 ///   P = R_h (R_BC d + rho p_BC) + rho p_h                  (rho times the point in the world)
 ///   q = R_BC'^T (R_t^T (P - rho p_t) - rho p_BC')          (rho times the point in the target camera)
 ///   e = directionResidual(q - rho o)
-/// with the origin o of the measured ray, which is zero for a camera without a port.
 /// A point that falls behind the target's image plane is a gross outlier: constant error, zero Jacobian.
 class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, kLandmarkSize> {
  public:

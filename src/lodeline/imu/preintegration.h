@@ -73,8 +73,8 @@ struct ImuAxes {
 /// of the chords between their neighbours (rotation by the Magnus expansion to second order). The specific
 /// force, rotated into body k's axes, is linear in time.
 ///
-/// Error: e = [alpha, beta, theta, b_g, b_a] = truth minus integration with the biases of moment k, where
-/// gamma_true = exp(theta) * gamma and the last two parts are the random walk of the biases from k to k+1.
+/// Error: e = [alpha, beta, theta, b_g, b_a] = truth minus integration with the biases of moment k, with
+/// gamma_true = exp(theta) * gamma. The last two parts are the random walk of the biases from k to k+1.
 ///
 /// Sources: Forster et al., "On-manifold preintegration for real-time visual-inertial odometry", TRO 2017
 /// (bias correction); Qin, Li & Shen, "VINS-Mono", TRO 2018 (alpha, beta, gamma). Derivation:

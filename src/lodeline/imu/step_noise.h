@@ -29,8 +29,8 @@ struct StepNoise {
   double accelerometer_walk = 0.0;  ///< (m/s^3)^2/Hz
 };
 
-/// Computes the noise of a step. With readings w_0, w_1 and f_0, f_1 at an interval h, inflated densities s,
-/// unresolved share c, axis error m and its time T, g = 9.80665 m/s^2:
+/// Computes the noise of a step. The readings w_0, w_1 and f_0, f_1 have the interval h. s are the
+/// inflated densities, c is the unresolved share, m the axis error and T its time, g = 9.80665 m/s^2:
 ///   gyroscope          s_g^2 + h c^2 |w_1 - w_0|^2 + T m^2 |w_1 - b_g|^2
 ///   accelerometer      s_a^2 + h c^2 |f_1 - f_0|^2
 ///   gyroscope walk     s_bg^2

@@ -11,8 +11,8 @@ namespace lodeline {
 
 /// Errors of a Doppler velocity log. Beam i with the unit vector d_i reads
 ///   velocity = (1 + scale) d_i . v + noise,   range = (1 + scale) r_i + noise
-/// with the velocity v of the instrument over ground and the distance r_i to the surface along the beam, both
-/// in the true frame D. `scale` is the error of the speed of sound.
+/// v is the velocity of the instrument over ground and r_i the distance to the surface along the beam,
+/// both in the true frame D. `scale` is the error of the speed of sound.
 struct DvlErrors {
   double velocity_noise_m_per_s = 0.0;
   double range_noise_m = 0.0;

@@ -10,9 +10,9 @@ namespace lodeline {
 
 /// Errors of a real magnetometer. Its reading at time t in the magnetometer frame M is
 ///   reading(t) = S R_M_B R_B_W(t') m_W(t') + h + sum_i k_i I_i(t') + c t' + w(t) + white noise,
-/// where t' = t - lag and m_W is the Earth's field plus the disturbances. The reading is clipped to +-range
-/// and rounded to the resolution; some readings repeat the previous row. S is the soft iron (A = S^-1
-/// corrects it), h the hard iron, w its random walk, k_i I_i the field of a current.
+/// Here t' = t - lag, and m_W is the Earth's field plus the disturbances. The reading is clipped to
+/// +-range and rounded to the resolution; some readings repeat the previous row. S is the soft iron (A =
+/// S^-1 corrects it), h the hard iron, w its random walk, k_i I_i the field of a current.
 struct MagnetometerErrors {
   Mat3 soft_iron = Mat3::Identity();
   Vec3 hard_iron_T = Vec3::Zero();

@@ -20,8 +20,8 @@ struct VibrationOptions {
 
 /// Vibration of the thrusters at the IMU. Thruster i shakes the IMU with
 ///   a_i sin(phi_i) + share * a_i sin(2 phi_i),   phi_i' = 2 pi f_i,
-/// where the frequency f_i follows the speed of the propeller, which grows with the square root of the
-/// thrust, and the amplitude a_i the thrust. Readings are samples of it, so what is above half the rate of
+/// The frequency f_i follows the speed of the propeller, which grows with the square root of the thrust.
+/// The amplitude a_i follows the thrust. Readings are samples of it, so what is above half the rate of
 /// the IMU appears at another frequency. The displacement is below 40 um and no part of the true motion.
 class ThrusterVibration {
  public:

@@ -32,9 +32,9 @@ using Wrench = Eigen::Matrix<double, 6, 1>;
 
 /// Thrust that a motion needs. The thrusters supply the wrench
 ///   F = m a + D |v| v - buoyancy,   T = J w' + E |w| w + righting torque
-/// with the acceleration a and the velocity v through the water, at the origin of D. Four thrusters are
-/// horizontal at 45 degrees, four are vertical. Of all thrusts with that wrench, these have the least sum of
-/// squares.
+/// a is the acceleration and v the velocity through the water, at the origin of D. Four thrusters are
+/// horizontal at 45 degrees, four are vertical. Of all thrusts with that wrench, these have the least
+/// sum of squares.
 class VehicleThrust {
  public:
   VehicleThrust(const Motion& motion, const Rigid3& vehicle_from_body, WaterFlow flow,

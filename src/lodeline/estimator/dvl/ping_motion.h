@@ -5,8 +5,8 @@
 
 namespace lodeline {
 
-/// Motion of the body from the time of a ping to that of its frame, from inertial readings. With the attitude
-/// R and velocity v of the frame, the body at the time of the ping moves with
+/// Motion of the body from the time of a ping to that of its frame, from inertial readings. R and v are
+/// attitude and velocity of the frame. The body at the time of the ping moves with
 ///   u = gamma R^T (v - g elapsed) - beta                    m/s, axes of the body at the ping.
 /// gamma and beta are those of a Preintegration over that time. Both follow changes of the biases to first
 /// order: gamma(b_g + d) = exp(rotation_by_gyroscope_bias d) gamma.

@@ -14,11 +14,11 @@ struct BeamPoint {
   double weight = 1.0;
 };
 
-/// Distance along a beam to the plane through points near it. A plane has, at the directions (a, b) across
-/// over the distance along the beam, the inverse distance
+/// Distance along a beam to the plane through points near it. The directions a and b are the distances
+/// across the beam over the distance along it. There a plane has exactly the inverse distance
 ///   y = w_0 + w_1 a + w_2 b,
-/// exactly, for any inclination. The weighted least squares of the points' y give w, and the beam (a = b = 0)
-/// meets the plane at the distance 1 / w_0.
+/// The weighted least squares of the points' y give w, and the beam (a = b = 0) meets the plane at the
+/// distance 1 / w_0.
 class BeamSurface {
  public:
   /// The weights may have any scale. Three points that are not on a line determine the plane.

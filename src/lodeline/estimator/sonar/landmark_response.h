@@ -24,8 +24,8 @@ struct LandmarkResponse {
 /// From the reprojection terms of a landmark, under their losses.
 LandmarkResponse responseOf(const LandmarkFactors& terms);
 
-/// A factor on landmarks, after these are eliminated together with their reprojection terms. With the
-/// factor's whitened residual e and its derivatives J_l, J_x, the landmarks' responses give
+/// A factor on landmarks, after these are eliminated together with their reprojection terms. e is the
+/// factor's whitened residual, J_l and J_x are its derivatives. The landmarks' responses give
 ///   e' = e / s,   J' = (J_x + sum J_l dl/dx) / s,   s^2 = 1 + share * sum J_l P J_l^T.
 /// This is the Schur complement of the landmarks: for one such factor, reprojection terms without landmarks
 /// and the factor (e', J') have the same Hessian as all terms with the landmarks eliminated. Factors that

@@ -33,12 +33,13 @@ struct SonarLinearizationPoints {
   const double* camera = nullptr;
 };
 
-/// Range of an echo, to the surface that landmarks near its beam form: 1 residual on the blocks pose at the
-/// time of the echo (7, world_from_body), poses of the host frames (7 each), extrinsics of camera 0 (6, only
-/// where they are estimated), landmarks (3 each).
+/// Range of an echo, to the surface that landmarks near its beam form: 1 residual. Blocks: pose at the
+/// time of the echo (7, world_from_body), poses of the host frames (7 each), extrinsics of camera 0 (6,
+/// only where they are estimated), landmarks (3 each).
 ///
-/// With the pose R, p of the body at the echo, the beam's origin o and axes A in the body, the host pose R_h,
-/// p_h and the camera R_C, p_C in the body, a landmark (direction d, inverse distance rho) has
+/// R, p is the pose of the body at the echo, o the beam's origin and A its axes in the body. R_h, p_h is
+/// the pose of the host, R_C, p_C the camera in the body. A landmark (direction d, inverse distance rho)
+/// has
 ///   q = A^T (R^T (R_h (R_C d + rho p_C) + rho (p_h - p)) - rho o)
 ///   a = q_1 / q_0,   b = q_2 / q_0,   y = rho / q_0                 (1/m)
 ///   e = (1 / w_0 - range) / sigma,   w_0 = inverse distance of the BeamSurface of all (a, b, y).

@@ -12,8 +12,8 @@ namespace lodeline {
 /// Computes which sensors determine the scale, without any effect on the estimator. Each source is evaluated
 /// by itself, over the half-minute for which images carry a scale onwards:
 /// - stereo: the baseline b with the uncertainty of its calibration, sigma^2 = (sigma_b / b)^2 +
-///   (sigma_rotation d / b)^2, where d is the mean distance of the points that both cameras observe (a
-///   rotation of one camera moves all points). A rotation that images confirm is known to a tenth of its
+///   (sigma_rotation d / b)^2. d is the mean distance of the points that both cameras observe, because a
+///   rotation of one camera moves all points. A rotation that images confirm is known to a tenth of its
 ///   sigma (IntrinsicsModelSelection). The file's information about a baseline that was found to be wrong is
 ///   what the robust loss leaves of it;
 /// - accelerometer: changes of the acceleration compared with the noise of its integral. A constant part

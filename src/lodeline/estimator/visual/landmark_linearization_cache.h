@@ -28,8 +28,9 @@ class LandmarkLinearizationCache {
   /// the cache is in use.
   void freeze(Window& window, const FactorBuilder& factors);
 
-  /// Empties the cache, before a frame is solved, if it is old enough. It also does so if a frame or block it
-  /// depends on was removed, has a new linearization point or has left the range of the quadratic cost.
+  /// Empties the cache, before a frame is solved, if it is old enough. It also does so if a frame or
+  /// block it depends on was removed or has a new linearization point. A block that has left the range
+  /// of the quadratic cost empties it too.
   void invalidateIfStale(Window& window);
 
   /// Approximate terms of ReprojectionSystem for these landmarks at the blocks' present values: first order

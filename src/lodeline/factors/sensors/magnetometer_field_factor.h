@@ -17,9 +17,9 @@ struct FieldNoise {
   double tilt_sigma_rad = 0.0;  ///< of the roll and pitch in the attitude, which the factor does not estimate
 };
 
-/// Mean magnetometer reading of one frame compared with the field of the world: 3 residuals on the blocks
-/// pose (7), field m_W (3, T), offset o_B (3, T) and, where there are any, disturbance d_W (3, T) and fields
-/// k_i of electric currents (3 each, T/A, body axes):
+/// Mean magnetometer reading of one frame compared with the field of the world: 3 residuals. Blocks:
+/// pose (7), field m_W (3, T), offset o_B (3, T). Where there are any, disturbance d_W (3, T) and fields
+/// k_i of electric currents (3 each, T/A, body axes) follow:
 ///
 ///   e = Rz R_ref (z_B - C (o_B + sum_i k_i I_i)) - m_W - d_W     T, world axes
 ///   Rz = exp(psi e_z),  psi = e_z . log(R_W_B R_ref^-1)          rad

@@ -14,10 +14,11 @@ namespace lodeline {
 /// whitened by the sensor's noise alone, covariance sigma^2 I (paper section III-D). Blocks: pose k, pose
 /// k+1.
 ///
-/// All n residuals of an interval share their first term a and have the same Jacobian, and
+/// All n residuals of an interval share their first term a and have the same Jacobian. The sum of their
+/// squares is
 ///   sum_j |a - b_j|^2 = n |a - mean(b)|^2 + const,
-/// so the 3 residuals sqrt(n)/sigma (a - mean(b)) give the same cost with a fraction of the work. The
-/// rotations dR use the current gyroscope bias: the readings do not inform that bias.
+/// The 3 residuals sqrt(n)/sigma (a - mean(b)) therefore give the same cost with a fraction of the work.
+/// The rotations dR use the current gyroscope bias: the readings do not inform that bias.
 ///
 /// Limits of this form: m^{k+1} is one noisy reading, but n residuals count it as n independent ones. The
 /// errors of consecutive intervals do not cancel. Heading drifts as without a magnetometer, and the

@@ -30,11 +30,11 @@ double flickerShare(double tau_s, double corner_s);
 
 /// Covariance of the estimated Allan variances at several averaging times, for Gaussian noise:
 ///   cov(AVAR_i, AVAR_j) = sum over kinds a, b of c_a^2 c_b^2 G_ab(i, j)
-/// The estimates are means of squared second differences d of the integrated reading, hence
+/// The estimates are means of squared second differences d of the integrated reading. Hence
 ///   cov = 1 / (2 tau_i^2 tau_j^2) * mean over all pairs of moments of cov(d_i(t), d_j(t'))^2,
-/// and each noise's cov(d_i, d_j) follows from the autocovariance of its integral. For i = j, Greenhall &
-/// Riley ("Uncertainty of stability variances based on finite differences", PTTI 2003) convert it to degrees
-/// of freedom.
+/// The cov(d_i, d_j) of each noise follows from the autocovariance of its integral. For i = j, Greenhall
+/// & Riley ("Uncertainty of stability variances based on finite differences", PTTI 2003) convert it to
+/// degrees of freedom.
 class AllanCovariance {
  public:
   /// For the points of a curve in ascending order of averaging time.

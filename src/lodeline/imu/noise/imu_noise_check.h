@@ -20,13 +20,13 @@ struct WhiteNoise {
 /// largest values of sensors sold for navigation. `samples` are in SI units and in order of time.
 WhiteNoise whiteNoiseOf(std::span<const ImuSample> samples);
 
-/// Noise densities corrected to be physically possible and consistent with the readings. A density is raised
-/// if it is below that of navigation-grade sensors (gyroscope 3e-7 rad/s/sqrt(Hz) = 0.001 deg/sqrt(h),
-/// accelerometer 1e-5 m/s^2/sqrt(Hz) = 1 ug/sqrt(Hz)), or a third of the readings'. The new value is 1.5
-/// times that of the readings, or that of a common sensor (ImuNoise) where the readings determine none. Where
-/// the random walk of a bias would take five hours to exceed the white noise, it gets the value of a common
-/// sensor. Reports "imu_noise_too_small" (warnings), and "imu_noise_too_large" (a notice) for eight times the
-/// value of the readings.
+/// Noise densities corrected to be physically possible and consistent with the readings. A density is
+/// raised if it is below a third of the readings', or below that of navigation-grade sensors. These have
+/// 3e-7 rad/s/sqrt(Hz) = 0.001 deg/sqrt(h) and 1e-5 m/s^2/sqrt(Hz) = 1 ug/sqrt(Hz). The new value is 1.5
+/// times that of the readings, or that of a common sensor (ImuNoise) where the readings determine none.
+/// Where the random walk of a bias would take five hours to exceed the white noise, it gets the value of
+/// a common sensor. Reports "imu_noise_too_small" (warnings), and "imu_noise_too_large" (a notice) for
+/// eight times the value of the readings.
 ImuNoise plausibleNoise(const ImuNoise& stated, const WhiteNoise& shown, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -10,9 +10,9 @@ namespace lodeline {
 /// that describes a sensor has priority:
 ///
 /// 1. `layout.rig_files`;
-/// 2. Kalibr's or OpenVINS's files by their names (`camchain-imucam.yaml`, `kalibr_imucam_chain.yaml`,
-///    `imu.yaml`, `kalibr_imu_chain.yaml`, with a recording's name before or after), beside mav0 or in it
-///    (`kalibr_used`, where a sensor.yaml exists too);
+/// 2. Kalibr's or OpenVINS's files beside mav0 or in it (`kalibr_used`, where a sensor.yaml exists too): by
+///    the names `camchain-imucam.yaml`, `kalibr_imucam_chain.yaml`, `imu.yaml`, `kalibr_imu_chain.yaml`, with
+///    a recording's name before or after;
 /// 3. the sensor's `sensor.yaml`;
 /// 4. for cameras or an IMU that still lack one: the only calibration file beside mav0, in it, or in a folder
 ///    beside it, identified by its content (`calibration_found`).

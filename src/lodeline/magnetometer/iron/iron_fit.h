@@ -41,7 +41,7 @@ struct IronFitOptions {
 /// at A.
 Eigen::Matrix<double, 9, Eigen::Dynamic> activeDirections(IronModel model, const Mat3& correction);
 
-/// Covariance P of parameters p with information matrix H, where the columns of `active` were estimated and
+/// Covariance P of parameters p with information matrix H. The columns of `active` were estimated, and
 /// the other directions were held fixed with the covariance `left_out` (Schmidt's consider covariance):
 ///   K = active (active^T H active)^-1 active^T,  P = K + (I - K H) left_out (I - K H)^T
 Eigen::MatrixXd consideredCovariance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& active,

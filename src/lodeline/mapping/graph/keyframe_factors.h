@@ -27,8 +27,8 @@ struct KeyframeFactorOptions {
 /// keyframe is `first_world_from_odom` times its odometry; later ones follow the previous node's estimate.
 ///
 /// The headings of two neighbours have mostly the same error. A keyframe therefore adds only what its heading
-/// tells beyond the previous heading and the turn since: with the variances s_i^2 of the headings without
-/// their common part and q of the turn, the variance r of the added heading is
+/// tells beyond the previous heading and the turn since. s_i^2 are the variances of the headings without
+/// their common part, and q is that of the turn. The variance r of the added heading is
 ///   1 / r = 1 / s_i^2 - 1 / (s_{i-1}^2 + q).
 /// All headings up to i together then have the variance s_i^2. Where s_i^2 is not below s_{i-1}^2 + q, the
 /// heading was only carried on, and nothing is added.

@@ -8,10 +8,10 @@
 
 namespace lodeline {
 
-/// Compares loops with the present solution of a graph: chi^2 = r^T (R + P)^-1 r, where r is the residual of
-/// a loop that the solution does not use, R its covariance and P that of its prediction. P lies between zero
-/// and the covariance along the most accurate path. Only where these bounds leave the decision open does the
-/// gate compute P itself, from the normal matrix.
+/// Compares loops with the present solution of a graph: chi^2 = r^T (R + P)^-1 r. r is the residual of a
+/// loop that the solution does not use, R its covariance and P that of its prediction. P lies between
+/// zero and the covariance along the most accurate path. Only where these bounds leave the decision open
+/// does the gate compute P itself, from the normal matrix.
 class LoopGate {
  public:
   /// `problem`: with a solution; `limit`: of chi^2.

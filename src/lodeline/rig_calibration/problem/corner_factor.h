@@ -9,8 +9,11 @@ namespace lodeline {
 /// Error of one corner of the board in an image, 2 residuals in sigmas:
 ///
 ///   x_W = exp([tilt, 0]) R_level_T x_T
-///   x_B = (R exp((w - b_g) d))^T (x_W - p - v d)      body at the time of the image, d after that of the
-///   frame x_C = R_B_C^T (x_B - p_B_C) e   = (project(x_C) - pixel) / sigma
+///   x_B = (R exp((w - b_g) d))^T (x_W - p - v d)
+///   x_C = R_B_C^T (x_B - p_B_C)
+///   e   = (project(x_C) - pixel) / sigma
+///
+/// x_B is in the body at the time of the image, which is d after that of the frame.
 ///
 /// Blocks: pose (R, p), motion (v, b_g, b_a), body_from_camera, delay d (s), tilt (2), lens, and the port
 /// where there is one. Layout and perturbations are those of factors/parameters.h. The derivative by the

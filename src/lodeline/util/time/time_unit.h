@@ -60,17 +60,18 @@ inline constexpr PlausibleRate kDepthRate = {1.0 / 120.0, 100.0};
 /// rate is undetermined.
 double stampsPerUnit(std::vector<double> stamps);
 
-/// The stamp unit for which the rate of `stamps` is within `rate`. Where several units fit, the unit that
-/// gives a current Unix time wins, then any unit before ticks, then the one with the rate nearest to the
-/// middle of the range. Returns nothing where no unit fits. A few dozen stamps are enough.
+/// The stamp unit for which the rate of `stamps` is within `rate`. Where several units fit, the unit
+/// that gives a current Unix time wins. Then any unit comes before ticks, and then the one with the rate
+/// nearest to the middle of the range. Returns nothing where no unit fits. A few dozen stamps are
+/// enough.
 std::optional<TimeUnit> timeUnitOfStamps(const std::vector<double>& stamps, PlausibleRate rate);
 
 /// Whether a stamp, taken for ticks, is a time between 2001 and 2065 since 1601, the year 1, 1970 or 1980,
 /// and is not such a Unix time in nanoseconds.
 bool isCurrentTimeInTicks(double stamp);
 
-/// Whether stamps without a unit count ticks: each is a current time in ticks, the rate is plausible, and as
-/// nanoseconds the stamps are neither a current time nor those of a usual sensor.
+/// Whether stamps without a unit count ticks. Each is then a current time in ticks, and the rate is
+/// plausible. As nanoseconds the stamps are neither a current time nor those of a usual sensor.
 bool areTicks(const std::vector<double>& stamps, PlausibleRate rate);
 
 /// Converts a decimal number in `unit` to nanoseconds, rounded to the nearest nanosecond. The conversion is

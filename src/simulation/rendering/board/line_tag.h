@@ -11,8 +11,8 @@ namespace lodeline {
 struct LineTag {
   int id = 0;
   double size_m = 0.15;  ///< edge of the black square
-  /// From the frame of the tag (origin in the middle, x right, y up, z out of the print) to the frame C of
-  /// the cave.
+  /// From the frame of the tag to the frame C of the cave. The origin of the tag is its middle; x points
+  /// right, y up, z out of the print.
   Rigid3 cave_from_tag;
 
   /// Corners of the black square: lower left, lower right, upper right, upper left, as libapriltag counts.

@@ -14,9 +14,10 @@ struct HazeSample {
 
 /// Light scattered into the rays of a coarse grid over the image, accumulated over distance:
 ///   L(r) = integral_0^r  b(x) * sum_l p(angle_l) * E_l(x) * exp(-tau'(x))  dx
-/// with E_l the lamp's attenuated irradiance, p the phase function and tau' the diffuse optical depth from
-/// the camera, see Water::Coefficients (S. Chandrasekhar, "Radiative Transfer", 1950, section 7, gives the
-/// single scattering that it extends). Haze is smooth over the image: a node every sixteen pixels is enough.
+/// E_l is the lamp's attenuated irradiance, p the phase function and tau' the diffuse optical depth from
+/// the camera, see Water::Coefficients. Source of the single scattering that it extends: S.
+/// Chandrasekhar, "Radiative Transfer", 1950, section 7. Haze is smooth over the image: a node every
+/// sixteen pixels is enough.
 class HazeVolume {
  public:
   static constexpr int kNodeSpacing_px = 16;

@@ -45,8 +45,8 @@ struct InertialResidual {
 /// Magnetometer residual for the mean y of the readings around a moment (Kok & Schön, IEEE Sensors Journal
 /// 2016, equation 10, in the factors used here):
 ///   e = y - S R_M_B C R_B_W m_W - h,
-/// with C the mean of the rotations from the body at that moment to the body at each reading. `rate_B` is the
-/// angular velocity, for the derivative by the time offset.
+/// C is the mean of the rotations from the body at that moment to the body at each reading. `rate_B` is
+/// the angular velocity, for the derivative by the time offset.
 InertialResidual fieldResidual(const Vec3& reading, const Mat3& mean_turn, const Vec3& rate_B,
                                const Quat& world_from_body, const InertialParameters& parameters);
 

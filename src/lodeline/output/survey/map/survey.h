@@ -8,11 +8,12 @@
 
 namespace lodeline {
 
-/// Chooses the poses of a path that become survey stations, in order: the first, then one each `spacing_m`
-/// (straight line from station to station), or at the sharpest point of a bend at least `bend_spacing_m` from
-/// the station before, or at the farthest point before the path comes back towards it, and the last. The
-/// angle of a bend is that between the line from the station before and
-/// the path of the next `bend_spacing_m` / 2. Throws InputError where the path is too short for two stations.
+/// Chooses the poses of a path that become survey stations, in order. The first and the last pose are
+/// stations. Between them is one each `spacing_m` (straight line from station to station). A station
+/// comes earlier at the sharpest point of a bend, at least `bend_spacing_m` from the station before. The
+/// same holds for the farthest point before the path comes back towards that station. The angle of a
+/// bend is that between the line from the station before and the path of the next `bend_spacing_m` / 2.
+/// Throws InputError where the path is too short for two stations.
 std::vector<size_t> chooseStations(const std::vector<Vec3>& positions, const StationOptions& options);
 
 /// Distances from a station to the walls, m; empty where no wall is known in that direction.
