@@ -43,6 +43,7 @@ def subcommands(text, is_program=False):
 EXAMPLES = re.compile(r"^Examples?\b[^\n]*:\n(?:  .*\n?)+|^`lodeline help COMMAND` explains .*\n?", re.MULTILINE)
 EVERYWHERE = {"--help", "--verbose", "--quiet"}
 OPTION = re.compile(r"^  -\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
+ARGUMENT = re.compile(r"^  [A-Z]+ {2,}\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
 
 
 def named(option):
@@ -74,8 +75,19 @@ def places_of_options(leaves, texts):
     return places
 
 
-def without_shown(text, shown):
-    """A help text without the options of `shown` and without titles that lose all their options.
+def common_arguments(texts):
+    """The arguments that three help texts or more have in the same words; of each name the most frequent one."""
+    found = [argument.rstrip() for text in texts for argument in ARGUMENT.findall(text)]
+    common = {}
+    for argument in dict.fromkeys(found):
+        name = argument.split()[0]
+        if found.count(argument) >= 3 and found.count(argument) > found.count(common.get(name)):
+            common[name] = argument
+    return list(common.values())
+
+
+def without_shown(text, shown, arguments):
+    """A help text without the options of `shown` and the arguments, and without titles that lose all below them.
 
     `shown` has for each option the link to the place that explains it. Also returned: a sentence with the names for each place.
     """
@@ -85,7 +97,8 @@ def without_shown(text, shown):
             names.setdefault(shown[option.rstrip()], []).append(f"`{named(option)}`")
     paragraphs = []
     for paragraph in text.split("\n\n"):
-        rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shown else option.group(), paragraph).rstrip()
+        rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shown else option.group(), paragraph)
+        rest = ARGUMENT.sub(lambda row: "" if row.group().rstrip() in arguments else row.group(), rest).rstrip()
         is_bare_title = rest != paragraph.rstrip() and rest.endswith(":") and "\n" not in rest
         if not is_bare_title:
             paragraphs.append(rest)
@@ -99,20 +112,18 @@ def commands_page(program):
         leaves += [((name, word), text) for word, text in inner] or [((name,), summary)]
     page = ["# Commands", "",
             "*The script `scripts/generate_reference.py` writes this page from the help texts of the program.*", "",
-            "| command | purpose |", "| --- | --- |"]
-    for words, summary in leaves:
-        name = " ".join(words)
-        page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
-    page += ["", "`lodeline help COMMAND` prints the text of one command, with examples. `lodeline --version` prints the version.",
-             "Nearly all commands have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all commands."]
+            "`lodeline help` lists the commands. `lodeline help COMMAND` prints the text of one, with examples. Nearly all commands",
+            "have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all. `lodeline --version` prints the version."]
     texts = [without_purpose_and_examples(help_of(program, *words)) for words, _ in leaves]
     places = places_of_options(leaves, texts)
     shared = [option for option, (owner, _) in places.items() if owner is None]
-    page += ["", "## Options of many commands", "", "```text", *"\n".join(shared).splitlines(), "```"]
-    for (words, _), text in zip(leaves, texts):
+    arguments = common_arguments(texts)
+    page += ["", "## Options of many commands", "", "```text", *"\n".join(arguments + shared).splitlines(), "```"]
+    for (words, summary), text in zip(leaves, texts):
         elsewhere = {option: place for option, (owner, place) in places.items() if owner != words}
-        rest, sentences = without_shown(text, elsewhere)
-        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *(line.rstrip() for line in rest.splitlines()), "```"]
+        rest, sentences = without_shown(text, elsewhere, arguments)
+        page += ["", f"## lodeline {' '.join(words)}", "", f"{summary}.", "", "```text",
+                 *(line.rstrip() for line in rest.splitlines()), "```"]
         for sentence in sentences:
             page += ["", *textwrap.wrap(sentence, 118, break_on_hyphens=False)]
     return "\n".join(page) + "\n"

@@ -49,9 +49,7 @@ void executeRun(RunRequest request) {
 void addRunOptions(RunArguments* arguments, CLI::App* command) {
   RunRequest* const request = &arguments->request;
   command
-      ->add_option(
-          "DATA", request->data,
-          "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or film with telemetry")
+      ->add_option("DATA", request->data, "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder) or film")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
       ->required();

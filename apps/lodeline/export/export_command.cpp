@@ -52,16 +52,14 @@ void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
   command
-      ->add_option(
-          "--relative-sigma", map.relative_sigma,
-          "uncertainty of the end over the length of the line, such as 0.01; without it, that of the run")
+      ->add_option("--relative-sigma", map.relative_sigma,
+                   "uncertainty of the end over the length of the line; without it, that of the run")
       ->check(CLI::Range(1e-6, 1.0));
   command->add_flag("--closed", map.is_closed,
                     "the dive ended exactly where it began; the survey program spreads the misclosure");
   command->add_flag("--no-splays", arguments->no_splays, "write no legs to the walls");
   command->add_option("--recording", arguments->recording,
-                      "recording of the run (folder or ROS bag): its sonar gives walls, COLMAP takes cameras "
-                      "and images from it");
+                      "recording of the run, for walls by its sonar, and for COLMAP's cameras and images");
   addBagOptions(&arguments->bag, command);
 }
 

@@ -54,9 +54,9 @@ void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics
 }  // namespace
 
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
-  CLI::Option* file = command->add_option("--depth-profile", arguments->file,
-                                          "log of a dive computer or a diver to compare with the run (CSV "
-                                          "with time and depth, Subsurface, UDDF, UDCF, Suunto, DL7)");
+  CLI::Option* file =
+      command->add_option("--depth-profile", arguments->file,
+                          "log of a dive computer or a table of depths to compare with the run");
   command
       ->add_option(
           "--dive", arguments->dive,
