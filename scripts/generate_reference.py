@@ -52,7 +52,7 @@ def named(option):
 
 
 def without_purpose_and_examples(text):
-    return EXAMPLES.sub("", text.partition("\n\n")[2] + "\n").rstrip()
+    return EXAMPLES.sub("", text.partition("\n\n")[2] + "\n").rstrip().removeprefix("Usage: ").replace(" [OPTIONS]", "", 1)
 
 
 def places_of_options(leaves, texts):
@@ -155,15 +155,13 @@ def settings_page(config):
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
             "The defaults serve all recordings. Change a setting on the command line, `--set front_end.max_tracks=300`,",
-            "or in a YAML file, `-c config.yaml`. The command line goes over the file. Every run writes all settings in",
-            "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
-            "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",
-            "deviation. An unknown setting is an error that names the nearest known one. [Theory](../theory/index.md)",
-            "explains the models.", "",
+            "or in a YAML file, `-c config.yaml`. The command line goes over the file. `-c` with the `config.yaml` of an",
+            "output folder repeats its run. The unit of a setting is the end of its name. A `sigma` is one standard",
+            "deviation.", "",
             "| setting | default | meaning |", "| --- | --- | --- |", *rows, "", "## Expert settings", "",
-            "Experiments need further settings; users do not. `lodeline settings --expert` prints all settings with their",
-            "meaning and default. `expert.` may be left out of a name: `--set window.keyframes=10`.",
-            "An IMU counts as calibrated by its maker when `axes_sigma` of its calibration is below 0.002."]
+            "`lodeline settings --expert` also prints the settings that only experiments need. `expert.` may be left out of a",
+            "name: `--set window.keyframes=10`. An IMU counts as calibrated by its maker when `axes_sigma` of its calibration",
+            "is below 0.002."]
     return "\n".join(page) + "\n"
 
 
