@@ -70,7 +70,7 @@ def places_of_options(leaves, texts):
             places[option] = (None, "[many commands](#options-of-many-commands)")
         elif len(found) == 2:
             (first, text), (second, _) = found
-            words = second if f"`lodeline {' '.join(second)}`" in text else first
+            words = second if f"`lodeline {' '.join(second)}`" in " ".join(text.split()) else first
             places[option] = (words, f"[{' '.join(words)}](#lodeline-{'-'.join(words)})")
     return places
 

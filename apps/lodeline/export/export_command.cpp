@@ -26,7 +26,7 @@ void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
                       "else of the pressure sensor, else 0");
   command->add_option(
       "--geoid-height", arguments->map.geoid_height_m,
-      "height of the vertical datum above the WGS 84 ellipsoid, m, for GeoJSON; without it, PROJ's, else 0");
+      "height of the vertical datum above the WGS 84 ellipsoid, m; without it, PROJ's, else 0");
   command->add_option("--vertical-datum", arguments->map.vertical_datum,
                       "level that HEIGHT counts from: EPSG:5703 (NAVD88), EPSG:5773 (EGM96), ellipsoid");
   command
@@ -43,9 +43,7 @@ void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
 
 void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
   DiveMapOptions& map = arguments->map;
-  command->add_option(
-      "--name", map.name,
-      "name of survey and files, with several runs of the project; without it, that of the run's folder");
+  command->add_option("--name", map.name, "name of survey and files; without it, that of the run's folder");
   command->add_option("--title", map.title, "title of the survey");
   command->add_option("--team", map.team, "name of a person of the team; may be repeated");
   command->add_option("--spacing", map.stations.spacing_m, "distance between stations on a straight way, m")

@@ -57,15 +57,12 @@ void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
   CLI::Option* file =
       command->add_option("--depth-profile", arguments->file,
                           "log of a dive computer or a table of depths to compare with the run");
-  command
-      ->add_option(
-          "--dive", arguments->dive,
-          "number of the dive in that log, or the start of its date (2026-11-21, \"2026-11-21 10:34\")")
+  command->add_option("--dive", arguments->dive, "number of the dive in that log, or the start of its date")
       ->needs(file);
   command->add_flag("--correct-depth", arguments->correct, "take the heights from that profile")->needs(file);
   command
       ->add_option("--profile-lag", arguments->lag_s,
-                   "seconds to add to the times of the profile; without it, they are estimated")
+                   "seconds to add to the times of the profile; without it, estimated")
       ->needs(file);
 }
 
