@@ -43,6 +43,7 @@ def subcommands(text, is_program=False):
 EXAMPLES = re.compile(r"^Examples?\b[^\n]*:\n(?:  .*\n?)+|^`lodeline help COMMAND` explains .*\n?", re.MULTILINE)
 EVERYWHERE = {"--help", "--verbose", "--quiet"}
 OPTION = re.compile(r"^  -\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
+TITLE = re.compile(r"^(?:Arguments|Options|Settings|Recording|Place and time|Results|Screen):(?:\n|$)")
 ARGUMENT = re.compile(r"^  [A-Z]+ {2,}\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
 
 
@@ -67,11 +68,11 @@ def places_of_options(leaves, texts):
     places = {}
     for option, found in owners.items():
         if len(found) >= 3:
-            places[option] = (None, "[many commands](#options-of-many-commands)")
+            places[option] = (None, "[Common options](#options-of-many-commands)")
         elif len(found) == 2:
             (first, text), (second, _) = found
             words = second if f"`lodeline {' '.join(second)}`" in " ".join(text.split()) else first
-            places[option] = (words, f"[{' '.join(words)}](#lodeline-{'-'.join(words)})")
+            places[option] = (words, f"Options of [{' '.join(words)}](#lodeline-{'-'.join(words)})")
     return places
 
 
@@ -87,7 +88,7 @@ def common_arguments(texts):
 
 
 def without_shown(text, shown, arguments):
-    """A help text without the options of `shown` and the arguments, and without titles that lose all below them.
+    """A help text without the options of `shown`, the arguments, and the titles of groups.
 
     `shown` has for each option the link to the place that explains it. Also returned: a sentence with the names for each place.
     """
@@ -99,10 +100,10 @@ def without_shown(text, shown, arguments):
     for paragraph in text.split("\n\n"):
         rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shown else option.group(), paragraph)
         rest = ARGUMENT.sub(lambda row: "" if row.group().rstrip() in arguments else row.group(), rest).rstrip()
-        is_bare_title = rest != paragraph.rstrip() and rest.endswith(":") and "\n" not in rest
-        if not is_bare_title:
+        rest = TITLE.sub("", rest)
+        if rest:
             paragraphs.append(rest)
-    return "\n\n".join(paragraphs), [f"Options of {place}: {', '.join(options)}." for place, options in names.items()]
+    return "\n\n".join(paragraphs), [f"{place}: {', '.join(options)}." for place, options in names.items()]
 
 
 def commands_page(program):
