@@ -113,8 +113,8 @@ def commands_page(program):
         leaves += [((name, word), text) for word, text in inner] or [((name,), summary)]
     page = ["# Commands", "",
             "*The script `scripts/generate_reference.py` writes this page from the help texts of the program.*", "",
-            "`lodeline help` lists the commands. `lodeline help COMMAND` prints the text of one, with examples. Nearly all commands",
-            "have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all. `lodeline --version` prints the version."]
+            "`lodeline help` lists the commands. `lodeline help COMMAND` prints the text of one, with examples. Nearly all",
+            "commands have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all."]
     texts = [without_purpose_and_examples(help_of(program, *words)) for words, _ in leaves]
     places = places_of_options(leaves, texts)
     shared = [option for option, (owner, _) in places.items() if owner is None]
